@@ -1,0 +1,55 @@
+// The cure: more substeps. Twice as many are stable with four times the stiffness.
+import { bisected, computed } from './border.js';
+import { bar, DT } from './scenes.js';
+
+const WIDTH = 24, HEIGHT = 5, SOFT = 165000; // a tenth above the border of one substep
+
+const make = (ms, stiffness, substeps) => bar(ms, { width: WIDTH, height: HEIGHT, substeps, guard: 'bounds', globalDamping: 0.2,
+  material: { stiffness, damping: 55.05 } });
+
+// A step of a network, or whether it has exploded.
+function tried(network) {
+  try {
+    network.step(DT);
+    return network.stepInfo().largestSpeed > 1e4;
+  } catch {
+    return true;
+  }
+}
+
+export default {
+  name: 'cure',
+  controls: [{ name: 'substeps', label: 'Substeps', min: 1, max: 40, step: 1, value: 2 }],
+
+  start(ms, values) {
+    const { substeps } = values, stiffness = SOFT * (substeps === 1 ? 1 : (substeps * substeps) / 4);
+    const bars = [make(ms, stiffness, 1), make(ms, stiffness, substeps)], gone = [0, 0];
+    return {
+      step() {
+        bars.forEach((network, i) => {
+          if (!gone[i]) gone[i] = tried(network) ? 1 : 0;
+          else if (++gone[i] > 64 && i === 0) { // once more from the start
+            network.free();
+            bars[i] = make(ms, stiffness, 1);
+            gone[i] = 0;
+          }
+        });
+      },
+      draw(pen) {
+        pen.columns(2).forEach((place, i) => {
+          pen.world(place, { minX: -2, maxX: WIDTH + 2, minY: -24, maxY: 10 });
+          pen.network(bars[i], 0.2);
+          pen.label(place, i ? `${substeps} substeps` : `1 substep${gone[0] ? ': exploded' : ''}`);
+        });
+      },
+      say: () => `${stiffness.toFixed(0)} N/m, 1/64 s a frame`,
+      free: () => bars.forEach((network) => network.free()),
+    };
+  },
+
+  async check(ms, breathe) {
+    const one = computed(ms), guess = 900 * one;
+    const found = await bisected(ms, breathe, 0.97 * guess, 1.03 * guess, 30);
+    return [{ what: 'stiffness stable with 30 substeps, of that with one', found: found / one, wanted: 900, within: 9, digits: 1 }];
+  },
+};

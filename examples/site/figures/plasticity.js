@@ -1,0 +1,61 @@
+// What bends stays bent: a bar whose springs yield beside one whose springs do not.
+import { bar, DT, heightOf, probe } from './scenes.js';
+
+const WIDTH = 40, HEIGHT = 5, TOP = HEIGHT - 1, YIELD = 0.01, HARDENING = 0.1, LOAD = 60000;
+
+const make = (ms, yielding) => bar(ms, { width: WIDTH, height: HEIGHT, substeps: 30, globalDamping: 2, gravityY: 0,
+  material: yielding ? { yieldStrain: YIELD, hardening: HARDENING } : {} });
+
+// The load at the free end grows for two seconds and is taken away in the next two.
+const loadAt = (time) => LOAD * Math.max(0, 1 - Math.abs(time - 2) / 2);
+
+export default {
+  name: 'plasticity',
+  controls: [
+    { name: 'load', label: 'Load, %', min: 10, max: 100, step: 5, value: 100 },
+    { name: 'again', label: 'Load it again', press: true },
+  ],
+
+  start(ms, values) {
+    const bars = [make(ms, false), make(ms, true)];
+    let time = 0;
+    return {
+      press: () => (time = 0),
+      grips: bars,
+      step() {
+        time += DT;
+        bars.forEach((network) => {
+          for (let row = 0; row < HEIGHT; row++)
+            network.applyForce(row * WIDTH + WIDTH - 1, 0, -(loadAt(time) * values.load) / 100);
+          network.step(DT);
+        });
+      },
+      draw(pen) {
+        pen.columns(2).forEach((place, i) => {
+          pen.world(place, { minX: -2, maxX: WIDTH + 2, minY: -24, maxY: 10 });
+          pen.network(bars[i], 0.02);
+          pen.label(place, i ? 'yields at 1 %' : 'elastic');
+        });
+      },
+      say: () => `load ${((loadAt(time) * values.load) / 1e5).toFixed(0)} kN a row; down by ` +
+        bars.map((network) => `${(TOP - heightOf(network, probe(WIDTH))).toFixed(2)} m`).join(' and '),
+      free: () => bars.forEach((network) => network.free()),
+    };
+  },
+
+  // One spring that is pulled by a tenth: what stays follows from the law.
+  async check(ms) {
+    const pull = 0.1, builder = new ms.Builder();
+    builder.addParticles({ x: [0, 1], mass: 1 });
+    builder.addSpring({ a: 0, b: 1, stiffness: 1000, yieldStrain: YIELD, hardening: HARDENING });
+    const network = new ms.Network(builder, { gravityY: 0, substeps: 4 });
+    builder.free();
+    network.pin([0, 1]);
+    network.setPositions([1 + pull, 0], { ids: [1] });
+    network.step(DT, 4);
+    const [strain] = network.get('plasticStrain');
+    network.free();
+    return [{ what: 'plastic strain of a spring pulled by 10 %', found: strain, wanted: (pull - YIELD) / (1 + HARDENING),
+      within: 1e-5, digits: 5 }];
+  },
+};
