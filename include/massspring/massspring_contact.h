@@ -47,7 +47,7 @@ typedef struct mspring_contact_def {
 /// @threads any   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact_def *def, size_t size);
 
-/// Let the bodies of a network collide. This replaces the contact that it has.
+/// Let the bodies of a network collide, or change how they do.
 /// A body is a component. The outline of the network is all springs with a free side, and particles without springs.
 /// Ropes and trusses are all outline. Particles of the outline, its points, keep the distance thickness from its
 /// springs. If one spring or two in a row join two particles, neither collides with the other's springs. The outline
@@ -57,16 +57,21 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross at the
 /// start stay crossed.
 ///
+/// If the network has contact already, the outline keeps the shape that it was found by. Groups, colliders with
+/// their moves, contacts and events that wait stay, too. All bodies wake. If only capacity changes, none wakes, and
+/// the next steps have the same bits as without the call. To begin anew, remove contact first.
+///
 /// All solvers have contact. With the implicit and the direct solver it is part of the linear system. Substeps in which
 /// bodies touch are then of implicit Euler, and keep the energy budget, whatever integrator and guard are set.
 /// mspring_network_tune() and mspring_network_settle() leave contact out.
 ///
 /// Snapshots leave contact as it is, as they leave the floor. They hold the outline's shape only. Before you load one,
-/// set the same contact and the same groups. Then the next steps have the same bits.
+/// set the same contact and groups. Then the next steps have the same bits.
 ///
 /// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back. It also
-/// does if more than an eighth of capacity and 1024 may touch in a substep.
-/// @param def  copied; NULL: no contact, the default. Groups of particles and colliders of the host are forgotten.
+/// does if more than an eighth of capacity and 1024 may touch in a substep. Then set the same contact with a larger
+/// capacity, and step again.
+/// @param def  copied; NULL: no contact, the default. Groups, colliders and events are forgotten.
 /// @threads exclusive   @allocates yes; about 530 bytes for a particle, 3300 more for one of the outline, 40 for a
 ///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1900 more.
 /// @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
@@ -136,7 +141,7 @@ typedef struct mspring_contact_event {
 /// contact events.
 ///
 /// Snapshots hold none. After a load all that is nearer than 1.05 of the thickness counts as begun, and events that
-/// were not read are dropped. Clones have contacts and events. mspring_network_set_contact() ends the recording.
+/// were not read are dropped. Clones have contacts and events. Removing contact ends the recording.
 /// @param capacity  events that may wait to be read, and contacts that are followed at a time, at most 0x1000000; 0:
 ///                  record none. Events that were not read yet are dropped.
 /// @threads exclusive   @allocates yes; 200 bytes for each   @since 0.2

@@ -130,7 +130,7 @@ static const mspringi_column members[] = {
     ARRAY(meetings.ring),
     ARRAY(colliders.list),
     ARRAY(colliders.shape),
-    VIEW(colliders.x),
+    ARRAY(colliders.x),
     VIEW(colliders.y),
     VIEW(colliders.vx),
     VIEW(colliders.vy),
@@ -231,8 +231,9 @@ static bool reserve_holds(mspringi_pairs *pairs, mspringi_memory *memory) {
 
 // By what the outline is, and what it may come to be. Most pairs that are near do not touch.
 static bool reserve_pairs(mspringi_pairs *made, mspringi_memory *memory, size_t particles) {
-    const uint64_t usual = PAIRS_OF_OUTLINE * (uint64_t)made->outline.point_count +
-                           PAIRS_OF_PARTICLE * (uint64_t)particles + PAIRS_BESIDES;
+    const uint32_t own = made->outline.point_count - made->colliders.listed_points;
+    const uint64_t usual =
+        PAIRS_OF_OUTLINE * (uint64_t)own + PAIRS_OF_PARTICLE * (uint64_t)particles + PAIRS_BESIDES;
     if (made->def.capacity == 0)
         made->def.capacity = usual < MOST_PAIRS ? (uint32_t)usual : MOST_PAIRS;
     made->capacity = made->def.capacity + PAIRS_OF_POINT * made->colliders.point_capacity;
@@ -328,15 +329,22 @@ static mspringi_pairs *make(mspring_network *network, const mspring_contact_def 
     return NULL;
 }
 
-bool mspringi_pairs_widen(mspring_network *network, uint32_t points) {
+// What is there goes on with another definition, or with room for more points of colliders. False: there is no
+// memory, and nothing has changed.
+static bool replace(mspring_network *network, const mspring_contact_def *def, uint32_t points) {
     mspringi_pairs *had = network->pairs;
-    mspringi_pairs *made = make(network, &had->def, points, had);
+    mspringi_pairs *made = make(network, def, points, had);
     if (!made)
         return false;
-    hand_over(had);
+    if (had)
+        hand_over(had);
     destroy(had, &network->memory);
     network->pairs = made;
     return true;
+}
+
+bool mspringi_pairs_widen(mspring_network *network, uint32_t points) {
+    return replace(network, &network->pairs->def, points);
 }
 
 mspring_result mspringi_pairs_reserve_holds(mspring_network *network) {
@@ -362,26 +370,32 @@ mspring_result mspring_network_get_contact(const mspring_network *network, mspri
     return MSPRING_OK;
 }
 
-static mspring_result exchange(mspring_network *network, const mspring_contact_def *def) {
-    mspringi_pairs *made = NULL;
-    if (def) {
-        const mspringi_fp_state before = mspringi_fp_enter();
-        mspring_result result = mspringi_incidence_reserve(network);
-        if (result == MSPRING_OK) {
-            made = make(network, def, 0, NULL);
-            if (!made)
-                result = mspringi_fail(
-                    &network->message, MSPRING_ERROR_MEMORY, "no memory for contact of %u particles and %u springs",
-                    (unsigned)network->topology.particle_count, (unsigned)network->topology.spring_count);
-        }
-        mspringi_fp_leave(before);
-        if (result != MSPRING_OK)
-            return result;
-    }
+static mspring_result remove_contact(mspring_network *network) {
     destroy(network->pairs, &network->memory);
-    network->pairs = made;
+    network->pairs = NULL;
     mspringi_changed(network, MSPRINGI_CHANGED_CONTACT, 0);
     return MSPRING_OK;
+}
+
+// Whether two differ by no more than how many pairs they have room for: that moves nothing.
+static bool are_alike(const mspring_contact_def *a, const mspring_contact_def *b) {
+    return a->flags == b->flags && a->thickness == b->thickness && a->friction == b->friction &&
+           a->restitution == b->restitution && a->push_speed == b->push_speed && a->sweeps == b->sweeps;
+}
+
+static mspring_result use(mspring_network *network, const mspring_contact_def *def) {
+    const bool is_new = !network->pairs || !are_alike(&network->pairs->def, def);
+    const uint32_t points = network->pairs ? network->pairs->colliders.point_capacity : 0;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = mspringi_incidence_reserve(network);
+    if (result == MSPRING_OK && !replace(network, def, points))
+        result = mspringi_fail(
+            &network->message, MSPRING_ERROR_MEMORY, "no memory for contact of %u particles and %u springs",
+            (unsigned)network->topology.particle_count, (unsigned)network->topology.spring_count);
+    mspringi_fp_leave(before);
+    if (result == MSPRING_OK && is_new)
+        mspringi_changed(network, MSPRINGI_CHANGED_CONTACT, 0);
+    return result;
 }
 
 mspring_result mspring_network_set_contact(mspring_network *network, const mspring_contact_def *def) {
@@ -390,7 +404,7 @@ mspring_result mspring_network_set_contact(mspring_network *network, const mspri
     if (result != MSPRING_OK || (!def && !network->pairs))
         return result;
     if (!def)
-        return exchange(network, NULL);
+        return remove_contact(network);
     result = mspringi_check_struct(&network->message, "mspring_contact_def", def, sizeof *def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(&network->message, "mspring_contact_def", def->reserved);
@@ -399,7 +413,7 @@ mspring_result mspring_network_set_contact(mspring_network *network, const mspri
     used = *def;
     used.struct_size = sizeof used;
     result = check_def(network, &used, &network->message);
-    return result == MSPRING_OK ? exchange(network, &used) : result;
+    return result == MSPRING_OK ? use(network, &used) : result;
 }
 
 mspring_result mspring_network_set_contact_groups(mspring_network *network, mspring_id first, uint32_t count,

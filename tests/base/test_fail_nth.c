@@ -319,6 +319,14 @@ static mspring_result set_contact(life *l) {
     return mspring_network_set_contact(l->network, &def);
 }
 
+static mspring_result change_contact(life *l) {
+    mspring_contact_def def = {.struct_size = sizeof def};
+    check_ok(mspring_network_get_contact(l->network, &def));
+    def.thickness *= 2;
+    def.capacity *= 2;
+    return mspring_network_set_contact(l->network, &def);
+}
+
 static mspring_result add_colliders(life *l) {
     mspring_collider_def def;
     mspring_result result = MSPRING_OK;
@@ -435,6 +443,8 @@ static const struct {
     {"contact", set_contact},
     {"contact events", reserve_contact_events},
     {"colliders", add_colliders},
+    {"step", step},
+    {"other contact", change_contact},
     {"step", step},
     {"compact", compact},
     {"step", step},

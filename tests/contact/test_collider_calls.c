@@ -516,6 +516,7 @@ static void bad_calls_are_refused(void **state) {
     check_error(mspring_network_get_collider_impulse(network, 0, &x, &y, NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_collider_impulse(NULL, 0, &x, &y, &angular), MSPRING_ERROR_ARGUMENT);
     // Without contact there are none, and what is set anew has none.
+    check_ok(mspring_network_set_contact(network, NULL));
     check_ok(bodies_touch(network, THICKNESS, 0, 0));
     check_error(mspring_network_move_collider(network, 0, 0, 0, 0), MSPRING_ERROR_ID);
     check_ok(mspring_network_set_contact(network, NULL));

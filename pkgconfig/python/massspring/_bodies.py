@@ -77,11 +77,14 @@ class BodyCalls(NetworkCalls):
 
     @with_keywords("mspring_contact_def")
     def set_contact(self, **fields: Unpack[ContactKeywords]) -> None:
-        """Let the bodies of the network collide. It needs the explicit solver. Set it before the network deforms."""
+        """Let the bodies of the network collide, or change how they do. Set it before the network deforms.
+
+        If there is contact already, groups, colliders and events stay.
+        """
         self._change(lib.mspring_network_set_contact, filled("mspring_contact_def", dict(fields)))
 
     def clear_contact(self) -> None:
-        """End contact. Groups and colliders are forgotten."""
+        """End contact. Groups, colliders and events are forgotten."""
         self._change(lib.mspring_network_set_contact, ffi.NULL)
 
     @property
