@@ -179,6 +179,7 @@ export interface Network {
   setContact(options: ContactOptions | null): void;
   getContact(): Full<ContactOptions> | null;
   setContactGroups(groups: number, masks: number, where?: IdRange): void;
+  setContactSurface(surface: { friction?: number; restitution?: number }, where?: IdRange): void;
   contactInfo(): ContactInfo;
   /** Contact events are recorded from then on, so many at most. */
   reserveContactEvents(capacity: number): void;

@@ -174,8 +174,6 @@ static void append(mspring_network *network, const mspring_collider_def *def) {
                              .count = count,
                              .sides = is_open ? count - 1 : count,
                              .radius = def->radius,
-                             .friction = (double)def->friction,
-                             .restitution = (double)def->restitution,
                              .target = {def->x, def->y, def->angle}};
     c->def.struct_size = sizeof c->def;
     write_shape(def, all->shape + 2 * (size_t)all->point_count);

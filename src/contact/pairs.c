@@ -82,6 +82,7 @@ static mspring_result check_def(const mspring_network *network, mspring_contact_
 static const mspringi_column members[] = {
     ARRAY(groups),
     VIEW(masks),
+    ARRAY(rough),
     ARRAY(outline.is_edge),
     ARRAY(outline.is_known),
     ARRAY(outline.shape_x),
@@ -250,8 +251,6 @@ static bool reserve_pairs(mspringi_pairs *made, mspringi_memory *memory, size_t 
 static void set_def(mspringi_pairs *pairs, const mspring_contact_def *def) {
     pairs->def = *def;
     pairs->thickness = def->thickness;
-    pairs->friction = (double)def->friction;
-    pairs->restitution = (double)def->restitution;
     pairs->push = (double)def->push_speed;
     pairs->touches_itself = def->flags & MSPRING_CONTACT_SELF;
 }
@@ -284,6 +283,7 @@ static void take_over(mspringi_pairs *made, const mspringi_pairs *had, size_t sp
     }
     c->is_placed = false;
     c->are_new = true;
+    made->rough = had->rough;
     made->meetings = had->meetings;
     made->touching = had->touching;
     made->deepest = had->deepest;
@@ -291,6 +291,7 @@ static void take_over(mspringi_pairs *made, const mspringi_pairs *had, size_t sp
 
 // Another has the arrays that do not depend on how much room there is.
 static void hand_over(mspringi_pairs *pairs) {
+    pairs->rough = NULL;
     pairs->colliders.list = NULL;
     pairs->meetings.list = NULL;
     pairs->meetings.ring = NULL;

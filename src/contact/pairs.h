@@ -8,6 +8,7 @@
 ///   sweeps.c     the impulses of those that touch
 ///   touching.c   the stage: when to look, and which islands sleep and wake together
 ///   meetings.c   contacts that begin and end, as events for the host
+///   rough.c      friction and restitution of particles of their own
 ///   colliders.c  shapes of the host: adding, moving, reading them
 ///   poses.c      where these are in the course of a step, and what they get in it
 ///
@@ -83,7 +84,8 @@ typedef struct mspringi_active {
 typedef struct mspringi_touch {
     uint32_t p, a, b; ///< active nodes
     uint32_t candidate;
-    uint32_t collider;       ///< number of the collider that the point or the edge is of, MSPRING_NONE if none is
+    uint32_t collider; ///< number of the collider that the point or the edge is of, MSPRING_NONE if none is
+    float friction;
     double nx, ny;           ///< from the edge to the point, of length 1
     double share_a, share_b; ///< of the edge's nearest place
     double gap, distance;    ///< m
@@ -134,7 +136,7 @@ typedef struct mspringi_collider {
     mspring_id id;
     uint32_t first, count; ///< its points
     uint32_t sides;
-    double radius, friction, restitution;
+    double radius;
     mspringi_pose target;                 ///< at the end of the next step
     bool is_moving;                       ///< target is elsewhere
     double impulse_x, impulse_y, angular; ///< of the last step
@@ -186,15 +188,21 @@ typedef struct mspringi_meetings {
     bool is_known; ///< else what rests on each other has begun before
 } mspringi_meetings;
 
+/// Friction and restitution of what touches.
+typedef struct mspringi_rough {
+    float friction, restitution; ///< of a particle: < 0: the contact's
+} mspringi_rough;
+
 /// Edges that are kept for each point because it never touches them: those beside its own on a straight outline.
 #define MSPRINGI_KNOWN_APART 6u
 
 struct mspringi_pairs {
     mspring_contact_def def;
-    double thickness, friction, restitution, push;
+    double thickness, push;
     bool touches_itself;
     uint32_t particles;       ///< that there is room for
     uint32_t *groups, *masks; ///< [nodes]
+    mspringi_rough *rough;    ///< [particles] NULL: none has values of its own
     mspringi_outline outline;
     mspringi_edge_cells cells;
     mspringi_colliders colliders;
@@ -348,6 +356,12 @@ void mspringi_meetings_push(const mspring_network *network, mspringi_pairs *pair
 void mspringi_meetings_end(const mspring_network *network, mspringi_pairs *pairs);
 /// The state is another: drop events, and take what rests on each other for begun.
 void mspringi_meetings_forget(mspringi_pairs *pairs);
+
+/* rough.c */
+
+/// Of a pair where particles have values of their own. collider: the one that it is of, or NULL.
+mspringi_rough mspringi_rough_between(const mspringi_pairs *pairs, const mspringi_pair *pair,
+                                      const mspringi_collider *collider);
 
 /* poses.c */
 

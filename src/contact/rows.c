@@ -189,6 +189,14 @@ static double square_to_ends(const mspringi_active *k, uint32_t p, uint32_t a, u
     return of_a > of_b ? of_a : of_b;
 }
 
+static mspringi_rough rough_of(const mspringi_pairs *pairs, const mspringi_pair *pair,
+                               const mspringi_collider *collider) {
+    if (pairs->rough)
+        return mspringi_rough_between(pairs, pair, collider);
+    return collider ? (mspringi_rough){collider->def.friction, collider->def.restitution}
+                    : (mspringi_rough){pairs->def.friction, pairs->def.restitution};
+}
+
 static void put_row(mspringi_pairs *pairs, uint32_t candidate, const mspringi_collider *collider,
                     const mspringi_nearest *at, double thickness, double h) {
     const mspringi_candidate *c = &pairs->hot[candidate];
@@ -208,9 +216,11 @@ static void put_row(mspringi_pairs *pairs, uint32_t candidate, const mspringi_co
     const double resistance = resistance_of(&pairs->active, t);
     if (!(resistance > 0.0))
         return;
+    const mspringi_rough rough = rough_of(pairs, &pairs->list[c->pair], collider);
     t->mass = 1.0 / resistance;
-    t->target = wanted(pairs, t, collider ? collider->restitution : pairs->restitution, h);
-    if ((collider ? collider->friction : pairs->friction) > 0.0)
+    t->friction = rough.friction;
+    t->target = wanted(pairs, t, (double)rough.restitution, h);
+    if (rough.friction > 0.0f)
         add_friction(pairs, t);
     ++pairs->touch_count;
 }

@@ -45,13 +45,10 @@ MSPRINGI_ALWAYS_INLINE void rub(const mspringi_pairs *pairs, mspringi_touch *t) 
         return;
     const double tx = -t->ny, ty = t->nx;
     double speed = k->vx[t->p] * tx + k->vy[t->p] * ty + k->vx[t->a] * t->ax + k->vy[t->a] * t->ay +
-                   k->vx[t->b] * t->bx + k->vy[t->b] * t->by,
-           friction = pairs->friction;
-    if (t->collider != MSPRING_NONE) {
+                   k->vx[t->b] * t->bx + k->vy[t->b] * t->by;
+    if (t->collider != MSPRING_NONE)
         speed += mspringi_collider_drag(pairs, t);
-        friction = pairs->colliders.list[t->collider].friction;
-    }
-    const double most = friction * t->across, sum = t->along - speed * t->slide_mass;
+    const double most = (double)t->friction * t->across, sum = t->along - speed * t->slide_mass;
     const double along = sum > most ? most : sum < -most ? -most : sum, by = along - t->along;
     t->along = along;
     k->vx[t->p] += k->weight[t->p] * by * tx;

@@ -63,6 +63,20 @@ static mspring_result set_contact_groups(arguments *a) {
     return result;
 }
 
+static mspring_result set_contact_surface(arguments *a) {
+    mspring_contact_def def;
+    check_ok(mspring_contact_def_init(&def, sizeof def));
+    mspring_result result = mspring_network_set_contact(a->network, &def);
+    if (result == MSPRING_OK) {
+        result = mspring_network_set_contact_surface(a->network, a->first, a->count, 0.5f, -1);
+        check_ok(mspring_network_set_contact(a->network, NULL));
+    }
+    if (result != MSPRING_OK) { // messages go with the contact
+        assert_true(mspring_network_set_contact_surface(a->network, 0, 1, 0, 0) != MSPRING_OK);
+    }
+    return result;
+}
+
 static void make_grip(arguments *a) {
     mspring_grip_def *def = (mspring_grip_def *)(void *)a->given_bytes;
     (void)mspring_grip_def_init(def, sizeof *def);
@@ -550,6 +564,7 @@ static void add_hook(arguments *a) {
       mspring_contact_def_init(a->out[0], a->size))                                                                \
     X(mspring_network_set_contact, "Ns", FILL(contact_def), set_contact(a))                                        \
     X(mspring_network_set_contact_groups, "N", NOTHING, set_contact_groups(a))                                     \
+    X(mspring_network_set_contact_surface, "N", NOTHING, set_contact_surface(a))                                   \
     X(mspring_network_get_contact, "nP", OUT_STRUCT(0, contact_def),                                               \
       mspring_network_get_contact(a->network, a->out[0]))                                                          \
     X(mspring_network_get_contact_info, "nP", OUT_STRUCT(0, contact_info),                                         \

@@ -327,6 +327,10 @@ static mspring_result change_contact(life *l) {
     return mspring_network_set_contact(l->network, &def);
 }
 
+static mspring_result set_surface(life *l) {
+    return mspring_network_set_contact_surface(l->network, 0, 5, 0.1f, 0.5f);
+}
+
 static mspring_result add_colliders(life *l) {
     mspring_collider_def def;
     mspring_result result = MSPRING_OK;
@@ -442,6 +446,7 @@ static const struct {
     {"no groups", drop_groups},
     {"contact", set_contact},
     {"contact events", reserve_contact_events},
+    {"surface", set_surface},
     {"colliders", add_colliders},
     {"step", step},
     {"other contact", change_contact},

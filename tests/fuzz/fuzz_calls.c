@@ -261,6 +261,12 @@ static mspring_result set_contact(mspring_network *network, const call *c) {
     return mspring_network_set_contact(network, c->count == 2 ? NULL : &def);
 }
 
+static mspring_result set_who_touches(mspring_network *network, const call *c) {
+    if (c->spring % 3 == 1)
+        return mspring_network_set_contact_surface(network, c->particle, c->count, c->a, c->spring % 2 ? -1 : c->b);
+    return mspring_network_set_contact_groups(network, c->particle, c->count, c->spring, c->spring | 1);
+}
+
 static mspring_result change_grip(mspring_network *network, const call *c) {
     mspring_grip_def def;
     FUZZ_CHECK(mspring_grip_def_init(&def, sizeof def) == MSPRING_OK);
@@ -500,7 +506,7 @@ static mspring_result make_call(mspring_network *network, const call *c) {
     case 38:
         return set_contact(network, c);
     case 39:
-        return mspring_network_set_contact_groups(network, c->particle, c->count, c->spring, c->spring | 1);
+        return set_who_touches(network, c);
     case 40:
     case 41:
         return change_grip(network, c);

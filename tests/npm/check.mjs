@@ -124,6 +124,7 @@ function meeting(ms) {
   network.setFloor({ planes: [0, 0, 0, 1], heights: [-1, -1], friction: 0.5, planeFrictions: [0.4] });
   network.setContact({ friction: 0.3 });
   network.setContactGroups(1, 0xffffffff);
+  network.setContactSurface({ friction: 0.5 });
   network.reserveContactEvents(64);
   const box = network.addCollider({ kind: 'box', x: 12, y: 1, width: 2, height: 2 });
   const wall = network.addCollider({ points: [-4, 0, -4, 9] });

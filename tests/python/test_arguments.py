@@ -44,6 +44,7 @@ class Arguments(unittest.TestCase):
             ("set_floor", [[0, 0, 0, 1]], None, [1, 2]),
             ("add_collider", "circle"), ("add_collider", "square"), ("add_grip", count), ("move_grip", 7, 0, 0),
             ("set_contact_groups", 1, 1 << 32), ("set_contact_groups", 1, 1, [3]),
+            ("set_contact_surface", NAN), ("set_contact_surface", 0.1, 2), ("set_contact_surface", 0.1, 0, [3]),
             ("load", b""), ("load", b"x" * 1000), ("load", "text"), ("save", "most"), ("tune", []),
             ("remove_grip", -1), ("reserve_events", -1),
             ("remove_collider", 1 << 40), ("read_contact_events",), ("nearest_particle", NAN, 0),

@@ -117,6 +117,8 @@ class Calls(unittest.TestCase):
         network.set_contact(thickness=0.4, friction=0.5)
         network.reserve_contact_events(1000)
         network.set_contact_groups(3, 0xFFFFFFFF, range(0, 16))
+        network.set_contact_surface(friction=0.2, ids=range(0, 16))
+        network.set_contact_surface()
         ground = network.add_collider("chain", [[-10, -1], [10, -1]], friction=1)
         paddle = network.add_collider("box", width=2, height=1, x=-8)
         network.move_collider(paddle, -7, 0, 0.5)

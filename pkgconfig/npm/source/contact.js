@@ -39,6 +39,11 @@ export class Contact extends State {
       whole(masks, 'masks')));
   }
 
+  setContactSurface({ friction = -1, restitution = -1 }, where) {
+    const { first, count } = this.span(where, this.particleCount);
+    this.check(this.core.exports.mspring_network_set_contact_surface(this.pointer, first, count, friction, restitution));
+  }
+
   contactInfo() {
     return this.report('contact_info', (exports, pointer, found) =>
       exports.mspring_network_get_contact_info(pointer, found));

@@ -124,6 +124,17 @@ class BodyCalls(NetworkCalls):
                 raise bad_argument(f"{name} is {value}: it must have 32 bits")
         self._change(lib.mspring_network_set_contact_groups, span.first, span.count, groups, masks)
 
+    def set_contact_surface(self, friction: Optional[float] = None, restitution: Optional[float] = None,
+                            ids: Ids = None) -> None:
+        """Set friction and restitution of particles; None: the contact's. ids is a range.
+
+        Where two touch, friction is the square root of the product, restitution the larger one.
+        """
+        span = Span(ids, self.particle_count)
+        span.must_be_range()
+        self._change(lib.mspring_network_set_contact_surface, span.first, span.count,
+                     -1 if friction is None else friction, -1 if restitution is None else restitution)
+
     # ------------------------------------------------------------------------------------------------ colliders
 
     @with_keywords("mspring_collider_def")

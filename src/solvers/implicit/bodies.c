@@ -95,9 +95,7 @@ static void begin_row(const mspring_network *network, const mspringi_touch *t, d
     const mspringi_active *k = &pairs->active;
     double way[3][2];
     const bool is_slick = t->slide_mass == 0.0 || mspringi_implicit_of(network)->holding != MSPRINGI_HOLD_ALL;
-    *to = (hold){.friction = is_slick                      ? 0.0
-                             : t->collider == MSPRING_NONE ? pairs->friction
-                                                           : pairs->colliders.list[t->collider].friction};
+    *to = (hold){.friction = is_slick ? 0.0 : (double)t->friction};
     share_forces(network, t, to);
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i);

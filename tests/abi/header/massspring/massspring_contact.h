@@ -1,7 +1,8 @@
 /// @file massspring_contact.h
 /// Bodies that meet: contact between bodies, colliders of the host, and grips.
 ///
-///     contact     network_set_contact, _get_contact, _set_contact_groups, _get_contact_info; contact_def_init
+///     contact     network_set_contact, _get_contact, _set_contact_groups, _set_contact_surface, _get_contact_info;
+///                 contact_def_init
 ///     events      network_reserve_contact_events, _read_contact_events
 ///     colliders   network_add_collider, _remove_collider, _move_collider, _place_collider, _get_collider,
 ///                 _get_collider_impulse; collider_def_init
@@ -57,8 +58,8 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross at the
 /// start stay crossed.
 ///
-/// If the network has contact already, the outline keeps the shape that it was found by. Groups, colliders with
-/// their moves, contacts and events that wait stay, too. All bodies wake. If only capacity changes, none wakes, and
+/// If the network has contact already, the outline keeps the shape that it was found by. Groups, surfaces, colliders
+/// with their moves, contacts and events that wait stay, too. All bodies wake. If only capacity changes, none wakes, and
 /// the next steps have the same bits as without the call. To begin anew, remove contact first.
 ///
 /// All solvers have contact. With the implicit and the direct solver it is part of the linear system. Substeps in which
@@ -66,12 +67,12 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// mspring_network_tune() and mspring_network_settle() leave contact out.
 ///
 /// Snapshots leave contact as it is, as they leave the floor. They hold the outline's shape only. Before you load one,
-/// set the same contact and groups. Then the next steps have the same bits.
+/// set the same contact, groups and surfaces. Then the next steps have the same bits.
 ///
 /// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back. It also
 /// does if more than an eighth of capacity and 1024 may touch in a substep. Then set the same contact with a larger
 /// capacity, and step again.
-/// @param def  copied; NULL: no contact, the default. Groups, colliders and events are forgotten.
+/// @param def  copied; NULL: no contact, the default. Groups, surfaces, colliders and events are forgotten.
 /// @threads exclusive   @allocates yes; about 530 bytes for a particle, 3300 more for one of the outline, 40 for a
 ///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1900 more.
 /// @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
@@ -92,6 +93,18 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_co
 /// @threads exclusive   @allocates never   @errors ID, ARGUMENT (also without contact), BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact_groups(
     mspring_network *network, mspring_id first, uint32_t count, uint32_t groups, uint32_t masks);
+
+/// Set friction and restitution of particles, instead of the contact's.
+/// Where two touch, the friction is the square root of the product of both, and the restitution is the larger one. A
+/// spring has the mean of its two ends. Against a collider the collider's values stand for -1. The floor uses its own
+/// values only. All bodies wake. Snapshots leave this as it is, and clones have it.
+/// @param first, count  particles first ... first + count - 1
+/// @param friction      0 to 1e6; -1: the contact's, as at first
+/// @param restitution   0 to 1; -1: likewise
+/// @threads exclusive   @allocates at the first call; 8 bytes for a particle   @since 0.2
+/// @errors ID, ARGUMENT (also without contact), MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact_surface(
+    mspring_network *network, mspring_id first, uint32_t count, float friction, float restitution);
 
 /// Report of contact in the last step. Set struct_size first.
 typedef struct mspring_contact_info {
