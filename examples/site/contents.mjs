@@ -26,8 +26,16 @@ export const CONTENTS = [
     ['JavaScript', 'pkgconfig/npm/README.html'],
     ['Python', 'pkgconfig/python/README.html'],
   ] },
+  { title: 'Reference', links: [
+    ['Core', 'reference/massspring_8h.html'],
+    ['Contact, grips', 'reference/massspring__contact_8h.html'],
+    ['Laws of materials', 'reference/massspring__laws_8h.html'],
+    ['Batches', 'reference/massspring__batch_8h.html'],
+    ['Tools', 'reference/massspring__tools_8h.html'],
+    ['All functions', 'reference/globals_func.html'],
+    ['All structs', 'reference/annotated.html'],
+  ] },
   { title: 'Look up', links: [
-    ['Reference', 'reference/index.html'],
     ['Troubleshooting', 'examples/guides/troubleshooting.html'],
     ['Glossary', 'examples/guides/glossary.html'],
     ['Validation', 'examples/guides/validation.html'],

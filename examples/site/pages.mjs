@@ -6,7 +6,7 @@
 // they are, but for the ending. Sources that a page links to become pages, too. FIGURES is a folder with the figures'
 // modules beside which node finds the package massspring.
 import { execFileSync } from 'node:child_process';
-import { copyFileSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { dirname, join, posix, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { bundle } from './bundle.mjs';
@@ -15,7 +15,7 @@ import { CONTENTS } from './contents.mjs';
 const [source, figureFolder, library, folder] = process.argv.slice(2);
 const { figures } = await import(pathToFileURL(resolve(figureFolder, 'all.js')));
 const here = join(source, 'examples/site');
-const hasReference = existsSync(join(folder, 'reference/index.html'));
+const hasReference = existsSync(join(folder, 'reference/annotated.html'));
 const REPOSITORY_ONLY = /^(build|out|\.git)\//;
 
 const escape = (text) => text.replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;').replace(/"/g, '&quot;');
@@ -115,8 +115,17 @@ function navigation(path) {
     const [page] = goal.split('#'), current = page === path ? ' aria-current="page"' : '';
     return `<li><a href="${posix.relative(from, page)}${goal.slice(page.length)}"${current}>${words}</a></li>`;
   };
-  return CONTENTS.map(({ title, links }) => `<h2>${title}</h2>\n<ul>${links
-    .filter(([, goal]) => hasReference || !goal.startsWith('reference/')).map(link).join('\n')}</ul>`).join('\n');
+  return CONTENTS.filter(({ title }) => hasReference || title !== 'Reference')
+    .map(({ title, links }) => `<h2>${title}</h2>\n<ul>${links.map(link).join('\n')}</ul>`).join('\n');
+}
+
+// What is above and beside the text of a page.
+function surroundings(path) {
+  const home = posix.relative(posix.dirname(path), 'index.html'), menu = navigation(path);
+  return `<a class="skip" href="#content">Skip to the text</a>
+<header><a class="home" href="${home}">libmassspring</a>
+<details class="menu"><summary>Pages</summary><nav aria-label="Pages">${menu}</nav></details></header>
+<nav class="side" aria-label="All pages">${menu}</nav>`;
 }
 
 function page(path, title, body) {
@@ -133,10 +142,7 @@ function page(path, title, body) {
 <link rel="stylesheet" href="${root}/site.css">
 ${scripts}</head>
 <body>
-<a class="skip" href="#content">Skip to the text</a>
-<header><a class="home" href="${root}/index.html">libmassspring</a>
-<details class="menu"><summary>Pages</summary><nav aria-label="Pages">${navigation(path)}</nav></details></header>
-<nav class="side" aria-label="All pages">${navigation(path)}</nav>
+${surroundings(path)}
 <main id="content">
 ${body}
 </main>
@@ -179,6 +185,10 @@ while (waiting.length) {
   else fromSource(path);
 }
 
+for (const name of hasReference ? readdirSync(join(folder, 'reference')).filter((found) => found.endsWith('.html')) : []) {
+  const file = join(folder, 'reference', name);
+  writeFileSync(file, readFileSync(file, 'utf8').replace('<!-- navigation -->', surroundings(`reference/${name}`)));
+}
 copyFileSync(join(here, 'site.css'), join(folder, 'site.css'));
 writeFileSync(join(folder, 'figures.js'), bundle(join(here, 'figures/stage.js'), library));
 for (const [name, variable] of [['massspring', 'massspringSimd'], ['massspring_scalar', 'massspringScalar']])
