@@ -92,6 +92,11 @@ mspring_result mspring_area_def_init(mspring_area_def *def, size_t size) {
     return mspringi_init_struct(def, size, &defaults, sizeof defaults);
 }
 
+mspring_result mspring_angle_def_init(mspring_angle_def *def, size_t size) {
+    const mspring_angle_def defaults = {.struct_size = sizeof defaults};
+    return mspringi_init_struct(def, size, &defaults, sizeof defaults);
+}
+
 mspring_result mspring_grip_def_init(mspring_grip_def *def, size_t size) {
     const mspring_grip_def defaults = {
         .struct_size = sizeof defaults, .particle = MSPRING_NONE, .max_force = MSPRING_NEVER};

@@ -33,3 +33,15 @@ mspringi_rotation mspringi_turn_by(double angle) {
         return (mspringi_rotation){cosine, sine};
     }
 }
+
+// With t = tan(x / 2) of a turn by x, tan(x / 4) is t / (1 + sqrt(1 + t^2)). The series is for at most pi / 16.
+double mspringi_angle_of(mspringi_rotation rotation) {
+    const double pi = 2.0 * (QUARTER_HIGH + QUARTER_LOW), cosine = fabs(rotation.cosine);
+    double tangent = rotation.sine / (cosine + 1.0), sum = 0.0;
+    for (int half = 0; half < 2; ++half)
+        tangent /= 1.0 + sqrt(1.0 + tangent * tangent);
+    for (int n = 21; n > 0; n -= 2)
+        sum = 1.0 / (double)n - tangent * tangent * sum;
+    const double angle = 8.0 * tangent * sum;
+    return rotation.cosine >= 0.0 ? angle : rotation.sine < 0.0 ? -pi - angle : pi - angle;
+}

@@ -1,5 +1,5 @@
 /// @file turn.h
-/// Cosine and sine from additions and multiplications alone, so that they have the same bits everywhere.
+/// Cosine, sine and angle from arithmetic and roots alone, so that they have the same bits everywhere.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TURN_H
@@ -16,5 +16,8 @@ typedef struct mspringi_rotation {
 /// Correct to 2e-16.
 /// @param angle  at most MSPRINGI_MAX_ANGLE in size
 mspringi_rotation mspringi_turn_by(double angle);
+
+/// The angle of a rotation, -pi to pi; correct to 1e-15.
+double mspringi_angle_of(mspringi_rotation rotation);
 
 #endif

@@ -66,33 +66,39 @@ static mspring_result choose_rest_area(mspring_network *network, const mspring_a
                                (double)def->stiffness, *rest_area);
 }
 
-static mspring_result check_corners(mspring_network *network, const mspring_id *particles, uint32_t count) {
+mspring_result mspringi_check_corners(mspring_network *network, const char *what, const mspring_id *particles,
+                                      uint32_t count) {
     mspringi_message *message = &network->message;
-    if (!particles || count < 3 || count > MSPRING_MAX_AREA_PARTICLES)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "the area has %u particles, it must have 3 to %u, and the list must not be NULL",
-                             (unsigned)count, (unsigned)MSPRING_MAX_AREA_PARTICLES);
     for (uint32_t i = 0; i < count; ++i) {
         if (particles[i] >= network->topology.particle_count || !mspringi_particle_exists(network, particles[i]))
-            return mspringi_fail(message, MSPRING_ERROR_ID, "the area has particle %u, which does not exist",
+            return mspringi_fail(message, MSPRING_ERROR_ID, "the %s has particle %u, which does not exist", what,
                                  (unsigned)particles[i]);
         const uint32_t *group = network->groups.of_particle;
         if (group && group[particles[i]] != group[particles[0]])
-            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area has particles %u and %u of two groups",
-                                 (unsigned)particles[0], (unsigned)particles[i]);
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the %s has particles %u and %u of two groups",
+                                 what, (unsigned)particles[0], (unsigned)particles[i]);
         for (uint32_t j = 0; j < i; ++j)
             if (particles[j] == particles[i])
-                return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area has particle %u twice",
+                return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the %s has particle %u twice", what,
                                      (unsigned)particles[i]);
     }
     return MSPRING_OK;
 }
 
-static mspring_result check_room(mspring_network *network, size_t areas, size_t corners) {
+static mspring_result check_list(mspring_network *network, const mspring_id *particles, uint32_t count) {
+    if (!particles || count < 3 || count > MSPRING_MAX_AREA_PARTICLES)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the area has %u particles, it must have 3 to %u, and the list must not be NULL",
+                             (unsigned)count, (unsigned)MSPRING_MAX_AREA_PARTICLES);
+    return mspringi_check_corners(network, "area", particles, count);
+}
+
+mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners) {
     const mspringi_areas *a = &network->areas;
     if (areas >= MSPRING_NONE - a->next_id || corners >= MSPRING_NONE - a->corner_count)
-        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "there are %zu areas already, of %u ever made",
-                             a->count, (unsigned)a->next_id);
+        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                             "there are %zu areas and angles already, of %u ever made", a->count,
+                             (unsigned)a->next_id);
     return mspringi_areas_reserve(network, areas, corners);
 }
 
@@ -106,24 +112,27 @@ static void fill(mspringi_area *area, const mspring_area_def *def, double rest_a
     area->rest_area = rest_area;
 }
 
-// Tell that an area is another one from now on.
-static void tell(mspring_network *network, uint32_t edit, const mspringi_area *area) {
+void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area) {
     mspringi_fingerprint(network, edit, area->id);
-    mspringi_fingerprint_floats(network, area->stiffness, area->pressure);
-    mspringi_fingerprint_floats(network, area->fill, (float)area->rest_area);
+    mspringi_fingerprint_floats(network, area->stiffness, area->is_angle ? area->damping : area->pressure);
+    mspringi_fingerprint_floats(network, area->fill, (float)(area->is_angle ? area->rest_angle : area->rest_area));
     mspringi_changed(network, MSPRINGI_CHANGED_AREA, 0);
+}
+
+void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles) {
+    made.id = network->areas.next_id++;
+    mspringi_areas_append(network, &made, particles);
+    for (uint32_t i = 0; i < made.count; ++i)
+        mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_AREA, particles[i]);
+    mspringi_area_tell(network, MSPRINGI_EDIT_ADDED_AREA, &made);
 }
 
 // Add an area for which there is room.
 static void add(mspring_network *network, const mspring_area_def *def, double rest_area,
                 const mspring_id *particles, uint32_t count) {
-    mspringi_areas *a = &network->areas;
-    mspringi_area made = {.id = a->next_id++, .count = count};
+    mspringi_area made = {.count = count};
     fill(&made, def, rest_area);
-    mspringi_areas_append(network, &made, particles);
-    for (uint32_t i = 0; i < count; ++i)
-        mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_AREA, particles[i]);
-    tell(network, MSPRINGI_EDIT_ADDED_AREA, &made);
+    mspringi_area_add(network, made, particles);
 }
 
 double mspringi_area_within(const mspring_network *network, const mspring_id *particles, uint32_t count) {
@@ -147,7 +156,7 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
     if (result == MSPRING_OK)
         result = check_def(network, def);
     if (result == MSPRING_OK)
-        result = check_corners(network, particles, count);
+        result = check_list(network, particles, count);
     if (result != MSPRING_OK)
         return result;
     const double size = mspringi_area_within(network, particles, count);
@@ -157,7 +166,7 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
                              size);
     result = choose_rest_area(network, def, fabs(size), &rest_area);
     if (result == MSPRING_OK)
-        result = check_room(network, 1, count);
+        result = mspringi_areas_check_room(network, 1, count);
     if (result != MSPRING_OK)
         return result;
     for (uint32_t i = 0; i < count; ++i)
@@ -199,7 +208,7 @@ mspring_result mspring_network_add_cell_areas(mspring_network *network, const ms
     if (result == MSPRING_OK)
         result = mspringi_each_cell(network, check_cell, &cells);
     if (result == MSPRING_OK && cells.count > 0)
-        result = check_room(network, cells.count, (size_t)4 * cells.count);
+        result = mspringi_areas_check_room(network, cells.count, (size_t)4 * cells.count);
     if (result != MSPRING_OK)
         return result;
     if (first_area)
@@ -212,7 +221,7 @@ mspring_result mspring_network_add_cell_areas(mspring_network *network, const ms
 /* ------------------------------------------------------------------------------------------- changing, reading */
 
 // NULL if there is none.
-static mspringi_area *find(const mspring_network *network, mspring_id id) {
+static mspringi_area *find(const mspring_network *network, mspring_id id, bool is_angle) {
     const mspringi_areas *a = &network->areas;
     size_t low = 0, high = a->count;
     while (low < high) {
@@ -222,34 +231,47 @@ static mspringi_area *find(const mspring_network *network, mspring_id id) {
         else
             high = middle;
     }
-    return low < a->count && a->list[low].id == id ? &a->list[low] : NULL;
+    return low < a->count && a->list[low].id == id && a->list[low].is_angle == is_angle ? &a->list[low] : NULL;
 }
 
-#define NO_AREA "there is no area %u"
+#define NONE_THERE "there is no %s %u"
 
-static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspringi_area **found) {
+static const char *name_of(bool is_angle) {
+    return is_angle ? "angle" : "area";
+}
+
+mspring_result mspringi_area_find(mspring_network *network, mspring_id id, bool is_angle, mspringi_area **found) {
+    *found = find(network, id, is_angle);
+    return *found ? MSPRING_OK
+                  : mspringi_fail(&network->message, MSPRING_ERROR_ID, NONE_THERE, name_of(is_angle), (unsigned)id);
+}
+
+static mspring_result enter_and_find(mspring_network *network, mspring_id id, mspringi_area **found) {
     const mspring_result result = mspringi_enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    *found = find(network, id);
-    return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_AREA, (unsigned)id);
+    return result == MSPRING_OK ? mspringi_area_find(network, id, false, found) : result;
 }
 
-mspring_result mspring_network_remove_area(mspring_network *network, mspring_id area) {
+mspring_result mspringi_area_remove(mspring_network *network, mspring_id id, bool is_angle) {
     mspringi_area *found;
-    const mspring_result result = find_or_fail(network, area, &found);
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = mspringi_area_find(network, id, is_angle, &found);
     if (result != MSPRING_OK)
         return result;
     const mspringi_area had = *found;
     mspringi_areas_drop(network, found);
-    tell(network, MSPRINGI_EDIT_REMOVED_AREA, &had);
+    mspringi_area_tell(network, MSPRINGI_EDIT_REMOVED_AREA, &had);
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_remove_area(mspring_network *network, mspring_id area) {
+    return mspringi_area_remove(network, area, false);
 }
 
 mspring_result mspring_network_set_area(mspring_network *network, mspring_id area, const mspring_area_def *def) {
     mspringi_area *found;
     double rest_area = 0.0;
-    mspring_result result = find_or_fail(network, area, &found);
+    mspring_result result = enter_and_find(network, area, &found);
     if (result == MSPRING_OK)
         result = check_def(network, def);
     if (result == MSPRING_OK)
@@ -258,15 +280,14 @@ mspring_result mspring_network_set_area(mspring_network *network, mspring_id are
         return result;
     fill(found, def, rest_area);
     network->areas.changes++;
-    tell(network, MSPRINGI_EDIT_SET_AREA, found);
+    mspringi_area_tell(network, MSPRINGI_EDIT_SET_AREA, found);
     return MSPRING_OK;
 }
 
-// The same for calls that only read: NULL if there is none, with a message.
-static const mspringi_area *look_up(const mspring_network *network, mspring_id id) {
-    const mspringi_area *found = find(network, id);
+const mspringi_area *mspringi_area_look_up(const mspring_network *network, mspring_id id, bool is_angle) {
+    const mspringi_area *found = find(network, id, is_angle);
     if (!found)
-        (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_AREA, (unsigned)id);
+        (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NONE_THERE, name_of(is_angle), (unsigned)id);
     return found;
 }
 
@@ -274,7 +295,7 @@ mspring_result mspring_network_get_area(const mspring_network *network, mspring_
     const mspring_result result = mspringi_check_report(network, "mspring_area_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_area *found = look_up(network, area);
+    const mspringi_area *found = mspringi_area_look_up(network, area, false);
     if (!found)
         return MSPRING_ERROR_ID;
     const mspring_area_def had = {.kind = found->kind,
@@ -291,7 +312,7 @@ mspring_result mspring_network_get_area_info(const mspring_network *network, msp
     const mspring_result result = mspringi_check_report(network, "mspring_area_info", info, sizeof *info);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_area *found = look_up(network, area);
+    const mspringi_area *found = mspringi_area_look_up(network, area, false);
     if (!found)
         return MSPRING_ERROR_ID;
     const bool is_open = mspringi_area_is_open(network, found);

@@ -148,8 +148,8 @@ static mspring_result check_areas(mspring_network *network, const mspringi_group
         const mspringi_corner *corners = areas->corners + areas->list[i].first;
         for (uint32_t k = 1; k < areas->list[i].count; ++k)
             if (g->of_particle[corners[k].particle] != g->of_particle[corners[0].particle])
-                return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                     "area %u has particles of two groups", (unsigned)areas->list[i].id);
+                return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "%s %u has particles of two groups",
+                                     areas->list[i].is_angle ? "angle" : "area", (unsigned)areas->list[i].id);
     }
     return MSPRING_OK;
 }

@@ -1,5 +1,5 @@
-/// Areas, in a snapshot.
-#include "store/areas.h"
+/// Areas and angle springs, in a snapshot.
+#include "store/angles.h"
 
 #include <math.h>
 
@@ -10,9 +10,11 @@
 
 // The next id, and how many areas there are.
 #define HEAD_BYTES ((size_t)8)
-// Id, kind, corners, 3 floats, a double; of each corner a particle, a spring and a float.
+// Id, kind, corners, 3 floats, a double; of each corner a particle, a spring and a float. An angle has its damping
+// in place of the pressure, and its rest angle in place of the rest area.
 #define AREA_BYTES ((size_t)32)
 #define CORNER_BYTES ((size_t)12)
+#define ANGLE_KIND 2u
 
 // Without it there has never been an area.
 static size_t areas_size(const mspring_network *network) {
@@ -25,11 +27,11 @@ static void areas_save(const mspring_network *network, mspringi_writer *to) {
     const uint32_t head[] = {a->next_id, (uint32_t)a->count};
     mspringi_put(to, head, 2, sizeof head[0]);
     for (const mspringi_area *area = a->list; area < a->list + a->count; ++area) {
-        const uint32_t numbers[] = {area->id, (uint32_t)area->kind, area->count};
-        const float floats[] = {area->stiffness, area->pressure, area->fill};
+        const uint32_t numbers[] = {area->id, area->is_angle ? ANGLE_KIND : (uint32_t)area->kind, area->count};
+        const float floats[] = {area->stiffness, area->is_angle ? area->damping : area->pressure, area->fill};
         mspringi_put(to, numbers, 3, sizeof numbers[0]);
         mspringi_put(to, floats, 3, sizeof floats[0]);
-        mspringi_put(to, &area->rest_area, 1, sizeof area->rest_area);
+        mspringi_put(to, area->is_angle ? &area->rest_angle : &area->rest_area, 1, sizeof area->rest_area);
         for (const mspringi_corner *c = a->corners + area->first; c < a->corners + area->first + area->count; ++c) {
             const uint32_t ids[] = {c->particle, c->spring};
             mspringi_put(to, ids, 2, sizeof ids[0]);
@@ -41,15 +43,23 @@ static void areas_save(const mspring_network *network, mspringi_writer *to) {
 static const uint8_t *read_area(const uint8_t *from, mspringi_area *area) {
     uint32_t numbers[3];
     float floats[3];
+    double rest;
     from = mspringi_get(from, numbers, 3, sizeof numbers[0]);
     from = mspringi_get(from, floats, 3, sizeof floats[0]);
+    from = mspringi_get(from, &rest, 1, sizeof rest);
+    if (numbers[1] == ANGLE_KIND) {
+        *area = mspringi_angle_make(floats[0], floats[1], fabs(rest) <= MSPRINGI_MAX_ANGLE ? rest : 0.0);
+        area->rest_angle = rest;
+    } else {
+        *area = (mspringi_area){.kind = numbers[1] == MSPRING_AREA_GAS ? MSPRING_AREA_GAS : MSPRING_AREA_ELASTIC,
+                                .stiffness = floats[0],
+                                .pressure = floats[1],
+                                .fill = floats[2],
+                                .rest_area = rest};
+    }
     area->id = numbers[0];
-    area->kind = numbers[1] == MSPRING_AREA_GAS ? MSPRING_AREA_GAS : MSPRING_AREA_ELASTIC;
-    area->count = numbers[1] <= MSPRING_AREA_GAS ? numbers[2] : 0;
-    area->stiffness = floats[0];
-    area->pressure = floats[1];
-    area->fill = floats[2];
-    return mspringi_get(from, &area->rest_area, 1, sizeof area->rest_area);
+    area->count = numbers[1] <= ANGLE_KIND ? numbers[2] : 0;
+    return from;
 }
 
 static const uint8_t *read_corner(const uint8_t *from, mspringi_corner *corner) {
@@ -63,6 +73,11 @@ static mspring_result check_area(mspring_network *network, const mspringi_area *
     if (area->count < 3 || area->count > MSPRING_MAX_AREA_PARTICLES)
         return mspringi_section_fail(network, section, "area %u has %u corners", (unsigned)area->id,
                                      (unsigned)area->count);
+    if (area->is_angle && !(area->count == 3 && area->damping >= 0.0f && area->damping <= STRONGEST &&
+                            fabs(area->rest_angle) <= MSPRINGI_MAX_ANGLE))
+        return mspringi_section_fail(network, section, "angle %u has %u corners, damping %g, rest angle %g",
+                                     (unsigned)area->id, (unsigned)area->count, (double)area->damping,
+                                     area->rest_angle);
     if (!(area->stiffness >= 0.0f && area->stiffness <= STRONGEST && fabsf(area->pressure) <= STRONGEST) ||
         !(area->fill >= 0.01f && area->fill <= 100.0f) ||
         !(area->rest_area >= 1e-24 && area->rest_area <= 1e24 &&
@@ -152,3 +167,46 @@ static void areas_load(mspring_network *network, const uint8_t *from, size_t siz
 
 const mspringi_section mspringi_section_areas = {"area",     "areas",     true,      areas_size,
                                                  areas_save, areas_check, areas_load};
+
+/* ------------------------------------------------------------------------------------------------- rest angles */
+
+// The host may set them before each step: frames have them, too.
+static size_t rest_angles_size(const mspring_network *network) {
+    size_t count = 0;
+    for (size_t i = 0; i < network->areas.count; ++i)
+        count += network->areas.list[i].is_angle;
+    return count * sizeof(double);
+}
+
+static void rest_angles_save(const mspring_network *network, mspringi_writer *to) {
+    for (size_t i = 0; i < network->areas.count; ++i)
+        if (network->areas.list[i].is_angle)
+            mspringi_put(to, &network->areas.list[i].rest_angle, 1, sizeof(double));
+}
+
+static mspring_result rest_angles_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_rest_angles;
+    for (size_t i = 0; i < size / sizeof(double); ++i) {
+        double value;
+        from = mspringi_get(from, &value, 1, sizeof value);
+        if (!(fabs(value) <= MSPRINGI_MAX_ANGLE))
+            return mspringi_section_fail(network, section, "one is %g rad", value);
+    }
+    return mspringi_section_check_size(network, section, size % sizeof(double), 0);
+}
+
+// After the areas, which say how many there are.
+static void rest_angles_load(mspring_network *network, const uint8_t *from, size_t size) {
+    size_t left = size / sizeof(double);
+    for (size_t i = 0; i < network->areas.count && left > 0; ++i) {
+        double value;
+        if (!network->areas.list[i].is_angle)
+            continue;
+        from = mspringi_get(from, &value, 1, sizeof value);
+        mspringi_angle_set_rest(&network->areas.list[i], value);
+        --left;
+    }
+}
+
+const mspringi_section mspringi_section_rest_angles = {
+    "angl", "rest angles", false, rest_angles_size, rest_angles_save, rest_angles_check, rest_angles_load};

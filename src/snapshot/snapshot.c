@@ -16,9 +16,10 @@ static const mspringi_section *const sections[] = {
     &mspringi_section_broken,         &mspringi_section_values,        &mspringi_section_break_strains,
     &mspringi_section_stress_strains, &mspringi_section_relax_strains, &mspringi_section_stressed,
     &mspringi_section_yielding,       &mspringi_section_bent,          &mspringi_section_ramps,
-    &mspringi_section_areas,          &mspringi_section_shape,         &mspringi_section_grips,
-    &mspringi_section_sleep,          &mspringi_section_implicit,      &mspringi_section_guard,
-    &mspringi_section_precision,      &mspringi_section_held,          &mspringi_section_actuators};
+    &mspringi_section_areas,          &mspringi_section_rest_angles,   &mspringi_section_shape,
+    &mspringi_section_grips,          &mspringi_section_sleep,         &mspringi_section_implicit,
+    &mspringi_section_guard,          &mspringi_section_precision,     &mspringi_section_held,
+    &mspringi_section_actuators};
 enum { SECTIONS = sizeof sections / sizeof sections[0] };
 
 /* --------------------------------------------------------------------------------------------------- messages */

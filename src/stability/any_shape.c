@@ -58,7 +58,7 @@ static void sum_up(const mspring_network *network, const mspringi_state *sums) {
                 (float)((strength.relative_stiffness + 2.0 * strength.relative_damping) * inverse_mass);
         }
     }
-    mspringi_areas_sum(network, sums->x);
+    mspringi_areas_sum(network, sums->x, sums->y);
 }
 
 // The smallest limit of all springs. Relative ones count with at most so much of the bound, which is 4.
@@ -92,7 +92,8 @@ static double find(mspring_network *network, double most_relative, mspring_id *s
         }
     }
     // Corners of an area need no spring between them.
-    const mspringi_quotient areas = {.stiffness = mspringi_areas_largest(network, sums->x)};
+    const mspringi_quotient areas = {.stiffness = mspringi_areas_largest(network, sums->x),
+                                     .damping = mspringi_areas_largest(network, sums->y)};
     smallest = fmin(smallest, mspringi_quotient_limit(&areas, 0.0f));
     return smallest * tight;
 }

@@ -21,14 +21,15 @@ static size_t count_of(const mspring_network *network) {
 /// What an area is at a substep.
 typedef struct stiff_area {
     const mspringi_area *area;
-    double stiffness; ///< c times the square of the substep
-    double pressure;  ///< p times that
+    double stiffness; ///< c times the square of the substep, and its damping times twice the substep
+    double pressure;  ///< p times the square
 } stiff_area;
 
 static stiff_area see(const mspring_network *network, size_t i, double square) {
     const mspringi_area *area = &network->areas.list[i];
     const double size = mspringi_area_size(network, area);
-    return (stiff_area){area, square * mspringi_area_stiffness(area, size),
+    return (stiff_area){area,
+                        square * mspringi_area_stiffness(area, size) + 2.0 * sqrt(square) * (double)area->damping,
                         square * fabs(mspringi_area_pressure(area, size))};
 }
 
@@ -41,9 +42,23 @@ static void join(const mspringi_border *b, uint32_t one, uint32_t other, double 
     b->out[0][other] += both;
 }
 
+// How stiff a spring along the side of a corner is that bounds what the pressure adds; with the lengths of
+// gradients.
+static double outline_of(const stiff_area *seen, uint32_t side, const double reach[2]) {
+    if (!seen->area->is_angle)
+        return 0.5 * seen->pressure;
+    return side < 2 ? seen->pressure * reach[side] * reach[side] : 0.0;
+}
+
+static double reach_of(const mspring_network *network, const stiff_area *seen, uint32_t corner) {
+    const mspringi_area_end end = mspringi_area_end_of(network, seen->area, corner);
+    return sqrt(end.x * end.x + end.y * end.y);
+}
+
 // As springs between all pairs of corners, which bound it (see mspringi_area_weigh()), and along the outline.
 static void bound(const mspring_network *network, const mspringi_border *b, const stiff_area *seen) {
     const uint32_t count = seen->area->count;
+    const double outer[2] = {reach_of(network, seen, 0), reach_of(network, seen, count - 1)};
     double all = 0.0, weighted = 0.0;
     for (uint32_t i = 0; i < count; ++i) {
         const mspringi_area_end end = mspringi_area_end_of(network, seen->area, i);
@@ -51,7 +66,7 @@ static void bound(const mspring_network *network, const mspringi_border *b, cons
         const uint32_t next = mspringi_area_slot(network, seen->area, i + 1 < count ? i + 1 : 0);
         all += reach;
         weighted += reach * (double)b->in[0][end.slot];
-        join(b, end.slot, next, 0.5 * seen->pressure);
+        join(b, end.slot, next, outline_of(seen, i, outer));
     }
     for (uint32_t i = 0; i < count; ++i) {
         const mspringi_area_end end = mspringi_area_end_of(network, seen->area, i);
@@ -145,23 +160,22 @@ void mspringi_areas_apply(const mspringi_pencil *pencil, const double *in, doubl
     }
 }
 
-double mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector) {
-    double sum = 0.0;
+void mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector, mspringi_quotient *sum) {
     for (size_t i = 0; i < count_of(pencil->network); ++i) {
         if (!acts(pencil->network, i))
             continue;
-        const stiff_area seen = see(pencil->network, i, 1.0);
-        const double grows = growth(pencil, seen.area, vector);
-        sum += seen.stiffness * grows * grows;
+        const mspringi_area *area = &pencil->network->areas.list[i];
+        const double grows = growth(pencil, area, vector), size = mspringi_area_size(pencil->network, area);
+        sum->stiffness += mspringi_area_stiffness(area, size) * grows * grows;
+        sum->damping += (double)area->damping * grows * grows;
     }
-    return sum;
 }
 
 /* ------------------------------------------------------------------------------------------------ in any shape */
 
-void mspringi_areas_sum(const mspring_network *network, float *sums) {
+void mspringi_areas_sum(const mspring_network *network, float *sums, float *dampings) {
     for (size_t i = 0; i < count_of(network); ++i)
-        mspringi_area_weigh(network, &network->areas.list[i], sums);
+        mspringi_area_weigh(network, &network->areas.list[i], sums, dampings);
 }
 
 double mspringi_areas_largest(const mspring_network *network, const float *sums) {

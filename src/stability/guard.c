@@ -118,7 +118,7 @@ static mspring_result explain_border(mspring_network *network, const mspringi_at
     if (spring == MSPRING_NONE)
         return mspringi_fail(
             &network->message, MSPRING_ERROR_UNSTABLE,
-            "unstable: the substep of %g s exceeds the stability limit of the areas. Use a shorter "
+            "unstable: the substep of %g s exceeds the stability limit of areas and angles. Use a shorter "
             "dt, more substeps, or less stiffness or pressure.",
             (double)attempt->h);
     uint32_t base, tip;
@@ -189,7 +189,7 @@ static mspring_result check_areas(mspring_network *network, const mspringi_attem
         return MSPRING_OK;
     return mspringi_fail(
         &network->message, MSPRING_ERROR_UNSTABLE,
-        "unstable: the substep of %g s exceeds the stability limit of the areas, %g s. Use a shorter "
+        "unstable: the substep of %g s exceeds the stability limit of areas and angles, %g s. Use a shorter "
         "dt, more substeps, or less stiffness or pressure.",
         (double)attempt->h, areas->longest);
 }

@@ -122,6 +122,6 @@ mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const 
         }
         mspringi_quotient_add(&sum, &s, dx, dy);
     }
-    sum.stiffness += mspringi_areas_quotient(pencil, vector);
+    mspringi_areas_quotient(pencil, vector, &sum);
     return sum;
 }

@@ -56,9 +56,9 @@ typedef struct mspringi_pencil {
     } * terms; ///< [springs] for A + 2 D at some h
 } mspringi_pencil;
 
-/// What areas add (stability/areas.c) to the image of a vector, and to the stiffness of its quotient.
+/// What areas add (stability/areas.c) to the image of a vector, and to its quotient.
 void mspringi_areas_apply(const mspringi_pencil *pencil, const double *in, double *out);
-double mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector);
+void mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector, mspringi_quotient *sum);
 
 /// Take the shape of now. A spring that is shorter than its rest length counts as if it were as long: its pull
 /// sideways is outwards and makes no substep unstable. Springs of length 0 count in all directions, as they may

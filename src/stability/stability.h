@@ -15,9 +15,9 @@ typedef struct mspringi_strength {
 } mspringi_strength;
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place);
 
-/// What areas add to the sums of springs' stiffness by slot (areas.c), in the shape that they were added in, and
-/// the largest quotient of these sums that one of them takes part in.
-void mspringi_areas_sum(const mspring_network *network, float *sums);
+/// What areas add to the sums of springs' stiffness and damping by slot (areas.c), in the shape that they were
+/// added in, and the largest quotient of these sums that one of them takes part in.
+void mspringi_areas_sum(const mspring_network *network, float *sums, float *dampings);
 double mspringi_areas_largest(const mspring_network *network, const float *sums);
 
 /// The longest substep that is stable in whatever shape the network gets into, and the spring that sets it

@@ -1,9 +1,8 @@
 #include "store/areas.h"
 
-#include <float.h>
-#include <math.h>
 #include <string.h>
 
+#include "store/angles.h"
 #include "store/growth.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -14,6 +13,8 @@
 /* --------------------------------------------------------------------------------------------------------- law */
 
 double mspringi_area_size(const mspring_network *network, const mspringi_area *area) {
+    if (area->is_angle)
+        return mspringi_angle_size(network, area);
     const mspringi_state *s = &network->state;
     const uint32_t first = mspringi_area_slot(network, area, 0), second = mspringi_area_slot(network, area, 1);
     const double x = mspringi_x_of(s, first), y = mspringi_y_of(s, first);
@@ -29,12 +30,16 @@ double mspringi_area_size(const mspring_network *network, const mspringi_area *a
 }
 
 double mspringi_area_pressure(const mspringi_area *area, double size) {
+    if (area->is_angle)
+        return mspringi_angle_torque(area, size);
     const double share = size / area->rest_area, fill = (double)area->fill, pressure = (double)area->pressure;
     return area->kind == MSPRING_AREA_GAS ? pressure * fill / fmax(share, SMALLEST)
                                           : pressure + (double)area->stiffness * (fill - share);
 }
 
 double mspringi_area_stiffness(const mspringi_area *area, double size) {
+    if (area->is_angle)
+        return mspringi_angle_stiffness(area, size);
     const double share = size / area->rest_area;
     if (area->kind == MSPRING_AREA_ELASTIC)
         return (double)area->stiffness / area->rest_area;
@@ -61,6 +66,8 @@ static double logarithm(double x) {
 }
 
 double mspringi_area_energy(const mspringi_area *area, double size) {
+    if (area->is_angle)
+        return mspringi_angle_energy(area, size);
     const double share = size / area->rest_area, fill = (double)area->fill, lacks = fill - share;
     const double pressure = (double)area->pressure * area->rest_area;
     if (area->kind == MSPRING_AREA_ELASTIC)
@@ -79,6 +86,8 @@ double mspringi_area_energy_change(const mspringi_area *area, double size, doubl
 }
 
 mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner) {
+    if (area->is_angle)
+        return mspringi_angle_end_of(network, area, corner);
     const mspringi_state *s = &network->state;
     const uint32_t before = mspringi_area_slot(network, area, corner > 0 ? corner - 1 : area->count - 1);
     const uint32_t behind = mspringi_area_slot(network, area, corner + 1 < area->count ? corner + 1 : 0);
@@ -87,13 +96,12 @@ mspringi_area_end mspringi_area_end_of(const mspring_network *network, const msp
                                .y = 0.5 * (mspringi_x_of(s, before) - mspringi_x_of(s, behind))};
 }
 
-// Within what a float can be: the guard finds what is that large.
-static float bounded(double value) {
-    return (float)fmin(fmax(value, -(double)FLT_MAX), (double)FLT_MAX);
-}
-
 void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
                         mspringi_field field) {
+    if (area->is_angle) {
+        mspringi_angle_push(network, area, share, field);
+        return;
+    }
     const mspringi_state *s = &network->state;
     const mspringi_corner *corners = network->areas.corners + area->first;
     const uint32_t first = corners[0].slot, last = corners[area->count - 1].slot;
@@ -116,8 +124,8 @@ void mspringi_area_push(const mspring_network *network, const mspringi_area *are
         const uint32_t slot = corners[i].slot;
         const double next_x = is_last ? first_x : mspringi_x_of(s, corners[i + 1].slot);
         const double next_y = is_last ? first_y : mspringi_y_of(s, corners[i + 1].slot);
-        field.x[slot] += bounded(half * (next_y - before_y));
-        field.y[slot] += bounded(half * (before_x - next_x));
+        field.x[slot] += mspringi_bounded(half * (next_y - before_y));
+        field.y[slot] += mspringi_bounded(half * (before_x - next_x));
         before_x = x;
         before_y = y;
         x = next_x;
@@ -171,7 +179,7 @@ static mspring_id spring_between(const mspring_network *network, mspring_id a, m
 // pairs: c times that is what springs of stiffness c |g_i| |g_j| between them would have. Of four corners, those
 // opposite each other have opposite g, and two such pairs are enough. The part of the tangent of the size of the
 // pressure is at most that of springs of half of it along the outline.
-void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums) {
+void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums, float *dampings) {
     const mspringi_corner *corners = network->areas.corners + area->first;
     const bool is_gas = area->kind == MSPRING_AREA_GAS;
     const double fill = (double)area->fill, pressure = fabs((double)area->pressure);
@@ -182,7 +190,9 @@ void mspringi_area_weigh(const mspring_network *network, const mspringi_area *ar
         all += (double)corners[i].reach;
     for (uint32_t i = 0; i < area->count; ++i) {
         const double reach = (double)corners[i].reach, others = area->count == 4 ? 0.5 * all : all - reach;
-        sums[mspringi_area_slot(network, area, i)] += bounded(stiffness * reach * others + outline);
+        const uint32_t slot = mspringi_area_slot(network, area, i);
+        sums[slot] += mspringi_bounded(stiffness * reach * others + outline);
+        dampings[slot] += mspringi_bounded((double)area->damping * reach * others);
     }
 }
 
@@ -223,12 +233,13 @@ void mspringi_areas_append(mspring_network *network, const mspringi_area *area, 
     made->cell = MSPRINGI_NO_CELL;
     for (uint32_t i = 0; i < area->count; ++i) {
         const mspring_id next = particles[i + 1 < area->count ? i + 1 : 0];
-        a->corners[a->corner_count++] =
-            (mspringi_corner){.particle = particles[i], .spring = spring_between(network, particles[i], next)};
+        a->corners[a->corner_count++] = (mspringi_corner){
+            .particle = particles[i],
+            .spring = area->is_angle && i == 2 ? MSPRING_NONE : spring_between(network, particles[i], next)};
     }
     for (uint32_t i = 0; i < area->count; ++i) {
         const mspringi_area_end end = mspringi_area_end_of(network, made, i);
-        a->corners[made->first + i].reach = bounded(sqrt(end.x * end.x + end.y * end.y));
+        a->corners[made->first + i].reach = mspringi_bounded(sqrt(end.x * end.x + end.y * end.y));
     }
     a->changes++;
 }
@@ -327,15 +338,18 @@ static bool enter_cell(mspring_network *network, mspringi_area *area) {
 // The substep that is stable with forces of areas alone: of all, or of those without springs all around.
 static double find_longest(mspring_network *network, bool of_all) {
     mspringi_areas *a = &network->areas;
-    double largest = 0.0;
+    double largest = 0.0, damped = 0.0;
     mspringi_field_clear(network, a->force);
     for (size_t i = 0; i < a->count; ++i)
         if (of_all || !a->list[i].is_ringed)
-            mspringi_area_weigh(network, &a->list[i], a->force.x);
+            mspringi_area_weigh(network, &a->list[i], a->force.x, a->force.y);
     for (size_t i = 0; i < a->count; ++i)
-        if (of_all || !a->list[i].is_ringed)
+        if (of_all || !a->list[i].is_ringed) {
             largest = fmax(largest, mspringi_area_largest(network, &a->list[i], a->force.x));
-    return largest > 0.0 ? 2.0 / sqrt(largest) : INFINITY;
+            damped = fmax(damped, mspringi_area_largest(network, &a->list[i], a->force.y));
+        }
+    // h^2 largest + 2 h damped = 4
+    return largest + damped > 0.0 ? 4.0 / (damped + sqrt(damped * damped + 4.0 * largest)) : INFINITY;
 }
 
 void mspringi_areas_refresh(mspring_network *network) {

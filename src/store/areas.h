@@ -11,9 +11,14 @@
 /// An elastic area of four corners that a lattice row's sweep has in its registers is computed there: with both
 /// diagonals D, D' of the cell, A = D x D' / 2, and the forces act along pairs that the diagonals join (kernels/).
 ///
+/// Angle springs are in the same list, and have the same functions (angles.h).
+///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_AREAS_H
 #define MSPRINGI_AREAS_H
+
+#include <float.h>
+#include <math.h>
 
 #include "store/network.h"
 
@@ -54,6 +59,11 @@ static inline uint32_t mspringi_area_slot(const mspring_network *network, const 
     return network->topology.slot_of_particle[network->areas.corners[area->first + corner].particle];
 }
 
+/// Within what a float can be: the guard finds what is that large.
+static inline float mspringi_bounded(double value) {
+    return (float)fmin(fmax(value, -(double)FLT_MAX), (double)FLT_MAX);
+}
+
 /// Add the forces of an area, or a share of them, to a field.
 void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
                         mspringi_field field);
@@ -66,8 +76,8 @@ typedef struct mspringi_area_end {
 mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner);
 
 /// The sums of the weights of springs that bound an area in the shape that it was added in, N/m, added to those by
-/// slot.
-void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums);
+/// slot; and those of dampers that bound that of an angle, N s/m.
+void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums, float *dampings);
 /// The largest sum of such quotients, sums times inverse masses, of two corners that share a weight.
 double mspringi_area_largest(const mspring_network *network, const mspringi_area *area, const float *sums);
 

@@ -72,6 +72,7 @@ extern const mspringi_section mspringi_section_bent;
 
 // In areas.c.
 extern const mspringi_section mspringi_section_areas;
+extern const mspringi_section mspringi_section_rest_angles;
 
 /// Fail with what is wrong with a section.
 mspring_result mspringi_section_fail(mspring_network *network, const mspringi_section *section, const char *format,

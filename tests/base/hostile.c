@@ -104,6 +104,27 @@ static void make_area(arguments *a) {
                                       3, &a->id));
 }
 
+static void fill_angle(arguments *a) {
+    mspring_angle_def *def = (mspring_angle_def *)(void *)a->given_bytes;
+    (void)mspring_angle_def_init(def, sizeof *def);
+    def->stiffness = 100;
+    a->id = 4;
+}
+
+static mspring_result add_angle(arguments *a) {
+    const mspring_id particles[3] = {0, 1, a->id};
+    return mspring_network_add_angles(a->network, a->given, particles, 1, a->out[0]);
+}
+
+static void make_angle(arguments *a) {
+    const mspring_id particles[6] = {0, 1, 4, 4, 1, 0};
+    const void *given = a->given_bytes;
+    fill_angle(a);
+    check_ok(mspring_network_add_angles(a->network, given, particles, 2, &a->first));
+    a->id = a->first;
+    a->count = 2;
+}
+
 // Colliders go with their contact.
 static mspring_result with_collider(arguments *a, mspring_result (*call)(arguments *a, mspring_id id)) {
     mspring_contact_def contact;
@@ -524,6 +545,17 @@ static void add_hook(arguments *a) {
       mspring_network_get_area(a->network, a->id, a->out[0]))                                                      \
     X(mspring_network_get_area_info, "nIP", (make_area(a), OUT_STRUCT(0, area_info)),                              \
       mspring_network_get_area_info(a->network, a->id, a->out[0]))                                                 \
+    X(mspring_angle_def_init, "Z0", a->size = sizeof(mspring_angle_def),                                           \
+      mspring_angle_def_init(a->out[0], a->size))                                                                  \
+    X(mspring_network_add_angles, "NSWIo", fill_angle(a), add_angle(a))                                            \
+    X(mspring_network_remove_angle, "NI", make_angle(a), mspring_network_remove_angle(a->network, a->id))          \
+    X(mspring_network_set_angle, "NISW", make_angle(a), mspring_network_set_angle(a->network, a->id, a->given))    \
+    X(mspring_network_set_rest_angles, "NRD", make_angle(a),                                                       \
+      mspring_network_set_rest_angles(a->network, a->first, a->count, a->d, 1))                                    \
+    X(mspring_network_get_angle, "nIP", (make_angle(a), OUT_STRUCT(0, angle_def)),                                 \
+      mspring_network_get_angle(a->network, a->id, a->out[0]))                                                     \
+    X(mspring_network_get_angle_info, "nIP", (make_angle(a), OUT_STRUCT(0, angle_info)),                           \
+      mspring_network_get_angle_info(a->network, a->id, a->out[0]))                                                \
     X(mspring_network_get_plasticity, "nP", OUT_STRUCT(0, plasticity),                                             \
       mspring_network_get_plasticity(a->network, a->out[0]))                                                       \
     X(mspring_network_momentum, "no", NOTHING,                                                                     \

@@ -228,6 +228,23 @@ static mspring_result add_cell_areas(life *l) {
     return mspring_network_add_cell_areas(l->network, &def, NULL, NULL);
 }
 
+static mspring_result add_angles(life *l) {
+    const mspring_id first = l->made.particle_count;
+    const mspring_id three[3] = {first + 1, first + 2, first + 3};
+    mspring_angle_def def;
+    check_ok(mspring_angle_def_init(&def, sizeof def));
+    def.stiffness = 0.1f;
+    return mspring_network_add_angles(l->network, &def, three, 1, NULL);
+}
+
+static mspring_result remove_angle(life *l) {
+    mspring_id id = 0;
+    mspring_angle_info info = {.struct_size = sizeof info};
+    while (mspring_network_get_angle_info(l->network, id, &info) != MSPRING_OK)
+        id++;
+    return mspring_network_remove_angle(l->network, id);
+}
+
 // No equilibrium is looked for of one with sides that have no springs.
 static mspring_result remove_area(life *l) {
     return mspring_network_remove_area(l->network, 0);
@@ -423,6 +440,7 @@ static const struct {
     {"yield strains", set_yield_strains},
     {"area", add_area},
     {"areas of cells", add_cell_areas},
+    {"angles", add_angles},
     {"events", reserve_events},
     {"break", break_springs},
     {"step", step},
@@ -472,6 +490,7 @@ static const struct {
     {"direct", use_direct},
     {"step", step},
     {"no area", remove_area},
+    {"no angle", remove_angle},
     {"settle", settle},
     {"step", step},
     {"network", add_network},

@@ -153,6 +153,11 @@ static mspring_result give_area(subject *s, void *given) {
     return mspring_network_add_cell_areas(s->network, given, NULL, NULL);
 }
 
+static mspring_result give_angle(subject *s, void *given) {
+    static const mspring_id three[3] = {0, 1, 2};
+    return mspring_network_add_angles(s->network, given, three, 1, NULL);
+}
+
 static mspring_result give_collider(subject *s, void *given) {
     mspring_collider_def *collider = given;
     mspring_contact_def contact;
@@ -211,6 +216,7 @@ INIT(floor_def)
 INIT(contact_def)
 INIT(grip_def)
 INIT(area_def)
+INIT(angle_def)
 INIT(collider_def)
 INIT(settle_def)
 INIT(tune_def)
@@ -244,6 +250,7 @@ static const struct input {
     INPUT(contact_def, offsetof(mspring_contact_def, reserved), give_contact),
     INPUT(grip_def, offsetof(mspring_grip_def, reserved), give_grip),
     INPUT(area_def, offsetof(mspring_area_def, reserved), give_area),
+    INPUT(angle_def, NO_FIELD, give_angle),
     INPUT(collider_def, offsetof(mspring_collider_def, reserved_pointer), give_collider),
     INPUT(settle_def, offsetof(mspring_settle_def, reserved), give_settle),
     INPUT(tune_def, offsetof(mspring_tune_def, reserved_pointer), give_tune),
@@ -355,6 +362,23 @@ static mspring_result fill_area(subject *s, void *out, bool is_info) {
     check_ok(mspring_network_remove_area(s->network, id));
     return result;
 }
+static mspring_result fill_angle(subject *s, void *out, bool is_info) {
+    static const mspring_id three[3] = {0, 1, 2};
+    mspring_angle_def def;
+    mspring_id id;
+    check_ok(mspring_angle_def_init(&def, sizeof def));
+    check_ok(mspring_network_add_angles(s->network, &def, three, 1, &id));
+    const mspring_result result = is_info ? mspring_network_get_angle_info(s->network, id, out)
+                                          : mspring_network_get_angle(s->network, id, out);
+    check_ok(mspring_network_remove_angle(s->network, id));
+    return result;
+}
+static mspring_result fill_angle_def(subject *s, void *out) {
+    return fill_angle(s, out, false);
+}
+static mspring_result fill_angle_info(subject *s, void *out) {
+    return fill_angle(s, out, true);
+}
 static mspring_result fill_area_def(subject *s, void *out) {
     return fill_area(s, out, false);
 }
@@ -421,6 +445,8 @@ static const struct output {
     OUTPUT(mspring_contact_def, fill_contact),
     OUTPUT(mspring_contact_info, fill_contact_info),
     OUTPUT(mspring_grip_def, fill_grip),
+    OUTPUT(mspring_angle_def, fill_angle_def),
+    OUTPUT(mspring_angle_info, fill_angle_info),
     OUTPUT(mspring_area_def, fill_area_def),
     OUTPUT(mspring_area_info, fill_area_info),
     OUTPUT(mspring_collider_def, fill_collider),

@@ -44,8 +44,23 @@ static void it_is_exact_at_0(void **state) {
     assert_true(mspringi_turn_by(1e-300).sine == 1e-300);
 }
 
+// The angle of a turn is what it was turned by, within half a turn.
+static void it_has_its_angle(void **state) {
+    (void)state;
+    uint64_t seed = 79;
+    for (int i = 0; i < 200000; i++) {
+        const double angle = support_random_between(&seed, -1, 1) * 3.141592653589793;
+        check_near(mspringi_angle_of(mspringi_turn_by(angle)), angle, 1e-15);
+    }
+    const mspringi_rotation turns[] = {{1, 0}, {0, 1}, {0, -1}, {-1, 0}, {-1, -1e-300}};
+    const double angles[] = {0, 1.5707963267948966, -1.5707963267948966, 3.141592653589793, -3.141592653589793};
+    for (size_t i = 0; i < COUNT_OF(turns); i++)
+        check_near(mspringi_angle_of(turns[i]), angles[i], 1e-15);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_has_its_angle),
         cmocka_unit_test(it_is_cosine_and_sine),
         cmocka_unit_test(it_is_exact_at_0),
     };

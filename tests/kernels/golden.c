@@ -346,6 +346,30 @@ static mspring_network *all_areas(mspring_network_def *def) {
     return network;
 }
 
+/// And angles along the rope, which bend in steps.
+static mspring_network *angles(mspring_network_def *def) {
+    mspring_network *network = areas(def);
+    mspring_angle_def hinge;
+    check_ok(mspring_angle_def_init(&hinge, sizeof hinge));
+    hinge.stiffness = 3;
+    hinge.damping = 0.01f;
+    for (mspring_id p = 702; p < 730; p++) {
+        const mspring_id three[3] = {p, p + 1, p + 2};
+        check_ok(mspring_network_add_angles(network, &hinge, three, 1, NULL));
+    }
+    return network;
+}
+
+static void push_and_bend(mspring_network *network, uint32_t step) {
+    static const double bends[] = {0.3, -0.2, 1.7};
+    push_some(network, step);
+    mspring_angle_info info = {.struct_size = sizeof info};
+    mspring_id first = 0;
+    while (mspring_network_get_angle_info(network, first, &info) != MSPRING_OK)
+        first++;
+    check_ok(mspring_network_set_rest_angles(network, first, 28, &bends[step % 3], 0));
+}
+
 const golden_scene golden_scenes[] = {
     {"bar_80x5", bar_80x5, NULL, 30, 64, 1.0 / 64},
     {"bar_544x68", bar_544x68, NULL, 30, 3, 1.0 / 64},
@@ -380,6 +404,7 @@ const golden_scene golden_scenes[] = {
     {"precise_areas", precise_areas, push_some, 10, 100, 1.0 / 64},
     {"all_areas", all_areas, push_some, 10, 100, 1.0 / 64},
     {"implicit_areas", all_areas, push_and_change_solver, 10, 80, 1.0 / 64},
+    {"angles", angles, push_and_bend, 10, 60, 1.0 / 64},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

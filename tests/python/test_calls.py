@@ -42,6 +42,28 @@ class Calls(unittest.TestCase):
         np.testing.assert_array_equal(of_spring[:2], [0, -1])
         self.assertEqual(network.plan.chain_count + network.plan.irregular_particles > 0, True)
 
+    def test_areas_and_angles(self):
+        builder = massspring.Builder()
+        square(builder, 0.0, 0.0)
+        line = list(builder.add_particles([[10 + i, 0] for i in range(4)]))
+        builder.add_springs([line[:2], line[1:3], line[2:]], stiffness=100)
+        network = builder.network()
+        areas = network.add_cell_areas(stiffness=50)
+        gas = network.add_area([0, 3, 15, 12], kind="gas", pressure=2.0)
+        network.set_area(gas, fill=3)
+        self.assertEqual((len(areas), network.get_area(gas).fill, network.get_area_info(gas).particle_count), (9, 3, 4))
+        angles = network.add_angles([line[:3], line[1:]], stiffness=4.0)
+        self.assertEqual((list(angles), network.get_angle_info(angles[1]).b), ([gas + 1, gas + 2], line[2]))
+        network.set_rest_angles([0.5, -0.5], angles)
+        network.set_angle(angles[0], damping=0.25)
+        self.assertEqual((network.get_angle(angles[0]).rest_angle, network.get_angle(angles[0]).damping), (0.5, 0.25))
+        self.assertAlmostEqual(network.get_angle_info(angles[1]).torque, -4 * np.sin(0.5))
+        network.remove_angle(angles[0])
+        network.remove_area(areas[0])
+        with self.assertRaises(massspring.IdError):
+            network.get_angle(angles[0])
+        network.step(1 / 64)
+
     def test_properties_by_ids(self):
         network = bar(20, 5)
         network.set("mass", 5)

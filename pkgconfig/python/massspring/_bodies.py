@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _header
 from ._calls import NetworkCalls, Span
-from ._core import Ids, bad_argument, changed, dtype_of, empty, ffi, filled, lib, numbers, pointer, with_keywords
+from ._core import Ids, bad_argument, dtype_of, ffi, filled, lib, numbers, pointer, with_keywords
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -182,10 +182,7 @@ class BodyCalls(NetworkCalls):
 
     def set_grip(self, grip: int, **fields: Unpack[GripKeywords]) -> None:
         """Change some fields of a grip."""
-        with self._lock:
-            def_ = empty("mspring_grip_def")
-            self._read(lib.mspring_network_get_grip, grip, def_)
-            self._change(lib.mspring_network_set_grip, grip, changed("mspring_grip_def", def_, dict(fields)))
+        self._modify_one("mspring_grip_def", lib.mspring_network_get_grip, lib.mspring_network_set_grip, grip, fields)
 
     def remove_grip(self, grip: int) -> None:
         """Let go."""

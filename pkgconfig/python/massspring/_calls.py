@@ -124,6 +124,13 @@ class NetworkCalls(Handle):
             self._read(get, struct)
             self._change(set_, changed(kind, struct, values))
 
+    def _modify_one(self, kind: str, get: Any, set_: Any, number: int, values: Any) -> None:
+        """The same of one of several things."""
+        with self._lock:
+            struct = empty(kind)
+            self._read(get, number, struct)
+            self._change(set_, number, changed(kind, struct, dict(values)))
+
     def _made(self, function: Any, def_: Any) -> int:
         made = ffi.new("mspring_id *")
         self._change(function, def_, made)

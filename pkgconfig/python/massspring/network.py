@@ -13,6 +13,7 @@ from ._bodies import BodyCalls
 from ._calls import count_of
 from ._core import bad_argument, enum_value, fail, ffi, filled, lib, pointer, text_of, with_keywords
 from ._edits import EditCalls
+from ._laws import LawCalls
 from ._measure import MeasureCalls
 from ._state import StateCalls
 from .builder import Builder
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @with_keywords("mspring_network_def")
-class Network(StateCalls, EditCalls, BodyCalls, MeasureCalls):
+class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     """Masses joined by springs with dampers, in two dimensions. Units are SI; the y axis points up.
 
     Network(builder, **settings) makes one of what the builder holds. Each keyword has the default of the C library.

@@ -20,6 +20,10 @@ static void number_springs(const mspring_network *network, uint32_t *numbers) {
 static mspring_result find_sides(mspringi_statics *statics, mspring_network *network, const uint32_t *numbers) {
     const mspringi_areas *a = &network->areas;
     for (size_t i = 0; i < a->count; ++i)
+        if (a->list[i].is_angle && !a->list[i].is_open)
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "angle %u: settling takes no angle springs", (unsigned)a->list[i].id);
+    for (size_t i = 0; i < a->count; ++i)
         for (size_t c = a->list[i].first; !a->list[i].is_open && c < a->list[i].first + a->list[i].count; ++c) {
             const mspring_id spring = a->corners[c].spring;
             statics->areas.sides[c] = spring == MSPRING_NONE ? MSPRING_NONE : numbers[spring];

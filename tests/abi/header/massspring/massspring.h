@@ -46,8 +46,8 @@
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
 ///
-/// massspring_contact.h: contact, colliders, grips; massspring_laws.h: yielding, areas; massspring_batch.h: groups;
-/// massspring_tools.h: the rest, as ropes, meshes, clones, hooks, queries, stability, equilibrium, tuning, compaction.
+/// massspring_contact.h: contact, colliders, grips; massspring_laws.h: yielding, areas, angles; massspring_batch.h:
+/// groups; massspring_tools.h: the rest, as ropes, meshes, clones, hooks, queries, stability, equilibrium, tuning.
 ///
 /// **Words.** A slot is an index into the arrays of a view; an id is another number. A hook is a function of yours that
 /// steps call. A component is all particles that unbroken springs connect, or a lone one. The plan is how a network

@@ -1,9 +1,11 @@
 /// @file massspring_laws.h
 /// Material laws beyond the linear spring: springs that yield, so that what bends stays bent; ropes that only pull;
-/// areas that keep jelly from turning inside out, and balloons inflated.
+/// areas that keep jelly from turning inside out, and balloons inflated; angle springs for beams and spines.
 ///
 ///     plasticity  network_get_plasticity
 ///     areas       network_add_area, _add_cell_areas, _remove_area, _set_area, _get_area, _get_area_info; area_def_init
+///     angles      network_add_angles, _remove_angle, _set_angle, _set_rest_angles, _get_angle, _get_angle_info;
+///                 angle_def_init
 ///
 /// These calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
 ///
@@ -183,6 +185,94 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_ar
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT, ID
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_area_info(
     const mspring_network *network, mspring_id area, mspring_area_info *info);
+
+/* -------------------------------------------------------------------------------------------------------- angles */
+
+/// Flags of mspring_angle_def.
+enum {
+    MSPRING_ANGLE_REST_GIVEN = 1u << 0 ///< rest_angle counts; without: the angle that there is at this call
+};
+
+/// An angle spring between two arms. Fill with mspring_angle_def_init() first.
+typedef struct mspring_angle_def {
+    uint32_t struct_size;
+    float stiffness;   ///< k, N m/rad, 0 to 1e30; default 0. Of a beam EI / d with links of d, twice that where clamped
+    float damping;     ///< N m s/rad, 0 to 1e30; default 0
+    uint32_t flags;    ///< MSPRING_ANGLE_REST_GIVEN
+    double rest_angle; ///< rad, at most 1e6 in size; default 0: straight
+} mspring_angle_def;
+
+/// An angle spring now. Set struct_size first.
+typedef struct mspring_angle_info {
+    uint32_t struct_size;
+    uint32_t is_open;        ///< 1: a spring along an arm is broken or removed, so it has no torque
+    mspring_id a, b, c;      ///< its particles
+    uint32_t reserved;
+    double angle;  ///< rad, -pi to pi
+    double torque; ///< N m, without that of damping; above 0 it turns the second arm to the left
+    double energy; ///< J, part of the elastic energy of mspring_network_energy()
+} mspring_angle_info;
+
+/// Fill a definition with its defaults, as mspring_network_def_init().
+/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
+MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def *def, size_t size);
+
+/// Add angle springs: the bending stiffness of a beam, a spine, a hinge.
+/// Each is between three particles a, b, c. Its angle is by how much the way from a over b to c turns to the left at
+/// b: 0 is straight, pi / 2 a turn to the left, -pi / 2 one to the right. With d the angle less the rest angle:
+///
+///     energy  k (1 - cos d)        torque  -k sin d - damping * rate of the angle
+///
+/// For small d that is k d^2 / 2. The torque is largest at a quarter turn, and 0 at half a turn. It acts as forces on
+/// a, b and c, which keep momentum and angular momentum. If an arm has length 0, there is none.
+///
+/// If a spring joins a and b, or b and c, at this call, and is broken or removed later, the angle is open: it exerts
+/// no force until both are whole. If one of the particles is removed, the angle is, too.
+///
+/// Angles and areas are numbered together. Snapshots and clones have the angles, with their ids. A frame
+/// (MSPRING_SNAPSHOT_FRAME) fits a network with the same angles, and holds their rest angles.
+/// mspring_builder_add_network() leaves them out.
+///
+/// While there is one, the explicit solver takes substeps one by one, as with a hook. mspring_network_stable_dt()
+/// counts angles: with particles of m and links of d, a straight beam is stable up to d / 2 sqrt(m / k). The implicit
+/// and the direct solver take their forces from the start of a substep, and reject one that is too long for these as
+/// unstable. mspring_network_settle() and mspring_network_tune() reject networks with angles.
+///
+/// @param particles    [3 * count]: a, b, c of each; no two that follow each other are in one place
+/// @param first_angle  receives the first id; the others follow; may be NULL
+/// @threads exclusive access to network   @allocates yes   @since 0.2
+/// @errors ARGUMENT, STRUCT, ID if there is no such particle, LIMIT, MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_angles(mspring_network *network,
+    const mspring_angle_def *def, const mspring_id *particles, uint32_t count, mspring_id *first_angle);
+
+/// Remove an angle spring.
+/// @threads exclusive access to network   @allocates never   @since 0.2   @errors ARGUMENT, ID, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove_angle(
+    mspring_network *network, mspring_id angle);
+
+/// Change an angle spring.
+/// @threads exclusive access to network   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT, ID, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_angle(
+    mspring_network *network, mspring_id angle, const mspring_angle_def *def);
+
+/// Set the rest angles of the angles first ... first + count - 1: muscles, servos, flippers.
+/// They hold from the next step on. This is no edit: frames (MSPRING_SNAPSHOT_FRAME) hold it.
+/// @param rest_angles  that of angle first + i in rest_angles[i * stride], rad, at most 1e6 in size
+/// @param stride       elements from one to the next; 0: all have rest_angles[0]
+/// @threads exclusive access to network   @allocates never   @since 0.2
+/// @errors ID if one is no angle (the message names it), ARGUMENT, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_rest_angles(
+    mspring_network *network, mspring_id first, uint32_t count, const double *rest_angles, uint32_t stride);
+
+/// Read what an angle spring is like. Set struct_size first. Its rest angle is given.
+/// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT, ID
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_angle(
+    const mspring_network *network, mspring_id angle, mspring_angle_def *def);
+
+/// Measure an angle spring. Set struct_size first.
+/// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT, ID
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_angle_info(
+    const mspring_network *network, mspring_id angle, mspring_angle_info *info);
 
 #ifdef __cplusplus
 }

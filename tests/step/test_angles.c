@@ -1,0 +1,453 @@
+/// @file test_angles.c
+/// Angle springs: beams sag as Euler and Bernoulli say, oscillators have the periods of closed forms, books close,
+/// rest angles may be driven, and clones, snapshots, other layouts, levels and solvers agree.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "support.h"
+
+#define PI 3.14159265358979
+
+static mspring_angle_def stiff(float stiffness, float damping) {
+    mspring_angle_def def;
+    check_ok(mspring_angle_def_init(&def, sizeof def));
+    def.stiffness = stiffness;
+    def.damping = damping;
+    return def;
+}
+
+static mspring_angle_info info_of(const mspring_network *network, mspring_id angle) {
+    mspring_angle_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_angle_info(network, angle, &info));
+    return info;
+}
+
+// Particles of mass along x, `spacing` apart, the first `clamped` of them pinned, joined by springs.
+static void add_line(mspring_builder *builder, uint32_t count, uint32_t clamped, double spacing, float mass,
+                     float stiffness) {
+    const mspring_id first = mspring_builder_particle_count(builder);
+    for (uint32_t i = 0; i < count; i++)
+        (void)(i < clamped ? support_pinned(builder, i * spacing, 0, mass)
+                           : support_particle(builder, i * spacing, 0, mass));
+    for (uint32_t i = 0; i + 1 < count; i++)
+        (void)support_spring(builder, first + i, first + i + 1, stiffness, 0);
+}
+
+static mspring_network *line(uint32_t count, uint32_t clamped, double spacing, float stiffness,
+                             mspring_network_def def) {
+    mspring_builder *builder = support_builder();
+    add_line(builder, count, clamped, spacing, 1, stiffness);
+    return support_network(builder, &def);
+}
+
+// An angle at each particle but the ends.
+static void stiffen(mspring_network *network, uint32_t count, float stiffness) {
+    const mspring_angle_def def = stiff(stiffness, 0);
+    for (mspring_id i = 0; i + 2 < count; i++) {
+        const mspring_id three[] = {i, i + 1, i + 2};
+        mspring_id id;
+        check_ok(mspring_network_add_angles(network, &def, three, 1, &id));
+        assert_int_equal(id, i);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- beam */
+
+// A cantilever of length 1 with EI = 10 and a load at its tip sags by P / (3 EI); with links of 1 / n, and twice
+// the stiffness at the root, by 1 + 1 / (2 n^2) times that. The load is small: the rest is geometry, (sag /
+// length)^2.
+static void a_beam_sags_as_beams_do(void **state) {
+    (void)state;
+    for (uint32_t n = 5; n <= 20; n *= 2) {
+        mspring_network_def def = support_def(0, 1);
+        def.flags = MSPRING_NETWORK_PRECISE;
+        mspring_network *network = line(n + 2, 2, 1.0 / n, 1e5f, def);
+        double stable;
+        stiffen(network, n + 2, 10.0f * (float)n);
+        mspring_angle_def root = stiff(20.0f * (float)n, 0);
+        check_ok(mspring_network_set_angle(network, 0, &root));
+        check_ok(mspring_network_stable_dt(network, &stable, NULL));
+        // The lowest frequency of a beam of mass n: 3.516 sqrt(EI / n); damped near critically.
+        const double omega = 3.516 * sqrt(10.0 / n);
+        check_ok(support_set_global_damping(network, (float)(2 * omega)));
+        for (double time = 0; time < 40 / omega; time += 0.9 * stable) {
+            check_ok(mspring_network_apply_force(network, n + 1, 0, 0.3f));
+            support_steps(network, 1, 0.9 * stable);
+        }
+        const double sag = support_position(network, n + 1).y, expected = 0.01 * (1 + 0.5 / (n * n));
+        printf("beam of %u links: sag %.6f m, %.4f of a beam's\n", n, sag, sag / 0.01);
+        check_near(sag / expected, 1, 1e-3);
+        mspring_network_destroy(network);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ periods */
+
+// When y of a particle rises through 0, interpolated, the first and the second time.
+static double period_of(mspring_network *network, mspring_id particle, double dt) {
+    double before = support_position(network, particle).y, times[2] = {0, 0};
+    int seen = 0;
+    for (int step = 0; seen < 2 && step < 1000000; step++) {
+        support_steps(network, 1, dt);
+        const double y = support_position(network, particle).y;
+        if (before < 0 && y >= 0)
+            times[seen++] = dt * (step + 1 - y / (y - before));
+        before = y;
+    }
+    return times[1] - times[0];
+}
+
+// Three free particles: omega^2 = k (1 + 1 + 4) / (m d^2), as the gradients are 1 / d, 1 / d and 2 / d. One on an
+// arm at two that are pinned: a pendulum, of omega^2 = k / (m d^2), with a period that is 1.18034 times as long
+// where it swings by a quarter turn to each side. The arms are so stiff that they give by 1e-3 at most.
+static void oscillators_have_their_periods(void **state) {
+    (void)state;
+    for (int is_pendulum = 0; is_pendulum < 2; is_pendulum++) {
+        mspring_network_def def = support_def(0, 50);
+        mspring_network *network = line(3, is_pendulum ? 2 : 0, 0.5, is_pendulum ? 4e5f : 1e4f, def);
+        stiffen(network, 3, 20);
+        const float still = 0, up = is_pendulum ? (float)(0.5 * sqrt(2 * 20 / 0.25)) : 0.01f;
+        // All of the energy that a quarter turn stores is k.
+        check_ok(mspring_network_set_velocities(network, is_pendulum ? 2 : 1, 1, &still, &up, 1));
+        const double omega = sqrt((is_pendulum ? 1 : 6) * 20 / 0.25);
+        if (!is_pendulum) { // no drift
+            const float back = -0.005f;
+            check_ok(mspring_network_set_velocities(network, 0, 1, &still, &back, 1));
+            check_ok(mspring_network_set_velocities(network, 2, 1, &still, &back, 1));
+        }
+        const double expected = 2 * PI / omega * (is_pendulum ? 1.18034 : 1);
+        const double period = period_of(network, is_pendulum ? 2 : 1, expected / 200);
+        printf("%s: period %.5f s, expected %.5f\n", is_pendulum ? "pendulum" : "three", period, expected);
+        check_near(period / expected, 1, 2e-3);
+        mspring_network_destroy(network);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- books */
+
+// Without damping energy stays, and both momenta to rounding; the drift of symplectic Euler is below 1 % at this
+// substep. With damping energy falls, and momenta stay.
+static void energy_and_momenta_stay(void **state) {
+    (void)state;
+    for (int is_damped = 0; is_damped < 2; is_damped++) {
+        mspring_network_def def = support_def(0, 400);
+        mspring_network *network = line(12, 0, 0.25, 2000, def);
+        stiffen(network, 12, 15);
+        mspring_angle_def damped = stiff(15, 0.5f);
+        for (mspring_id i = 0; is_damped && i < 10; i++)
+            check_ok(mspring_network_set_angle(network, i, &damped));
+        for (mspring_id i = 0; i < 12; i += 3)
+            support_kick(network, i, i % 2 ? 0.8f : -1.1f);
+        double x, y, angular, end_x, end_y, end_angular;
+        check_ok(mspring_network_momentum(network, &x, &y, &angular));
+        const double energy = support_energy(network);
+        support_steps(network, 128, 1.0 / 64);
+        check_ok(mspring_network_momentum(network, &end_x, &end_y, &end_angular));
+        if (is_damped)
+            assert_true(support_energy(network) < 0.95 * energy);
+        else
+            check_near(support_energy(network), energy, 0.01 * energy);
+        check_near(end_x, x, 1e-4); // 50,000 substeps of forces of some 100 N, in single precision
+        check_near(end_y, y, 1e-4);
+        check_near(end_angular, angular, 3e-4);
+        mspring_network_destroy(network);
+    }
+}
+
+// Work of the torque along a turn of the second arm is what the energy loses, all around the circle.
+static void torque_is_the_slope_of_energy(void **state) {
+    (void)state;
+    const mspring_network_def def = support_def(0, 1);
+    mspring_network *network = line(3, 0, 1, 10, def);
+    mspring_angle_def bent = stiff(3, 0);
+    const mspring_id three[] = {0, 1, 2};
+    bent.flags = MSPRING_ANGLE_REST_GIVEN;
+    bent.rest_angle = 2.5;
+    check_ok(mspring_network_add_angles(network, &bent, three, 1, NULL));
+    for (int i = -30; i <= 30; i++) {
+        const double turn = i * 0.1, d = turn - 2.5;
+        const double x = 1 + cos(turn), y = sin(turn);
+        check_ok(mspring_network_set_positions(network, 2, 1, &x, &y, 1));
+        const mspring_angle_info info = info_of(network, 0);
+        check_near(info.angle, turn, 1e-6);
+        check_near(info.torque, -3 * sin(d), 1e-5);
+        check_near(info.energy, 3 * (1 - cos(d)), 1e-5);
+    }
+    // It turns the short way to where it rests.
+    check_ok(support_set_global_damping(network, 3));
+    support_steps(network, 4000, 0.01);
+    check_near(info_of(network, 0).angle, 2.5, 1e-4);
+    mspring_network_destroy(network);
+}
+
+/* ----------------------------------------------------------------------------------------------------- driven */
+
+// A chain that is told to curl closes to a ring: the angles of its 12 particles are 2 pi / 12 each.
+static void rest_angles_are_driven(void **state) {
+    (void)state;
+    mspring_network_def def = support_def(0, 50);
+    def.global_damping = 2;
+    def.sleep_speed = 0.001f;
+    mspring_network *network = line(12, 0, 0.5, 2000, def), *other = line(12, 0, 0.5, 2000, def);
+    stiffen(network, 12, 30);
+    stiffen(other, 12, 30);
+    support_fall_asleep(network, 1.0 / 64);
+    const double curl = 2 * PI / 12, bad = NAN;
+    check_ok(mspring_network_set_rest_angles(network, 0, 10, &curl, 0));
+    assert_false(mspring_network_is_asleep(network));
+    support_steps(network, 1000, 1.0 / 64);
+    for (mspring_id i = 0; i < 10; i++)
+        check_near(info_of(network, i).angle, curl, 1e-3);
+    const support_point p = support_position(network, 0), q = support_position(network, 11);
+    check_near(hypot(q.x - p.x, q.y - p.y), 0.5, 5e-3);
+    // It is no edit: a frame holds it.
+    support_bring(network, other, MSPRING_SNAPSHOT_FRAME);
+    mspring_angle_def now = {.struct_size = sizeof now};
+    check_ok(mspring_network_get_angle(other, 3, &now));
+    check_near(now.rest_angle, curl, 0);
+    check_near((double)now.stiffness, 30, 0);
+    support_steps(network, 5, 1.0 / 64);
+    support_steps(other, 5, 1.0 / 64);
+    assert_true(support_hash(network) == support_hash(other));
+    check_error(mspring_network_set_rest_angles(network, 9, 2, &curl, 0), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "10");
+    check_error(mspring_network_set_rest_angles(network, 0, 1, &bad, 0), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_rest_angles(network, 0, 1, NULL, 0), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_rest_angles(network, 5, UINT32_MAX, &curl, 0), MSPRING_ERROR_ID);
+    check_ok(mspring_network_set_rest_angles(network, 99, 0, NULL, 0));
+    mspring_network_destroy(network);
+    mspring_network_destroy(other);
+}
+
+/* --------------------------------------------------------------------------------------------------- stability */
+
+// omega^2 = 16 k / (m d^2) in a long straight beam; damping shortens it. Just below the border it is stable, just
+// above the guard finds it.
+static void stable_dt_counts_angles(void **state) {
+    (void)state;
+    for (int is_damped = 0; is_damped < 2; is_damped++) {
+        mspring_network_def def = support_def(0, 1);
+        mspring_network *network = line(60, 0, 0.5, 10, def);
+        mspring_angle_def angle = stiff(50, is_damped ? 2 : 0);
+        double now, any_shape;
+        stiffen(network, 60, 50);
+        for (mspring_id i = 0; i < 58; i++)
+            check_ok(mspring_network_set_angle(network, i, &angle));
+        check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+        // h^2 k + 2 h c = 4 m d^2 / 16
+        const double c = is_damped ? 2 : 0, expected = (sqrt(c * c + 50 * 0.0625) - c) / 50;
+        check_near(now / expected, 1.005, 0.01);
+        assert_true(any_shape <= now && any_shape > 0.6 * now);
+        support_kick(network, 30, 0.01f);
+        support_steps(network, 2000, 0.98 * now);
+        mspring_result result = MSPRING_OK;
+        for (int step = 0; step < 400 && result == MSPRING_OK; step++)
+            result = mspring_network_step(network, 1.06 * now);
+        assert_int_equal(result, MSPRING_ERROR_UNSTABLE);
+        mspring_network_destroy(network);
+    }
+}
+
+// In linear systems they are forces from the start of a substep: a curled chain comes to the same rest, and a
+// substep that is too long is rejected.
+static void other_solvers_have_angles(void **state) {
+    (void)state;
+    static const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT,
+                                             MSPRING_SOLVER_DIRECT};
+    for (size_t i = 0; i < COUNT_OF(solvers); i++) {
+        mspring_network_def def = support_def(0, 20);
+        def.solver = solvers[i];
+        def.global_damping = 1.5f;
+        mspring_network *network = line(8, 2, 0.5, 2000, def);
+        stiffen(network, 8, 20);
+        const double curl = 0.4;
+        check_ok(mspring_network_set_rest_angles(network, 0, 6, &curl, 0));
+        support_steps(network, 2000, 1.0 / 64);
+        for (mspring_id a = 0; a < 6; a++)
+            check_near(info_of(network, a).angle, curl, 1e-3);
+        check_error(mspring_network_step(network, 20), MSPRING_ERROR_UNSTABLE);
+        if (i > 0)
+            check_contains(mspring_network_error(network), "angles");
+        check_error(mspring_network_settle(network, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "angle 0");
+        mspring_network_destroy(network);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------- springs and particles
+ */
+
+static void a_break_opens_an_angle(void **state) {
+    (void)state;
+    const mspring_network_def def = support_def(0, 20);
+    mspring_network *network = line(5, 0, 1, 100, def);
+    const mspring_id broken = 1, far[] = {0, 2, 4}, removed = 4;
+    const mspring_angle_def across = stiff(5, 0);
+    stiffen(network, 5, 10);
+    mspring_id loose;
+    check_ok(mspring_network_add_angles(network, &across, far, 1, &loose)); // without springs: it never opens
+    check_ok(mspring_network_break_springs(network, &broken, 1));
+    for (mspring_id angle = 0; angle < 3; angle++)
+        assert_int_equal(info_of(network, angle).is_open, angle < 2);
+    assert_int_equal(info_of(network, loose).is_open, 0);
+    support_steps(network, 1, 1.0 / 64);
+    check_ok(mspring_network_restore_springs(network, &broken, 1, 0));
+    assert_int_equal(info_of(network, 0).is_open, 0);
+    check_ok(mspring_network_remove_particles(network, &removed, 1));
+    mspring_angle_info info = {.struct_size = sizeof info};
+    check_error(mspring_network_get_angle_info(network, loose, &info), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_angle_info(network, 2, &info), MSPRING_ERROR_ID);
+    check_ok(mspring_network_remove_angle(network, 1));
+    check_error(mspring_network_remove_angle(network, 1), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "angle 1");
+    check_error(mspring_network_remove_area(network, 0), MSPRING_ERROR_ID); // it is an angle
+    support_steps(network, 10, 1.0 / 64);
+    mspring_network_destroy(network);
+}
+
+static void bad_angles_are_refused(void **state) {
+    (void)state;
+    const mspring_network_def def = support_def(0, 20);
+    mspring_builder *builder = support_builder();
+    add_line(builder, 4, 0, 1, 1, 100);
+    (void)support_particle(builder, 0, 0, 1); // where the first one is
+    mspring_network *network = support_network(builder, &def);
+    const mspring_angle_def good = stiff(1, 0);
+    mspring_angle_def bad[] = {good, good, good, good, good, good};
+    const mspring_id fine[] = {0, 1, 2}, twice[] = {0, 1, 0}, gone[] = {0, 1, 9}, same[] = {4, 0, 1};
+    const mspring_id second_bad[] = {0, 1, 2, 1, 2, 77};
+    bad[0].stiffness = -1;
+    bad[1].stiffness = NAN;
+    bad[2].damping = INFINITY;
+    bad[3].rest_angle = NAN;
+    bad[4].rest_angle = 2e6;
+    bad[5].flags = 2;
+    const uint64_t hash = support_hash(network);
+    check_error(mspring_network_add_angles(network, &good, twice, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_angles(network, &good, same, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_angles(network, &good, gone, 1, NULL), MSPRING_ERROR_ID);
+    check_error(mspring_network_add_angles(network, &good, NULL, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_angles(network, NULL, fine, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_add_angles(network, &good, second_bad, 2, NULL), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "77");
+    mspring_angle_def none = {.struct_size = sizeof none};
+    check_error(mspring_network_get_angle(network, 0, &none), MSPRING_ERROR_ID); // all or none
+    mspring_id id;
+    check_ok(mspring_network_add_angles(network, &good, fine, 1, &id));
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        check_error(mspring_network_add_angles(network, &bad[i], fine, 1, NULL), MSPRING_ERROR_ARGUMENT);
+        check_error(mspring_network_set_angle(network, id, &bad[i]), MSPRING_ERROR_ARGUMENT);
+    }
+    check_error(mspring_network_set_angle(network, id + 1, &good), MSPRING_ERROR_ID);
+    assert_true(support_hash(network) == hash);
+    mspring_network_destroy(network);
+}
+
+/* ----------------------------------------------------------------------------------------------- the same bits */
+
+// A rope and a lattice with angles, an area among them; rest angles are driven, springs break.
+static mspring_network *mixture(mspring_network_def def) {
+    mspring_builder *builder = support_builder();
+    add_line(builder, 200, 1, 0.5, 1, 3000);
+    for (uint32_t i = 0; i < 20 * 30; i++)
+        (void)support_particle(builder, i % 20, 5 + i / 20, 1);
+    for (uint32_t i = 0; i < 20 * 30; i++) {
+        if (i % 20 < 19)
+            (void)support_spring(builder, 200 + i, 201 + i, 500, 0.5f);
+        if (i < 20 * 29)
+            (void)support_spring(builder, 200 + i, 220 + i, 500, 0.5f);
+    }
+    mspring_network *network = support_network(builder, &def);
+    const mspring_angle_def hinge = stiff(20, 0.1f);
+    const mspring_id ring[] = {205, 210, 310, 305}, corners[] = {200, 221, 242, 221, 242, 263};
+    mspring_area_def area;
+    stiffen(network, 200, 10);
+    check_ok(mspring_area_def_init(&area, sizeof area));
+    area.stiffness = 20;
+    check_ok(mspring_network_add_area(network, &area, ring, 4, NULL));
+    check_ok(mspring_network_add_angles(network, &hinge, corners, 2, NULL));
+    for (mspring_id p = 1; p < 800; p += 7)
+        support_kick(network, p, p % 2 ? 1 : -1);
+    return network;
+}
+
+static void go_on(mspring_network *network) {
+    for (mspring_id step = 0; step < 6; step++) {
+        const double bend = 0.1 * step;
+        const mspring_id broken = 31 * step + 5;
+        check_ok(mspring_network_set_rest_angles(network, 20, 60, &bend, 0));
+        check_ok(mspring_network_break_springs(network, &broken, 1));
+        support_steps(network, 3, 1.0 / 64);
+    }
+}
+
+static void all_levels_have_the_same_bits(void **state) {
+    (void)state;
+    mspring_simd levels[MSPRING_SIMD_AVX512];
+    const uint32_t count = support_levels(levels);
+    uint64_t hash = 0;
+    for (uint32_t i = 0; i < 2 * count; i++) {
+        mspring_network_def def = support_def(-9.8f, 20);
+        def.simd_level = levels[i / 2];
+        def.worker_count = 1 + 2 * (i % 2);
+        mspring_network *network = mixture(def);
+        go_on(network);
+        assert_true(i == 0 || support_hash(network) == hash);
+        hash = support_hash(network);
+        mspring_network_destroy(network);
+    }
+}
+
+static void clones_snapshots_and_layouts_go_on(void **state) {
+    (void)state;
+    const mspring_network_def def = support_def(-9.8f, 20);
+    mspring_network *network = mixture(def), *other = mixture(def), *clone;
+    mspring_job *job = NULL;
+    go_on(network);
+    support_bring(network, other, MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_clone(network, NULL, &clone));
+    support_steps(network, 20, 1.0 / 64);
+    support_steps(other, 20, 1.0 / 64);
+    support_steps(clone, 20, 1.0 / 64);
+    assert_true(support_hash(network) == support_hash(other));
+    assert_true(support_hash(network) == support_hash(clone));
+    // A layout of what is left computes other bits, but the same motion.
+    support_compact(clone, 0, &job);
+    assert_null(job);
+    support_steps(network, 5, 1.0 / 64);
+    support_steps(clone, 5, 1.0 / 64);
+    for (mspring_id p = 0; p < 800; p += 7)
+        check_near(support_position(network, p).y, support_position(clone, p).y, 1e-3);
+    // A snapshot that is cut is refused.
+    size_t size;
+    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+    uint8_t *bytes = malloc(size);
+    assert_non_null(bytes);
+    check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, bytes, size, NULL));
+    for (size_t cut = 0; cut < size; cut += 1 + size / 97)
+        check_error(mspring_network_load(other, bytes, cut), MSPRING_ERROR_SNAPSHOT);
+    free(bytes);
+    mspring_network_destroy(network);
+    mspring_network_destroy(other);
+    mspring_network_destroy(clone);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_beam_sags_as_beams_do),
+        cmocka_unit_test(oscillators_have_their_periods),
+        cmocka_unit_test(energy_and_momenta_stay),
+        cmocka_unit_test(torque_is_the_slope_of_energy),
+        cmocka_unit_test(rest_angles_are_driven),
+        cmocka_unit_test(stable_dt_counts_angles),
+        cmocka_unit_test(other_solvers_have_angles),
+        cmocka_unit_test(a_break_opens_an_angle),
+        cmocka_unit_test(bad_angles_are_refused),
+        cmocka_unit_test(all_levels_have_the_same_bits),
+        cmocka_unit_test(clones_snapshots_and_layouts_go_on),
+    };
+    return cmocka_run_group_tests_name("angles", tests, NULL, NULL);
+}
