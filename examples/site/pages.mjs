@@ -16,24 +16,27 @@ const [source, figureFolder, library, folder] = process.argv.slice(2);
 const { figures } = await import(pathToFileURL(resolve(figureFolder, 'all.js')));
 const here = join(source, 'examples/site');
 const hasReference = existsSync(join(folder, 'reference/annotated.html'));
+const { version } = JSON.parse(readFileSync(join(library, 'package.json'), 'utf8'));
 const REPOSITORY_ONLY = /^(build|out|\.git)\//;
 
 const escape = (text) => text.replace(/&/g, '&amp;').replace(/</g, '&lt;').replace(/>/g, '&gt;').replace(/"/g, '&quot;');
-const plain = (html) => html.replace(/<[^>]*>/g, '').replace(/&lt;/g, '<').replace(/&gt;/g, '>').replace(/&quot;/g, '"').replace(/&amp;/g, '&');
+const plain = (html) => html.replace(/<[^>]*>/g, '').replace(/&lt;/g, '<').replace(/&gt;/g, '>').replace(/&quot;/g, '"')
+  .replace(/&amp;/g, '&');
 
 /* ------------------------------------------------------------------------------------------------------- figures */
 
 function control({ name, label, press, min, max, step, value }) {
-  return press ? `<button type="button" data-control="${name}">${label}</button>`
-    : `<label>${label} <output>${value}</output><input type="range" data-control="${name}" min="${min}" max="${max}" step="${step}" value="${value}"></label>`;
+  if (press) return `<button type="button" data-control="${name}">${label}</button>`;
+  const range = `min="${min}" max="${max}" step="${step}" value="${value}"`;
+  return `<label>${label} <output>${value}</output><input type="range" data-control="${name}" ${range}></label>`;
 }
 
-function figureOf(name) {
+function figureOf(name, title) {
   const figure = figures[name];
   if (!figure) throw new Error(`there is no figure ${name}`);
   return `<figure class="live" data-figure="${name}">
-<canvas role="img" aria-label="Live figure ${name}"></canvas>
-<p class="now" data-now aria-live="off">This figure needs JavaScript and WebAssembly.</p>
+<canvas role="img" aria-label="Live figure: ${escape(title)}"></canvas>
+<p class="now" data-now aria-live="off">It starts when it is in sight, with JavaScript and WebAssembly.</p>
 <div class="controls">${figure.controls.map(control).join('\n')}
 <span class="buttons"><button type="button" data-play aria-pressed="true">Pause</button>
 <button type="button" data-restart>Restart</button></span></div>
@@ -79,7 +82,10 @@ function redirect(html, from) {
       return goal === undefined ? `<span class="elsewhere" title="${link} in the repository">${words}</span>`
         : `<a href="${escape(goal)}">${words.replace(/^[\w/]*?(\w+)\.md$/, '$1')}</a>`;
     })
-    .replace(/<img src="([^"]*)" alt="([^"]*)"/g, (_, link, alt) => `<img loading="lazy" ${sizeOf(posix.join(from, link))} src="${escape(target(from, plain(link)) ?? link)}" alt="${alt}"`);
+    .replace(/<img src="([^"]*)" alt="([^"]*)"/g, (_, link, alt) => {
+      const goal = escape(target(from, plain(link)) ?? link);
+      return `<img loading="lazy" ${sizeOf(posix.join(from, link))} src="${goal}" alt="${alt}"`;
+    });
 }
 
 // Pictures have their room before they are there.
@@ -97,7 +103,7 @@ function sizeOf(path) {
 /* --------------------------------------------------------------------------------------------------------- pages */
 
 function marked(markdown) {
-  return execFileSync('cmark-gfm', ['--unsafe', '-e', 'table', '-e', 'strikethrough'], { input: markdown, encoding: 'utf8', maxBuffer: 1 << 26 });
+  return execFileSync('cmark-gfm', ['--unsafe', '-e', 'table'], { input: markdown, encoding: 'utf8', maxBuffer: 1 << 26 });
 }
 
 // Headings get the marks that a forge gives them.
@@ -123,14 +129,15 @@ function navigation(path) {
 function surroundings(path) {
   const home = posix.relative(posix.dirname(path), 'index.html'), menu = navigation(path);
   return `<a class="skip" href="#content">Skip to the text</a>
-<header><a class="home" href="${home}">libmassspring</a>
+<header><a class="home" href="${home}">libmassspring <small>${version}</small></a>
 <details class="menu"><summary>Pages</summary><nav aria-label="Pages">${menu}</nav></details></header>
 <nav class="side" aria-label="All pages">${menu}</nav>`;
 }
 
 function page(path, title, body) {
   const root = posix.relative(posix.dirname(path), '.') || '.', live = body.includes('data-figure=');
-  const scripts = live ? `<script src="${root}/massspring.wasm.js" defer></script>\n<script src="${root}/figures.js" defer></script>\n` : '';
+  const script = (name) => `<script src="${root}/${name}.js" defer></script>\n`;
+  const scripts = live ? script('massspring.wasm') + script('figures') : '';
   return `<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -155,7 +162,8 @@ function write(path, title, html) {
   const wide = html.replace(/<code>([^<]*)<\/code>(?!<\/pre>)/g, (_, words) => `<code>${words.replace(/_/g, '_<wbr>')}</code>`)
     .replace(/<table>/g, '<div class="table" tabindex="0"><table>').replace(/<\/table>/g, '</table></div>');
   mkdirSync(join(folder, posix.dirname(path)), { recursive: true });
-  const body = wide.replace(/<!-- figure (\w+) -->/g, (_, name) => figureOf(name));
+  const body = wide.replace(/<!-- figure (\w+) -->/g, (_, name, at) =>
+    figureOf(name, plain([...wide.slice(0, at).matchAll(/<h[1-3][^>]*>([^]*?)<\/h/g)].at(-1)?.[1] ?? title)));
   writeFileSync(join(folder, path), page(path, title, body));
 }
 
@@ -191,6 +199,8 @@ for (const name of hasReference ? readdirSync(join(folder, 'reference')).filter(
 }
 copyFileSync(join(here, 'site.css'), join(folder, 'site.css'));
 writeFileSync(join(folder, 'figures.js'), bundle(join(here, 'figures/stage.js'), library));
-for (const [name, variable] of [['massspring', 'massspringSimd'], ['massspring_scalar', 'massspringScalar']])
-  writeFileSync(join(folder, `${name}.wasm.js`), `globalThis.${variable} = '${readFileSync(join(library, `${name}.wasm`)).toString('base64')}';\n`);
+for (const [name, variable] of [['massspring', 'massspringSimd'], ['massspring_scalar', 'massspringScalar']]) {
+  const text = readFileSync(join(library, `${name}.wasm`)).toString('base64');
+  writeFileSync(join(folder, `${name}.wasm.js`), `globalThis.${variable} = '${text}';\n`);
+}
 console.log(`${made.size + 1} pages, ${Object.keys(figures).length} figures${hasReference ? '' : ', no reference'}`);

@@ -16,7 +16,8 @@ const SEEN = /index|choose|troubleshooting|solvers|massspring_8h/; // of these a
 // What moved after the page was there, as browsers count it: 0.1 is what they call good.
 const WATCH = `window.shifted = 0; new PerformanceObserver((list) => { for (const entry of list.getEntries())
   if (!entry.hadRecentInput) { window.shifted += entry.value; window.shifters = [...(window.shifters ?? []),
-    ...entry.sources.map(({ node }) => node?.parentElement?.outerHTML.slice(0, 120))]; } }).observe({ type: 'layout-shift', buffered: true });`;
+    ...entry.sources.map(({ node }) => node?.parentElement?.outerHTML.slice(0, 120))]; } })
+  .observe({ type: 'layout-shift', buffered: true });`;
 
 // How many points of a canvas are not empty.
 const DRAWN = (name) => `(() => { const canvas = document.querySelector('[data-figure=${name}] canvas');

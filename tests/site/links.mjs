@@ -29,5 +29,6 @@ for (const page of pages) {
   }
 }
 if (pages.length < 40 || links < 1000) wrong.add('hardly anything was found');
-console.log(`${pages.length} pages, ${links} links within, ${elsewhere} to elsewhere, ${wrong.size} wrong`, ...[...wrong].map((text) => `\nWRONG: ${text}`));
+console.log(`${pages.length} pages, ${links} links within, ${elsewhere} to elsewhere, ${wrong.size} wrong`,
+  ...[...wrong].map((text) => `\nWRONG: ${text}`));
 process.exit(wrong.size ? 1 : 0);
