@@ -135,7 +135,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *
 /// removed, the area is open: it exerts no force and has no energy until all are whole. If a corner is removed, the
 /// area is, too.
 ///
-/// Snapshots and clones have the areas, with their ids. mspring_builder_add_network() leaves them out. A frame
+/// Snapshots and clones have the areas, with their ids. mspring_builder_add_network() takes them along. A frame
 /// (MSPRING_SNAPSHOT_FRAME) fits a network with the same areas.
 ///
 /// An elastic area around a lattice cell is part of the explicit solver's sweeps. With others the explicit solver takes
@@ -231,7 +231,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def
 ///
 /// Angles and areas are numbered together. Snapshots and clones have the angles, with their ids. A frame
 /// (MSPRING_SNAPSHOT_FRAME) fits a network with the same angles, and holds their rest angles.
-/// mspring_builder_add_network() leaves them out.
+/// mspring_builder_add_network() takes them along.
 ///
 /// While there is one, the explicit solver takes substeps one by one, as with a hook. mspring_network_stable_dt()
 /// counts angles: with particles of m and links of d, a straight beam is stable up to d / 2 sqrt(m / k). The implicit

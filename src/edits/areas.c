@@ -93,15 +93,6 @@ static mspring_result check_list(mspring_network *network, const mspring_id *par
     return mspringi_check_corners(network, "area", particles, count);
 }
 
-mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners) {
-    const mspringi_areas *a = &network->areas;
-    if (areas >= MSPRING_NONE - a->next_id || corners >= MSPRING_NONE - a->corner_count)
-        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
-                             "there are %zu areas and angles already, of %u ever made", a->count,
-                             (unsigned)a->next_id);
-    return mspringi_areas_reserve(network, areas, corners);
-}
-
 /* ------------------------------------------------------------------------------------------------- adding them */
 
 static void fill(mspringi_area *area, const mspring_area_def *def, double rest_area) {
@@ -110,21 +101,6 @@ static void fill(mspringi_area *area, const mspring_area_def *def, double rest_a
     area->pressure = def->pressure;
     area->fill = def->fill;
     area->rest_area = rest_area;
-}
-
-void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area) {
-    mspringi_fingerprint(network, edit, area->id);
-    mspringi_fingerprint_floats(network, area->stiffness, area->is_angle ? area->damping : area->pressure);
-    mspringi_fingerprint_floats(network, area->fill, (float)(area->is_angle ? area->rest_angle : area->rest_area));
-    mspringi_changed(network, MSPRINGI_CHANGED_AREA, 0);
-}
-
-void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles) {
-    made.id = network->areas.next_id++;
-    mspringi_areas_append(network, &made, particles);
-    for (uint32_t i = 0; i < made.count; ++i)
-        mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_AREA, particles[i]);
-    mspringi_area_tell(network, MSPRINGI_EDIT_ADDED_AREA, &made);
 }
 
 // Add an area for which there is room.

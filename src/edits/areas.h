@@ -19,13 +19,6 @@ mspring_result mspringi_each_cell(mspring_network *network, mspringi_cell_fn fn,
 /// Check that particles exist, once each, in one group. what: an area or an angle.
 mspring_result mspringi_check_corners(mspring_network *network, const char *what, const mspring_id *particles,
                                       uint32_t count);
-/// Reserve room for so many more.
-mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners);
-
-/// Give one the next id and add it: there is room, and all has been checked.
-void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles);
-/// Tell that one is another from now on.
-void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area);
 mspring_result mspringi_area_remove(mspring_network *network, mspring_id id, bool is_angle);
 
 /// Find one of a kind, or fail; the second is for calls that only read: NULL if there is none, with a message.
