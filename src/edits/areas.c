@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "store/areas.h"
+#include "store/angles.h"
 #include "store/changed.h"
 
 #define STRONGEST 1e30f
@@ -300,4 +300,47 @@ mspring_result mspring_network_get_area_info(const mspring_network *network, msp
                                     .energy = is_open ? 0.0 : mspringi_area_energy(found, size)};
     mspringi_put_struct(info, &made, sizeof made);
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_area_particles(const mspring_network *network, mspring_id area,
+                                                  mspring_id *particles, uint32_t capacity, uint32_t *count) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    if (!count || (!particles && capacity > 0))
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                    "the place for particles, or their count, is NULL");
+    const mspringi_area *found = mspringi_area_look_up(network, area, false);
+    if (!found)
+        return MSPRING_ERROR_ID;
+    for (uint32_t i = 0; i < found->count && i < capacity; ++i)
+        particles[i] = network->areas.corners[found->first + i].particle;
+    *count = found->count;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_areas_measure(const mspring_network *network, bool is_angle, mspring_id *ids, double *sizes,
+                                      double *pressures, uint32_t capacity, uint32_t *count) {
+    uint32_t found = 0;
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    if (!count)
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the count is NULL");
+    for (const mspringi_area *a = network->areas.list; a < network->areas.list + network->areas.count; ++a) {
+        if (a->is_angle != is_angle || found++ >= capacity)
+            continue;
+        const double size = mspringi_area_size(network, a);
+        if (ids)
+            ids[found - 1] = a->id;
+        if (sizes)
+            sizes[found - 1] = is_angle ? mspringi_angle_of_area(network, a) : size;
+        if (pressures)
+            pressures[found - 1] = mspringi_area_is_open(network, a) ? 0.0 : mspringi_area_pressure(a, size);
+    }
+    *count = found;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_areas(const mspring_network *network, mspring_id *ids, double *areas,
+                                         double *pressures, uint32_t capacity, uint32_t *count) {
+    return mspringi_areas_measure(network, false, ids, areas, pressures, capacity, count);
 }

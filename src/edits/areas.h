@@ -25,4 +25,8 @@ mspring_result mspringi_area_remove(mspring_network *network, mspring_id id, boo
 mspring_result mspringi_area_find(mspring_network *network, mspring_id id, bool is_angle, mspringi_area **found);
 const mspringi_area *mspringi_area_look_up(const mspring_network *network, mspring_id id, bool is_angle);
 
+/// Measure all of a kind: ids, sizes or angles, pressures or torques, each where it is not NULL.
+mspring_result mspringi_areas_measure(const mspring_network *network, bool is_angle, mspring_id *ids, double *sizes,
+                                      double *pressures, uint32_t capacity, uint32_t *count);
+
 #endif
