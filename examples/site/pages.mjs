@@ -106,13 +106,17 @@ function marked(markdown) {
   return execFileSync('cmark-gfm', ['--unsafe', '-e', 'table'], { input: markdown, encoding: 'utf8', maxBuffer: 1 << 26 });
 }
 
-// Headings get the marks that a forge gives them.
-function withMarks(html) {
+// Headings get the marks that a forge gives them. Those of pages in the menu can be searched.
+const inMenu = new Set(CONTENTS.flatMap(({ links }) => links.map(([, goal]) => goal.split('#')[0])));
+const index = [];
+function withMarks(html, to) {
   const seen = new Map();
   return html.replace(/<h([1-6])>([^]*?)<\/h\1>/g, (_, level, words) => {
     const mark = plain(words).toLowerCase().replace(/[^\p{L}\p{N}_ -]/gu, '').replace(/ /g, '-'), times = seen.get(mark) ?? 0;
     seen.set(mark, times + 1);
-    return `<h${level} id="${mark}${times ? `-${times}` : ''}">${words}</h${level}>`;
+    const id = `${mark}${times ? `-${times}` : ''}`;
+    if (inMenu.has(to)) index.push([plain(words), `${to}#${id}`]);
+    return `<h${level} id="${id}">${words}</h${level}>`;
   });
 }
 
@@ -127,11 +131,15 @@ function navigation(path) {
 
 // What is above and beside the text of a page.
 function surroundings(path) {
-  const home = posix.relative(posix.dirname(path), 'index.html'), menu = navigation(path);
+  const root = posix.relative(posix.dirname(path), '.') || '.', home = `${root}/index.html`;
+  const menu = `<input type="search" data-search placeholder="Search" aria-label="Search guides and reference">
+${navigation(path)}`;
   return `<a class="skip" href="#content">Skip to the text</a>
 <header><a class="home" href="${home}">libmassspring <small>${version}</small></a>
 <details class="menu"><summary>Pages</summary><nav aria-label="Pages">${menu}</nav></details></header>
-<nav class="side" aria-label="All pages">${menu}</nav>`;
+<nav class="side" aria-label="All pages">${menu}</nav>
+<script src="${root}/search_index.js" defer></script>
+<script src="${root}/search.js" defer></script>`;
 }
 
 function page(path, title, body) {
@@ -168,13 +176,25 @@ function write(path, title, html) {
 }
 
 function fromMarkdown(path, markdown, to = path.replace(/\.md$/, '.html')) {
-  const html = withMarks(redirect(marked(markdown), posix.dirname(path)));
+  const html = withMarks(redirect(marked(markdown), posix.dirname(path)), to);
   write(to, plain(html.match(/<h1[^>]*>([^]*?)<\/h1>/)?.[1] ?? path), html);
 }
 
 function fromSource(path) {
   const text = readFileSync(join(source, path), 'utf8');
   write(`${path}.html`, path, `<h1 class="path">${escape(path)}</h1>\n<pre><code>${escape(text)}</code></pre>`);
+}
+
+// Functions, values and structs of the reference.
+function referenceIndex() {
+  if (!hasReference) return [];
+  const found = [], read = (name) => readFileSync(join(folder, 'reference', name), 'utf8');
+  for (const name of ['globals_func.html', 'globals_eval.html', 'globals_defs.html'])
+    for (const [, words, goal] of read(name).matchAll(/<li>(\w+)(?:\(\))?&#160;:&#160;<a class="el" href="([^"]+)"/g))
+      found.push([words, `reference/${goal}`]);
+  for (const [, goal, words] of read('annotated.html').matchAll(/<a class="el" href="(struct[^"]+)"[^>]*>(\w+)<\/a>/g))
+    found.push([words, `reference/${goal}`]);
+  return found;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- all */
@@ -197,7 +217,8 @@ for (const name of hasReference ? readdirSync(join(folder, 'reference')).filter(
   const file = join(folder, 'reference', name);
   writeFileSync(file, readFileSync(file, 'utf8').replace('<!-- navigation -->', surroundings(`reference/${name}`)));
 }
-copyFileSync(join(here, 'site.css'), join(folder, 'site.css'));
+for (const name of ['site.css', 'search.js']) copyFileSync(join(here, name), join(folder, name));
+writeFileSync(join(folder, 'search_index.js'), `globalThis.siteIndex = ${JSON.stringify([...index, ...referenceIndex()])};\n`);
 writeFileSync(join(folder, 'figures.js'), bundle(join(here, 'figures/stage.js'), library));
 for (const [name, variable] of [['massspring', 'massspringSimd'], ['massspring_scalar', 'massspringScalar']]) {
   const text = readFileSync(join(library, `${name}.wasm`)).toString('base64');

@@ -52,6 +52,17 @@ async function byKey(browser) {
   assert.equal(await browser.value('window.figureStages.size.playing'), false, 'space stops it');
 }
 
+// A word in the search field leads to its page.
+async function bySearch(browser) {
+  const field = '[...document.querySelectorAll("[data-search]")].at(-1)';
+  const first = async (words) => browser.value(`(() => { const field = ${field}; field.value = '${words}';
+    field.dispatchEvent(new Event('input')); return field.nextSibling.querySelector('a')?.href; })()`);
+  assert.match(await first('yield strain'), /guides|reference/);
+  assert.match(await first('exact border'), /figures\.html#the-exact-border-of-an-explosion$/);
+  if (PAGES.some((page) => page.startsWith('reference/'))) assert.match(await first('network_step'), /reference\/massspring_8h\.html#/);
+  assert.equal(await first('no such words'), undefined);
+}
+
 // A particle of the jelly follows the pointer, and is let go.
 async function byHand(browser) {
   await browser.value(`document.querySelector('[data-figure=jelly]').scrollIntoView({ block: 'center' })`);
@@ -104,6 +115,7 @@ async function at(place, width, height, scheme) {
     assert.equal(names.length, 10);
     await byKey(browser);
     await byHand(browser);
+    await bySearch(browser);
     const shifted = await browser.value('window.shifted');
     assert(shifted < 0.01, `at ${width} px the page jumps by ${shifted}: ${await browser.value('window.shifters')}`);
     for (const page of PAGES) {
