@@ -17,6 +17,15 @@ mspring_result mspringi_fail(mspringi_message *message, mspring_result result, c
     return result;
 }
 
+const char *mspringi_id_text(char text[MSPRINGI_ID_SIZE], mspring_id id) {
+    mspringi_message made;
+    if (id == MSPRING_NONE)
+        return "MSPRING_NONE (not set)";
+    (void)mspringi_fail(&made, MSPRING_OK, "%u", (unsigned)id);
+    memcpy(text, made.text, MSPRINGI_ID_SIZE - 1);
+    return text;
+}
+
 void mspringi_shared_clear(mspringi_shared_message *shared) {
     atomic_store_explicit(&shared->state, MSPRINGI_MESSAGE_NONE, memory_order_relaxed);
 }
@@ -107,6 +116,10 @@ mspring_result mspringi_check_outputs(const void *array, uint32_t count, const c
         result = mspringi_check_output(message, name, element, known);
         if (result == MSPRING_OK)
             result = mspringi_check_alike(message, element, struct_size);
+        if (result != MSPRING_OK && count > 1) {
+            const mspringi_message reason = *message;
+            return mspringi_fail(message, result, "index %u: %s", (unsigned)i, reason.text);
+        }
     }
     return result;
 }

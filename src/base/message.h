@@ -36,6 +36,11 @@ mspring_result mspringi_shared_fail(mspringi_shared_message *shared, mspring_res
 mspring_result mspringi_shared_take(mspringi_shared_message *shared, mspring_result result,
                                     const mspringi_message *message);
 
+/// An id for a message, by %s: its number, or that it is MSPRING_NONE.
+enum { MSPRINGI_ID_SIZE = 24 };
+const char *mspringi_id_text(char text[MSPRINGI_ID_SIZE], mspring_id id);
+#define MSPRINGI_ID(id) mspringi_id_text((char[MSPRINGI_ID_SIZE]){0}, id)
+
 /// At the entry of a call.
 static inline void mspringi_message_clear(mspringi_message *message) {
     message->text[0] = 0;

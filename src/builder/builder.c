@@ -32,8 +32,6 @@ void mspring_builder_destroy(mspring_builder *builder) {
     mspringi_free(&memory, builder->particles);
     mspringi_free(&memory, builder->springs);
     mspringi_free(&memory, builder->limits);
-    mspringi_free(&memory, builder->areas);
-    mspringi_free(&memory, builder->corners);
     mspringi_free(&memory, builder);
 }
 
@@ -54,8 +52,8 @@ uint32_t mspring_builder_spring_count(const mspring_builder *builder) {
 mspring_result mspringi_builder_reserve_particles(mspring_builder *builder, size_t count) {
     if (count > MSPRING_MAX_PARTICLES - builder->particle_count)
         return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT,
-                             "%zu particles more on top of %zu are over the limit of %u", count,
-                             builder->particle_count, (unsigned)MSPRING_MAX_PARTICLES);
+                             "%zu particles more on top of %zu are over the limit of %u (MSPRING_MAX_PARTICLES)",
+                             count, builder->particle_count, (unsigned)MSPRING_MAX_PARTICLES);
     void *particles = builder->particles;
     bool grown = mspringi_grow(&builder->memory, &particles, &builder->particle_capacity,
                                builder->particle_count + count, sizeof *builder->particles);
@@ -68,7 +66,7 @@ mspring_result mspringi_builder_reserve_particles(mspring_builder *builder, size
 mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t count) {
     if (count > MSPRING_MAX_SPRINGS - builder->spring_count)
         return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT,
-                             "%zu springs more on top of %zu are over the limit of %u", count,
+                             "%zu springs more on top of %zu are over the limit of %u (MSPRING_MAX_SPRINGS)", count,
                              builder->spring_count, (unsigned)MSPRING_MAX_SPRINGS);
     void *springs = builder->springs;
     bool grown = mspringi_grow(&builder->memory, &springs, &builder->spring_capacity, builder->spring_count + count,
@@ -76,29 +74,6 @@ mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t
     builder->springs = springs;
     return grown ? MSPRING_OK
                  : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu springs more", count);
-}
-
-mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t areas, size_t corners) {
-    void *list = builder->areas, *all = builder->corners;
-    if (areas >= MSPRING_NONE - builder->area_count || corners >= MSPRING_NONE - builder->corner_count)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT, "%zu areas more on top of %zu are too many",
-                             areas, builder->area_count);
-    bool grown = areas == 0 || mspringi_grow(&builder->memory, &list, &builder->area_capacity,
-                                             builder->area_count + areas, sizeof *builder->areas);
-    builder->areas = list;
-    grown = grown && (areas == 0 || mspringi_grow(&builder->memory, &all, &builder->corner_capacity,
-                                                  builder->corner_count + corners, sizeof *builder->corners));
-    builder->corners = all;
-    return grown ? MSPRING_OK
-                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu areas more", areas);
-}
-
-void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, const mspring_id *corners,
-                                  mspring_id more) {
-    area.first = (uint32_t)builder->corner_count;
-    builder->areas[builder->area_count++] = area;
-    for (uint32_t i = 0; i < area.count; ++i)
-        builder->corners[builder->corner_count++] = corners[i] + more;
 }
 
 /* ----------------------------------------------------------------------------------------------- checking */
@@ -161,10 +136,12 @@ mspring_result mspringi_check_particle_def(mspringi_message *message, size_t ind
                                            size_t struct_size) {
     mspring_result result =
         mspringi_check_struct_of(message, "particle", index, "mspring_particle_def", def, sizeof *def, struct_size);
-    if (result == MSPRING_OK)
-        result = mspringi_check_reserved(message, "mspring_particle_def", def->reserved);
     if (result != MSPRING_OK)
         return result;
+    if (def->reserved != 0)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "particle %zu: mspring_particle_def.reserved is %u, it must be 0", index,
+                             (unsigned)def->reserved);
     if (!mspringi_is_coordinate(def->x) || !mspringi_is_coordinate(def->y))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "particle %zu: position (%g, %g) m is not within 1e12", index, def->x, def->y);

@@ -210,7 +210,7 @@ mspring_result mspring_network_add_collider(mspring_network *network, const mspr
     return result;
 }
 
-#define NO_COLLIDER "there is no collider %u"
+#define NO_COLLIDER "there is no collider %s"
 
 // NULL if there is none.
 static mspringi_collider *find(const mspringi_pairs *pairs, mspring_id id) {
@@ -233,7 +233,7 @@ static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspr
     if (result != MSPRING_OK)
         return result;
     *found = find(network->pairs, id);
-    return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_COLLIDER, (unsigned)id);
+    return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_COLLIDER, MSPRINGI_ID(id));
 }
 
 mspring_result mspring_network_remove_collider(mspring_network *network, mspring_id collider) {
@@ -302,7 +302,7 @@ mspring_result mspring_network_get_collider(const mspring_network *network, mspr
         return result;
     const mspringi_collider *c = find(network->pairs, collider);
     if (!c)
-        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_COLLIDER, (unsigned)collider);
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_COLLIDER, MSPRINGI_ID(collider));
     mspring_collider_def had = c->def;
     had.points = had.kind == MSPRING_COLLIDER_CHAIN ? network->pairs->colliders.shape + 2 * (size_t)c->first : NULL;
     mspringi_put_struct(def, &had, sizeof had);
@@ -317,7 +317,7 @@ mspring_result mspring_network_get_collider_impulse(const mspring_network *netwo
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the impulse is NULL");
     const mspringi_collider *c = find(network->pairs, collider);
     if (!c)
-        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_COLLIDER, (unsigned)collider);
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_COLLIDER, MSPRINGI_ID(collider));
     const bool is_of_last_step = network->pairs->colliders.reported == network->steps.count;
     *x = is_of_last_step ? c->impulse_x : 0.0;
     *y = is_of_last_step ? c->impulse_y : 0.0;

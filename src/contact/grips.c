@@ -78,14 +78,14 @@ void mspringi_grips_forget(mspring_network *network, mspring_id particle) {
             drop(grips, &grips->list[i]);
 }
 
-#define NO_GRIP "there is no grip %u"
+#define NO_GRIP "there is no grip %s"
 
 static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspringi_grip **found) {
     const mspring_result result = mspringi_enter(network);
     if (result != MSPRING_OK)
         return result;
     *found = find(&network->grips, id);
-    return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_GRIP, (unsigned)id);
+    return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_GRIP, MSPRINGI_ID(id));
 }
 
 static mspring_result check_target(mspring_network *network, double x, double y) {
@@ -116,6 +116,8 @@ static mspring_result check_grip(mspring_network *network, const mspring_grip_de
         if (!(values[i].value >= 0.0f && values[i].value <= values[i].most))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the grip's %s is %g, it must be 0 to %g",
                                  values[i].name, (double)values[i].value, (double)values[i].most);
+    if (def->particle == MSPRING_NONE)
+        return mspringi_fail(message, MSPRING_ERROR_ID, "the grip's particle is not set (MSPRING_NONE)");
     if (def->particle >= network->topology.particle_count || !mspringi_particle_exists(network, def->particle))
         return mspringi_fail(message, MSPRING_ERROR_ID, "the grip is to hold particle %u, which does not exist",
                              (unsigned)def->particle);
@@ -146,9 +148,13 @@ mspring_result mspring_network_add_grip(mspring_network *network, const mspring_
     if (result != MSPRING_OK)
         return result;
     mspringi_grips *grips = &network->grips;
-    if (grips->count == MSPRING_MAX_GRIPS || grips->next_id == MSPRING_NONE)
-        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "there are %u grips already, of %u ever made",
-                             (unsigned)grips->count, (unsigned)grips->next_id);
+    if (grips->count == MSPRING_MAX_GRIPS)
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_LIMIT,
+            "the network has %u grips, as many as it may have (MSPRING_MAX_GRIPS): remove one first",
+            (unsigned)grips->count);
+    if (grips->next_id == MSPRING_NONE)
+        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "all ids of grips have been given away");
     grips->list[grips->count] = made_of(def, grips->next_id++);
     if (grip)
         *grip = grips->list[grips->count].id;
@@ -204,7 +210,7 @@ static const mspringi_grip *look_up(const mspring_network *network, mspring_id i
     for (uint32_t i = 0; i < network->grips.count; ++i)
         if (network->grips.list[i].id == id)
             return &network->grips.list[i];
-    (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_GRIP, (unsigned)id);
+    (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_GRIP, MSPRINGI_ID(id));
     return NULL;
 }
 

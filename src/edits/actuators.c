@@ -29,8 +29,8 @@ static mspring_result check(mspring_network *network, const mspring_id *springs,
                              (unsigned)count, (unsigned)all);
     for (uint32_t i = 0; i < count; ++i) {
         if (springs[i] >= all || !mspringi_spring_exists(network, springs[i]))
-            return mspringi_fail(&network->message, MSPRING_ERROR_ID, "actuator %u: there is no spring %u",
-                                 (unsigned)i, (unsigned)springs[i]);
+            return mspringi_fail(&network->message, MSPRING_ERROR_ID, "actuator %u: there is no spring %s",
+                                 (unsigned)i, MSPRINGI_ID(springs[i]));
         const float length = mspringi_spring_get(network, springs[i]).rest_length;
         if (!(length >= SHORTEST))
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,

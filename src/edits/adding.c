@@ -47,10 +47,11 @@ static mspring_result check_room(mspring_network *network, const char *what, con
         ++room;
     return room == count
                ? MSPRING_OK
-               : mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
-                               "no room for %u %ss: of the %u spare ones that the network was created with "
-                               "%u are left (mspring_network_recycle() gives those back that were removed)",
-                               (unsigned)count, what, (unsigned)(end - first), (unsigned)room);
+               : mspringi_fail(
+                     &network->message, MSPRING_ERROR_LIMIT,
+                     "no room for %u %s%s: spare_%ss (mspring_network_def) is %u, and %u of these are free. "
+                     "Set more at creation; mspring_network_recycle() frees what was removed",
+                     (unsigned)count, what, count == 1 ? "" : "s", what, (unsigned)(end - first), (unsigned)room);
 }
 
 /* --------------------------------------------------------------------------------------------------- particles */

@@ -102,7 +102,9 @@ mspring_result mspring_network_apply_forces_at(mspring_network *network, const m
 }
 
 mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y) {
-    return mspring_network_apply_forces_at(network, &particle, 1, &x, &y, 1);
+    mspringi_selection at;
+    const mspring_result result = mspringi_select_one(network, MSPRINGI_PARTICLES, &particle, &at);
+    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){&x, &y, 1}) : result;
 }
 
 /* ----------------------------------------------------------------------------------------------------- impulses */

@@ -20,12 +20,12 @@ static mspring_result check_firsts(mspring_network *network, const mspring_id *f
     for (uint32_t g = 0; g < count; ++g)
         if (firsts[g] >= firsts[g + 1])
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "group %u is empty: it begins at particle %u, the next one at %u", (unsigned)g,
-                                 (unsigned)firsts[g], (unsigned)firsts[g + 1]);
+                                 "group %u is empty: it begins at particle %s, the next one at %s", (unsigned)g,
+                                 MSPRINGI_ID(firsts[g]), MSPRINGI_ID(firsts[g + 1]));
     if (firsts[count] > all)
         return mspringi_fail(&network->message, MSPRING_ERROR_ID,
-                             "the last group ends before particle %u, but there are only %u",
-                             (unsigned)firsts[count], (unsigned)all);
+                             "the last group ends before particle %s, but ids are below %u",
+                             MSPRINGI_ID(firsts[count]), (unsigned)all);
     return MSPRING_OK;
 }
 

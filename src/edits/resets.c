@@ -39,8 +39,8 @@ static mspring_result check_groups(mspring_network *network, const uint32_t *gro
     for (uint32_t i = 0; i < count; ++i)
         if (groups[i] >= network->groups.count)
             return mspringi_fail(&network->message, MSPRING_ERROR_ID,
-                                 "index %u: there is no group %u, but only %u of them", (unsigned)i,
-                                 (unsigned)groups[i], (unsigned)network->groups.count);
+                                 "index %u of the list: there is no group %s: numbers are below %u", (unsigned)i,
+                                 MSPRINGI_ID(groups[i]), (unsigned)network->groups.count);
     return MSPRING_OK;
 }
 

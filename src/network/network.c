@@ -17,7 +17,6 @@
 #include "step/plastic.h"
 #include "step/strain.h"
 #include "store/alike.h"
-#include "store/areas.h"
 #include "store/fractions.h"
 #include "store/growth.h"
 #include "store/one_way.h"
@@ -62,8 +61,8 @@ mspring_result mspringi_check_range(mspring_network *network, const char *what, 
                                     uint32_t total) {
     if (first <= total && count <= total - first)
         return MSPRING_OK;
-    return mspringi_fail(&network->message, MSPRING_ERROR_ID, "%u %ss from %u on, but there are only %u",
-                         (unsigned)count, what, (unsigned)first, (unsigned)total);
+    return mspringi_fail(&network->message, MSPRING_ERROR_ID, "%u %s%s from id %s on: ids are below %u",
+                         (unsigned)count, what, count == 1 ? "" : "s", MSPRINGI_ID(first), (unsigned)total);
 }
 
 static mspring_result check_def(const mspring_network_def *def, mspringi_message *message) {
@@ -150,10 +149,12 @@ static mspring_result make_reserve(mspringi_reserve *reserve, const mspring_buil
     const uint64_t particles = (uint64_t)builder->particle_count + def->spare_particles;
     const uint64_t springs = (uint64_t)builder->spring_count + def->spare_springs;
     if (particles > MSPRING_MAX_PARTICLES || springs > MSPRING_MAX_SPRINGS)
-        return mspringi_fail(message, MSPRING_ERROR_LIMIT,
-                             "%u spare particles and %u spare springs are more than there may be besides what the "
-                             "builder holds",
-                             (unsigned)def->spare_particles, (unsigned)def->spare_springs);
+        return mspringi_fail(
+            message, MSPRING_ERROR_LIMIT,
+            "spare_particles is %u and spare_springs is %u, with the builder's %zu and %zu there may "
+            "be %u and %u",
+            (unsigned)def->spare_particles, (unsigned)def->spare_springs, builder->particle_count,
+            builder->spring_count, (unsigned)MSPRING_MAX_PARTICLES, (unsigned)MSPRING_MAX_SPRINGS);
     *reserve = (mspringi_reserve){.first_particle = (uint32_t)builder->particle_count,
                                   .first_spring = (uint32_t)builder->spring_count,
                                   .particle_end = (uint32_t)particles,
@@ -305,8 +306,6 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = mspringi_guard_reserve(network, def->guard);
     if (result == MSPRING_OK)
         result = set_limits(network, builder);
-    if (result == MSPRING_OK)
-        result = mspringi_areas_of_builder(network, builder);
     if (result == MSPRING_OK && network->looks && network->solver.ops->has_border)
         mspringi_border_learn(network);
     return result;

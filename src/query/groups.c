@@ -10,8 +10,8 @@ static mspring_result check_range(const mspring_network *network, uint32_t first
     const uint32_t all = network->groups.count;
     if (!(first <= all && count <= all - first))
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID,
-                                    "%u groups from %u on, but there are only %u", (unsigned)count, (unsigned)first,
-                                    (unsigned)all);
+                                    "%u groups from number %s on: numbers are below %u", (unsigned)count,
+                                    MSPRINGI_ID(first), (unsigned)all);
     if (!out && count > 0)
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for what is read is NULL");
     return MSPRING_OK;
@@ -52,8 +52,8 @@ static mspring_result check_observation(const mspring_network *network, uint32_t
             if (particles[i] >= g->first[group + 1] - g->first[group])
                 return mspringi_shared_fail(
                     network->shared, MSPRING_ERROR_ID,
-                    "index %u: group %u has %u particles, and none with number %u", (unsigned)i, (unsigned)group,
-                    (unsigned)(g->first[group + 1] - g->first[group]), (unsigned)particles[i]);
+                    "index %u: group %u has %u particles, and none with number %s", (unsigned)i, (unsigned)group,
+                    (unsigned)(g->first[group + 1] - g->first[group]), MSPRINGI_ID(particles[i]));
     return MSPRING_OK;
 }
 

@@ -179,7 +179,8 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
         return result;
     const mspringi_topology *t = &network->topology;
     if (spring >= t->spring_count || !mspringi_spring_exists(network, spring))
-        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, "there is no spring %u", (unsigned)spring);
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, "there is no spring %s",
+                                    MSPRINGI_ID(spring));
     const mspringi_place place = mspringi_place_of(t, spring);
     const mspringi_spring_values r = mspringi_place_get(network, place);
     const mspringi_ends ends = mspringi_spring_ends(network, spring);

@@ -93,8 +93,9 @@ static mspring_result check_corner(mspring_network *network, const mspringi_area
     const mspringi_reserve *reserve = &network->topology.reserve;
     const bool is_spring = corner->spring < reserve->spring_end || corner->spring == MSPRING_NONE;
     if (corner->particle >= reserve->particle_end || !is_spring || !(corner->reach >= 0.0f))
-        return mspringi_section_fail(network, &mspringi_section_areas, "area %u has particle %u and spring %u",
-                                     (unsigned)area->id, (unsigned)corner->particle, (unsigned)corner->spring);
+        return mspringi_section_fail(network, &mspringi_section_areas, "area %s has particle %s and spring %s",
+                                     MSPRINGI_ID(area->id), MSPRINGI_ID(corner->particle),
+                                     MSPRINGI_ID(corner->spring));
     return MSPRING_OK;
 }
 

@@ -76,8 +76,8 @@ static mspring_result check_grip(mspring_network *network, const grip_record *re
     const mspringi_section *section = &mspringi_section_grips;
     const mspringi_grip *grip = &record->grip;
     if (record->reserved != 0 || grip->particle >= network->topology.reserve.particle_end)
-        return mspringi_section_fail(network, section, "grip %u holds particle %u", (unsigned)grip->id,
-                                     (unsigned)grip->particle);
+        return mspringi_section_fail(network, section, "grip %s holds particle %s", MSPRINGI_ID(grip->id),
+                                     MSPRINGI_ID(grip->particle));
     if (!is_strength(grip->stiffness, STRONGEST) || !is_strength(grip->damping, STRONGEST) ||
         !is_strength(grip->max_force, MSPRING_NEVER))
         return mspringi_section_fail(network, section, "grip %u has stiffness %g, damping %g, max_force %g",

@@ -147,8 +147,8 @@ static mspring_result check_spring(mspring_network *network, const growth *g, ms
         fits = (slot_a == base && slot_b == tip) || (slot_a == tip && slot_b == base);
     }
     return fits ? MSPRING_OK
-                : mspringi_section_fail(network, &mspringi_section_growth, "spring %u joins particles %u and %u",
-                                        (unsigned)s, (unsigned)a, (unsigned)b);
+                : mspringi_section_fail(network, &mspringi_section_growth, "spring %u joins particles %s and %s",
+                                        (unsigned)s, MSPRINGI_ID(a), MSPRINGI_ID(b));
 }
 
 // All are there in a snapshot without this section: some have been left out of a compact plan.

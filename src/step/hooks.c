@@ -81,7 +81,7 @@ mspring_result mspring_network_remove_hook(mspring_network *network, mspring_id 
     while (i < network->hook_count && network->hooks[i].number != hook)
         ++i;
     if (i == network->hook_count)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ID, "there is no hook %u", (unsigned)hook);
+        return mspringi_fail(&network->message, MSPRING_ERROR_ID, "there is no hook %s", MSPRINGI_ID(hook));
     mspringi_free(&network->memory, network->hooks[i].held.x);
     network->hook_count--;
     for (; i < network->hook_count; ++i)

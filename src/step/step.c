@@ -133,6 +133,12 @@ static mspring_result choose_substeps(mspring_network *network, double dt) {
     if (substeps > network->max_substeps) {
         const mspring_id tightest = mspringi_tightest_spring(network, dt / (double)network->max_substeps);
         network->outcome.spring = tightest;
+        if (tightest == MSPRING_NONE)
+            return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                                 "unstable: for its areas a step of %g s needs substeps of at most %g s, which are "
+                                 "more than max_substeps, %u. Use a shorter dt, a larger max_substeps, or less "
+                                 "stiffness or pressure.",
+                                 dt, limit, (unsigned)network->max_substeps);
         return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
                              "unstable: a step of %g s needs substeps of at most %g s (spring %u), which are more "
                              "than max_substeps, %u. Use a shorter dt, a larger max_substeps or lower stiffness.",

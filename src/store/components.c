@@ -180,8 +180,9 @@ mspring_result mspring_network_get_components(const mspring_network *network, ui
     if (network->components.count == 0)
         return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT, NO_UPDATE);
     if (first > network->components.count || count > network->components.count - first)
-        return mspringi_shared_fail(shared, MSPRING_ERROR_ID, "%u components from %u on, but there are only %u",
-                                    (unsigned)count, (unsigned)first, (unsigned)network->components.count);
+        return mspringi_shared_fail(shared, MSPRING_ERROR_ID,
+                                    "%u components from number %s on: numbers are below %u", (unsigned)count,
+                                    MSPRINGI_ID(first), (unsigned)network->components.count);
     mspringi_message message;
     const mspring_result result =
         mspringi_check_outputs(components, count, "mspring_component", sizeof *components, &message);

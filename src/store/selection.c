@@ -29,23 +29,30 @@ static mspring_result check_range(const mspring_network *network, mspringi_kind 
     const uint32_t total = total_of(network, kind);
     return first <= total && count <= total - first
                ? MSPRING_OK
-               : mspringi_fail(message, MSPRING_ERROR_ID, "%u %ss from %u on, but there are only %u",
-                               (unsigned)count, names[kind], (unsigned)first, (unsigned)total);
+               : mspringi_fail(message, MSPRING_ERROR_ID, "%u %s%s from id %s on: ids are below %u",
+                               (unsigned)count, names[kind], count == 1 ? "" : "s", MSPRINGI_ID(first),
+                               (unsigned)total);
+}
+
+static mspring_result check_id(const mspring_network *network, mspringi_kind kind, mspring_id id,
+                               mspringi_message *message) {
+    if (id >= total_of(network, kind))
+        return mspringi_fail(message, MSPRING_ERROR_ID, "there is no %s %s: ids are below %u", names[kind],
+                             MSPRINGI_ID(id), (unsigned)total_of(network, kind));
+    return exists(network, kind, id)
+               ? MSPRING_OK
+               : mspringi_fail(message, MSPRING_ERROR_ID, "%s %u has been removed", names[kind], (unsigned)id);
 }
 
 static mspring_result check_list(const mspring_network *network, mspringi_kind kind, const mspring_id *list,
                                  uint32_t count, mspringi_message *message) {
     mspring_result result = check_arrays(count, list, list, message);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        if (list[i] == MSPRING_NONE)
-            result = mspringi_fail(message, MSPRING_ERROR_ID, "index %u of the list: MSPRING_NONE is no %s",
-                                   (unsigned)i, names[kind]);
-        else if (list[i] >= total_of(network, kind))
-            result = mspringi_fail(message, MSPRING_ERROR_ID, "index %u of the list: there is no %s %u, only %u",
-                                   (unsigned)i, names[kind], (unsigned)list[i], (unsigned)total_of(network, kind));
-        else if (!exists(network, kind, list[i]))
-            result = mspringi_fail(message, MSPRING_ERROR_ID, "index %u of the list: %s %u has been removed",
-                                   (unsigned)i, names[kind], (unsigned)list[i]);
+        if (list[i] < total_of(network, kind) && exists(network, kind, list[i]))
+            continue;
+        mspringi_message reason;
+        result = check_id(network, kind, list[i], &reason);
+        result = mspringi_fail(message, result, "index %u of the list: %s", (unsigned)i, reason.text);
     }
     return result;
 }
@@ -61,6 +68,16 @@ mspring_result mspringi_select_range(mspring_network *network, mspringi_kind kin
         result = check_range(network, kind, first, count, &network->message);
     if (result == MSPRING_OK)
         *selection = (mspringi_selection){.first = first, .count = count};
+    return result;
+}
+
+mspring_result mspringi_select_one(mspring_network *network, mspringi_kind kind, const mspring_id *id,
+                                   mspringi_selection *selection) {
+    mspring_result result = mspringi_enter(network);
+    if (result == MSPRING_OK)
+        result = check_id(network, kind, *id, &network->message);
+    if (result == MSPRING_OK)
+        *selection = (mspringi_selection){.list = id, .count = 1};
     return result;
 }
 

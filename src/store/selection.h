@@ -24,6 +24,9 @@ static inline mspring_id mspringi_selected(const mspringi_selection *selection, 
 /// twice) are there. A range may have removed ids in it, which the edit is to leave out.
 mspring_result mspringi_select_range(mspring_network *network, mspringi_kind kind, mspring_id first, uint32_t count,
                                      const void *values, const void *more, mspringi_selection *selection);
+/// Of one particle or spring; *id must live as long as the selection.
+mspring_result mspringi_select_one(mspring_network *network, mspringi_kind kind, const mspring_id *id,
+                                   mspringi_selection *selection);
 mspring_result mspringi_select_list(mspring_network *network, mspringi_kind kind, const mspring_id *list,
                                     uint32_t count, const void *values, const void *more,
                                     mspringi_selection *selection);

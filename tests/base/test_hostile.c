@@ -300,6 +300,18 @@ static const char *message_of(const arguments *a, const char *kinds) {
     return strpbrk(kinds, "Nn") && a->network ? mspring_network_error(a->network) : "no place for one";
 }
 
+/// Whether an id that was never set is told as a number.
+static bool tells_unset_id(const char *message) {
+    static const char *const words[] = {"particle ", "spring ", "grip ", "hook ", "collider ",
+                                        "area ",     "group ",  "from ", "id ",   "number "};
+    for (const char *at = message; (at = strstr(at, "4294967295")); at++)
+        for (size_t i = 0; i < COUNT_OF(words); i++)
+            if ((size_t)(at - message) >= strlen(words[i]) &&
+                memcmp(at - strlen(words[i]), words[i], strlen(words[i])) == 0)
+                return true;
+    return false;
+}
+
 static uint32_t spoilt_calls, refused_calls;
 
 /// Call with one argument spoilt. Returns false if there are not so many ways.
@@ -323,6 +335,9 @@ static bool try_spoilt(const function *f, char kind, int n) {
                 print_error("%s, %c spoilt in way %d: refused without a message\n", f->name, kind, n);
             assert_true(strlen(message_of(&a, f->kinds)) > 0);
             assert_true(strlen(message_of(&a, f->kinds)) < 512);
+            if (tells_unset_id(message_of(&a, f->kinds)))
+                print_error("%s: %s\n", f->name, message_of(&a, f->kinds));
+            assert_false(tells_unset_id(message_of(&a, f->kinds)));
             check_unchanged(&b, &a);
         }
     }

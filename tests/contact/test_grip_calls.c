@@ -447,7 +447,7 @@ static void wrong_grips_are_refused(void **state) {
     mspring_grip_def def = grip_of(mspring_network_particle_count(network), 0, 0);
     refuse(network, &def, MSPRING_ERROR_ID, "does not exist");
     def.particle = MSPRING_NONE;
-    refuse(network, &def, MSPRING_ERROR_ID, "does not exist");
+    refuse(network, &def, MSPRING_ERROR_ID, "is not set (MSPRING_NONE)");
     const float wrong[] = {-1, NAN, INFINITY};
     for (size_t i = 0; i < COUNT_OF(wrong); i++) {
         def = grip_of(4, 0, 0);

@@ -273,7 +273,7 @@ static void ids_come_back_when_the_host_says_so(void **state) {
     const mspring_id gone[] = {ids[7], ids[3], 0};
     check_ok(mspring_network_remove_particles(network, gone, 3));
     check_error(mspring_network_add_particles(network, defs, 1, &id), MSPRING_ERROR_LIMIT);
-    check_contains(mspring_network_error(network), "no room for 1 particles");
+    check_contains(mspring_network_error(network), "no room for 1 particle: spare_particles");
     assert_int_equal(id, 12345);
     check_ok(mspring_network_recycle(network));
     check_error(mspring_network_add_particles(network, defs, 3, ids), MSPRING_ERROR_LIMIT);

@@ -1,5 +1,6 @@
 /// @file test_footprint.c
-/// How much memory a network takes, by particle.
+/// How much memory networks, spare room and snapshots take. examples/guides/edits.md has the numbers that it
+/// prints.
 ///
 /// SPDX-License-Identifier: MIT
 #include "recipe.h"
@@ -57,11 +58,64 @@ static void order_is_not_needed(void **state) {
     recipe_free(&made);
 }
 
+static double bytes_with(const recipe *made, uint32_t spare_particles, uint32_t spare_springs) {
+    mspring_network_def def = support_def(0, 1);
+    def.spare_particles = spare_particles;
+    def.spare_springs = spare_springs;
+    mspring_network *network = recipe_network(made, &def);
+    const double bytes = (double)mspring_network_memory_used(network);
+    mspring_network_destroy(network);
+    return bytes;
+}
+
+/// What the first spare one takes for each spring of the builder, and each of many.
+static void check_spare_room(const recipe_stuff *of, const char *what, double most_for_all) {
+    enum { SIDE = 128, MANY = 10000 };
+    uint64_t seed = 5;
+    recipe made = {0};
+    recipe_lattice(&made, SIDE, SIDE, 0, 0, 1, of, &seed);
+    const double none = bytes_with(&made, 0, 0), first = bytes_with(&made, 0, 1);
+    const double particle = (bytes_with(&made, MANY, 1) - first) / MANY;
+    const double spring = (bytes_with(&made, 0, MANY) - first) / MANY, all = (first - none) / made.spring_count;
+    print_message(
+        "spare room, %s springs: %.0f bytes for each particle, %.0f for each spring, %.1f for each spring "
+        "of the builder\n",
+        what, particle, spring, all);
+    assert_true(particle <= 150 && spring <= 210 && all <= most_for_all);
+    recipe_free(&made);
+}
+
+static void spare_room_is_small(void **state) {
+    (void)state;
+    check_spare_room(&stuff, "absolute", 13);
+    check_spare_room(&relative, "relative", 21);
+}
+
+static void frames_are_smaller(void **state) {
+    (void)state;
+    const recipe_stuff *const kinds[] = {&stuff, &relative};
+    for (size_t i = 0; i < COUNT_OF(kinds); i++) {
+        uint64_t seed = 5;
+        recipe made = {0};
+        size_t frame = 0, all = 0;
+        recipe_lattice(&made, 128, 128, 0, 0, 1, kinds[i], &seed);
+        mspring_network *network = recipe_network(&made, NULL);
+        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &frame));
+        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &all));
+        print_message("snapshots, %s springs: a frame %.1f bytes per particle, all %.2f times that\n",
+                      i == 0 ? "absolute" : "relative", (double)frame / made.particle_count,
+                      (double)all / (double)frame);
+        assert_true(frame < all);
+        mspring_network_destroy(network);
+        recipe_free(&made);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(full_lattices_are_small),
-        cmocka_unit_test(relative_springs_take_little_more),
-        cmocka_unit_test(order_is_not_needed),
+        cmocka_unit_test(full_lattices_are_small), cmocka_unit_test(relative_springs_take_little_more),
+        cmocka_unit_test(order_is_not_needed),     cmocka_unit_test(spare_room_is_small),
+        cmocka_unit_test(frames_are_smaller),
     };
     return cmocka_run_group_tests_name("footprint", tests, NULL, NULL);
 }

@@ -51,10 +51,7 @@ export default {
           pen.label(place, i ? `${values.damping} N s/m` : 'no dampers');
         });
       },
-      say() {
-        const parts = squares.map((network) => `${((100 * total(network)) / first).toFixed(0)} %`);
-        return `energy now, of that at first: ${parts.join(' and ')}`;
-      },
+      say: () => `energy left: ${squares.map((network) => `${((100 * total(network)) / first).toFixed(0)} %`).join(' and ')}`,
       free: () => squares.forEach((network) => network.free()),
     };
   },

@@ -65,8 +65,7 @@ class Stage {
   }
 
   get values() {
-    const sliders = [...this.element.querySelectorAll('input')];
-    return Object.fromEntries(sliders.map(({ dataset, value }) => [dataset.control, Number(value)]));
+    return Object.fromEntries([...this.element.querySelectorAll('input')].map(({ dataset, value }) => [dataset.control, Number(value)]));
   }
 
   bind(control) {
