@@ -3,9 +3,10 @@
 /// areas that keep jelly from turning inside out, and balloons inflated; angle springs for beams and spines.
 ///
 ///     plasticity  network_get_plasticity
-///     areas       network_add_area, _add_cell_areas, _remove_area, _set_area, _get_area, _get_area_info; area_def_init
-///     angles      network_add_angles, _remove_angle, _set_angle, _set_rest_angles, _get_angle, _get_angle_info;
-///                 angle_def_init
+///     areas       network_add_area, _add_cell_areas, _remove_area, _set_area, _get_area, _get_area_info,
+///                 _get_area_particles, _get_areas; area_def_init
+///     angles      network_add_angles, _remove_angle, _set_angle, _set_rest_angles, _get_angle, _get_angle_info,
+///                 _get_angles; angle_def_init
 ///
 /// These calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
 ///
@@ -135,7 +136,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *
 /// removed, the area is open: it exerts no force and has no energy until all are whole. If a corner is removed, the
 /// area is, too.
 ///
-/// Snapshots and clones have the areas, with their ids. mspring_builder_add_network() leaves them out. A frame
+/// Snapshots and clones have the areas, with their ids. mspring_builder_add_network() takes them along. A frame
 /// (MSPRING_SNAPSHOT_FRAME) fits a network with the same areas.
 ///
 /// An elastic area around a lattice cell is part of the explicit solver's sweeps. With others the explicit solver takes
@@ -157,8 +158,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_ar
 /// Add an area to each cell.
 /// Where the layout has lattice rows, a cell is four particles with four whole springs around it. Elsewhere, as in
 /// small lattices, it is four particles that whole springs join each to each, two of which cross. The rest area in def
-/// must be 0. Ids are consecutive, by rising id of a corner. Without cells nothing is added. A second call adds all of
-/// them again.
+/// must be 0. Ids are consecutive: by rising id of the corner that begins a cell in the layout's rows, elsewhere of the
+/// lowest corner. mspring_network_get_area_particles() reads which corners an area has. Without cells nothing is added.
+/// A second call adds all of them again.
 /// @param first_area  receives the first id; may be NULL
 /// @param count       receives the number of areas added; may be NULL
 /// @threads exclusive access to network   @allocates yes   @errors ARGUMENT, STRUCT, LIMIT, MEMORY, BUSY
@@ -185,6 +187,22 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_ar
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT, ID
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_area_info(
     const mspring_network *network, mspring_id area, mspring_area_info *info);
+
+/// Read the corners of an area, in the order in which it is positive.
+/// @param particles  [capacity] receives as many as fit; may be NULL if capacity is 0
+/// @param count      receives how many corners it has
+/// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT, ID
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_area_particles(
+    const mspring_network *network, mspring_id area, mspring_id *particles, uint32_t capacity, uint32_t *count);
+
+/// Measure all areas, in the order of their ids.
+/// @param ids        [capacity] receives the ids of as many as fit; may be NULL
+/// @param areas      [capacity] receives A of each, m^2; may be NULL
+/// @param pressures  [capacity] receives p of each, N/m, 0 of those that are open; may be NULL
+/// @param count      receives how many areas there are
+/// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_areas(const mspring_network *network,
+    mspring_id *ids, double *areas, double *pressures, uint32_t capacity, uint32_t *count);
 
 /* -------------------------------------------------------------------------------------------------------- angles */
 
@@ -231,7 +249,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def
 ///
 /// Angles and areas are numbered together. Snapshots and clones have the angles, with their ids. A frame
 /// (MSPRING_SNAPSHOT_FRAME) fits a network with the same angles, and holds their rest angles.
-/// mspring_builder_add_network() leaves them out.
+/// mspring_builder_add_network() takes them along.
 ///
 /// While there is one, the explicit solver takes substeps one by one, as with a hook. mspring_network_stable_dt()
 /// counts angles: with particles of m and links of d, a straight beam is stable up to d / 2 sqrt(m / k). The implicit
@@ -273,6 +291,15 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_an
 /// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT, ID
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_angle_info(
     const mspring_network *network, mspring_id angle, mspring_angle_info *info);
+
+/// Measure all angle springs, in the order of their ids.
+/// @param ids      [capacity] receives the ids of as many as fit; may be NULL
+/// @param angles   [capacity] receives the angle of each, rad, -pi to pi; may be NULL
+/// @param torques  [capacity] receives the torque of each, N m, 0 of those that are open; may be NULL
+/// @param count    receives how many there are
+/// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_angles(const mspring_network *network,
+    mspring_id *ids, double *angles, double *torques, uint32_t capacity, uint32_t *count);
 
 #ifdef __cplusplus
 }

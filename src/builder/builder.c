@@ -32,6 +32,8 @@ void mspring_builder_destroy(mspring_builder *builder) {
     mspringi_free(&memory, builder->particles);
     mspringi_free(&memory, builder->springs);
     mspringi_free(&memory, builder->limits);
+    mspringi_free(&memory, builder->areas);
+    mspringi_free(&memory, builder->corners);
     mspringi_free(&memory, builder);
 }
 
@@ -74,6 +76,29 @@ mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t
     builder->springs = springs;
     return grown ? MSPRING_OK
                  : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu springs more", count);
+}
+
+mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t areas, size_t corners) {
+    void *list = builder->areas, *all = builder->corners;
+    if (areas >= MSPRING_NONE - builder->area_count || corners >= MSPRING_NONE - builder->corner_count)
+        return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT, "%zu areas more on top of %zu are too many",
+                             areas, builder->area_count);
+    bool grown = areas == 0 || mspringi_grow(&builder->memory, &list, &builder->area_capacity,
+                                             builder->area_count + areas, sizeof *builder->areas);
+    builder->areas = list;
+    grown = grown && (areas == 0 || mspringi_grow(&builder->memory, &all, &builder->corner_capacity,
+                                                  builder->corner_count + corners, sizeof *builder->corners));
+    builder->corners = all;
+    return grown ? MSPRING_OK
+                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu areas more", areas);
+}
+
+void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, const mspring_id *corners,
+                                  mspring_id more) {
+    area.first = (uint32_t)builder->corner_count;
+    builder->areas[builder->area_count++] = area;
+    for (uint32_t i = 0; i < area.count; ++i)
+        builder->corners[builder->corner_count++] = corners[i] + more;
 }
 
 /* ----------------------------------------------------------------------------------------------- checking */

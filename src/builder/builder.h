@@ -6,6 +6,7 @@
 #define MSPRINGI_BUILDER_H
 
 #include "base/memory.h"
+#include "builder/areas.h"
 
 #include <massspring/massspring_batch.h>
 #include <massspring/massspring_laws.h>
@@ -75,6 +76,10 @@ struct mspring_builder {
     size_t spring_count, spring_capacity;
     mspringi_limits *limits; ///< [limit_count] of the first springs; those behind them have none
     size_t limit_count, limit_capacity;
+    mspringi_area *areas; ///< [area_count] of networks that were added
+    size_t area_count, area_capacity;
+    mspring_id *corners; ///< [corner_count] of the first area, of the second, and so on
+    size_t corner_count, corner_capacity;
 };
 
 /// Whether a component of a velocity is in range. Faster ones overflow where a rate of strain is computed: for the
@@ -116,6 +121,10 @@ bool mspringi_has_plasticity(mspringi_limits limits);
 /// Make room for those of count springs more, if these are any; give them to all springs from one on.
 mspring_result mspringi_builder_reserve_limits(mspring_builder *builder, size_t count, mspringi_limits limits);
 void mspringi_builder_put_limits(mspring_builder *builder, size_t first, mspringi_limits limits);
+/// Make room for so many areas and corners more; append one, whose corners are given with so much added to each.
+mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t areas, size_t corners);
+void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, const mspring_id *corners,
+                                  mspring_id more);
 /// Forget the springs from one on.
 void mspringi_builder_cut_springs(mspring_builder *builder, size_t count);
 

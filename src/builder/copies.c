@@ -63,6 +63,11 @@ static mspring_result reserve(mspring_builder *builder, const mspring_builder *f
         result = mspringi_builder_reserve_springs(builder, (size_t)springs);
     for (size_t i = 0; result == MSPRING_OK && i < from->limit_count; ++i)
         result = mspringi_builder_reserve_limits(builder, (size_t)springs, from->limits[i]);
+    if (result == MSPRING_OK && from->corner_count > MSPRING_NONE / count)
+        result = mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT, "%u copies of %zu areas are too many",
+                               (unsigned)count, from->area_count);
+    if (result == MSPRING_OK)
+        result = mspringi_builder_reserve_areas(builder, from->area_count * count, from->corner_count * count);
     return result;
 }
 
@@ -82,6 +87,8 @@ static void append(mspring_builder *builder, const mspring_builder *from, double
         if (i < from->limit_count)
             mspringi_builder_put_limits(builder, builder->spring_count - 1, from->limits[i]);
     }
+    for (size_t i = 0; i < from->area_count; ++i)
+        mspringi_builder_append_area(builder, from->areas[i], from->corners + from->areas[i].first, first);
 }
 
 static MSPRINGI_NOINLINE mspring_result add_copies(mspring_builder *builder, const mspring_builder *from,

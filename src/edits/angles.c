@@ -168,12 +168,15 @@ mspring_result mspring_network_get_angle_info(const mspring_network *network, ms
         .a = corners[0].particle,
         .b = corners[1].particle,
         .c = corners[2].particle,
-        .angle =
-            mspringi_angle_between(network, mspringi_area_slot(network, found, 0),
-                                   mspringi_area_slot(network, found, 1), mspringi_area_slot(network, found, 2)),
+        .angle = mspringi_angle_of_area(network, found),
         .torque = is_open ? 0.0 : mspringi_angle_torque(found, size),
         .energy = is_open ? 0.0 : mspringi_angle_energy(found, size),
     };
     mspringi_put_struct(info, &made, sizeof made);
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_angles(const mspring_network *network, mspring_id *ids, double *angles,
+                                          double *torques, uint32_t capacity, uint32_t *count) {
+    return mspringi_areas_measure(network, true, ids, angles, torques, capacity, count);
 }

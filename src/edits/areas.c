@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "store/areas.h"
+#include "store/angles.h"
 #include "store/changed.h"
 
 #define STRONGEST 1e30f
@@ -93,15 +93,6 @@ static mspring_result check_list(mspring_network *network, const mspring_id *par
     return mspringi_check_corners(network, "area", particles, count);
 }
 
-mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners) {
-    const mspringi_areas *a = &network->areas;
-    if (areas >= MSPRING_NONE - a->next_id || corners >= MSPRING_NONE - a->corner_count)
-        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
-                             "there are %zu areas and angles already, of %u ever made", a->count,
-                             (unsigned)a->next_id);
-    return mspringi_areas_reserve(network, areas, corners);
-}
-
 /* ------------------------------------------------------------------------------------------------- adding them */
 
 static void fill(mspringi_area *area, const mspring_area_def *def, double rest_area) {
@@ -110,21 +101,6 @@ static void fill(mspringi_area *area, const mspring_area_def *def, double rest_a
     area->pressure = def->pressure;
     area->fill = def->fill;
     area->rest_area = rest_area;
-}
-
-void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area) {
-    mspringi_fingerprint(network, edit, area->id);
-    mspringi_fingerprint_floats(network, area->stiffness, area->is_angle ? area->damping : area->pressure);
-    mspringi_fingerprint_floats(network, area->fill, (float)(area->is_angle ? area->rest_angle : area->rest_area));
-    mspringi_changed(network, MSPRINGI_CHANGED_AREA, 0);
-}
-
-void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles) {
-    made.id = network->areas.next_id++;
-    mspringi_areas_append(network, &made, particles);
-    for (uint32_t i = 0; i < made.count; ++i)
-        mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_AREA, particles[i]);
-    mspringi_area_tell(network, MSPRINGI_EDIT_ADDED_AREA, &made);
 }
 
 // Add an area for which there is room.
@@ -326,4 +302,47 @@ mspring_result mspring_network_get_area_info(const mspring_network *network, msp
                                     .energy = is_open ? 0.0 : mspringi_area_energy(found, size)};
     mspringi_put_struct(info, &made, sizeof made);
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_area_particles(const mspring_network *network, mspring_id area,
+                                                  mspring_id *particles, uint32_t capacity, uint32_t *count) {
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    if (!count || (!particles && capacity > 0))
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                    "the place for particles, or their count, is NULL");
+    const mspringi_area *found = mspringi_area_look_up(network, area, false);
+    if (!found)
+        return MSPRING_ERROR_ID;
+    for (uint32_t i = 0; i < found->count && i < capacity; ++i)
+        particles[i] = network->areas.corners[found->first + i].particle;
+    *count = found->count;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_areas_measure(const mspring_network *network, bool is_angle, mspring_id *ids, double *sizes,
+                                      double *pressures, uint32_t capacity, uint32_t *count) {
+    uint32_t found = 0;
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    if (!count)
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the count is NULL");
+    for (const mspringi_area *a = network->areas.list; a < network->areas.list + network->areas.count; ++a) {
+        if (a->is_angle != is_angle || found++ >= capacity)
+            continue;
+        const double size = mspringi_area_size(network, a);
+        if (ids)
+            ids[found - 1] = a->id;
+        if (sizes)
+            sizes[found - 1] = is_angle ? mspringi_angle_of_area(network, a) : size;
+        if (pressures)
+            pressures[found - 1] = mspringi_area_is_open(network, a) ? 0.0 : mspringi_area_pressure(a, size);
+    }
+    *count = found;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_areas(const mspring_network *network, mspring_id *ids, double *areas,
+                                         double *pressures, uint32_t capacity, uint32_t *count) {
+    return mspringi_areas_measure(network, false, ids, areas, pressures, capacity, count);
 }

@@ -19,17 +19,14 @@ mspring_result mspringi_each_cell(mspring_network *network, mspringi_cell_fn fn,
 /// Check that particles exist, once each, in one group. what: an area or an angle.
 mspring_result mspringi_check_corners(mspring_network *network, const char *what, const mspring_id *particles,
                                       uint32_t count);
-/// Reserve room for so many more.
-mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners);
-
-/// Give one the next id and add it: there is room, and all has been checked.
-void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles);
-/// Tell that one is another from now on.
-void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area);
 mspring_result mspringi_area_remove(mspring_network *network, mspring_id id, bool is_angle);
 
 /// Find one of a kind, or fail; the second is for calls that only read: NULL if there is none, with a message.
 mspring_result mspringi_area_find(mspring_network *network, mspring_id id, bool is_angle, mspringi_area **found);
 const mspringi_area *mspringi_area_look_up(const mspring_network *network, mspring_id id, bool is_angle);
+
+/// Measure all of a kind: ids, sizes or angles, pressures or torques, each where it is not NULL.
+mspring_result mspringi_areas_measure(const mspring_network *network, bool is_angle, mspring_id *ids, double *sizes,
+                                      double *pressures, uint32_t capacity, uint32_t *count);
 
 #endif

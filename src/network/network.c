@@ -17,6 +17,7 @@
 #include "step/plastic.h"
 #include "step/strain.h"
 #include "store/alike.h"
+#include "store/areas.h"
 #include "store/fractions.h"
 #include "store/growth.h"
 #include "store/one_way.h"
@@ -306,6 +307,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = mspringi_guard_reserve(network, def->guard);
     if (result == MSPRING_OK)
         result = set_limits(network, builder);
+    if (result == MSPRING_OK)
+        result = mspringi_areas_of_builder(network, builder);
     if (result == MSPRING_OK && network->looks && network->solver.ops->has_border)
         mspringi_border_learn(network);
     return result;

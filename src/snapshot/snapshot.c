@@ -179,9 +179,8 @@ static mspring_result check_compatible(mspring_network *network, const mspringi_
         return fail(network, "is of another network: its springs join other particles, or are laid out otherwise");
     if (header->contents == MSPRING_SNAPSHOT_FRAME &&
         header->parameter_fingerprint != network->parameter_fingerprint)
-        return fail(network,
-                    "leaves out stiffness, damping, rest lengths and strains (MSPRING_SNAPSHOT_FRAME), and "
-                    "the network's are others than when it was saved");
+        return fail(network, "leaves out stiffness, damping, rest lengths, strains, areas and angles "
+                             "(MSPRING_SNAPSHOT_FRAME), and the network's are others than when it was saved");
     return header->contents == MSPRING_SNAPSHOT_FRAME || header->contents == MSPRING_SNAPSHOT_ALL
                ? MSPRING_OK
                : fail(network, "has contents that this library does not know");

@@ -116,3 +116,8 @@ double mspringi_angle_between(const mspring_network *network, uint32_t a, uint32
     mspringi_rotation turn;
     return turn_of(&u, &w, &turn) ? mspringi_angle_of(turn) : 0.0;
 }
+
+double mspringi_angle_of_area(const mspring_network *network, const mspringi_area *angle) {
+    return mspringi_angle_between(network, mspringi_area_slot(network, angle, 0),
+                                  mspringi_area_slot(network, angle, 1), mspringi_area_slot(network, angle, 2));
+}

@@ -37,5 +37,6 @@ void mspringi_angle_push(const mspring_network *network, const mspringi_area *an
 
 /// The angle between three slots now, rad; 0 if there is none.
 double mspringi_angle_between(const mspring_network *network, uint32_t a, uint32_t b, uint32_t c);
+double mspringi_angle_of_area(const mspring_network *network, const mspringi_area *angle);
 
 #endif

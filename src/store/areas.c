@@ -2,7 +2,9 @@
 
 #include <string.h>
 
+#include "builder/builder.h"
 #include "store/angles.h"
+#include "store/changed.h"
 #include "store/growth.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -383,4 +385,39 @@ void mspringi_areas_refresh(mspring_network *network) {
     }
     a->longest = find_longest(network, false);
     a->longest_of_all = find_longest(network, true);
+}
+
+/* ------------------------------------------------------------------------------------------------------- edits */
+
+mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners) {
+    const mspringi_areas *a = &network->areas;
+    if (areas >= MSPRING_NONE - a->next_id || corners >= MSPRING_NONE - a->corner_count)
+        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                             "there are %zu areas and angles already, of %u ever made", a->count,
+                             (unsigned)a->next_id);
+    return mspringi_areas_reserve(network, areas, corners);
+}
+
+void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area) {
+    mspringi_fingerprint(network, edit, area->id);
+    mspringi_fingerprint_floats(network, area->stiffness, area->is_angle ? area->damping : area->pressure);
+    mspringi_fingerprint_floats(network, area->fill, (float)(area->is_angle ? area->rest_angle : area->rest_area));
+    mspringi_changed(network, MSPRINGI_CHANGED_AREA, 0);
+}
+
+void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles) {
+    made.id = network->areas.next_id++;
+    mspringi_areas_append(network, &made, particles);
+    for (uint32_t i = 0; i < made.count; ++i)
+        mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_AREA, particles[i]);
+    mspringi_area_tell(network, MSPRINGI_EDIT_ADDED_AREA, &made);
+}
+
+mspring_result mspringi_areas_of_builder(mspring_network *network, const mspring_builder *builder) {
+    if (builder->area_count == 0)
+        return MSPRING_OK;
+    const mspring_result result = mspringi_areas_check_room(network, builder->area_count, builder->corner_count);
+    for (size_t i = 0; result == MSPRING_OK && i < builder->area_count; ++i)
+        mspringi_area_add(network, builder->areas[i], builder->corners + builder->areas[i].first);
+    return result;
 }

@@ -42,6 +42,18 @@ void mspringi_areas_refresh(mspring_network *network);
 /// none at this slot.
 bool mspringi_cell_at(const mspring_network *network, uint32_t slot, uint32_t corners[4]);
 
+/* ------------------------------------------------------------------------------------------------------- edits */
+
+/// Reserve room for so many more.
+mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners);
+
+/// Give one the next id and add it: there is room, and all has been checked.
+void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles);
+/// Add those of a builder to a network that is made of it.
+mspring_result mspringi_areas_of_builder(mspring_network *network, const mspring_builder *builder);
+/// Tell that one is another from now on.
+void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area);
+
 /* ---------------------------------------------------------------------------------------------------- one area */
 
 bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *area);

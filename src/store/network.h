@@ -9,7 +9,7 @@
 #include <massspring/massspring_laws.h>
 
 #include "base/assert.h"
-#include "base/turn.h"
+#include "builder/areas.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"
 #include "store/components.h"
@@ -243,24 +243,6 @@ typedef struct mspringi_plastic {
     uint64_t count;      ///< springs that flowed in a step, summed over the steps
     double dissipated;   ///< J
 } mspringi_plastic;
-
-/// A closed polygon of particles that resists a change of its area, see store/areas.h; or an angle spring, see
-/// store/angles.h.
-typedef struct mspringi_area {
-    mspring_id id;
-    mspring_area_kind kind;
-    uint32_t first, count; ///< of its corners
-    float stiffness, pressure, fill;
-    float damping;          ///< of an angle
-    bool is_angle;          ///< of the two arms between its three corners
-    bool is_open;           ///< a spring of its outline was not whole when the step began
-    bool is_ringed;         ///< each side of its outline has a spring
-    uint32_t cell;          ///< where in areas.cells the sweep finds it; MSPRINGI_NO_CELL: nowhere
-    double rest_area;       ///< of an angle 1
-    double rest_angle;      ///< rad, and
-    mspringi_rotation rest; ///< its cosine and sine
-} mspringi_area;
-#define MSPRINGI_NO_CELL UINT32_MAX
 
 typedef struct mspringi_corner {
     mspring_id particle;

@@ -545,6 +545,12 @@ static void add_hook(arguments *a) {
       mspring_network_get_area(a->network, a->id, a->out[0]))                                                      \
     X(mspring_network_get_area_info, "nIP", (make_area(a), OUT_STRUCT(0, area_info)),                              \
       mspring_network_get_area_info(a->network, a->id, a->out[0]))                                                 \
+    X(mspring_network_get_area_particles, "nI01", make_area(a),                                                    \
+      mspring_network_get_area_particles(a->network, a->id, a->out[0], 8, a->out[1]))                              \
+    X(mspring_network_get_areas, "no3", NOTHING,                                                                   \
+      mspring_network_get_areas(a->network, a->out[0], a->out[1], a->out[2], 8, a->out[3]))                        \
+    X(mspring_network_get_angles, "no3", NOTHING,                                                                  \
+      mspring_network_get_angles(a->network, a->out[0], a->out[1], a->out[2], 8, a->out[3]))                       \
     X(mspring_angle_def_init, "Z0", a->size = sizeof(mspring_angle_def),                                           \
       mspring_angle_def_init(a->out[0], a->size))                                                                  \
     X(mspring_network_add_angles, "NSWIo", fill_angle(a), add_angle(a))                                            \

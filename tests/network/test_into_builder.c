@@ -34,7 +34,7 @@ static mspring_network *mixed_network(void) {
 static mspring_network *copy_of(const mspring_network *network) {
     mspring_builder *builder = support_builder();
     check_ok(mspring_builder_add_network(builder, network, NULL, 0, NULL, NULL));
-    mspring_network_def def = support_def(-9.8f, 4);
+    mspring_network_def def = support_def(-9.8f, support_solver(network).substeps);
     return support_network(builder, &def);
 }
 
@@ -236,8 +236,80 @@ static void bad_selection_is_refused(void **state) {
     mspring_network_destroy(network);
 }
 
+// Areas and angles go along, but for those that are open, or have a particle that does not; then they are copied.
+static mspring_network *with_areas(mspring_id *gas, mspring_id *hinges) {
+    recipe made = {0};
+    uint64_t seed = 9;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {200, 200}};
+    recipe_lattice(&made, 20, 9, 0, 0, 1, &stuff, &seed);
+    const mspring_network_def def = support_def(-9.8f, 20);
+    mspring_network *network = recipe_network(&made, &def);
+    const mspring_id ring[] = {0, 19, 179, 160}, three[] = {3, 4, 5, 4, 5, 6};
+    mspring_area_def area;
+    mspring_angle_def angle;
+    check_ok(mspring_area_def_init(&area, sizeof area));
+    check_ok(mspring_angle_def_init(&angle, sizeof angle));
+    area.stiffness = 90;
+    check_ok(mspring_network_add_cell_areas(network, &area, NULL, NULL));
+    area.kind = MSPRING_AREA_GAS;
+    area.stiffness = 0;
+    area.pressure = 5;
+    check_ok(mspring_network_add_area(network, &area, ring, 4, gas));
+    angle.stiffness = 4;
+    angle.damping = 0.1f;
+    check_ok(mspring_network_add_angles(network, &angle, three, 2, hinges));
+    recipe_free(&made);
+    return network;
+}
+
+static void areas_go_along(void **state) {
+    (void)state;
+    mspring_id gas, hinges, broken = 0;
+    const double bend = 0.25;
+    mspring_network *network = with_areas(&gas, &hinges), *copy = copy_of(network);
+    check_ok(mspring_network_set_rest_angles(network, hinges, 2, &bend, 0));
+    check_ok(mspring_network_remove_area(network, 0)); // ids are other ones in the copy
+    mspring_network_destroy(copy);
+    copy = copy_of(network);
+    mspring_angle_def angle = {.struct_size = sizeof angle};
+    check_ok(mspring_network_get_angle(copy, hinges - 1, &angle));
+    check_near(angle.rest_angle, bend, 0);
+    for (int i = 0; i < 20; i++) {
+        support_steps(network, 1, 1.0 / 64);
+        support_steps(copy, 1, 1.0 / 64);
+        assert_int_equal(support_hash(copy), support_hash(network));
+    }
+    mspring_network_destroy(copy);
+    // The lower left quarter alone has neither the gas nor what is open.
+    check_ok(mspring_network_break_springs(network, &broken, 1));
+    mspring_id some[50];
+    for (mspring_id i = 0; i < 50; i++)
+        some[i] = i / 10 * 20 + i % 10;
+    mspring_builder *part = support_builder(), *copies = support_builder();
+    const double x[] = {0, 30}, y[] = {0, 0};
+    check_ok(mspring_builder_add_network(part, network, some, 50, NULL, NULL));
+    check_ok(mspring_builder_add_copies(copies, part, 2, x, y, 1, NULL, NULL));
+    mspring_builder_destroy(part);
+    const mspring_network_def def = support_def(-9.8f, 20);
+    copy = support_network(copies, &def);
+    mspring_area_info info = {.struct_size = sizeof info};
+    mspring_id areas = 0, angles = 0;
+    for (mspring_id id = 0; id < 200; id++) {
+        areas += mspring_network_get_area_info(copy, id, &info) == MSPRING_OK;
+        angles += mspring_network_get_angle(copy, id, &angle) == MSPRING_OK;
+    }
+    assert_int_equal(areas, 2 * (4 * 9 - 1));
+    assert_int_equal(angles, 2 * 2);
+    support_steps(copy, 5, 1.0 / 64);
+    for (mspring_id p = 0; p < 50; p++)
+        check_near(support_position(copy, p + 50).y, support_position(copy, p).y, 1e-5);
+    mspring_network_destroy(copy);
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(areas_go_along),
         cmocka_unit_test(new_network_steps_with_the_same_bits),
         cmocka_unit_test(moved_network_goes_on_but_for_rounding),
         cmocka_unit_test(edits_are_taken_over),

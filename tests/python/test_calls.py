@@ -58,6 +58,9 @@ class Calls(unittest.TestCase):
         network.set_angle(angles[0], damping=0.25)
         self.assertEqual((network.get_angle(angles[0]).rest_angle, network.get_angle(angles[0]).damping), (0.5, 0.25))
         self.assertAlmostEqual(network.get_angle_info(angles[1]).torque, -4 * np.sin(0.5))
+        self.assertEqual((len(network.get_areas()[0]), list(network.get_angles()[0])), (10, list(angles)))
+        self.assertEqual(list(network.get_area_particles(gas)), [12, 15, 3, 0])  # counter-clockwise
+        np.testing.assert_allclose(network.get_areas()[1], [1] * 9 + [9])
         network.remove_angle(angles[0])
         network.remove_area(areas[0])
         with self.assertRaises(massspring.IdError):

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -29,6 +30,11 @@ def drop(stiffness, rows):
 def slow(stiffness, rows):
     time.sleep(0.2)
     return stiffness * rows
+
+
+def slow_drop(stiffness, rows):
+    time.sleep(0.3)
+    return drop(stiffness, rows)
 
 
 class Sweeps(unittest.TestCase):
@@ -74,6 +80,52 @@ class Sweeps(unittest.TestCase):
         result = massspring.sweep(slow, GRID, 1, self.folder.name)
         self.assertEqual(result.results, [2e3, 3e3, 4e3, 6e3, 8e3, 12e3])
         self.assertEqual({path: path.stat().st_mtime_ns for path in kept}, kept)
+
+    def start(self, *arguments):
+        """A program of Dask, from this folder, so that it can import this file."""
+        log = open(Path(self.folder.name) / "log", "a", encoding="utf-8")
+        self.addCleanup(log.close)
+        process = subprocess.Popen([sys.executable, "-m", *arguments], cwd=Path(__file__).parent, stdout=log, stderr=log)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_scheduler(self):
+        """A scheduler and two workers, each a process of its own, of which one is killed on the way."""
+        try:
+            from distributed import Client
+        except ImportError:
+            self.skipTest("there is no distributed (Debian: python3-distributed)")
+        where, kept = Path(self.folder.name) / "scheduler.json", Path(self.folder.name) / "kept"
+        self.start("distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+                   "--scheduler-file", str(where))
+        until = time.monotonic() + 60
+        while not where.exists() and time.monotonic() < until:
+            time.sleep(0.02)
+        workers = [self.start("distributed.cli.dask_worker", "--scheduler-file", str(where), "--host", "127.0.0.1",
+                              "--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", self.folder.name,
+                              "--name", str(number)) for number in range(2)]
+        with Client(scheduler_file=str(where)) as client:
+            client.wait_for_workers(2, timeout=60)
+            self.assertEqual(massspring.sweep(drop, GRID, client).hash, self.alone.hash)
+            done = []
+
+            def kill_one():
+                while len(list(kept.glob("*.json"))) < 3 and time.monotonic() < until + 60:
+                    time.sleep(0.02)
+                done.extend((path, path.stat().st_mtime_ns) for path in kept.glob("*.json"))
+                workers[0].kill()
+
+            killer = threading.Thread(target=kill_one)
+            killer.start()
+            result = massspring.sweep(slow_drop, GRID, client, kept)
+            killer.join()
+            self.assertIsNotNone(workers[0].wait())
+            self.assertIsNone(workers[1].poll())
+            self.assertEqual(result.hash, self.alone.hash)
+            # Nothing was lost, and nothing made twice.
+            self.assertTrue(3 <= len(done) < 6, done)
+            self.assertEqual([path.stat().st_mtime_ns for path, _ in done], [stamp for _, stamp in done])
 
     def test_dask(self):
         try:

@@ -16,7 +16,8 @@ const SEEN = /index|choose|troubleshooting|solvers|massspring_8h/; // of these a
 // What moved after the page was there, as browsers count it: 0.1 is what they call good.
 const WATCH = `window.shifted = 0; new PerformanceObserver((list) => { for (const entry of list.getEntries())
   if (!entry.hadRecentInput) { window.shifted += entry.value; window.shifters = [...(window.shifters ?? []),
-    ...entry.sources.map(({ node }) => node?.parentElement?.outerHTML.slice(0, 120))]; } }).observe({ type: 'layout-shift', buffered: true });`;
+    ...entry.sources.map(({ node }) => node?.parentElement?.outerHTML.slice(0, 120))]; } })
+  .observe({ type: 'layout-shift', buffered: true });`;
 
 // How many points of a canvas are not empty.
 const DRAWN = (name) => `(() => { const canvas = document.querySelector('[data-figure=${name}] canvas');
@@ -49,6 +50,17 @@ async function byKey(browser) {
   await browser.value(`document.querySelector('[data-figure=size] [data-play]').focus()`);
   await browser.key(' ', ' ');
   assert.equal(await browser.value('window.figureStages.size.playing'), false, 'space stops it');
+}
+
+// A word in the search field leads to its page.
+async function bySearch(browser) {
+  const field = '[...document.querySelectorAll("[data-search]")].at(-1)';
+  const first = async (words) => browser.value(`(() => { const field = ${field}; field.value = '${words}';
+    field.dispatchEvent(new Event('input')); return field.nextSibling.querySelector('a')?.href; })()`);
+  assert.match(await first('yield strain'), /guides|reference/);
+  assert.match(await first('exact border'), /figures\.html#the-exact-border-of-an-explosion$/);
+  if (PAGES.some((page) => page.startsWith('reference/'))) assert.match(await first('network_step'), /reference\/massspring_8h\.html#/);
+  assert.equal(await first('no such words'), undefined);
 }
 
 // A particle of the jelly follows the pointer, and is let go.
@@ -103,6 +115,7 @@ async function at(place, width, height, scheme) {
     assert.equal(names.length, 10);
     await byKey(browser);
     await byHand(browser);
+    await bySearch(browser);
     const shifted = await browser.value('window.shifted');
     assert(shifted < 0.01, `at ${width} px the page jumps by ${shifted}: ${await browser.value('window.shifters')}`);
     for (const page of PAGES) {

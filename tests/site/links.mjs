@@ -28,6 +28,13 @@ for (const page of pages) {
     else if (mark && !marks.get(goal)?.has(mark)) wrong.add(`${page}: ${goal} has no mark ${mark}`);
   }
 }
-if (pages.length < 40 || links < 1000) wrong.add('hardly anything was found');
-console.log(`${pages.length} pages, ${links} links within, ${elsewhere} to elsewhere, ${wrong.size} wrong`, ...[...wrong].map((text) => `\nWRONG: ${text}`));
+// What can be searched, too.
+const found = JSON.parse(readFileSync(join(site, 'search_index.js'), 'utf8').match(/= (\[.*\]);/)[1]);
+for (const [words, link] of found) {
+  const [path, mark] = link.split('#');
+  if (!existsSync(join(site, path)) || (mark && !marks.get(path)?.has(mark))) wrong.add(`search: ${words} leads to ${link}`);
+}
+if (pages.length < 40 || links < 1000 || found.length < 100) wrong.add('hardly anything was found');
+console.log(`${pages.length} pages, ${links} links within, ${elsewhere} to elsewhere, ${found.length} to search, ${wrong.size} wrong`,
+  ...[...wrong].map((text) => `\nWRONG: ${text}`));
 process.exit(wrong.size ? 1 : 0);

@@ -24,5 +24,6 @@ for (const [, name, text] of results) {
   if (!page.includes(name)) wrong.push(`it lacks ${name}`);
 }
 if (results.length < 10 || headings.length < 20) wrong.push('hardly anything was found');
-console.log(`${headings.length} headings, ${results.length} results, ${wrong.length} wrong`, ...wrong.map((text) => `\nWRONG: ${text}`));
+console.log(`${headings.length} headings, ${results.length} results, ${wrong.length} wrong`,
+  ...wrong.map((text) => `\nWRONG: ${text}`));
 process.exit(wrong.length ? 1 : 0);

@@ -435,6 +435,53 @@ static void clones_snapshots_and_layouts_go_on(void **state) {
     mspring_network_destroy(clone);
 }
 
+// All that was added can be read back: ids, corners, sizes and angles; what is open has no pressure.
+static void all_is_read_back(void **state) {
+    (void)state;
+    const mspring_network_def def = support_def(0, 20);
+    mspring_network *network = mixture(def);
+    const mspring_id clockwise[] = {200, 300, 305, 205}, broken = 1;
+    mspring_area_def area;
+    mspring_id ids[300], id, corners[4] = {0, 0, 0, 0};
+    double sizes[300], pressures[300];
+    uint32_t count;
+    check_ok(mspring_area_def_init(&area, sizeof area));
+    area.pressure = 3;
+    check_ok(mspring_network_add_area(network, &area, clockwise, 4, &id));
+    check_ok(mspring_network_get_areas(network, ids, sizes, pressures, 300, &count));
+    assert_int_equal(count, 2);
+    assert_int_equal(ids[1], id);
+    check_near(sizes[0], 25, 1e-5);
+    check_near(sizes[1], 25, 1e-5);
+    check_near(pressures[1], 3, 1e-5);
+    check_ok(mspring_network_get_area_particles(network, id, corners, 3, &count));
+    assert_int_equal(count, 4);
+    assert_int_equal(corners[0], 205); // turned over, and no more than there is room for
+    assert_int_equal(corners[3], 0);
+    check_error(mspring_network_get_area_particles(network, 0, corners, 4, &count), MSPRING_ERROR_ID);
+    check_ok(mspring_network_break_springs(network, &broken, 1));
+    check_ok(mspring_network_get_angles(network, ids, sizes, pressures, 300, &count));
+    assert_int_equal(count, 200);
+    for (uint32_t i = 0; i < count; i++) {
+        const mspring_angle_info info = info_of(network, ids[i]);
+        assert_true(info.angle == sizes[i] && info.torque == pressures[i]);
+    }
+    check_ok(mspring_network_get_angles(network, NULL, NULL, NULL, 0, &count));
+    assert_int_equal(count, 200);
+    // A frame fits a network with the same areas, and says so.
+    mspring_network *other = mixture(def);
+    size_t size;
+    check_ok(mspring_network_snapshot_size(other, MSPRING_SNAPSHOT_FRAME, &size));
+    uint8_t *bytes = malloc(size);
+    assert_non_null(bytes);
+    check_ok(mspring_network_save(other, MSPRING_SNAPSHOT_FRAME, bytes, size, NULL));
+    check_error(mspring_network_load(network, bytes, size), MSPRING_ERROR_SNAPSHOT);
+    check_contains(mspring_network_error(network), "areas and angles");
+    free(bytes);
+    mspring_network_destroy(other);
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_beam_sags_as_beams_do),
@@ -448,6 +495,7 @@ int main(void) {
         cmocka_unit_test(bad_angles_are_refused),
         cmocka_unit_test(all_levels_have_the_same_bits),
         cmocka_unit_test(clones_snapshots_and_layouts_go_on),
+        cmocka_unit_test(all_is_read_back),
     };
     return cmocka_run_group_tests_name("angles", tests, NULL, NULL);
 }

@@ -76,7 +76,7 @@ export default {
     return [
       { what: 'substeps x sqrt(bending), least of 64 to 512 substeps', found: Math.min(...products), wanted, within: 0.015 * wanted },
       { what: 'and the largest', found: Math.max(...products), wanted, within: 0.015 * wanted },
-      { what: 'times of an explicit frame of 2048 substeps and an implicit one: ratio', found: explicit / implicit, least: 3, digits: 1 },
+      { what: 'an explicit frame of 2048 substeps, in implicit ones', found: explicit / implicit, least: 3, digits: 1 },
     ];
   },
 };

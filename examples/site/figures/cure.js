@@ -19,7 +19,7 @@ function tried(network) {
 
 export default {
   name: 'cure',
-  controls: [{ name: 'substeps', label: 'Substeps', min: 1, max: 40, step: 1, value: 2 }],
+  controls: [{ name: 'substeps', label: 'Substeps', min: 1, max: 40, step: 1, value: 6 }],
 
   start(ms, values) {
     const { substeps } = values, stiffness = SOFT * (substeps === 1 ? 1 : (substeps * substeps) / 4);

@@ -51,7 +51,10 @@ export default {
           pen.label(place, i ? `${values.damping} N s/m` : 'no dampers');
         });
       },
-      say: () => `energy left: ${squares.map((network) => `${((100 * total(network)) / first).toFixed(0)} %`).join(' and ')}`,
+      say() {
+        const parts = squares.map((network) => `${((100 * total(network)) / first).toFixed(0)} %`);
+        return `energy now, of that at first: ${parts.join(' and ')}`;
+      },
       free: () => squares.forEach((network) => network.free()),
     };
   },

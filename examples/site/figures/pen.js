@@ -22,7 +22,7 @@ export class Pen {
     this.colours = Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
     this.shades = [];
     for (let i = -SHADES; i <= SHADES; i++)
-      this.shades.push(mixed(this.colours.calm, i < 0 ? this.colours.squeezed : this.colours.stretched, Math.sqrt(Math.abs(i) / SHADES)));
+      this.shades.push(mixed(this.colours.calm, this.colours[i < 0 ? 'squeezed' : 'stretched'], Math.sqrt(Math.abs(i) / SHADES)));
   }
 
   begin() {
@@ -236,6 +236,6 @@ function ticks([from, to], isLog, most) {
   }
   const rough = (high - low) / most, ten = 10 ** Math.floor(Math.log10(rough));
   const step = ten * [1, 2, 5, 10].find((times) => times * ten >= rough);
-  for (let value = Math.ceil(low / step) * step; value <= high + 1e-9; value += step) found.push(Math.abs(value) < 1e-9 * step ? 0 : value);
+  for (let i = Math.ceil(low / step); i * step <= high + 1e-9; i++) found.push(i * step);
   return found;
 }

@@ -76,7 +76,10 @@ export default {
           pen.label(places[i], names[i]);
         });
       },
-      say: () => `fastest particle: ${speeds().map((speed) => `${speed.toPrecision(2)} m/s`).join(', ')}; motion drawn ${TIMES} times as large`,
+      say() {
+        const fast = speeds().map((speed) => `${speed.toPrecision(2)} m/s`);
+        return `fastest particle: ${fast.join(', ')}; motion drawn ${TIMES} times as large`;
+      },
       free: () => networks.forEach((network) => network.free()),
     };
   },

@@ -61,7 +61,7 @@ const hasBurst = (body) => !(Math.abs(dropOf(body)) < 1000);
 
 export default {
   name: 'rejected',
-  controls: [{ name: 'iterations', label: 'Iterations of PBD', min: 1, max: 64, step: 1, value: 12 }],
+  controls: [{ name: 'iterations', label: 'Iterations of PBD', min: 4, max: 240, step: 4, value: 12 }],
 
   start(ms, values) {
     const ours = iron(ms), pbd = plainBar(WIDTH, HEIGHT), rest = dropAtRest(ours, probe(WIDTH));

@@ -65,7 +65,8 @@ class Stage {
   }
 
   get values() {
-    return Object.fromEntries([...this.element.querySelectorAll('input')].map(({ dataset, value }) => [dataset.control, Number(value)]));
+    const sliders = [...this.element.querySelectorAll('input')];
+    return Object.fromEntries(sliders.map(({ dataset, value }) => [dataset.control, Number(value)]));
   }
 
   bind(control) {

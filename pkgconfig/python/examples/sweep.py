@@ -5,10 +5,8 @@
     python3 sweep.py FOLDER --scheduler HOST:8786    # a cluster of Dask (Debian: python3-distributed)
 
 FOLDER keeps each result, so a sweep that was killed goes on. When all are there, prints their hash, the same whoever did
-which, and draws FOLDER/sweep.png if matplotlib is there. As an array of Slurm, which all jobs see FOLDER of:
-
-    sbatch --array=0-7 --wrap 'python3 sweep.py FOLDER --shard $SLURM_ARRAY_TASK_ID/8'
-
+which, and draws FOLDER/sweep.png if matplotlib is there. sweep_array, beside this file, makes an array of jobs of it, for
+Slurm, GNU parallel or xargs.
 SPDX-License-Identifier: MIT
 """
 import argparse
@@ -57,9 +55,10 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("folder")
     parser.add_argument("--shard", default="0/1")
+    parser.add_argument("--processes", type=int)
     parser.add_argument("--scheduler")
     options = parser.parse_args()
-    engine = None
+    engine = options.processes
     if options.scheduler:
         from distributed import Client
         engine = Client(options.scheduler)

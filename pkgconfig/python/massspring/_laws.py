@@ -4,7 +4,7 @@ SPDX-License-Identifier: MIT
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any, Tuple, Union
 
 import numpy as np
 
@@ -55,6 +55,27 @@ class LawCalls(NetworkCalls):
         """Measure an area: size (m^2), pressure (N/m), energy (J)."""
         return self._report(_header.AreaInfo, "mspring_area_info", lib.mspring_network_get_area_info, area)
 
+    def get_area_particles(self, area: int) -> np.ndarray:
+        """Read the corners of an area, in the order in which it is positive."""
+        count = ffi.new("uint32_t *")
+        self._read(lib.mspring_network_get_area_particles, area, ffi.NULL, 0, count)
+        out = np.empty(count[0], np.uint32)
+        self._read(lib.mspring_network_get_area_particles, area, pointer("mspring_id", out), len(out), count)
+        return out.astype(np.int64)
+
+    def _measured(self, function: Any) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        count = ffi.new("uint32_t *")
+        with self._lock:
+            self._read(function, ffi.NULL, ffi.NULL, ffi.NULL, 0, count)
+            ids, one, other = np.empty(count[0], np.uint32), np.empty(count[0]), np.empty(count[0])
+            self._read(function, pointer("mspring_id", ids), pointer("double", one), pointer("double", other),
+                       len(ids), count)
+        return ids.astype(np.int64), one, other
+
+    def get_areas(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Measure all areas: ids, sizes (m^2) and pressures (N/m)."""
+        return self._measured(lib.mspring_network_get_areas)
+
     # --------------------------------------------------------------------------------------------------- angles
 
     @with_keywords("mspring_angle_def")
@@ -97,3 +118,7 @@ class LawCalls(NetworkCalls):
     def get_angle_info(self, angle: int) -> AngleInfo:
         """Measure an angle spring: angle (rad), torque (N m), energy (J)."""
         return self._report(_header.AngleInfo, "mspring_angle_info", lib.mspring_network_get_angle_info, angle)
+
+    def get_angles(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Measure all angle springs: ids, angles (rad) and torques (N m)."""
+        return self._measured(lib.mspring_network_get_angles)

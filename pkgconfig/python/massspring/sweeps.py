@@ -69,15 +69,6 @@ class SweepResult:
         return np.array(values).reshape(lengths + list(np.shape(values[0]) if values else []))
 
 
-def _run(function: Callable[..., Any], case: Case, path: Optional[str]) -> Any:
-    result = _plain(function(**case))
-    if path is not None:  # in one piece: whoever is killed leaves no half of it
-        part = Path(f"{path}.{os.getpid()}")
-        part.write_text(_text({"case": _plain(case), "result": result}), encoding="utf-8")
-        part.replace(path)
-    return result
-
-
 def _stored(path: Optional[Path], case: Case) -> Any:
     if path is None or not path.exists():
         return None
@@ -85,6 +76,18 @@ def _stored(path: Optional[Path], case: Case) -> Any:
     if _text(had["case"]) != _text(_plain(case)):
         raise ValueError(f"{path} is of {had['case']}, not of {case}: give each grid a folder of its own")
     return had
+
+
+def _run(function: Callable[..., Any], case: Case, path: Optional[str]) -> Any:
+    had = _stored(None if path is None else Path(path), case)  # of a worker of Dask that died since
+    if had is not None:
+        return had["result"]
+    result = _plain(function(**case))
+    if path is not None:  # in one piece: whoever is killed leaves no half of it
+        part = Path(f"{path}.{os.getpid()}")
+        part.write_text(_text({"case": _plain(case), "result": result}), encoding="utf-8")
+        part.replace(path)
+    return result
 
 
 def _submit(engine: Any, calls: List[Tuple[Any, ...]]) -> List[Any]:
@@ -117,8 +120,9 @@ def sweep(function: Callable[..., Any], grid: Dict[str, Iterable[Any]], engine: 
         raise ValueError("shards need a folder for their results")
     paths: List[Optional[Path]] = [None] * len(every)
     if folder is not None:
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        paths = [Path(folder) / f"{number:08d}.json" for number in range(len(every))]
+        folder = Path(folder).absolute()  # workers may run elsewhere
+        folder.mkdir(parents=True, exist_ok=True)
+        paths = [folder / f"{number:08d}.json" for number in range(len(every))]
     had = [_stored(path, case) for path, case in zip(paths, every)]
     wanted = [number for number in range(index, len(every), count) if had[number] is None]
     made = _submit(engine, [(function, every[number], None if folder is None else str(paths[number])) for number in wanted])

@@ -36,6 +36,7 @@ extern "C" {
 /* -------------------------------------------------------------------------------------------------------- copies */
 
 /// Add copies of all that another builder holds: all or, on error, none.
+/// Areas and angles, which mspring_builder_add_network() has put there, are copied, too.
 /// Copy i has the particles first_particle + i * p ..., with p the number of particles of from, and its springs
 /// likewise.
 /// @param from            another builder

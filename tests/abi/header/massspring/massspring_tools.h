@@ -133,17 +133,16 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_di
 
 /// Add what a network holds now to a builder: to store it, to merge networks or to split one.
 /// Adds particles with position, velocity, mass and pin. Adds the springs between them that are not broken, with
-/// their present rest length, stiffness, damping and strains. Settings, solver, floor, contact, colliders, grips,
-/// hooks, groups, actuators, forces and events are not added: set them in the new network. An inverse mass scale
-/// becomes 1, or a pin if it is 0. Ids keep their order.
+/// their present rest length, stiffness, damping, strains, plastic strain and one-way flags. Adds the areas and angles
+/// of which all particles are added, unless they are open. A network that is made from the builder has them, numbered
+/// anew from 0. Settings, solver, floor, contact, colliders, groups, actuators, grips, hooks, forces and events are not
+/// added. An inverse mass scale becomes 1, or a pin if it is 0. Ids keep their order.
 ///
-/// A network that is created from the builder starts where the other is, but for the rounding of positions: its
-/// local origin may differ. If the other has not moved since it was created from the same parts, both have the same
-/// bits.
+/// A network that is created from the builder starts where the other is, but for the rounding of positions: its local
+/// origin may differ. If the other has not moved since it was created from the same parts, both have the same bits.
 /// @param particles     [count] the particles to add, in any order; NULL for all
 /// @param count         0 if particles is NULL
-/// @param particle_ids  [particle count of the network] receives the builder's id of each, MSPRING_NONE if it was
-/// not
+/// @param particle_ids  [particle count of the network] receives the builder's id of each, MSPRING_NONE if it was not
 ///                      added; may be NULL
 /// @param spring_ids    [spring count of the network] receives the same for springs; may be NULL
 /// @threads exclusive for builder, shared for network   @allocates yes   @errors ID; ARGUMENT also for a particle
