@@ -13,8 +13,8 @@
 /// sparse direct solver costs (linear.c), what steps of the implicit and the direct solver cost (solvers.c), how
 /// far from the machine's bounds the scenes are (roofline.c), where networks are stable (map.c), one case of that
 /// (map_cases.c), how long the worst step takes (map_frames.c), whether the guard refuses ordinary steps (alarms.c)
-/// and what it costs (guard.c), what a floor and spare
-/// particles cost (spare.c), or compare positions with those of the naive step (check.c).
+/// and what it costs (guard.c), what a floor and spare particles cost (spare.c), measure against other ways to write
+/// the loop (loops.c), or compare positions with those of the naive step (check.c).
 /// @return false if anything failed; messages have gone to stderr
 bool bench_run_scenes(const bench_options *options);
 bool bench_run_features(const bench_options *options);
@@ -31,6 +31,7 @@ bool bench_run_alarms(const bench_options *options);
 bool bench_run_guard(const bench_options *options);
 bool bench_run_check(const bench_options *options);
 bool bench_run_spare(const bench_options *options);
+bool bench_run_loops(const bench_options *options);
 
 /// One scene at one level.
 typedef struct bench_measurement {

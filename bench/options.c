@@ -31,6 +31,7 @@ void bench_options_help(void) {
          "  --alarms             whether the guard refuses any of a million ordinary steps\n"
          "  --guard              what the guard costs, and what a step costs beyond its substeps\n"
          "  --spare              what a floor, spare particles and an empty hook cost a step\n"
+         "  --loops              speed next to other ways to write the loop, on grids\n"
          "  --check              compare positions with those of the naive step; measures nothing\n"
          "  --list               show the scenes\n"
          "  --help               show this\n"
@@ -135,7 +136,8 @@ static bool is_switch(const char *option, bench_options *out) {
                  {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
                  {"--frames", BENCH_FRAMES},     {"--alarms", BENCH_ALARMS},
                  {"--guard", BENCH_GUARD},       {"--check", BENCH_CHECK},
-                 {"--spare", BENCH_SPARE},       {"--list", BENCH_LIST},
+                 {"--spare", BENCH_SPARE},       {"--loops", BENCH_LOOPS},
+                 {"--list", BENCH_LIST},
                  {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {

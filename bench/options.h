@@ -27,6 +27,7 @@ typedef enum bench_mode {
     BENCH_GUARD,
     BENCH_CHECK,
     BENCH_SPARE,
+    BENCH_LOOPS,
     BENCH_LIST,
     BENCH_HELP
 } bench_mode;

@@ -8,145 +8,80 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "board/methods.h"
-#include "common/clock.h"
+#include "board/energy.h"
+#include "board/measures.h"
 #include "common/output.h"
 #include "draw/scatter.h"
-#include "scenes/scene.h"
 
-static const double dt = 1.0 / 64; // s
-
-/// What is moved.
-typedef struct stage {
-    const char *name, *title;
-    uint32_t columns, rows;
-    float stiffness;          ///< N/m
-    uint64_t reference_steps; ///< of the reference, in 1 s
-    bool settles;             ///< whether its sag at rest is measured, too
-} stage;
-
-static const stage stages[] = {
-    {"bar_80x5", "Bar of 80 x 5, 6.76e7 N/m", 80, 5, 6.7643e7f, 65536, true},
-    {"bar_80x5_stiff", "Bar of 80 x 5, 1e10 N/m", 80, 5, 1e10f, 524288, true},
-    {"bar_272x34", "Bar of 272 x 34, 6.76e7 N/m", 272, 34, 6.7643e7f, 16384, false},
+static const method *const methods[] = {
+    &board_ours[0],  &board_ours[1], &board_ours[2], &board_naive,
+    &board_pbd,      &board_xpbd,    &board_vbd,     &board_projective,
+#ifdef BOARD_BOX2D
+    &board_box2d,
+#endif
+#ifdef BOARD_CHIPMUNK
+    &board_chipmunk,
+#endif
 };
-enum { STAGES = sizeof stages / sizeof *stages, METHODS = 8, MOST_EFFORTS = 6 };
+enum { METHODS = sizeof methods / sizeof *methods, MOST_EFFORTS = 6, OURS = 3 };
 
-static const method *const methods[METHODS] = {&board_ours[0], &board_ours[1], &board_ours[2], &board_naive,
-                                               &board_pbd,     &board_xpbd,    &board_vbd,     &board_projective};
-static const draw_colour colours[METHODS] = {0x1b3a8f, 0x2f7fd6, 0x7fb2e5, 0x8b8d98,
-                                             0xb0762e, 0xe07b10, 0xc0392b, 0x2e9e5b};
+/// What a picture shows against the time of a frame.
+typedef struct measured {
+    const char *ending, *label;
+    double (*of)(const result *found);
+} measured;
 
-/// Frames that take longer are not measured, us, and their sag at rest not even before.
-enum { DEAREST_FRAME = 20000, DEAREST_SETTLED = 4000 };
-
-/// One method at one effort.
-typedef struct result {
-    uint32_t effort;
-    double us;    ///< of a frame
-    double error; ///< after 1 s, as a share of how far the network has moved
-    double soft;  ///< sag at rest over that of the springs as given, less 1; NaN: not measured
-} result;
-
-typedef struct reference {
-    double *x, *y;   ///< after 1 s
-    double distance; ///< by how much it has moved
-    double sag;
-} reference;
-
-static double omega_of_sag(double sag) {
-    return 1.24 * sqrt(9.8 / sag);
+static double error_after_1(const result *found) {
+    return found->error[0];
 }
 
-// Sag at rest: damped as the slowest oscillation needs it, until that has died out.
-static double settled(const method *by, const model *m, uint32_t effort, double sag) {
-    const double omega = omega_of_sag(sag);
-    motion run;
-    double *x = malloc(m->particle_count * sizeof *x), *y = malloc(m->particle_count * sizeof *y), found = NAN;
-    if (motion_begin(&run, by, m, effort, 2 * omega, dt) && x && y) {
-        for (double time = 0; time < 13 / omega; time += dt)
-            by->frame(&run, dt);
-        motion_positions(&run, by, x, y);
-        found = (m->y[m->probe] - y[m->probe]) / sag - 1;
-    }
-    motion_end(&run, by);
-    free(x);
-    free(y);
-    return found;
+static double error_after_10(const result *found) {
+    return found->error[1];
 }
 
-static result measure(const method *by, const model *m, const reference *exact, uint32_t effort, bool settles) {
-    enum { REPEATS = 3, FRAMES = 64 };
-    result found = {.effort = effort, .us = INFINITY, .error = NAN, .soft = NAN};
-    double *x = malloc(m->particle_count * sizeof *x), *y = malloc(m->particle_count * sizeof *y);
-    for (int repeat = 0; repeat < REPEATS && x && y; repeat++) {
-        motion run;
-        if (motion_begin(&run, by, m, effort, 0, dt)) {
-            const double start = clock_processor_seconds();
-            for (int i = 0; i < FRAMES; i++)
-                by->frame(&run, dt);
-            found.us = fmin(found.us, (clock_processor_seconds() - start) * 1e6 / FRAMES);
-            motion_positions(&run, by, x, y);
-            found.error = model_distance(m, x, y, exact->x, exact->y) / exact->distance;
-        }
-        motion_end(&run, by);
-    }
-    free(x);
-    free(y);
-    if (settles && found.us < DEAREST_SETTLED)
-        found.soft = settled(by, m, effort, exact->sag);
-    return found;
+static double softness(const result *found) {
+    return fabs(found->soft);
 }
 
-static bool find_reference(const stage *on, const model *m, reference *exact) {
-    const size_t n = m->particle_count;
-    exact->x = malloc(n * sizeof *exact->x);
-    exact->y = malloc(n * sizeof *exact->y);
-    if (!exact->x || !exact->y)
-        return false;
-    for (size_t i = 0; i < n; i++) {
-        exact->x[i] = m->x[i];
-        exact->y[i] = m->y[i];
-    }
-    const bool good = model_move(m, 1, on->reference_steps, exact->x, exact->y);
-    exact->distance = model_distance(m, m->x, m->y, exact->x, exact->y);
-    exact->sag = on->settles ? model_settled_sag(m) : NAN;
-    return good;
-}
+static const measured pictures[] = {{"", "error of positions after 1 s", error_after_1},
+                                    {"_10s", "error of positions after 10 s", error_after_10},
+                                    {"_sag", "error of the sag at rest", softness}};
+enum { PICTURES = sizeof pictures / sizeof *pictures };
 
-static scatter_point point_of(const result *found, bool firmness) {
-    return (scatter_point){.x = found->us, .y = fabs(firmness ? found->soft : found->error)};
-}
-
-static bool draw(const stage *on, const result results[METHODS][MOST_EFFORTS], bool firmness, const char *folder) {
+static bool draw(const stage *on, const result results[METHODS][MOST_EFFORTS], const measured *what,
+                 const char *folder) {
     static scatter_point points[METHODS][MOST_EFFORTS];
     scatter_series series[METHODS];
     char name[64];
+    size_t all = 0;
     for (int i = 0; i < METHODS; i++) {
         size_t count = 0;
         for (int e = 0; e < MOST_EFFORTS && results[i][e].effort > 0; e++) {
-            const scatter_point point = point_of(&results[i][e], firmness);
+            const scatter_point point = {.x = results[i][e].us, .y = what->of(&results[i][e])};
             if (isfinite(point.y) && point.y < 10)
                 points[i][count++] = point;
         }
         series[i] = (scatter_series){.points = points[i],
                                      .count = count,
-                                     .mark = i < 3 ? SCATTER_DISC : SCATTER_SQUARE,
-                                     .colour = colours[i],
+                                     .mark = i < OURS ? SCATTER_DISC : SCATTER_SQUARE,
+                                     .colour = methods[i]->colour,
                                      .name = methods[i]->name,
                                      .joined = true};
+        all += count;
     }
+    if (all == 0)
+        return true;
     figure drawn;
     figure_start(&drawn, 800, 560, 0xffffff);
     scatter_draw(&drawn,
                  &(scatter){.title = on->title,
                             .x_label = "time of a frame of 1/64 s, us",
-                            .y_label = firmness ? "error of the sag at rest" : "error of positions after 1 s",
+                            .y_label = what->label,
                             .series = series,
                             .series_count = METHODS,
                             .percent = true},
                  0, 0, 800, 560);
-    snprintf(name, sizeof name, "board_%s%s", on->name, firmness ? "_sag" : "");
+    snprintf(name, sizeof name, "board_%s%s", on->name, what->ending);
     const bool good = output_figure(&drawn, folder, name);
     figure_free(&drawn);
     return good;
@@ -154,40 +89,30 @@ static bool draw(const stage *on, const result results[METHODS][MOST_EFFORTS], b
 
 static void run_method(const stage *on, const model *m, const reference *exact, const method *by,
                        result results[MOST_EFFORTS]) {
-    const uint32_t least = by->by_stability ? (uint32_t)ceil(dt / model_stable_substep(m) / 0.9) : 1;
+    const uint32_t least = by->by_stability ? least_substeps(m) : 1;
     for (int e = 0; e < MOST_EFFORTS && by->efforts[e] > 0; e++) {
-        if (e > 0 && results[e - 1].us * by->efforts[e] / by->efforts[e - 1] > DEAREST_FRAME)
+        if (e > 0 && results[e - 1].us * by->efforts[e] / by->efforts[e - 1] > on->dearest)
             break;
-        results[e] = measure(by, m, exact, by->efforts[e] * least, on->settles);
-        printf("%s,%s,%u,%s,%.2f,%.6g,%.6g\n", on->name, by->name, (unsigned)results[e].effort, by->effort,
-               results[e].us, results[e].error, results[e].soft);
+        const result r = results[e] = measure(on, by, m, exact, by->efforts[e] * least);
+        printf("%s,%s,%u,%s,%.2f,%.2f,%.6g,%.6g,%.6g,%.6g,%.6g\n", on->name, by->name, (unsigned)r.effort,
+               by->effort, r.us, r.most_us, r.error[0], r.error[1], r.period, r.swing, r.soft);
         fflush(stdout);
     }
 }
 
 static bool run(const stage *on, const char *folder) {
     result results[METHODS][MOST_EFFORTS] = {{{0}}};
-    scene_options options = scene_options_default();
-    scene made;
-    scene_error error = {""};
     model m;
     reference exact = {0};
-    options.relative = false;
-    options.stiffness = on->stiffness;
-    options.damping = 0;
-    if (!scene_bar(on->columns, on->rows, &options, &made, &error)) {
-        fprintf(stderr, "massspring-board: %s\n", error.text);
+    if (!stage_read(on, &m))
         return false;
-    }
-    bool good = model_read(&m, made.builder, made.probe) && find_reference(on, &m, &exact);
+    bool good = reference_find(on, &m, &exact);
     for (int i = 0; good && i < METHODS; i++)
         run_method(on, &m, &exact, methods[i], results[i]);
-    good = good && draw(on, (const result(*)[MOST_EFFORTS])results, false, folder) &&
-           (!on->settles || draw(on, (const result(*)[MOST_EFFORTS])results, true, folder));
-    free(exact.x);
-    free(exact.y);
+    for (int i = 0; good && i < PICTURES; i++)
+        good = draw(on, (const result(*)[MOST_EFFORTS])results, &pictures[i], folder);
+    reference_free(&exact);
     model_free(&m);
-    scene_free(&made);
     return good;
 }
 
@@ -197,9 +122,11 @@ int main(int count, char **arguments) {
         count, arguments, "Error and firmness against cost, beside other methods.", &exit_code);
     if (!folder)
         return exit_code;
-    printf("scene,method,effort,counts,us_per_frame,error_after_1_s,sag_error\n");
+    printf("scene,method,effort,counts,us_per_frame_min,us_per_frame_max,error_after_1_s,error_after_10_s,period_"
+           "error,"
+           "swing_left,sag_error\n");
     bool good = true;
     for (int i = 0; good && i < STAGES; i++)
-        good = run(&stages[i], folder);
-    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+        good = run(&board_stages[i], folder);
+    return good && energy_board(folder) ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -186,4 +186,5 @@ const method board_projective = {.name = "projective dynamics",
                                  .begin = projective_begin,
                                  .frame = projective_frame,
                                  .end = band_end,
-                                 .efforts = {2, 8, 32, 128, 512}};
+                                 .efforts = {2, 8, 32, 128, 512},
+                                 .colour = 0x2e9e5b};

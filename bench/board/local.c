@@ -66,7 +66,8 @@ const method board_naive = {.name = "symplectic Euler, plain loop",
                             .effort = "substeps",
                             .frame = naive_frame,
                             .efforts = {1, 2, 4},
-                            .by_stability = true};
+                            .by_stability = true,
+                            .colour = 0x8b8d98};
 
 /* ------------------------------------------------------------------------------------------------ by projection */
 
@@ -94,8 +95,11 @@ static void pbd_frame(motion *r, double dt) {
     derive_velocities(r, dt);
 }
 
-const method board_pbd = {
-    .name = "PBD", .effort = "iterations", .frame = pbd_frame, .efforts = {4, 16, 64, 256, 1024}};
+const method board_pbd = {.name = "PBD",
+                          .effort = "iterations",
+                          .frame = pbd_frame,
+                          .efforts = {4, 16, 64, 256, 1024},
+                          .colour = 0xb0762e};
 
 // One iteration in each of many substeps: what came of the substep before is all that is known of forces.
 static void xpbd_frame(motion *r, double dt) {
@@ -109,8 +113,11 @@ static void xpbd_frame(motion *r, double dt) {
     }
 }
 
-const method board_xpbd = {
-    .name = "XPBD, small steps", .effort = "substeps", .frame = xpbd_frame, .efforts = {4, 16, 64, 256, 1024}};
+const method board_xpbd = {.name = "XPBD, small steps",
+                           .effort = "substeps",
+                           .frame = xpbd_frame,
+                           .efforts = {4, 16, 64, 256, 1024},
+                           .colour = 0xe07b10};
 
 /* --------------------------------------------------------------------------------------- by particle, in blocks */
 
@@ -214,4 +221,5 @@ const method board_vbd = {.name = "VBD, Chebyshev",
                           .begin = vbd_begin,
                           .frame = vbd_frame,
                           .end = vbd_end,
-                          .efforts = {4, 16, 64, 256, 1024}};
+                          .efforts = {4, 16, 64, 256, 1024},
+                          .colour = 0xc0392b};

@@ -7,6 +7,10 @@
 
 #include "board/model.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /// State of a method between frames.
 typedef struct motion {
     const model *m;
@@ -23,21 +27,29 @@ typedef struct method {
     const char *effort;                    ///< what its effort counts
     bool (*begin)(motion *run, double dt); ///< make own; NULL: nothing to make. false: out of memory or refused
     void (*frame)(motion *run, double dt);
-    void (*positions)(const motion *run, double *x, double *y); ///< NULL: x and y
-    void (*end)(motion *run);                                   ///< NULL: nothing to free
-    uint32_t efforts[6];                                        ///< ended by 0
-    bool by_stability; ///< efforts are in the least stable number of substeps
+    void (*state)(const motion *run, model_state *to); ///< NULL: x, y, vx and vy of the motion
+    void (*end)(motion *run);                          ///< NULL: nothing to free
+    uint32_t efforts[6];                               ///< ended by 0
+    bool by_stability;                                 ///< efforts are in the least stable number of substeps
+    uint32_t colour;                                   ///< 0xrrggbb, in pictures
 } method;
 
 bool motion_begin(motion *run, const method *by, const model *m, uint32_t effort, double damping, double dt);
-void motion_positions(const motion *run, const method *by, double *x, double *y);
+void motion_state(const motion *run, const method *by, model_state *to);
 void motion_end(motion *run, const method *by);
 
 extern const method board_ours[3];    ///< explicit, implicit, direct
+extern const method board_precise;    ///< explicit, lengths from both words of positions
 extern const method board_naive;      ///< symplectic Euler, a loop over springs
 extern const method board_pbd;        ///< position-based dynamics (Mueller 2007)
 extern const method board_xpbd;       ///< extended, in small steps (Macklin 2019)
 extern const method board_vbd;        ///< vertex block descent with Chebyshev's acceleration (Chen 2024)
 extern const method board_projective; ///< projective dynamics, its matrix factored at the start (Liu 2013)
+extern const method board_box2d;      ///< Box2D 2.4: soft distance joints, where it is installed
+extern const method board_chipmunk;   ///< Chipmunk 7: damped springs, where it is installed
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

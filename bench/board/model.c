@@ -117,14 +117,12 @@ double model_stable_substep(const model *m) {
     return least;
 }
 
-double model_settled_sag(const model *m) {
+bool model_settle(const model *m, double *x, double *y) {
     mspring_network *network = model_network(m, NULL);
-    double x = 0, y = NAN;
-    if (!network || mspring_network_settle(network, NULL, NULL) != MSPRING_OK ||
-        mspring_network_get_positions(network, m->probe, 1, &x, &y, 1) != MSPRING_OK)
-        fail("cannot settle");
+    const bool good = network && mspring_network_settle(network, NULL, NULL) == MSPRING_OK &&
+                      mspring_network_get_positions(network, 0, m->particle_count, x, y, 1) == MSPRING_OK;
     mspring_network_destroy(network);
-    return m->y[m->probe] - y;
+    return good || fail("cannot settle");
 }
 
 /* --------------------------------------------------------------------------------------------- double precision */
@@ -145,29 +143,63 @@ static void accelerate(const model *m, const double *x, const double *y, double 
     }
 }
 
-bool model_move(const model *m, double time, uint64_t substeps, double *x, double *y) {
-    const uint32_t n = m->particle_count;
-    const double h = time / (double)substeps;
-    double *memory = calloc(4 * (size_t)n, sizeof *memory);
+bool model_state_begin(const model *m, model_state *made) {
+    const size_t n = m->particle_count;
+    double *memory = calloc(4 * n, sizeof *memory);
+    *made = (model_state){memory, memory + n, memory + 2 * n, memory + 3 * n};
     if (!memory)
         return fail("out of memory");
-    double *vx = memory, *vy = memory + n, *ax = memory + 2 * (size_t)n, *ay = memory + 3 * (size_t)n;
-    accelerate(m, x, y, ax, ay);
+    memcpy(made->x, m->x, n * sizeof *made->x);
+    memcpy(made->y, m->y, n * sizeof *made->y);
+    return true;
+}
+
+void model_state_end(model_state *unwanted) {
+    free(unwanted->x);
+    *unwanted = (model_state){0};
+}
+
+bool model_move(const model *m, double time, uint64_t substeps, model_state *state) {
+    const uint32_t n = m->particle_count;
+    const double h = time / (double)substeps;
+    double *ax = malloc(2 * (size_t)n * sizeof *ax), *ay = ax + n;
+    if (!ax)
+        return fail("out of memory");
+    accelerate(m, state->x, state->y, ax, ay);
     for (uint64_t step = 0; step < substeps; step++) {
         for (uint32_t i = 0; i < n; i++) {
-            vx[i] += 0.5 * h * ax[i];
-            vy[i] += 0.5 * h * ay[i];
-            x[i] += h * vx[i];
-            y[i] += h * vy[i];
+            state->vx[i] += 0.5 * h * ax[i];
+            state->vy[i] += 0.5 * h * ay[i];
+            state->x[i] += h * state->vx[i];
+            state->y[i] += h * state->vy[i];
         }
-        accelerate(m, x, y, ax, ay);
+        accelerate(m, state->x, state->y, ax, ay);
         for (uint32_t i = 0; i < n; i++) {
-            vx[i] += 0.5 * h * ax[i];
-            vy[i] += 0.5 * h * ay[i];
+            state->vx[i] += 0.5 * h * ax[i];
+            state->vy[i] += 0.5 * h * ay[i];
         }
     }
-    free(memory);
+    free(ax);
     return true;
+}
+
+double model_energy(const model *m, const model_state *state, double h) {
+    double energy = 0;
+    for (uint32_t i = 0; i < m->particle_count; i++)
+        if (m->inverse_mass[i] > 0)
+            energy += (0.5 * (state->vx[i] * state->vx[i] + state->vy[i] * state->vy[i]) +
+                       m->gravity * state->y[i] - 0.5 * h * state->vy[i] * m->gravity) /
+                      m->inverse_mass[i];
+    for (uint32_t s = 0; s < m->spring_count; s++) {
+        const uint32_t a = m->a[s], b = m->b[s];
+        const double free_a = m->inverse_mass[a] > 0, free_b = m->inverse_mass[b] > 0;
+        const double dx = state->x[b] - state->x[a], dy = state->y[b] - state->y[a];
+        const double length = sqrt(dx * dx + dy * dy), stretch = length - m->rest[s];
+        const double rate = dx * (free_a * state->vx[a] - free_b * state->vx[b]) +
+                            dy * (free_a * state->vy[a] - free_b * state->vy[b]);
+        energy += 0.5 * m->stiffness[s] * stretch * (stretch + h * rate / length);
+    }
+    return energy;
 }
 
 double model_distance(const model *m, const double *x, const double *y, const double *to_x, const double *to_y) {

@@ -28,11 +28,24 @@ void model_free(model *unwanted);
 /// The largest stable substep of symplectic Euler at rest, s.
 double model_stable_substep(const model *m);
 
-/// Move by a time in double precision: velocity Verlet, of second order. x and y are positions, at rest at first.
-bool model_move(const model *m, double time, uint64_t substeps, double *x, double *y);
+/// Positions and velocities.
+typedef struct model_state {
+    double *x, *y, *vx, *vy; ///< [particle_count], m and m/s
+} model_state;
 
-/// Sag of the probe at rest, m.
-double model_settled_sag(const model *m);
+/// At rest, as the model is. false: out of memory, after a message.
+bool model_state_begin(const model *m, model_state *made);
+void model_state_end(model_state *unwanted);
+
+/// Move by a time in double precision: velocity Verlet, of second order. false: out of memory, after a message.
+bool model_move(const model *m, double time, uint64_t substeps, model_state *state);
+
+/// Where it comes to rest. false: after a message.
+bool model_settle(const model *m, double *x, double *y);
+
+/// Energy of motion, springs and height, J, and h v F / 2: with h that of symplectic Euler it is the energy that
+/// those substeps keep, but for terms of h^2 (Hairer, Lubich, Wanner, Geometric Numerical Integration, IX.3).
+double model_energy(const model *m, const model_state *state, double h);
 
 /// Root of the mean of squares of distances between two shapes.
 double model_distance(const model *m, const double *x, const double *y, const double *to_x, const double *to_y);

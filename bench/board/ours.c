@@ -4,14 +4,16 @@
 /// SPDX-License-Identifier: MIT
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "board/methods.h"
 
-static bool begin(motion *r, mspring_solver solver) {
+static bool begin(motion *r, mspring_solver solver, uint32_t flags) {
     mspring_network_def def;
     if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK)
         return false;
     def.solver = solver;
+    def.flags |= flags;
     def.substeps = r->effort;
     def.gravity_y = -(float)r->m->gravity;
     def.global_damping = (float)r->damping;
@@ -21,17 +23,22 @@ static bool begin(motion *r, mspring_solver solver) {
 
 static bool begin_explicit(motion *r, double dt) {
     (void)dt;
-    return begin(r, MSPRING_SOLVER_EXPLICIT);
+    return begin(r, MSPRING_SOLVER_EXPLICIT, 0);
+}
+
+static bool begin_precise(motion *r, double dt) {
+    (void)dt;
+    return begin(r, MSPRING_SOLVER_EXPLICIT, MSPRING_NETWORK_PRECISE);
 }
 
 static bool begin_implicit(motion *r, double dt) {
     (void)dt;
-    return begin(r, MSPRING_SOLVER_IMPLICIT);
+    return begin(r, MSPRING_SOLVER_IMPLICIT, 0);
 }
 
 static bool begin_direct(motion *r, double dt) {
     (void)dt;
-    return begin(r, MSPRING_SOLVER_DIRECT);
+    return begin(r, MSPRING_SOLVER_DIRECT, 0);
 }
 
 static void frame(motion *r, double dt) {
@@ -40,9 +47,20 @@ static void frame(motion *r, double dt) {
         fprintf(stderr, "massspring-board: %s\n", mspring_network_error(network));
 }
 
-static void positions(const motion *r, double *x, double *y) {
+static void state(const motion *r, model_state *to) {
     const mspring_network *network = r->own;
-    if (mspring_network_get_positions(network, 0, r->m->particle_count, x, y, 1) != MSPRING_OK)
+    const uint32_t n = r->m->particle_count;
+    mspring_result result = mspring_network_get_positions(network, 0, n, to->x, to->y, 1);
+    float *vx = malloc(2 * (size_t)n * sizeof *vx), *vy = vx + n;
+    if (!vx)
+        return;
+    result = result ? result : mspring_network_get_velocities(network, 0, n, vx, vy, 1);
+    for (uint32_t i = 0; i < n; i++) {
+        to->vx[i] = (double)vx[i];
+        to->vy[i] = (double)vy[i];
+    }
+    free(vx);
+    if (result != MSPRING_OK)
         fprintf(stderr, "massspring-board: %s\n", mspring_network_error(network));
 }
 
@@ -50,15 +68,22 @@ static void end(motion *r) {
     mspring_network_destroy(r->own);
 }
 
-#define OURS .frame = frame, .positions = positions, .end = end, .effort = "substeps"
+#define OURS .frame = frame, .state = state, .end = end, .effort = "substeps"
+
+const method board_precise = {.name = "ours, explicit, precise", .begin = begin_precise, .colour = 0x16a085, OURS};
 
 const method board_ours[3] = {
-    {.name = "ours, explicit", .begin = begin_explicit, .efforts = {1, 2, 4}, .by_stability = true, OURS},
-    {.name = "ours, implicit", .begin = begin_implicit, .efforts = {1, 2, 4, 8, 16}, OURS},
-    {.name = "ours, direct", .begin = begin_direct, .efforts = {1, 2, 4, 8, 16}, OURS},
+    {.name = "ours, explicit",
+     .begin = begin_explicit,
+     .efforts = {1, 2, 4},
+     .by_stability = true,
+     .colour = 0x1b3a8f,
+     OURS},
+    {.name = "ours, implicit", .begin = begin_implicit, .efforts = {1, 2, 4, 8, 16}, .colour = 0x2f7fd6, OURS},
+    {.name = "ours, direct", .begin = begin_direct, .efforts = {1, 2, 4, 8, 16}, .colour = 0x7fb2e5, OURS},
 };
 
-/* ------------------------------------------------------------------------------------------------------- motions
+/* --------------------------------------------------------------------------------------------------------- motions
  */
 
 bool motion_begin(motion *run, const method *by, const model *m, uint32_t effort, double damping, double dt) {
@@ -75,18 +100,22 @@ bool motion_begin(motion *run, const method *by, const model *m, uint32_t effort
         run->x[i] = m->x[i];
         run->y[i] = m->y[i];
     }
-    return !by->begin || by->begin(run, dt);
+    if (!by->begin || by->begin(run, dt))
+        return true;
+    motion_end(run, by);
+    return false;
 }
 
-void motion_positions(const motion *run, const method *by, double *x, double *y) {
-    if (by->positions) {
-        by->positions(run, x, y);
+void motion_state(const motion *run, const method *by, model_state *to) {
+    const size_t size = run->m->particle_count * sizeof *to->x;
+    if (by->state) {
+        by->state(run, to);
         return;
     }
-    for (uint32_t i = 0; i < run->m->particle_count; i++) {
-        x[i] = run->x[i];
-        y[i] = run->y[i];
-    }
+    memcpy(to->x, run->x, size);
+    memcpy(to->y, run->y, size);
+    memcpy(to->vx, run->vx, size);
+    memcpy(to->vy, run->vy, size);
 }
 
 void motion_end(motion *run, const method *by) {
