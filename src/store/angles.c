@@ -55,6 +55,11 @@ double mspringi_angle_size(const mspring_network *network, const mspringi_area *
     return size_by(angle, &u, &w);
 }
 
+double mspringi_angle_size_by(const mspringi_area *angle, const double u[2], const double w[2]) {
+    const arm one = {u[0], u[1], u[0] * u[0] + u[1] * u[1]}, other = {w[0], w[1], w[0] * w[0] + w[1] * w[1]};
+    return size_by(angle, &one, &other);
+}
+
 double mspringi_angle_torque(const mspringi_area *angle, double size) {
     return -(double)angle->stiffness * size * sqrt(fmax(1.0 - 0.25 * size * size, 0.0));
 }

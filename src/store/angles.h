@@ -25,6 +25,9 @@
 mspringi_area mspringi_angle_make(float stiffness, float damping, double rest_angle);
 void mspringi_angle_set_rest(mspringi_area *angle, double rest_angle);
 
+/// z by the ways along both arms.
+double mspringi_angle_size_by(const mspringi_area *angle, const double u[2], const double w[2]);
+
 /// What areas have functions of these names for.
 double mspringi_angle_size(const mspring_network *network, const mspringi_area *angle);
 double mspringi_angle_torque(const mspringi_area *angle, double size);

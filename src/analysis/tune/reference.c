@@ -5,6 +5,7 @@
 
 #include "base/cpu.h"
 #include "kernels/spring_law.h"
+#include "store/areas.h"
 #include "store/springs.h"
 
 /// Part of what is stable in any shape that a substep takes.
@@ -98,6 +99,10 @@ mspring_result mspringi_reference_create(mspringi_reference *reference, mspring_
         return result;
     fill_particles(&made, network);
     fill_springs(&made, network);
+    if (network->areas.count > 0) {
+        mspringi_areas_refresh(network);
+        made.areas = &network->areas;
+    }
     *reference = made;
     return MSPRING_OK;
 }
@@ -126,6 +131,7 @@ double mspringi_reference_substep(const mspringi_reference *r) {
         damping[spring->a] += (double)spring->damping * (wa + both);
         damping[spring->b] += (double)spring->damping * (wb + both);
     }
+    mspringi_reference_weigh_areas(r, stiffness, damping);
     for (uint32_t p = 0; p < r->particle_count; ++p) {
         const double k = stiffness[p], c = damping[p] + r->global_damping, rate = c + sqrt(c * c + 4.0 * k);
         if (rate > 0.0)
@@ -159,6 +165,7 @@ static void find_accelerations(const mspringi_reference *r, const double *vx, co
         r->ax[b] -= r->inverse_mass[b] * fx;
         r->ay[b] -= r->inverse_mass[b] * fy;
     }
+    mspringi_reference_push_areas(r, vx, vy);
 }
 
 // to = from + factor times change. The two coordinates of each lie one behind the other.
@@ -206,5 +213,6 @@ mspringi_reference_energy mspringi_reference_measure(const mspringi_reference *r
         const double stretch = sqrt(dx * dx + dy * dy) - (double)spring->rest_length;
         energy.internal += 0.5 * (double)spring->stiffness * stretch * stretch;
     }
+    energy.internal += mspringi_reference_area_energy(r);
     return energy;
 }

@@ -26,6 +26,7 @@ typedef struct mspringi_reference {
     double *held_x, *held_y;            ///< acceleration by forces from outside
     double *ahead_x, *ahead_y;          ///< velocities at the end of a substep, as far as can be seen
     mspringi_reference_spring *springs; ///< those that exert something
+    const mspringi_areas *areas;        ///< of the network, which outlives the reference
     double gravity_x, gravity_y, global_damping;
     bool has_accelerations; ///< those of x, y, vx and vy are known
 } mspringi_reference;
@@ -53,5 +54,11 @@ typedef struct mspringi_reference_energy {
     double internal, potential;
 } mspringi_reference_energy;
 mspringi_reference_energy mspringi_reference_measure(const mspringi_reference *reference);
+
+/// What areas and angles add (reference_areas.c): to accelerations, with these velocities; to the sums in rows of
+/// M^-1 K and of the dampers, in the shape that they were added in; to the elastic energy.
+void mspringi_reference_push_areas(const mspringi_reference *reference, const double *vx, const double *vy);
+void mspringi_reference_weigh_areas(const mspringi_reference *reference, double *stiffness, double *damping);
+double mspringi_reference_area_energy(const mspringi_reference *reference);
 
 #endif

@@ -387,8 +387,9 @@ static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) 
     hold_still(settled);
     const mspringi_watcher watcher = {search_goes_on, tuning};
     result = mspringi_settle_watched(settled, &def, &rest, watcher);
-    if (result == MSPRING_ERROR_EQUILIBRIUM || result == MSPRING_ERROR_LIMIT) {
-        result = MSPRING_OK; // there is none
+    const bool is_unknown = result == MSPRING_ERROR_ARGUMENT && settled->areas.unringed > 0;
+    if (result == MSPRING_ERROR_EQUILIBRIUM || result == MSPRING_ERROR_LIMIT || is_unknown) {
+        result = MSPRING_OK; // there is none, or it has areas that settling does not take
     } else if (result != MSPRING_OK) {
         result = pass_on(tuning, NULL, settled, result);
     } else {

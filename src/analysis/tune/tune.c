@@ -316,10 +316,6 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
     const mspring_solver_def *settings = def->settings;
     uint32_t setting_count = def->setting_count;
     result = check_def(def, &network->message);
-    if (result == MSPRING_OK && network->areas.count > 0)
-        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                               "the network has %zu areas and angles, which the reference does not have",
-                               network->areas.count);
     if (result == MSPRING_OK && def->scene)
         result = check_scene(def->scene, def->dt, network);
     if (result == MSPRING_OK && !settings) {

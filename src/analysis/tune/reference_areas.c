@@ -1,0 +1,109 @@
+/// Areas and angle springs of the reference: their law (store/areas.h, angles.h), at its positions.
+#include <math.h>
+
+#include "analysis/tune/reference.h"
+#include "store/angles.h"
+
+typedef struct place {
+    double x, y;
+} place;
+
+static uint32_t particle_of(const mspringi_reference *r, const mspringi_area *area, uint32_t corner) {
+    return r->areas->corners[area->first + corner % area->count].particle;
+}
+
+// The way from one corner to another.
+static place way(const mspringi_reference *r, const mspringi_area *area, uint32_t from, uint32_t to) {
+    const uint32_t a = particle_of(r, area, from), b = particle_of(r, area, to);
+    return (place){r->x[b] - r->x[a], r->y[b] - r->y[a]};
+}
+
+static double square_of(place p) {
+    return p.x * p.x + p.y * p.y;
+}
+
+static double size_of(const mspringi_reference *r, const mspringi_area *area) {
+    place before = way(r, area, 0, 1);
+    double twice = 0.0;
+    if (area->is_angle) {
+        const place next = way(r, area, 1, 2);
+        const double u[2] = {before.x, before.y}, w[2] = {next.x, next.y};
+        return mspringi_angle_size_by(area, u, w);
+    }
+    for (uint32_t i = 2; i < area->count; ++i) {
+        const place here = way(r, area, 0, i);
+        twice += before.x * here.y - before.y * here.x;
+        before = here;
+    }
+    return 0.5 * twice;
+}
+
+// An arm turned to the left, over its square.
+static place turned(place arm) {
+    const double square = square_of(arm);
+    return square > 0.0 ? (place){-arm.y / square, arm.x / square} : (place){0.0, 0.0};
+}
+
+static place gradient_of(const mspringi_reference *r, const mspringi_area *area, uint32_t corner) {
+    if (!area->is_angle) {
+        const place across = way(r, area, corner + area->count - 1, corner + 1);
+        return (place){0.5 * across.y, -0.5 * across.x};
+    }
+    const place u = turned(way(r, area, 0, 1)), w = turned(way(r, area, 1, 2));
+    return corner == 0 ? u : corner == 2 ? w : (place){-u.x - w.x, -u.y - w.y};
+}
+
+// The next that is closed, from one on; NULL if there is none.
+static const mspringi_area *next_area(const mspringi_reference *r, size_t *i) {
+    const mspringi_areas *all = r->areas;
+    while (all && *i < all->count && all->list[*i].is_open)
+        ++*i;
+    return all && *i < all->count ? &all->list[(*i)++] : NULL;
+}
+
+void mspringi_reference_push_areas(const mspringi_reference *r, const double *vx, const double *vy) {
+    const mspringi_area *area;
+    for (size_t at = 0; (area = next_area(r, &at)) != NULL;) {
+        double rate = 0.0;
+        for (uint32_t i = 0; area->damping > 0.0f && i < area->count; ++i) {
+            const uint32_t p = particle_of(r, area, i);
+            const place g = gradient_of(r, area, i);
+            rate += g.x * vx[p] + g.y * vy[p];
+        }
+        const double pressure = mspringi_area_pressure(area, size_of(r, area)) - (double)area->damping * rate;
+        for (uint32_t i = 0; i < area->count; ++i) {
+            const uint32_t p = particle_of(r, area, i);
+            const place g = gradient_of(r, area, i);
+            r->ax[p] += r->inverse_mass[p] * pressure * g.x;
+            r->ay[p] += r->inverse_mass[p] * pressure * g.y;
+        }
+    }
+}
+
+// Of c g g' the row of a corner has blocks of the size c |g| |g'|, between roots of inverse masses.
+void mspringi_reference_weigh_areas(const mspringi_reference *r, double *stiffness, double *damping) {
+    const mspringi_area *area;
+    for (size_t at = 0; (area = next_area(r, &at)) != NULL;) {
+        const mspringi_corner *corners = r->areas->corners + area->first;
+        const double c = mspringi_area_stiffness(area, area->rest_area * (double)area->fill),
+                     pressure = fabs(mspringi_area_pressure(area, area->rest_area));
+        double all = 0.0;
+        for (uint32_t i = 0; i < area->count; ++i)
+            all += (double)corners[i].reach * sqrt(r->inverse_mass[corners[i].particle]);
+        for (uint32_t i = 0; i < area->count; ++i) {
+            const uint32_t p = corners[i].particle;
+            const double weight = (double)corners[i].reach * sqrt(r->inverse_mass[p]) * all;
+            stiffness[p] += (area->is_angle ? (double)area->stiffness : c) * weight +
+                            (area->is_angle ? 0.0 : 2.0 * pressure * r->inverse_mass[p]);
+            damping[p] += (double)area->damping * weight;
+        }
+    }
+}
+
+double mspringi_reference_area_energy(const mspringi_reference *r) {
+    const mspringi_area *area;
+    double sum = 0.0;
+    for (size_t at = 0; (area = next_area(r, &at)) != NULL;)
+        sum += mspringi_area_energy(area, size_of(r, area));
+    return sum;
+}
