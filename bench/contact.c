@@ -24,21 +24,24 @@ typedef struct subject {
     uint32_t settling;     ///< steps before what is measured
     uint32_t steps;        ///< that are measured
     mspring_solver solver; ///< not explicit: one substep
+    uint32_t substeps;     ///< 0: SUBSTEPS
 } subject;
 
 static const subject subjects[] = {
-    {"544x68, itself, nothing near", 544, 68, 1, 0, 0, true, false, 2, 10, MSPRING_SOLVER_EXPLICIT},
-    {"two 544x68, far apart", 544, 68, 2, 50, 0, false, false, 2, 8, MSPRING_SOLVER_EXPLICIT},
-    {"two 544x68, a tenth touches", 544, 68, 2, THICKNESS, 0.8, false, false, 32, 8, MSPRING_SOLVER_EXPLICIT},
-    {"two 544x68, one on the other", 544, 68, 2, THICKNESS, 0, false, false, 32, 4, MSPRING_SOLVER_EXPLICIT},
-    {"two 80x5, near each other", 80, 5, 2, THICKNESS + 0.2, 0, false, false, 0, 8, MSPRING_SOLVER_EXPLICIT},
-    {"two 80x5, dropped by 1 m", 80, 5, 2, THICKNESS + 1.0, 0, false, false, 0, 60, MSPRING_SOLVER_EXPLICIT},
-    {"two 80x5, at rest", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_EXPLICIT},
-    {"two 80x5, at rest, implicit", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_IMPLICIT},
-    {"two 80x5, at rest, direct", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_DIRECT},
-    {"544x68 high above a collider", 544, 68, 1, 50, 0, false, true, 2, 8, MSPRING_SOLVER_EXPLICIT},
-    {"80x5, at rest on a collider", 80, 5, 1, THICKNESS, 0, false, true, 300, 60, MSPRING_SOLVER_EXPLICIT},
-    {"10,000 loose, settling", 10000, 0, 1, 0, 0, false, false, 64, 4, MSPRING_SOLVER_EXPLICIT},
+    {"544x68, itself, nothing near", 544, 68, 1, 0, 0, true, false, 2, 10, MSPRING_SOLVER_EXPLICIT, 0},
+    {"two 544x68, far apart", 544, 68, 2, 50, 0, false, false, 2, 8, MSPRING_SOLVER_EXPLICIT, 0},
+    {"two 544x68, a tenth touches", 544, 68, 2, THICKNESS, 0.8, false, false, 32, 8, MSPRING_SOLVER_EXPLICIT, 0},
+    {"two 544x68, one on the other", 544, 68, 2, THICKNESS, 0, false, false, 32, 4, MSPRING_SOLVER_EXPLICIT, 0},
+    {"two 80x5, near each other", 80, 5, 2, THICKNESS + 0.2, 0, false, false, 0, 8, MSPRING_SOLVER_EXPLICIT, 0},
+    {"two 80x5, dropped by 1 m", 80, 5, 2, THICKNESS + 1.0, 0, false, false, 0, 60, MSPRING_SOLVER_EXPLICIT, 0},
+    {"two 80x5, at rest", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_EXPLICIT, 0},
+    {"two 80x5, at rest, implicit", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_IMPLICIT, 0},
+    {"two 80x5, at rest, direct", 80, 5, 2, THICKNESS, 0, false, false, 300, 60, MSPRING_SOLVER_DIRECT, 0},
+    {"544x68 high above a collider", 544, 68, 1, 50, 0, false, true, 2, 8, MSPRING_SOLVER_EXPLICIT, 0},
+    {"80x5, at rest on a collider", 80, 5, 1, THICKNESS, 0, false, true, 300, 60, MSPRING_SOLVER_EXPLICIT, 0},
+    {"10,000 loose, settling", 10000, 0, 1, 0, 0, false, false, 64, 4, MSPRING_SOLVER_EXPLICIT, 0},
+    {"the same in 8 substeps", 10000, 0, 1, 0, 0, false, false, 64, 4, MSPRING_SOLVER_EXPLICIT, 8},
+    {"the same in 4 substeps", 10000, 0, 1, 0, 0, false, false, 64, 4, MSPRING_SOLVER_EXPLICIT, 4},
 };
 
 static const bench_column columns[] = {
@@ -161,7 +164,7 @@ static mspring_result make_players(const subject *s, mspring_simd level, player 
         result = mspring_network_def_init(&def, sizeof def);
     def.simd_level = level;
     def.solver = s->solver;
-    def.substeps = s->solver == MSPRING_SOLVER_EXPLICIT ? SUBSTEPS : 1;
+    def.substeps = s->solver != MSPRING_SOLVER_EXPLICIT ? 1 : s->substeps > 0 ? s->substeps : SUBSTEPS;
     def.guard = MSPRING_GUARD_GROWTH;
     def.global_damping = BENCH_GLOBAL_DAMPING;
     def.gravity_y = s->gap > 0 || s->rows == 0 ? -9.8f : 0;

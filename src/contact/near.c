@@ -18,8 +18,11 @@
 /// So many times the way of a substep, for rows are made as far as two points can come towards each other in two.
 #define SUBSTEPS_AHEAD 8.0
 
-/// Pairs that may touch within so many substeps are looked at in each of them, and found anew after that.
-#define HOT_SUBSTEPS 8
+/// Pairs that may touch within so many substeps are looked at in each of them, and found anew after that. Where bodies
+/// are so fast that these would be all within a share of the thickness and more, it is fewer substeps.
+#define HOT_SUBSTEPS 8.0
+#define LEAST_HOT_SUBSTEPS 4.0
+#define HOT_SHARE 0.5
 
 /// An edge this many times as long as the mean is a long one.
 #define LONG_EDGE 4.0
@@ -95,26 +98,26 @@ static void look_at_points(const mspring_network *network, mspringi_pairs *pairs
     const mspringi_state *s = &network->state;
     const uint32_t *slot_of = network->topology.slot_of_particle;
     const uint32_t own = o->point_count - pairs->colliders.point_count;
+    const mspringi_active *k = &pairs->active; // in use within substeps only: here for the motion of points
     mean_motion mean = {0.0, 0.0, 0.0, 0.0};
     double speed = 0.0, moved = 0.0;
     for (uint32_t i = 0; i < own; ++i) {
         const mspring_id p = o->points[i];
         const uint32_t slot = slot_of[p];
-        pairs->x[p] = mspringi_x_of(s, slot);
-        pairs->y[p] = mspringi_y_of(s, slot);
-        mean.vx += (double)s->vx[slot];
-        mean.vy += (double)s->vy[slot];
-        mean.wx += pairs->x[p] - pairs->seen_x[p];
-        mean.wy += pairs->y[p] - pairs->seen_y[p];
+        const double x = mspringi_x_of(s, slot), y = mspringi_y_of(s, slot);
+        pairs->x[p] = x;
+        pairs->y[p] = y;
+        mean.vx += k->vx[i] = (double)s->vx[slot];
+        mean.vy += k->vy[i] = (double)s->vy[slot];
+        mean.wx += k->x[i] = x - pairs->seen_x[p];
+        mean.wy += k->y[i] = y - pairs->seen_y[p];
     }
     look_at_colliders(network, pairs, &mean);
     const double part = o->point_count > 0 ? 1.0 / (double)o->point_count : 0.0;
     mean.vx *= part, mean.vy *= part, mean.wx *= part, mean.wy *= part;
     for (uint32_t i = 0; i < own; ++i) {
-        const mspring_id p = o->points[i];
-        const uint32_t slot = slot_of[p];
-        const double ux = (double)s->vx[slot] - mean.vx, uy = (double)s->vy[slot] - mean.vy;
-        const double dx = pairs->x[p] - pairs->seen_x[p] - mean.wx, dy = pairs->y[p] - pairs->seen_y[p] - mean.wy;
+        const double ux = k->vx[i] - mean.vx, uy = k->vy[i] - mean.vy;
+        const double dx = k->x[i] - mean.wx, dy = k->y[i] - mean.wy;
         const double u = ux * ux + uy * uy, d = dx * dx + dy * dy;
         speed = u <= speed ? speed : u; // a number that is none stays
         moved = d <= moved ? moved : d;
@@ -383,6 +386,13 @@ static double way_of_substep(const mspringi_pairs *pairs) {
     return MSPRINGI_FASTER * h * pairs->speed + MSPRINGI_DRIFT * pairs->thickness * h / pairs->dt;
 }
 
+static double hot_substeps(const mspringi_pairs *pairs) {
+    const double substeps = HOT_SHARE * pairs->thickness / (2.0 * way_of_substep(pairs));
+    return substeps > HOT_SUBSTEPS         ? HOT_SUBSTEPS
+           : substeps > LEAST_HOT_SUBSTEPS ? floor(substeps)
+                                           : LEAST_HOT_SUBSTEPS;
+}
+
 // For how many substeps the list answers for all that can touch.
 static uint32_t count_valid(const mspringi_pairs *pairs) {
     const double way = way_of_substep(pairs);
@@ -393,7 +403,7 @@ static uint32_t count_valid(const mspringi_pairs *pairs) {
 
 // Find the pairs that are hot, and the nearest one.
 static void look_at_pairs(mspringi_pairs *pairs) {
-    const double most = pairs->thickness + 2.0 * HOT_SUBSTEPS * way_of_substep(pairs) +
+    const double most = pairs->thickness + 2.0 * hot_substeps(pairs) * way_of_substep(pairs) +
                         4.0 * MSPRINGI_FASTER * (double)pairs->h * pairs->speed;
     pairs->nearest = pairs->reach;
     pairs->hot_count = 0;
@@ -419,7 +429,8 @@ bool mspringi_near_renew(const mspring_network *network, mspringi_pairs *pairs) 
         return false;
     look_at_pairs(pairs);
     const uint32_t valid = count_valid(pairs);
-    pairs->valid = valid < HOT_SUBSTEPS ? valid : HOT_SUBSTEPS;
+    const uint32_t hot = (uint32_t)hot_substeps(pairs);
+    pairs->valid = valid < hot ? valid : hot;
     return true;
 }
 
