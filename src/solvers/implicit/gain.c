@@ -11,8 +11,8 @@
 #include "solvers/implicit/terms.h"
 
 /// Energy that bodies that touch may have more than before, as a part of what they had, and of what they fall by in
-/// the substep.
-#define DRIVEN_SHARE 1e-4
+/// the substep. (With 1e-4 such gains added up to 0.4 % in some thousand substeps.)
+#define DRIVEN_SHARE 1e-5
 #define DRIVEN_FALL 1.0
 
 // Kinetic energy that a component is left with.

@@ -169,8 +169,8 @@ static void take_halves(mspringi_substep_of *substep, uint32_t halvings);
 static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    const bool watches = substep->watches || mspringi_bodies_are_near(network);
-    const bool may_halve = tries <= MSPRINGI_MOST_HALVINGS;
+    const bool are_near = mspringi_bodies_are_near(network), watches = substep->watches || are_near;
+    const bool may_halve = tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS);
     if (tries == 0)
         n->holding = MSPRINGI_HOLD_ALL;
     if (watches)
