@@ -8,6 +8,7 @@
 #include "base/mix.h"
 #include "contact/grips.h"
 #include "network/job.h"
+#include "network/level.h"
 #include "sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
 #include "solvers/explicit/halo.h"
@@ -269,6 +270,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                           &network->memory, &network->message);
     if (result != MSPRING_OK)
         return result;
+    if (def->simd_level == MSPRING_SIMD_AUTO)
+        network->kernels = mspringi_kernels_of(mspringi_level_for(&network->topology, network->kernels->level));
     look_at_springs(builder, &damped, &relative);
     damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
     relative = relative || (def->flags & MSPRING_NETWORK_RESERVE_RELATIVE);
