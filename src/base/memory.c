@@ -21,6 +21,9 @@ typedef struct mspringi_block {
     size_t size; ///< with this header, which takes one alignment unit
 } block;
 
+/// Elements of the smallest array that grows: a network of a few particles has a few rows.
+#define FEWEST_ELEMENTS 8
+
 #if !defined(MSPRINGI_FREESTANDING)
 
 static void *default_alloc(size_t size, size_t alignment, void *user) {
@@ -193,8 +196,8 @@ bool mspringi_grow(mspringi_memory *memory, void **array, size_t *capacity, size
     size_t target = *capacity < SIZE_MAX / 2 ? *capacity * 2 : SIZE_MAX;
     if (target < needed)
         target = needed;
-    if (target < 64)
-        target = 64;
+    if (target < FEWEST_ELEMENTS)
+        target = FEWEST_ELEMENTS;
     void *grown = mspringi_alloc(memory, target, size);
     if (!grown)
         return false;

@@ -110,7 +110,8 @@ void mspringi_field_clear(const mspring_network *network, mspringi_field field) 
 }
 
 mspring_result mspringi_carry_reserve(mspring_network *network) {
-    const uint32_t rows = network->depth * mspringi_tasks_concurrency(network->tasks);
+    const uint32_t rows =
+        mspringi_explicit_carries(&network->topology, network->depth) * mspringi_tasks_concurrency(network->tasks);
     if (network->carry && network->carry_rows >= rows)
         return mspringi_halos_reserve(network);
     const size_t values = (size_t)2 * rows * network->topology.carry_blocks * MSPRINGI_WIDTH;

@@ -445,7 +445,7 @@ struct mspring_network {
                          ///< id first; NULL if none was
     bool keeps_none;     ///< all springs were seen to be relative, and stay so
     uint32_t depth;      ///< substeps that may be swept in one pass over the lattice rows
-    uint32_t carry_rows; ///< depth, for each worker
+    uint32_t carry_rows; ///< for each worker as many as there are substeps under way
     float *carry;        ///< [carry_rows] forces on the row above, all x and then all y of each
     mspringi_halos halos;
 

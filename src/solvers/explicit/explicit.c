@@ -20,7 +20,7 @@
 #define FAR_CACHE_BYTES ((size_t)4 << 20)
 #define FEW_SUBSTEPS 4u
 
-/// Most substeps in one pass: each needs a carry row of its own.
+/// Most substeps in one pass: each that is under way needs a carry row of its own.
 #define DEEPEST 16
 
 /// Springs of the web times substeps from which more than one worker is worth it.
@@ -59,6 +59,14 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
         return 1;
     const uint32_t near_depth = depth_within(topology, parts, NEAR_CACHE_BYTES);
     return near_depth > FEW_SUBSTEPS ? near_depth : depth_within(topology, parts, FAR_CACHE_BYTES);
+}
+
+// One more than are under way, so that the processor can begin the next substep of a small network before the last row
+// of this one is done.
+uint32_t mspringi_explicit_carries(const mspringi_topology *topology, uint32_t depth) {
+    const uint32_t enough =
+        topology->wavefront_strips == 0 ? 1 : (topology->wavefront_strips - 1) / topology->skew + 2;
+    return depth < enough ? depth : enough;
 }
 
 // If the substeps are a whole step, have the first one keep the state and the last one look at it.
@@ -161,13 +169,14 @@ static void make_pass(turn *t) {
     const mspring_network *network = wavefront->network;
     const mspringi_shares *shares = &wavefront->shares;
     const uint32_t count = mspringi_shares_substeps(shares, t->pass), skew = shares->skew;
+    const uint32_t carries = mspringi_explicit_carries(&network->topology, network->depth);
     mspringi_substep substeps[DEEPEST];
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t number = t->pass * shares->group + i;
         substeps[i] = mspringi_substep_prepare(network, wavefront->h, wavefront->base, number, wavefront->count,
-                                               wavefront->web ? 0 : t->share * network->depth + i);
+                                               wavefront->web ? 0 : t->share * carries + i % carries);
         mark_ends(wavefront, &substeps[i], number, watch);
     }
     const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, count - 1) + (count - 1) * skew;

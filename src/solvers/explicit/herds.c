@@ -5,6 +5,7 @@
 
 #include "contact/floor.h"
 #include "sleep/sleep.h"
+#include "solvers/explicit/explicit.h"
 #include "solvers/explicit/strip.h"
 #include "store/precise.h"
 
@@ -139,8 +140,8 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
     const uint32_t begin = (uint32_t)((uint64_t)row->span_count * index / herds->workers),
                    end = (uint32_t)((uint64_t)row->span_count * (index + 1) / herds->workers);
     // Each worker has a carry row of its own, which it leaves as it found it.
-    const mspringi_substep substep =
-        mspringi_substep_prepare(network, herds->h, herds->base, 0, 1, index * network->depth);
+    const mspringi_substep substep = mspringi_substep_prepare(network, herds->h, herds->base, 0, 1,
+                                                              index * mspringi_explicit_carries(t, network->depth));
     (void)worker;
     for (const mspringi_span *span = spans + begin; span < spans + end; ++span)
         sweep_span(herds, &substep.sweep, span, index);
