@@ -233,7 +233,7 @@ errors() {
   refused 1 'net.msn' "$network"
 
   # Files of other kinds, by name or by what is in them.
-  for other in 'cart.truck|Rigs of Rods|load --write' 'car.jbeam|BeamNG' 'hull.obj|Wavefront' 'ship.shp2|PNG image' \
+  for other in 'cart.truck|Rigs of Rods|load --write' 'car.jbeam|BeamNG' 'hull.obj|Wavefront' 'ship.shp2|ship.shp2' \
     'photo.jpg|save it as PNG' 'all.zip|unpack'; do
     lines 'nothing of ours'
     mv "$network" "$scratch/${other%%|*}"
@@ -543,8 +543,12 @@ load() {
     echo 'skipped: ships, which this build does not read'
   else
     settles 0.5 "$raft" --materials "$json"
-    refused 1 'relative springs' "$raft" --materials "$json" --write "$scratch/raft.msn"
+    succeed "$raft" --materials "$json" --write "$scratch/raft.msn"
+    head -n 1 "$scratch/raft.msn" | grep -q '^22 [0-9]* relative$' || complain 'raft.msn does not say relative'
     reports '22 particles, 13200 kg'
+    succeed "$source/examples/data/boat.shp2" --substeps 20 --dock
+    reports 'ropes 4'
+    reports 'a colour of no material 1'
     sed 's/138 90 43/139 90 43/' "$raft" >"$scratch/odd.ppm"
     refused 1 '#8B5A2B (22 pixels, first in column 1 of row 0)' "$scratch/odd.ppm" --materials "$json"
     sed 's/"strength": 0.05,/"strength" 0.05,/' "$json" >"$scratch/broken.json"

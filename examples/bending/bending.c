@@ -10,6 +10,7 @@
 #include "common/progress.h"
 #include "draw/film.h"
 #include "draw/network_picture.h"
+#include "loaders/structure.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -20,7 +21,7 @@ enum { PICTURE_WIDTH = 1600, PICTURE_HEIGHT = 1200 };
 
 // One run, from the scene to the pictures.
 typedef struct bending_run {
-    const bending_options *options;
+    bending_options *options;
     scene scene;
     mspring_network *network;
     network_shape shape;
@@ -36,11 +37,34 @@ static bool fail(const char *message) {
     return false;
 }
 
+static bool load_ship(bending_run *run, scene_error *error) {
+    structure ship;
+    structure_options options = structure_options_default();
+    options.materials = run->options->materials;
+    options.dock = true;
+    if (run->options->substeps > 0)
+        options.substeps = run->options->substeps;
+    if (!structure_load(run->options->input, &options, &ship, error))
+        return false;
+    for (uint32_t i = 0; i < ship.report.ignored.entry_count; i++)
+        fprintf(stderr, "bending: left out: %u %s\n", ship.report.ignored.entries[i].count,
+                ship.report.ignored.entries[i].name);
+    for (uint32_t i = 0; i < ship.report.notes.entry_count; i++)
+        fprintf(stderr, "bending: %u %s\n", ship.report.notes.entries[i].count, ship.report.notes.entries[i].name);
+    const bool ok = structure_scene(&ship, run->options->input, &run->scene, error);
+    if (run->options->substeps == 0 && run->options->solver == MSPRING_SOLVER_EXPLICIT)
+        run->options->substeps = ship.substeps;
+    structure_free(&ship);
+    return ok;
+}
+
 static bool load_scene(bending_run *run) {
-    const bending_options *options = run->options;
+    bending_options *options = run->options;
     scene_error error = {""};
     bool ok = false;
-    if (scene_file_is_image(options->input)) {
+    if (structure_is_ship(options->input)) {
+        ok = load_ship(run, &error);
+    } else if (scene_file_is_image(options->input)) {
         scene_materials materials = {0};
         ok = options->materials ? scene_materials_read(options->materials, &materials, &error)
                                 : scene_materials_builtin(&materials, &error);
@@ -49,6 +73,8 @@ static bool load_scene(bending_run *run) {
     } else {
         ok = scene_network_file(options->input, &options->scene, &run->scene, &error);
     }
+    if (options->substeps == 0)
+        options->substeps = options->solver == MSPRING_SOLVER_EXPLICIT ? 30 : 1;
     return ok || fail(error.text);
 }
 

@@ -17,20 +17,24 @@ static const char help[] =
     "usage: bending [options] FILE\n"
     "\n"
     "FILE is an image, each pixel a particle, or a plain text network (.msn, .txt): a line `P S` with the numbers\n"
-    "of particles and springs, P lines `x y mass pinned probe`, S lines `a b rest stiffness damping`.\n"
+    "of particles and springs, P lines `x y mass pinned probe`, S lines `a b rest stiffness damping`. A line\n"
+    "`P S relative` says that stiffness and damping are fractions. A ship of Floating Sandbox (.shp, .shp2) "
+    "stands\n"
+    "on its lowest row.\n"
     "Without a probe, what is measured is how far the mean of all particles comes down.\n"
     "In images #0A0A0A is pinned iron, #216CCF iron with the probe, #808090 iron, white nothing, unless\n"
     "--materials gives another table.\n"
     "\n"
     "  --materials FILE   colours: CSV with the header\n"
     "                     colour,name,mass,stiffness,damping,break_strain,pinned,probe\n"
+    "                     of a ship the game's JSON (default: structural_materials.json beside it)\n"
     "  --stiffness X      of all springs, N/m (default: that of the file)\n"
     "  --damping X        of all springs, N s/m (default: that of the file)\n"
     "  --relative         stiffness and damping are fractions of what an explicit substep bears: those given by\n"
     "                     --stiffness and --damping, or each material's in the CSV file\n"
     "  --dt S             length of a step, s (default 1/64)\n"
     "  --solver NAME      explicit, implicit or direct (default explicit)\n"
-    "  --substeps N       substeps in a step (default 30; of the implicit and the direct solver 1)\n"
+    "  --substeps N       substeps in a step (default 30, of ships 40; implicit and direct 1)\n"
     "  --iterations N     of the implicit solver in a substep (default 8)\n"
     "  --steps N          give up after so many steps (default 2000000)\n"
     "  --at-once          find where it rests without stepping there, by mspring_network_settle()\n"
@@ -202,8 +206,6 @@ static bool read_arguments(int count, char **arguments, bending_options *options
         return wrong("--iterations is of the implicit solver: add --solver implicit");
     if (options->at_once && options->solver != MSPRING_SOLVER_EXPLICIT)
         return wrong("--at-once steps with no solver: leave --solver out");
-    if (options->substeps == 0)
-        options->substeps = options->solver == MSPRING_SOLVER_EXPLICIT ? 30 : 1;
     return true;
 }
 

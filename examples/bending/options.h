@@ -8,12 +8,12 @@
 #include "scenes/scene.h"
 
 typedef struct bending_options {
-    const char *input;     ///< image or network file
-    const char *materials; ///< CSV file, or NULL for the built-in table
+    const char *input;     ///< image, ship or network file
+    const char *materials; ///< CSV file; for ships JSON; NULL: the built-in table, or that beside the ship
     scene_options scene;
     double dt;
     mspring_solver solver;
-    uint32_t substeps;
+    uint32_t substeps;   ///< 0: not given
     uint32_t iterations; ///< of the implicit solver; 0: as many as the library takes by itself
     uint64_t steps;      ///< most steps
     float gravity;       ///< m/s^2 downwards

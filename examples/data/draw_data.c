@@ -1,7 +1,8 @@
 /// @file draw_data.c
-/// Draw the images in this folder: three bars and a ship.
+/// Draw the images in this folder: three bars, a ship, and a boat in the formats of Floating Sandbox.
 ///
 /// SPDX-License-Identifier: MIT
+#include "data/boat.h"
 #include "data/pixels.h"
 #include "data/ship.h"
 #include "draw/png.h"
@@ -68,6 +69,26 @@ static bool draw_ship(const char *folder, bool as_ppm, draw_error *error) {
     return ok;
 }
 
+static bool draw_boat(const char *folder, draw_error *error) {
+    canvas cells = {0}, ropes = {0};
+    char path[1024];
+    bool ok = canvas_make(&cells, BOAT_WIDTH, BOAT_HEIGHT, PIXELS_EMPTY) &&
+              canvas_make(&ropes, BOAT_WIDTH, BOAT_HEIGHT, PIXELS_EMPTY);
+    if (ok) {
+        boat_draw(&cells);
+        boat_draw_ropes(&ropes);
+        snprintf(path, sizeof path, "%s/boat.shp2", folder);
+        ok = write_image(&cells, folder, "boat_structure", false, error) &&
+             write_image(&ropes, folder, "boat_ropes", false, error) && boat_write_sections(&cells, path, error) &&
+             boat_write_texts(folder, error);
+    } else {
+        snprintf(error->text, sizeof error->text, "out of memory");
+    }
+    canvas_free(&cells);
+    canvas_free(&ropes);
+    return ok;
+}
+
 int main(int count, char **arguments) {
     bool as_ppm = count == 3 && strcmp(arguments[1], "--ppm") == 0;
     if (count != 2 && !as_ppm) {
@@ -78,7 +99,8 @@ int main(int count, char **arguments) {
     const char *folder = arguments[count - 1];
     draw_error error = {""};
     if (draw_bar(80, 5, folder, as_ppm, &error) && draw_bar(544, 68, folder, as_ppm, &error) &&
-        draw_bar(1800, 5, folder, as_ppm, &error) && draw_ship(folder, as_ppm, &error))
+        draw_bar(1800, 5, folder, as_ppm, &error) && draw_ship(folder, as_ppm, &error) &&
+        (as_ppm || draw_boat(folder, &error)))
         return EXIT_SUCCESS;
     fprintf(stderr, "%s: %s\n", arguments[0], error.text);
     return EXIT_FAILURE;

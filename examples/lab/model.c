@@ -88,6 +88,8 @@ static void make_stable(lab_model *model) {
 static void choose_solvers(const lab_model *model, const lab_stage *stage, lab_solver chosen[2]) {
     for (int i = 0; i < 2; i++) {
         chosen[i] = model->solvers[i];
+        if (stage->substeps > 0 && chosen[i].solver == MSPRING_SOLVER_EXPLICIT)
+            chosen[i].substeps = stage->substeps;
         if (stage->collides && chosen[i].solver != MSPRING_SOLVER_EXPLICIT)
             chosen[i].solver = MSPRING_SOLVER_EXPLICIT, chosen[i].substeps = 60;
     }

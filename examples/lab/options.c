@@ -14,7 +14,7 @@
 static void print_help(const char *program) {
     printf("usage: %s [OPTIONS] [SCENE]\n\n"
            "SCENE is ship (the default), bar, beam, bridge, net, rope, graph, ships,\n"
-           "pile, jellies, an image or a text network.\n\n"
+           "pile, jellies, an image, a ship (.shp, .shp2), a vehicle or a text network.\n\n"
            "  --headless         no window: play the script, as fast as it goes\n"
            "  --script FILE      play actions from a file (with a window, too)\n"
            "  --record FILE      write the actions of mouse and keys as such a file\n"

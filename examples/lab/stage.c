@@ -58,7 +58,8 @@ static bool read_structure(lab_stage *made, const char *path, bool relative, sce
     const structure_options options = structure_options_default();
     if (!structure_load(path, &options, &read, error))
         return false;
-    for (uint32_t i = 0; relative && i < read.spring_count; i++) {
+    made->substeps = read.substeps;
+    for (uint32_t i = 0; relative && read.substeps == 0 && i < read.spring_count; i++) {
         read.springs[i].flags = MSPRING_SPRING_RELATIVE;
         read.springs[i].stiffness = READY_RELATIVE_STIFFNESS;
         read.springs[i].damping = READY_RELATIVE_DAMPING;
@@ -69,7 +70,8 @@ static bool read_structure(lab_stage *made, const char *path, bool relative, sce
 }
 
 static bool read_file(lab_stage *made, const char *path, bool relative, scene_error *error) {
-    if (structure_format_of(path) != STRUCTURE_UNKNOWN)
+    const structure_format format = structure_format_of(path);
+    if (format != STRUCTURE_UNKNOWN && (format != STRUCTURE_SHIP || structure_is_ship(path)))
         return read_structure(made, path, relative, error);
     const scene_options options = ready_options(relative, true);
     return scene_file_is_image(path) ? read_image(made, path, relative, error)
@@ -155,6 +157,9 @@ static bool read_network(lab_stage *made, const mspring_network *network) {
         mspring_network_get(network, MSPRING_DAMPING, 0, springs, made->damping, 1) == MSPRING_OK;
     for (uint32_t i = 0; ok && i < particles; i++)
         made->pinned[i] = view.inverse_mass[view.slot_of_particle[i]] == 0;
+    uint32_t flags = 0;
+    if (ok && springs > 0 && mspring_network_get_spring_flags(network, 0, 1, &flags, 1) == MSPRING_OK)
+        made->relative = made->relative || (flags & MSPRING_SPRING_RELATIVE) != 0;
     for (uint32_t i = 0; ok && i < springs; i++)
         made->has_damping = made->has_damping || made->damping[i] > 0;
     return ok;

@@ -25,6 +25,7 @@ typedef struct lab_stage {
     double floor_y;   ///< where a floor lies, m
     mspring_id probe; ///< the scene's, or one far away from all pins
     bool relative;
+    uint32_t substeps; ///< explicit ones that a file was made for; 0: any that are stable
     bool is_ready;  ///< one of the ready scenes
     bool collides;  ///< its bodies are there to meet
     double gravity; ///< m/s^2, down, that it begins with

@@ -16,11 +16,13 @@ static const char *const usage =
     "Load a structure from another program's file, as particles and springs in a plane.\n"
     "\n"
     "  load [options] FILE      .truck, .trailer (Rigs of Rods), .jbeam (BeamNG), .obj (its lines),\n"
-    "                           or an image with --materials\n"
+    "                           .shp, .shp2 (Floating Sandbox), or an image with --materials\n"
     "\n"
     "  --plane xy|xz|yz         which axes are seen, the second pointing up (the format's side view)\n"
     "  --merge METRES           nodes no farther apart in the plane are one (0.001)\n"
-    "  --materials FILE         Floating Sandbox's structural materials, JSON\n"
+    "  --materials FILE         Floating Sandbox's materials (structural_materials.json beside the ship)\n"
+    "  --substeps N             a ship's, in 1/64 s: they tell how fragile it is (40)\n"
+    "  --dock                   pin a ship's lowest row, and leave out what does not stand on it\n"
     "  --part NAME              of a .jbeam with several parts\n"
     "  --no-wheels              leave wheels out (Rigs of Rods)\n"
     "  --mass KG, --stiffness N/M, --damping NS/M    of an .obj: its vertices, its lines (1, 1e5, 100)\n"
@@ -41,6 +43,17 @@ static bool parse_value(const char *option, const char *text, double *value) {
     if (number_parse(span, value))
         return true;
     fprintf(stderr, "load: %s needs a number (load --help)\n", option);
+    return false;
+}
+
+static bool parse_substeps(const char *text, uint32_t *substeps) {
+    uint64_t count = 0;
+    text_span span = {text ? text : "", text ? strlen(text) : 0};
+    if (number_parse_count(span, &count) && count >= 1 && count <= 10000) {
+        *substeps = (uint32_t)count;
+        return true;
+    }
+    fprintf(stderr, "load: --substeps is 1 to 10000 (load --help)\n");
     return false;
 }
 
@@ -83,6 +96,8 @@ static bool parse_option(const char *option, const char *value, arguments *parse
     };
     if (strcmp(option, "--plane") == 0)
         return parse_plane(value, &parsed->options.plane);
+    if (strcmp(option, "--substeps") == 0)
+        return parse_substeps(value, &parsed->options.substeps);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         if (strcmp(option, numbers[i].name) == 0)
             return parse_value(option, value, numbers[i].value);
@@ -103,6 +118,8 @@ static bool parse_arguments(int count, char **words, arguments *parsed) {
         }
         if (strcmp(words[i], "--settle") == 0) {
             parsed->settles = true;
+        } else if (strcmp(words[i], "--dock") == 0) {
+            parsed->options.dock = true;
         } else if (strcmp(words[i], "--no-wheels") == 0) {
             parsed->options.wheels = false;
         } else if (words[i][0] == '-') {
@@ -166,6 +183,7 @@ int main(int count, char **words) {
     scene built;
     if (ok && (ok = structure_scene(&loaded, given.file, &built, &error))) {
         given.settle.picture = given.picture;
+        given.settle.substeps = loaded.substeps;
         ok = (!given.picture || settle_draw(&built, given.picture, &error)) &&
              (!given.settles || (settle_run(&built, MSPRING_SOLVER_EXPLICIT, &given.settle, &error) &&
                                  settle_run(&built, MSPRING_SOLVER_IMPLICIT, &given.settle, &error)));

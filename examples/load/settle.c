@@ -95,7 +95,7 @@ static box bounds_of(const mspring_network *network) {
     return b;
 }
 
-static bool start(mspring_network *network, mspring_solver solver, scene_error *error) {
+static bool start(mspring_network *network, mspring_solver solver, uint32_t substeps, scene_error *error) {
     const double plane[4] = {0, bounds_of(network).bottom, 0, 1};
     mspring_floor_def ground;
     mspring_solver_def def;
@@ -107,7 +107,9 @@ static bool start(mspring_network *network, mspring_solver solver, scene_error *
     def.solver = solver;
     def.substeps = IMPLICIT_SUBSTEPS;
     mspring_result result = mspring_network_set_floor(network, &ground);
-    if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT)
+    if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT && substeps > 0)
+        def.substeps = substeps;
+    else if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT)
         result = mspring_network_suggest_substeps(network, frame, safety, &def.substeps);
     if (result == MSPRING_OK)
         result = mspring_network_set_solver(network, &def);
@@ -155,7 +157,7 @@ bool settle_run(scene *settled, mspring_solver solver, const settle_request *req
     mspring_result result = mspring_network_create(settled->builder, &def, &network);
     if (result != MSPRING_OK)
         return scene_fail_builder(error, "cannot make the network", settled->builder, result);
-    bool ok = start(network, solver, error) && shape_of(network, &shape, error);
+    bool ok = start(network, solver, request->substeps, error) && shape_of(network, &shape, error);
     if (ok) {
         ok = let_down(network, name, request, error);
         if (ok && request->picture) {

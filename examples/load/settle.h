@@ -9,6 +9,7 @@
 
 typedef struct settle_request {
     double seconds;
+    uint32_t substeps;   ///< of the explicit solver in 1/64 s; 0: as many as are stable
     const char *picture; ///< path to make the pictures' names of, or NULL
 } settle_request;
 

@@ -38,6 +38,8 @@ typedef struct model {
     size_t node_count, node_capacity, beam_count, beam_capacity;
     structure_plane side; // which plane shows it from the side
     bool relative;        // stiffness and damping are fractions
+    bool keeps_apart;     // nodes that coincide do not become one
+    uint32_t substeps;    // as of structure
     tally used, ignored, notes;
 } model;
 

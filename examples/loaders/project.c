@@ -53,7 +53,7 @@ static void merge_nodes(const model *from, const int axes[2], place_table *table
         const model_node *node = &from->nodes[i];
         double x = node->at[axes[0]];
         double y = node->at[axes[1]];
-        uint32_t particle = find_particle(table, made, x, y);
+        uint32_t particle = from->keeps_apart ? MSPRING_NONE : find_particle(table, made, x, y);
         if (particle == MSPRING_NONE) {
             particle = made->particle_count++;
             mspring_particle_def *def = &made->particles[particle];
@@ -175,6 +175,7 @@ bool model_project(const model *from, structure_plane plane, double merge_distan
     if (plane == STRUCTURE_PLANE_SIDE)
         plane = from->side;
     made.report.plane = plane;
+    made.substeps = from->substeps;
     made.report.nodes = (uint32_t)from->node_count;
     made.report.beams = (uint32_t)from->beam_count;
     made.report.used = from->used;

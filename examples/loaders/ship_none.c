@@ -5,15 +5,25 @@
 #include "loaders/structure.h"
 #include "scenes/internal.h"
 
-bool structure_parse_ship(const void *image, size_t image_length, const char *name, const char *materials,
-                          size_t materials_length, const char *materials_name, structure *out, scene_error *error) {
-    (void)image;
-    (void)image_length;
-    (void)materials;
-    (void)materials_length;
-    (void)out;
+static bool fail(const structure_bytes *file, scene_error *error) {
     return scene_fail(error,
-                      "%.150s: built without cJSON, so %.150s cannot be read: install libcjson-dev and configure "
-                      "the build anew",
-                      name, materials_name);
+                      "built without cJSON, so %.150s cannot be read: install libcjson-dev and configure the build "
+                      "anew",
+                      file->name);
+}
+
+bool structure_ship_images(const structure_bytes *file, char cells[STRUCTURE_NAME_SIZE],
+                           char ropes[STRUCTURE_NAME_SIZE], scene_error *error) {
+    cells[0] = ropes[0] = 0;
+    return fail(file, error);
+}
+
+bool structure_parse_ship(const structure_bytes *ship, const structure_bytes *ropes,
+                          const structure_bytes *materials, const structure_options *options, structure *out,
+                          scene_error *error) {
+    (void)ship;
+    (void)ropes;
+    (void)options;
+    (void)out;
+    return fail(materials, error);
 }

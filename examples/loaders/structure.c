@@ -19,6 +19,7 @@ structure_options structure_options_default(void) {
         .mass = 1,
         .stiffness = 1e5,
         .damping = 100,
+        .substeps = 40,
     };
     return options;
 }
@@ -52,6 +53,8 @@ structure_format structure_format_of(const char *path) {
         {"fixed", STRUCTURE_RIGS_OF_RODS},
         {"jbeam", STRUCTURE_JBEAM},
         {"obj", STRUCTURE_OBJ},
+        {"shp", STRUCTURE_SHIP},
+        {"shp2", STRUCTURE_SHIP},
         {"png", STRUCTURE_SHIP},
         {"bmp", STRUCTURE_SHIP},
         {"ppm", STRUCTURE_SHIP},
@@ -106,15 +109,70 @@ bool structure_parse(structure_format format, const char *text, size_t length, c
     return ok;
 }
 
-static bool load_ship(const char *path, const char *image, size_t length, const structure_options *options,
-                      structure *out, scene_error *error) {
-    char *materials = NULL;
-    size_t materials_length = 0;
-    if (!file_read(options->materials, &materials, &materials_length, error))
+static bool read_bytes(const char *path, structure_bytes *made, scene_error *error) {
+    char *bytes = NULL;
+    if (!file_read(path, &bytes, &made->length, error))
         return false;
-    bool ok =
-        structure_parse_ship(image, length, path, materials, materials_length, options->materials, out, error);
-    free(materials);
+    made->bytes = bytes;
+    made->name = path;
+    return true;
+}
+
+static bool has_ending(const char *path, const char *ending) {
+    const size_t length = strlen(path), last = strlen(ending);
+    for (size_t i = 0; i < last; i++)
+        if (length < last || tolower((unsigned char)path[length - last + i]) != ending[i])
+            return false;
+    return true;
+}
+
+bool structure_is_ship(const char *path) {
+    return has_ending(path, ".shp") || has_ending(path, ".shp2");
+}
+
+// The path of a file beside another one.
+static bool beside(const char *path, const char *name, char made[1024], scene_error *error) {
+    size_t folder = 0;
+    for (size_t i = 0; path[i]; i++)
+        if (path[i] == '/' || path[i] == '\\')
+            folder = i + 1;
+    if (folder + strlen(name) >= 1024)
+        return scene_fail(error, "%.200s: its path is too long", path);
+    memcpy(made, path, folder);
+    memcpy(made + folder, name, strlen(name) + 1);
+    return true;
+}
+
+// A ship whose images are files of their own.
+static bool load_images(const structure_bytes *file, const structure_bytes *materials,
+                        const structure_options *options, structure *out, scene_error *error) {
+    char names[2][STRUCTURE_NAME_SIZE], paths[2][1024];
+    structure_bytes cells = {0}, ropes = {0};
+    bool ok = structure_ship_images(file, names[0], names[1], error) &&
+              beside(file->name, names[0], paths[0], error) && beside(file->name, names[1], paths[1], error) &&
+              read_bytes(paths[0], &cells, error) && (!names[1][0] || read_bytes(paths[1], &ropes, error));
+    ok = ok && structure_parse_ship(&cells, ropes.bytes ? &ropes : NULL, materials, options, out, error);
+    free((void *)cells.bytes);
+    free((void *)ropes.bytes);
+    return ok;
+}
+
+static bool load_ship(const structure_bytes *file, const structure_options *options, structure *out,
+                      scene_error *error) {
+    char path[1024];
+    structure_bytes materials = {0};
+    if (!options->materials && !beside(file->name, STRUCTURE_SHIP_MATERIALS, path, error))
+        return false;
+    if (!read_bytes(options->materials ? options->materials : path, &materials, error))
+        return scene_fail(
+            error,
+            "%.200s: the game's materials explain its colours: give them, or put " STRUCTURE_SHIP_MATERIALS
+            " beside it",
+            file->name);
+    const bool ok = has_ending(file->name, ".shp")
+                        ? load_images(file, &materials, options, out, error)
+                        : structure_parse_ship(file, NULL, &materials, options, out, error);
+    free((void *)materials.bytes);
     return ok;
 }
 
@@ -123,17 +181,17 @@ bool structure_load(const char *path, const structure_options *options, structur
     if (format == STRUCTURE_UNKNOWN)
         return scene_fail(error,
                           "%.200s: its name does not tell what it is: .truck, .trailer and others of Rigs of Rods, "
-                          ".jbeam, .obj, or an image with a materials file can be read",
+                          ".jbeam, .obj, and with a materials file .shp, .shp2 or an image can be read",
                           path);
-    if (format == STRUCTURE_SHIP && !options->materials)
+    if (format == STRUCTURE_SHIP && !options->materials && !structure_is_ship(path))
         return scene_fail(error, "%.200s: an image needs the materials file that explains its colours", path);
-    char *text = NULL;
-    size_t length = 0;
-    if (!file_read(path, &text, &length, error))
+    structure_bytes file = {0};
+    if (!read_bytes(path, &file, error))
         return false;
-    bool ok = format == STRUCTURE_SHIP ? load_ship(path, text, length, options, out, error)
-                                       : structure_parse(format, text, length, path, options, out, error);
-    free(text);
+    bool ok = format == STRUCTURE_SHIP
+                  ? load_ship(&file, options, out, error)
+                  : structure_parse(format, file.bytes, file.length, path, options, out, error);
+    free((void *)file.bytes);
     return ok;
 }
 
@@ -168,13 +226,16 @@ bool structure_scene(const structure *from, const char *name, scene *out, scene_
 }
 
 bool structure_write(const structure *from, const char *path, scene_error *error) {
+    uint32_t relative = 0;
     for (uint32_t i = 0; i < from->spring_count; i++)
-        if (from->springs[i].flags & MSPRING_SPRING_RELATIVE)
-            return scene_fail(error, "%.200s: a text network cannot hold relative springs", path);
+        relative += (from->springs[i].flags & MSPRING_SPRING_RELATIVE) != 0;
+    if (relative > 0 && relative < from->spring_count)
+        return scene_fail(error, "%.200s: in a text network all springs are relative, or none: here %u of %u are",
+                          path, relative, from->spring_count);
     FILE *stream = fopen(path, "w");
     if (!stream)
         return scene_fail(error, "cannot write %.200s: %s", path, strerror(errno));
-    fprintf(stream, "%u %u\n", from->particle_count, from->spring_count);
+    fprintf(stream, "%u %u%s\n", from->particle_count, from->spring_count, relative ? " relative" : "");
     for (uint32_t i = 0; i < from->particle_count; i++) {
         const mspring_particle_def *particle = &from->particles[i];
         fprintf(stream, "%.17g %.17g %.9g %u 0\n", particle->x, particle->y, particle->mass,

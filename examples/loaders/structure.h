@@ -21,7 +21,7 @@ typedef enum structure_format {
     STRUCTURE_RIGS_OF_RODS, ///< .truck, .trailer and others of Rigs of Rods
     STRUCTURE_JBEAM,        ///< .jbeam of BeamNG
     STRUCTURE_OBJ,          ///< vertices and lines of a Wavefront OBJ
-    STRUCTURE_SHIP          ///< an image whose colours a materials file of Floating Sandbox explains
+    STRUCTURE_SHIP ///< of Floating Sandbox, .shp, .shp2 or an image, whose colours a materials file explains
 } structure_format;
 
 /// Which two axes are seen, the second pointing up.
@@ -41,7 +41,9 @@ typedef struct structure_options {
     double stiffness;      ///< N/m of each line (OBJ); default 1e5
     double damping;        ///< N s/m of each line (OBJ); default 100
     const char *part;      ///< name of the part to load (jbeam); default NULL: the first that has nodes
-    const char *materials; ///< path of the materials file (ships); default NULL
+    const char *materials; ///< path of the materials file (ships); default NULL: STRUCTURE_SHIP_MATERIALS beside it
+    uint32_t substeps; ///< explicit substeps in 1/64 s that a ship's strength is for; default 40, as in the game
+    bool dock;         ///< pin a ship's lowest row, and leave out what does not stand on it; default false
 } structure_options;
 
 /// What became of the file's contents.
@@ -64,8 +66,12 @@ typedef struct structure {
     mspring_spring_def *springs;     ///< [spring_count]
     float *break_strain;             ///< [spring_count], 0: never
     uint32_t particle_count, spring_count;
+    uint32_t substeps; ///< explicit substeps in 1/64 s that it was made for; 0: any that are stable
     structure_report report;
 } structure;
+
+/// The name that the game gives to its materials.
+#define STRUCTURE_SHIP_MATERIALS "structural_materials.json"
 
 structure_options structure_options_default(void);
 /// "xy", "xz" or "yz".
@@ -73,20 +79,39 @@ const char *structure_plane_name(structure_plane plane);
 /// What the ending of a file's name says, in any case.
 structure_format structure_format_of(const char *path);
 
-/// Load a file of the format that its name tells; with materials given, any image is a ship.
+/// Whether its ending is that of a ship, .shp or .shp2, rather than that of an image.
+bool structure_is_ship(const char *path);
+
+/// Load a file of the format that its name tells. With materials given, any image is a ship.
 bool structure_load(const char *path, const structure_options *options, structure *out, scene_error *error);
 /// The same from memory, for any format but ships; name stands for the path in messages.
 bool structure_parse(structure_format format, const char *text, size_t length, const char *name,
                      const structure_options *options, structure *out, scene_error *error);
-/// A ship from memory: image and materials. Refused where the loaders were built without cJSON.
-bool structure_parse_ship(const void *image, size_t image_length, const char *name, const char *materials,
-                          size_t materials_length, const char *materials_name, structure *out, scene_error *error);
+
+/// A file in memory; name stands for its path in messages.
+typedef struct structure_bytes {
+    const void *bytes;
+    size_t length;
+    const char *name;
+} structure_bytes;
+
+/// A ship from memory: .shp2 or an image, which may have another image for its ropes, or NULL. Refused where the
+/// loaders were built without cJSON.
+bool structure_parse_ship(const structure_bytes *ship, const structure_bytes *ropes,
+                          const structure_bytes *materials, const structure_options *options, structure *out,
+                          scene_error *error);
+
+/// Size of the name of an image in a .shp file.
+#define STRUCTURE_NAME_SIZE 256
+/// The names of the images of a .shp file, in its own folder; of the ropes "" if there are none.
+bool structure_ship_images(const structure_bytes *file, char cells[STRUCTURE_NAME_SIZE],
+                           char ropes[STRUCTURE_NAME_SIZE], scene_error *error);
 void structure_free(structure *unwanted);
 
 /// Make a scene of it, without a probe; name is the path that the scene is named after.
 bool structure_scene(const structure *from, const char *name, scene *out, scene_error *error);
-/// Write it as a text network, which scene_network_file() reads. Break and yield strains, one-way and relative
-/// springs have no place there: relative springs are refused.
+/// Write it as a text network, which scene_network_file() reads. Break and yield strains and one-way springs have
+/// no place there. If only some springs are relative, it is refused.
 bool structure_write(const structure *from, const char *path, scene_error *error);
 
 #endif

@@ -43,7 +43,7 @@ static const other_kind other_kinds[] = {
      "let load --write FILE.msn make a text network of it"},
     {{".jbeam"}, "a structure of BeamNG", "let load --write FILE.msn make a text network of it"},
     {{".obj", ".OBJ"}, "a Wavefront model", "let load --write FILE.msn make a text network of it"},
-    {{".shp", ".shp2"}, "a ship of Floating Sandbox", "take the PNG image of its structure"},
+    {{".shp", ".shp2"}, "a ship of Floating Sandbox", "let load --write FILE.msn make a text network of it"},
     {{".jpg", ".jpeg", ".JPG", ".gif", ".webp", ".svg"},
      "a picture whose colours are not kept, or no pixels",
      "save it as PNG, BMP or PNM"},

@@ -15,6 +15,7 @@ typedef struct line_reader {
     unsigned long line;
     text_span fields[FIELDS];
     size_t field_count; // counted on beyond FIELDS
+    bool relative;      // stiffness and damping are fractions
 } line_reader;
 
 static bool is_blank(char c) {
@@ -102,6 +103,10 @@ static bool read_record(line_reader *reader, const char *what, uint32_t index, u
     return true;
 }
 
+static bool is_word(text_span field, const char *word) {
+    return field.length == strlen(word) && memcmp(field.start, word, field.length) == 0;
+}
+
 static bool read_counts(line_reader *reader, uint32_t *particles, uint32_t *springs, scene_error *error) {
     uint64_t p = 0;
     uint64_t s = 0;
@@ -109,10 +114,12 @@ static bool read_counts(line_reader *reader, uint32_t *particles, uint32_t *spri
         return scene_fail(error,
                           "%.200s: nothing in it: the first line must be the numbers of particles and springs",
                           reader->name);
-    if (reader->field_count != 2 || !number_parse_count(reader->fields[0], &p) ||
+    reader->relative = reader->field_count == 3 && is_word(reader->fields[2], "relative");
+    if (reader->field_count != (reader->relative ? 3 : 2) || !number_parse_count(reader->fields[0], &p) ||
         !number_parse_count(reader->fields[1], &s))
         return scene_fail(error,
-                          "%.200s:%lu: the first line must be two whole numbers, of particles and of springs",
+                          "%.200s:%lu: the first line must be two whole numbers, of particles and of springs, and "
+                          "'relative' behind them if stiffness and damping are fractions",
                           reader->name, reader->line);
     if (p == 0)
         return scene_fail(error, "%.200s:%lu: no particle: a network needs at least one", reader->name,
@@ -181,8 +188,9 @@ static bool read_spring(line_reader *reader, uint32_t particles, const scene_opt
         return false;
     def->rest_length = (float)rest;
     def->stiffness = options->stiffness >= 0 ? options->stiffness : (float)stiffness;
-    def->damping = options->damping >= 0 ? options->damping : options->relative ? 0 : (float)damping;
-    def->flags = options->relative ? MSPRING_SPRING_RELATIVE : 0;
+    const bool is_other = options->relative && !reader->relative; // N s/m are no fraction
+    def->damping = options->damping >= 0 ? options->damping : is_other ? 0 : (float)damping;
+    def->flags = options->relative || reader->relative ? MSPRING_SPRING_RELATIVE : 0;
     return true;
 }
 
@@ -215,7 +223,14 @@ static bool read_springs(line_reader *reader, uint32_t count, uint32_t particles
 static bool read_network(line_reader *reader, const scene_options *options, scene *out, scene_error *error) {
     uint32_t particles = 0;
     uint32_t springs = 0;
-    if (!read_counts(reader, &particles, &springs, error) || !read_particles(reader, particles, out, error))
+    if (!read_counts(reader, &particles, &springs, error))
+        return false;
+    if (options->relative && !reader->relative && options->stiffness < 0)
+        return scene_fail(error,
+                          "%.200s: relative springs need a stiffness: this file holds N/m, not fractions; give a "
+                          "fraction such as 0.5",
+                          reader->name);
+    if (!read_particles(reader, particles, out, error))
         return false;
     pair_set joined = {0};
     bool ok = read_springs(reader, springs, particles, options, &joined, out, error);
@@ -231,9 +246,6 @@ static bool read_network(line_reader *reader, const scene_options *options, scen
 bool scene_network_parse(const char *text, size_t length, const char *name, const scene_options *options,
                          scene *out, scene_error *error) {
     line_reader reader = {.at = text, .end = text + length, .name = name};
-    if (options->relative && options->stiffness < 0)
-        return scene_fail(error, "relative springs need a stiffness: network files hold N/m, not fractions; give a "
-                                 "fraction such as 0.5");
     if (!scene_options_check(options, true, error) || !scene_start(out, error))
         return false;
     scene_name_from_path(out, name);

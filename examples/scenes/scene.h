@@ -38,8 +38,8 @@ typedef struct scene_options {
                      ///< scene_options_from_file() gives -1
     float damping;   ///< N s/m, or a fraction if relative; < 0 in files: the material's own. Default 0 / -1
     bool relative;   ///< stiffness and damping are fractions (MSPRING_SPRING_RELATIVE); default false. If stiffness
-                     ///< is given, damping < 0 means 0. If not, those of the materials are fractions; network files
-                     ///< hold none.
+                     ///< is given, damping < 0 means 0. If not, those of the materials are fractions, and those of
+                     ///< network files that say so.
     double spacing;  ///< m; default 1
 } scene_options;
 

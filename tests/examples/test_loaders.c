@@ -330,59 +330,6 @@ static void lines_of_an_obj_become_springs(void **state) {
     check_refused(STRUCTURE_OBJ, "v 0 0 0\nl 1\n", "file:2:4: the line ends after 2 of 3");
 }
 
-/* ------------------------------------------------------------------------------------------------------- ships */
-
-static const char materials[] =
-    "{\"materials\": [\n"
-    " {\"name\": \"Plate\", \"color_key\": [\"#102030\", \"#405060\"], \"strength\": 0.05,\n"
-    "  \"mass\": {\"nominal_mass\": 7900, \"density\": 0.05}},\n"
-    " {\"name\": \"Soft\", \"color_key\": \"#FF0000\", \"strength\": 0.1, \"stiffness\": 0.5,\n"
-    "  \"mass\": {\"nominal_mass\": 600, \"density\": 1}}\n"
-    "]}\n";
-
-static bool parse_ship(const char *image, const char *text, structure *made, scene_error *error) {
-    return structure_parse_ship(image, strlen(image), "ship", text, strlen(text), "json", made, error);
-}
-
-static void colours_of_a_ship_are_looked_up_in_the_games_materials(void **state) {
-    (void)state;
-    structure ship;
-    scene_error error = {""};
-    const char *image = "P3 3 2 255  16 32 48  255 255 255  255 0 0   64 80 96  16 32 48  255 0 0\n";
-#ifndef LOADERS_HAVE_CJSON
-    assert_false(parse_ship(image, materials, &ship, &error));
-    check_contains(error.text, "built without cJSON");
-    skip();
-#endif
-    if (!parse_ship(image, materials, &ship, &error))
-        fail_msg("refused: %s", error.text);
-    // Cells: plate, nothing, soft; plate, plate, soft.
-    assert_int_equal(ship.particle_count, 5);
-    assert_int_equal(ship.spring_count, 6);
-    check_near(ship.particles[0].mass, 395, 1e-3);
-    check_near(ship.particles[0].y, 1, 0);
-    check_near(spring_between(&ship, 2, 3)->stiffness, 0.5, 1e-7);
-    check_near(spring_between(&ship, 3, 4)->stiffness, 0.5 * 0.75, 1e-7);
-    check_near(spring_between(&ship, 3, 4)->damping, 0.03, 1e-7);
-    assert_int_equal(spring_between(&ship, 3, 4)->flags, MSPRING_SPRING_RELATIVE);
-    check_near(ship.break_strain[0], 0.05, 1e-7);
-    structure_free(&ship);
-
-    assert_false(parse_ship("P3 2 2 255 16 32 48 1 2 3 9 8 7 1 2 3\n", materials, &ship, &error));
-    check_contains(error.text, "ship: 2 colours are not in json: #010203 (2 pixels, first in column 1 of row 0), "
-                               "#090807 (1 pixel, first in column 0 of row 1)");
-    assert_false(parse_ship(image, "{\"materials\": [\n {,} ]}", &ship, &error));
-    check_contains(error.text, "json:2:"); // the column is cJSON's
-    check_contains(error.text, "this is no JSON");
-    assert_false(parse_ship(image,
-                            "{\"materials\": [{\"name\":\"X\",\"color_key\":\"red\",\"strength\":1,"
-                            "\"mass\":{\"nominal_mass\":1,\"density\":1}}]}",
-                            &ship, &error));
-    check_contains(error.text, "json: material 0, X: its color_key");
-    assert_false(parse_ship(image, "{}", &ship, &error));
-    check_contains(error.text, "no list of materials");
-}
-
 /* --------------------------------------------------------------------------------------------------- and then */
 
 static void a_structure_becomes_a_scene_and_a_text_network(void **state) {
@@ -448,7 +395,6 @@ int main(void) {
         cmocka_unit_test_setup(beams_bend_pull_and_push, start),
         cmocka_unit_test_setup(broken_jbeams_are_refused_with_line_and_column, start),
         cmocka_unit_test_setup(lines_of_an_obj_become_springs, start),
-        cmocka_unit_test_setup(colours_of_a_ship_are_looked_up_in_the_games_materials, start),
         cmocka_unit_test_setup(a_structure_becomes_a_scene_and_a_text_network, start),
         cmocka_unit_test_setup(files_are_told_by_their_endings, start),
     };
