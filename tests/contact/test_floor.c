@@ -168,7 +168,7 @@ static void nothing_gets_in(const way *how) {
                 mspring_network *network = thrown(places[p][0], places[p][1], def, 1, MSPRING_SIMD_AUTO);
                 set_way(network, how);
                 check_ok(mspring_network_set_floor(network, def));
-                for (uint32_t step = 0; step < 120; step++) {
+                for (uint32_t step = 0; step < ROUNDS(120); step++) {
                     check_ok(mspring_network_step(network, lengths[l]));
                     if (lowest(network, def) < -tolerance)
                         fail_msg("%s at (%g, %g), dt = %g s, step %u: a particle is %g m too low", grounds[i].name,

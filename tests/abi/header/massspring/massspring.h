@@ -757,14 +757,12 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_ve
     const mspring_network *network, const mspring_id *particles, uint32_t count, float *vx, float *vy, uint32_t stride);
 
 /// Set world positions (m) of particles: all or, on error, none.
-/// They are the particles first ... first + count - 1, or those listed. Of an id that repeats, the last value
-/// counts. If you set all particles by a range, the local origin moves to them.
-/// @param x, y    those of element i are x[i * stride] and y[i * stride], at most MSPRING_MAX_COORDINATE in size,
-/// also
+/// They are the particles first ... first + count - 1, or those listed. Of an id that repeats, the last value counts.
+/// If you set all particles by a range, the local origin moves to them.
+/// @param x, y    those of element i are x[i * stride] and y[i * stride], at most MSPRING_MAX_COORDINATE in size, also
 ///                relative to the local origin
 /// @param stride  as of mspring_network_get_positions(), or 0: the same for all
-/// @threads exclusive   @allocates never   @errors ID, ARGUMENT (the message names the particle), BUSY (in a hook
-/// use
+/// @threads exclusive   @allocates never   @errors ID, ARGUMENT (the message names the particle), BUSY (in a hook use
 ///          its arrays)
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_positions(
     mspring_network *network, mspring_id first, uint32_t count, const double *x, const double *y, uint32_t stride);
