@@ -73,7 +73,7 @@ def calls(batch, repeats=200):
 
 def main():
     count, seconds = [int(text) for text in sys.argv[1:]] + [256, 5][len(sys.argv) - 1:]
-    print(f"{count} robots, {SUBSTEPS} substeps, {batch_of(1, False).network.simd_level}")
+    print(f"{count} robots, {SUBSTEPS} substeps, {batch_of(count, False).network.simd_level}")
     for has_contact in (False, True):
         batch = batch_of(count, has_contact)
         batch.step(DT, count=50)
