@@ -7,10 +7,13 @@
 const DT = 1 / 64;
 const MOST_STEPS = 2; // in a frame: what is slower than time goes on in slow motion
 const HOLD_RADIUS = 14; // pixels
+const REST_TIME = 150; // ms that the pointer rests before it asks for a spring
+const SETTINGS = ['scene', 'solver', 'substeps', 'stiffness', 'gravity', 'damping', 'limit'];
+const SWITCHES = ['breaking', 'floor', 'collide'];
 const byId = (id) => document.getElementById(id);
 const settings = new URLSearchParams(location.hash.slice(1));
 
-let core, drawing, materials, current, ownImage;
+let core, drawing, marks, materials, current, ownImage;
 const view = { x: 0, y: 0, scale: 1, strainLimit: 0.01 };
 const state = { running: true, tool: 'drag', broken: '', debt: 0, last: 0, frames: 0, seconds: 0, floorAt: 0 };
 const cost = { sum: 0, count: 0, shown: 0 };
@@ -61,6 +64,7 @@ async function load(name) {
 function start() {
   makeScene(core, current);
   drawing.start(core.slots());
+  marks.forget();
   applyAll();
   fit();
   state.debt = 0;
@@ -104,7 +108,8 @@ function fit() {
 function tell(text) {
   if (text === state.broken) return;
   state.broken = text;
-  byId('message').textContent = text;
+  byId('what').textContent = text;
+  byId('cure').hidden = !text.startsWith('unstable');
   byId('message').style.display = text ? 'block' : 'none';
 }
 
@@ -175,11 +180,21 @@ function connectControls() {
   });
   byId('again').addEventListener('click', start);
   byId('repair').addEventListener('click', () => check(core.repair()));
-  for (const id of ['breaking', 'floor', 'collide'])
+  byId('link').addEventListener('click', copyLink);
+  // Too stiff for so few substeps: as many as it needs, and on.
+  byId('cure').addEventListener('click', () => {
+    byId('substeps').value = 0;
+    settingsOf.solver();
+    noteAddress();
+    state.running = toggle(byId('play'), true);
+  });
+  byId('controls').addEventListener('change', noteAddress);
+  for (const id of SWITCHES)
     byId(id).addEventListener('click', () => {
       const on = toggle(byId(id), !isOn(id));
       if (id === 'floor') check(core.floor(on ? state.floorAt : -1e12));
       else settingsOf[id]();
+      noteAddress();
     });
   byId('open').addEventListener('click', () => byId('file').click());
   byId('file').addEventListener('change', () => byId('file').files.length && open(byId('file').files[0]));
@@ -198,6 +213,25 @@ function connectControls() {
     else return;
     event.preventDefault();
   });
+}
+
+// The address has the settings, so that it can be sent to somebody. An image of one's own is in no address.
+function noteAddress() {
+  const address = new URLSearchParams();
+  for (const id of SETTINGS) if (id !== 'scene' || byId(id).value !== 'own') address.set(id, byId(id).value);
+  for (const id of SWITCHES) if (isOn(id)) address.set(id, 1);
+  history.replaceState(null, '', '#' + address);
+}
+
+async function copyLink() {
+  noteAddress();
+  try {
+    await navigator.clipboard.writeText(location.href);
+    byId('link').textContent = 'Copied';
+  } catch {
+    byId('link').textContent = 'Above';
+  }
+  setTimeout(() => (byId('link').textContent = 'Link'), 2000);
 }
 
 function open(file) {
@@ -256,7 +290,10 @@ function connectHand() {
     const at = worldOf(event);
     if (event.button !== 0) held = false;
     else if (state.tool === 'drag') held = core.hold(at.x, at.y, radius()) > 0;
-    else if (state.tool === 'pin') check(core.pin(at.x, at.y, radius() / 2));
+    else if (state.tool === 'pin') {
+      check(core.pin(at.x, at.y, radius() / 2));
+      marks.forget();
+    }
     else if (state.tool === 'blast') check(core.blast(at.x, at.y, 5 * radius(), 60));
   });
   canvas.addEventListener('pointermove', (event) => {
@@ -275,6 +312,21 @@ function connectHand() {
     if (event.buttons & 6) move(before, event);
     else if (held) core.hold_to(at.x, at.y);
     else if (state.tool === 'cut') check(core.cut(was.x, was.y, at.x, at.y));
+  });
+  // A mouse that rests asks for the spring under it.
+  let resting = 0;
+  canvas.addEventListener('pointermove', (event) => {
+    clearTimeout(resting);
+    marks.leave();
+    if (event.buttons || event.pointerType === 'touch') return;
+    resting = setTimeout(() => {
+      const at = worldOf(event);
+      marks.rest(core, { x: at.x - core.origin_x(), y: at.y - core.origin_y() }, event, view.scale);
+    }, REST_TIME);
+  });
+  canvas.addEventListener('pointerleave', () => {
+    clearTimeout(resting);
+    marks.leave();
   });
   const end = (event) => {
     fingers.delete(event.pointerId);
@@ -321,6 +373,7 @@ function draw() {
   const relative = { ...view, x: view.x - core.origin_x(), y: view.y - core.origin_y() };
   const bytes = new Uint8Array(core.memory.buffer, core.springs(), 12 * springs);
   drawing.draw(floats(core.x(), slots), floats(core.y(), slots), bytes, springs, core.changes(), relative);
+  marks.draw(core, relative);
 }
 
 function joules(energy) {
@@ -400,13 +453,14 @@ function runFrames(count) {
 
 async function main() {
   drawing = new Drawing(byId('canvas'));
+  marks = new Marks(byId('marks'), byId('tip'));
   byId('controls').open = innerWidth > 640;
   resize();
   core = (await WebAssembly.instantiate(await resource('massspring.wasm'), {})).instance.exports;
   materials = readMaterials(new TextDecoder().decode(await resource('ship_materials.csv')));
-  for (const id of ['scene', 'solver', 'substeps', 'stiffness', 'gravity', 'damping', 'limit'])
+  for (const id of SETTINGS)
     if (settings.has(id)) byId(id).value = settings.get(id);
-  for (const id of ['breaking', 'floor', 'collide']) if (settings.has(id)) toggle(byId(id), true);
+  for (const id of SWITCHES) if (settings.has(id)) toggle(byId(id), true);
   connectControls();
   connectHand();
   await load(byId('scene').value);

@@ -68,6 +68,19 @@ async function test() {
   await browser.click(await screenOf(end.x, end.y));
   assert.strictEqual(await browser.value('pinnedNow()'), before, 'another one frees');
 
+  // Pins are drawn: white dots at the clamped end. The pointer rests on a spring, and is told its strain.
+  const white = `(() => { draw(); const pen = byId('marks').getContext('2d');
+    return pen.getImageData(0, 0, drawing.canvas.width, drawing.canvas.height).data.reduce(
+      (sum, value, i, all) => sum + (i % 4 === 0 && value > 230 && all[i + 3] > 230), 0); })()`;
+  assert.strictEqual(await browser.value('(draw(), marks.pins.length)'), 5, 'five particles are pinned');
+  assert((await browser.value(white)) > 50, 'pins are seen');
+  const middle = await screenOf(40.5, end.y);
+  await browser.mouse('mouseMoved', middle);
+  await browser.until('byId("tip").style.display === "block"', 'a spring under the pointer is told');
+  assert.match(await browser.value('(draw(), byId("tip").textContent)'), /^spring [\d,]+: \d\.\d{3} m, (stretched|squeezed) by/);
+  await browser.mouse('mouseMoved', { x: middle.x, y: middle.y - 200 });
+  await browser.until('byId("tip").style.display === "none"', 'and no more where none is');
+
   // A line cuts, Repair mends.
   await press('[data-tool=cut]');
   await browser.drag([await screenOf(40.4, end.y + 6), await screenOf(40.6, end.y - 12)]);
@@ -100,6 +113,21 @@ async function test() {
   await browser.click(slider);
   assert((await browser.value('value("gravity")')) > 10, 'the slider follows the mouse');
   await browser.value('document.activeElement.blur()');
+
+  // Too stiff for two explicit substeps: it says so, and a button helps.
+  await browser.value('byId("gravity").value = -9.8, settingsOf.gravity(), byId("solver").value = 0, ' +
+    'byId("substeps").value = 2, settingsOf.solver()');
+  await steps(8);
+  assert.match(await browser.value('state.broken'), /^unstable/, 'two substeps are too few');
+  await press('#cure');
+  await browser.until('state.broken === "" && core.substeps() > 10', 'it goes on with as many substeps as it needs');
+  await browser.key(' ', ' ');
+
+  // The address follows, so that it can be sent to somebody.
+  await press('#collide');
+  const address = await browser.value('location.hash');
+  for (const part of ['scene=bar', 'solver=0', 'substeps=0', 'collide=1', 'gravity=']) assert(address.includes(part), address);
+  await press('#collide');
 
   // The wheel zooms about the pointer, the right button moves.
   const scale = await browser.value('view.scale'), place = await browser.value('view.x');
