@@ -6,9 +6,10 @@
  * mspring_network_get_positions is network.positions here, and a field rest_length is restLength.
  */
 import type {
-  ColliderOptions, Component, ContactEvent, ContactInfo, ContactOptions, DiscOptions, FloorOptions, GripOptions,
-  LatticeOptions, Material, MeshOptions, NetworkEvent, NetworkOptions, Numbering, ParticleOptions, Plan, Preset, Property, Result, RopeOptions,
-  SettleOptions, SettleResult, Settings, SnapshotContents, SolverOptions, SpringOptions, StepInfo,
+  AngleInfo, AngleOptions, AreaInfo, AreaOptions, ColliderOptions, Component, ContactEvent, ContactInfo,
+  ContactOptions, DiscOptions, FloorOptions, GripOptions, LatticeOptions, Material, MeshOptions, NetworkEvent,
+  NetworkOptions, Numbering, ParticleOptions, Plan, Plasticity, Preset, Property, Result, RopeOptions, Settings,
+  SettleOptions, SettleResult, SnapshotContents, SolverOptions, SpringOptions, StepInfo,
 } from './tables.js';
 
 export * from './tables.js';
@@ -200,6 +201,28 @@ export interface Network {
   moveGrip(grip: number, x: number, y: number): void;
   getGrip(grip: number): Full<GripOptions>;
   gripImpulse(grip: number): { x: number; y: number };
+
+  /** How many springs have yielded, and the energy that it took. */
+  plasticity(): Plasticity;
+  /** An area around a polygon of particles: a balloon, a tyre. Returns its id. */
+  addArea(particles: ArrayLike<number>, options?: AreaOptions): number;
+  /** An area for each lattice cell, so that jelly turns back. */
+  addCellAreas(options?: AreaOptions): { first: number; count: number };
+  removeArea(area: number): void;
+  /** All fields anew: fill inflates it. */
+  setArea(area: number, options: AreaOptions): void;
+  getArea(area: number): Full<AreaOptions>;
+  areaInfo(area: number): AreaInfo;
+  areas(): { ids: Uint32Array; areas: Float64Array; pressures: Float64Array };
+  /** Angle springs between a, b, c of each three particles: beams, spines. */
+  addAngles(particles: ArrayLike<number>, options?: AngleOptions): { first: number; count: number };
+  removeAngle(angle: number): void;
+  setAngle(angle: number, options: AngleOptions): void;
+  /** Rest angles of one after the other, rad: muscles, servos. */
+  setRestAngles(first: number, restAngles: ArrayLike<number>): void;
+  getAngle(angle: number): Full<AngleOptions>;
+  angleInfo(angle: number): AngleInfo;
+  angles(): { ids: Uint32Array; angles: Float64Array; torques: Float64Array };
 
   /** A snapshot, for rollback and replay: the following steps repeat, bit for bit. */
   save(contents?: SnapshotContents): Uint8Array;

@@ -9,7 +9,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 const [include, clang, folder] = process.argv.slice(2);
-const headers = ['massspring', 'massspring_contact', 'massspring_tools'];
+const headers = ['massspring', 'massspring_contact', 'massspring_laws', 'massspring_tools'];
 const scratch = mkdtempSync(join(tmpdir(), 'tables-'));
 const text = headers.map((name) => readFileSync(join(include, 'massspring', `${name}.h`), 'utf8')).join('\n');
 const prelude = headers.map((name) => `#include <massspring/${name}.h>\n`).join('');

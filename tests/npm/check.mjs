@@ -6,7 +6,7 @@ import assert from 'node:assert';
 import * as massspring from 'massspring';
 import { goldenBars } from './golden.mjs';
 
-const { load, MassSpringError, CELL_EMPTY, PARTICLE_PINNED } = massspring;
+const { load, MassSpringError, CELL_EMPTY, PARTICLE_PINNED, SPRING_PULL_ONLY } = massspring;
 
 const refused = (body, result, words) => assert.throws(body, (error) => {
   assert(error instanceof MassSpringError, `${error.stack}`);
@@ -155,6 +155,44 @@ function meeting(ms) {
   assert.strictEqual(network.isAsleep, false);
 }
 
+function laws(ms) {
+  const builder = new ms.Builder();
+  builder.addLattice({ width: 6, height: 6, cells: new Array(36).fill(0), materials: [{ stiffness: 200, mass: 0.1 }] });
+  builder.addParticles({ x: [20, 21, 22, 23], y: 0 });
+  builder.addSprings({ a: [36, 37, 38], b: [37, 38, 39], stiffness: 100, flags: SPRING_PULL_ONLY });
+  const network = new ms.Network(builder, { gravityY: 0, substeps: 30 });
+  assert.deepStrictEqual(network.addCellAreas({ stiffness: 100 }), { first: 0, count: 25 });
+  network.setArea(0, { ...network.getArea(0), fill: 1.5 });
+  network.removeArea(3);
+  const tyre = network.addArea([0, 5, 35, 30], { kind: 'gas', pressure: 1 });
+  network.step(1 / 60, 30);
+  const { ids, areas, pressures } = network.areas();
+  assert.strictEqual(ids.length, 25);
+  assert.strictEqual(ids[24], tyre);
+  assert(areas[0] > 1.05 && pressures[0] > 0, `a cell that is filled grows: ${areas[0]}`);
+  assert(Math.abs(network.areaInfo(0).area - areas[0]) < 1e-12 && network.getArea(tyre).kind === 'gas');
+  const { first, count } = network.addAngles([36, 37, 38, 37, 38, 39], { stiffness: 5, damping: 0.1 });
+  assert.strictEqual(count, 2);
+  network.setRestAngles(first, [0.5, -0.5]);
+  network.step(1 / 60, 60);
+  const bent = network.angles();
+  assert(bent.angles[0] > 0.2 && bent.angles[1] < -0.2, `angles follow: ${bent.angles}`);
+  assert.strictEqual(network.getAngle(first).restAngle, 0.5);
+  assert.strictEqual(network.angleInfo(first).torque, bent.torques[0]);
+  network.setAngle(first, { stiffness: 1 });
+  network.removeAngle(first + 1);
+  assert.strictEqual(network.angles().ids.length, 1);
+  network.set('yieldStrain', 0.01, { first: 0, count: 1 });
+  const [a] = network.ends({ first: 0, count: 1 }), [x, y] = network.positions({ ids: [a] });
+  network.setPositions([x - 0.3, y - 0.3], { ids: [a] });
+  network.step(1 / 60);
+  assert(network.plasticity().yieldCount > 0, 'a spring has yielded');
+  refused(() => network.addArea([0, 1]), 'argument', /2 particles/);
+  refused(() => network.addAngles([0, 1]), 'argument', /multiple of 3/);
+  refused(() => network.getArea(first), 'id', /./);
+  refused(() => network.setRestAngles(first, [NaN]), 'argument', /./);
+}
+
 function goingBack(ms) {
   const network = bar(ms);
   network.step(1 / 64, 10);
@@ -291,7 +329,7 @@ else
   for (const simd of [true, false]) {
     const ms = await load({ simd });
     assert.strictEqual(CELL_EMPTY, 0xffff);
-    for (const part of [shapes, reading, editing, meeting, goingBack, hostile, memory]) part(ms);
+    for (const part of [shapes, reading, editing, meeting, laws, goingBack, hostile, memory]) part(ms);
     await forgotten(await load({ simd }));
     const other = await load();
     refused(() => new ms.Network(new other.Builder()), 'argument', /same module/);

@@ -17,6 +17,9 @@ for (const { kind, id } of network.readEvents().events) if (kind === 'broken') n
 const time: number = network.stepInfo().time + network.getSettings().sleepTime + network.plan().latticeCount;
 network.setFloor({ planes: [0, 0, 0, 1], friction: 0.5 });
 network.addCollider({ kind: 'circle', radius: 2 });
+const tyre: number = network.addArea(cells, { kind: 'gas', pressure: 1 });
+network.setArea(tyre, { ...network.getArea(tyre), fill: 1.2 });
+network.setRestAngles(network.addAngles([0, 1, 2], { stiffness: 5 }).first, [network.areaInfo(tyre).area]);
 try {
   network.load(network.clone().save('frame'));
 } catch (error) {
@@ -28,6 +31,8 @@ console.log(wide, narrow, hash, time);
 network.setSolver({ solver: 'magic' });
 // @ts-expect-error there is no such option
 network.setSettings({ gravity: 9.8 });
+// @ts-expect-error there is no such kind of area
+network.addArea(cells, { kind: 'oil' });
 // @ts-expect-error there is no such property
 network.get('colour');
 // @ts-expect-error the length of an array says it

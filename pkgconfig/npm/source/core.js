@@ -261,7 +261,7 @@ const INIT = {
   lattice_def: 'mspring_lattice_def_init', network_def: 'mspring_network_def_init', floor_def: 'mspring_floor_def_init',
   rope_def: 'mspring_rope_def_init', mesh_def: 'mspring_mesh_def_init', disc_def: 'mspring_disc_def_init',
   contact_def: 'mspring_contact_def_init', collider_def: 'mspring_collider_def_init', grip_def: 'mspring_grip_def_init',
-  settle_def: 'mspring_settle_def_init',
+  settle_def: 'mspring_settle_def_init', area_def: 'mspring_area_def_init', angle_def: 'mspring_angle_def_init',
 };
 
 /** A builder or a network: a pointer that is freed once. */

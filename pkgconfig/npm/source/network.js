@@ -1,7 +1,7 @@
 // A network: made, stepped, edited, measured and saved.
 import { array, choice, fail, MassSpringError, number, whole } from './core.js';
 import { Builder } from './builder.js';
-import { Contact } from './contact.js';
+import { Laws } from './laws.js';
 import { NONE, STRUCTS } from './tables.js';
 
 /** A network that exists already. */
@@ -20,7 +20,7 @@ function create(core, builder, options) {
   });
 }
 
-export class Network extends Contact {
+export class Network extends Laws {
   constructor(core, from, options) {
     super(core, from instanceof Made ? from.pointer : create(core, from, options), core.exports.mspring_network_destroy);
   }
