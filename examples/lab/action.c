@@ -17,7 +17,7 @@ typedef enum argument_kind {
     ARGUMENT_TEXT
 } argument_kind;
 
-enum { MOST_CHOICES = 6 };
+enum { MOST_CHOICES = 7 };
 
 typedef struct argument_def {
     argument_kind kind;
@@ -68,6 +68,7 @@ static const action_def defs[ACTION_KINDS] = {
     [ACTION_BREAKING] = {"breaking", "whether springs break that are stretched too far", {SWITCH}},
     [ACTION_FLOOR] = {"floor", "whether there is one, below the scene", {SWITCH}},
     [ACTION_COLLIDE] = {"collide", "whether bodies meet each other and themselves", {SWITCH}},
+    [ACTION_YIELDING] = {"yielding", "whether springs stay bent that are strained too far", {SWITCH}},
     [ACTION_GRIP] = {"grip", "how hard particles are pulled, 1/s", {NUMBER("RATE", 1, 100)}},
     [ACTION_GRAB] = {"grab", "take hold of the particles around a place", {PLACE, NUMBER("RADIUS", 0, 1e6)}},
     [ACTION_PULL] = {"pull", "them to another place", {PLACE}},
@@ -90,8 +91,10 @@ static const action_def defs[ACTION_KINDS] = {
     [ACTION_RESET] = {"reset", "start the scene again", {{ARGUMENT_NONE, NULL, 0, 0, {NULL}, 0}}},
     [ACTION_COLOUR] = {"colour",
                        "what colours show",
-                       {CHOICE("BY", "strain", "force", "speed", "island", "plan", "material")}},
+                       {CHOICE("BY", "strain", "force", "speed", "island", "plan", "material", "bent")}},
     [ACTION_LAYOUT] = {"layout", "how two sides share the window", {CHOICE("HOW", "auto", "rows", "columns")}},
+    [ACTION_TOOL] = {"tool", "what the left button does", {CHOICE("TOOL", "pull", "cut", "pin", "blast")}},
+    [ACTION_PAGE] = {"page", "of the controls, in low windows", {COUNT("NUMBER", 1, 2)}},
     [ACTION_PLOTS] = {"plots", "show time series", {SWITCH}},
     [ACTION_PANEL] = {"panel", "show the controls", {SWITCH}},
     [ACTION_HELP] = {"help", "show the keys", {SWITCH}},

@@ -30,6 +30,7 @@ typedef enum action_kind {
     ACTION_BREAKING,   ///< off, on
     ACTION_FLOOR,      ///< off, on
     ACTION_COLLIDE,    ///< off, on
+    ACTION_YIELDING,   ///< off, on
     ACTION_GRIP,       ///< 1/s: how hard the mouse pulls
     ACTION_GRAB,       ///< x, y, radius
     ACTION_PULL,       ///< x, y
@@ -48,6 +49,8 @@ typedef enum action_kind {
     ACTION_RESET,
     ACTION_COLOUR, ///< colour_choice
     ACTION_LAYOUT, ///< layout_choice
+    ACTION_TOOL,   ///< tool_choice
+    ACTION_PAGE,   ///< of the controls, where the window is too low for all of them
     ACTION_PLOTS,  ///< off, on
     ACTION_PANEL,  ///< off, on
     ACTION_HELP,   ///< off, on
@@ -65,8 +68,12 @@ typedef enum colour_choice {
     COLOUR_ISLAND,
     COLOUR_PLAN,
     COLOUR_MATERIAL,
+    COLOUR_BENT, ///< plastic strain: how much of a spring's length has changed for good
     COLOUR_CHOICES
 } colour_choice;
+
+/// What the left button does.
+typedef enum tool_choice { TOOL_PULL, TOOL_CUT, TOOL_PIN, TOOL_BLAST, TOOL_CHOICES } tool_choice;
 
 typedef enum layout_choice { LAYOUT_AUTO, LAYOUT_ROWS, LAYOUT_COLUMNS } layout_choice;
 

@@ -24,12 +24,13 @@ const key_help keys_help[] = {
     {"U, ctrl Z", "undo"},
     {"R", "start the scene again"},
     {"N", "next scene"},
+    {"M", "more substeps, where a step is refused"},
     {"space", "pause, go on"},
-    {".", "one step"},
+    {".", "single step"},
     {"F", "fast: 2, 4, 8 steps a frame"},
     {"E", "go to equilibrium"},
-    {"C, 1 to 6", "colours by strain, force, speed,"},
-    {"", "island, row of the plan, material"},
+    {"C, 1 to 7", "colours by strain, force, speed,"},
+    {"", "island, row of the plan, material, bent"},
     {"wheel", "zoom; over a slider: change it"},
     {"right drag", "move the picture"},
     {"A", "see all"},
@@ -68,6 +69,17 @@ static void toggle_pin(lab_controller *controller, const lab_model *model, doubl
     const lab_side *side = &model->sides[controller->side];
     const bool pinned = side_is_pinned(side, side_nearest(side, x, y));
     perform(controller, pinned ? ACTION_UNPIN : ACTION_PIN, x, y, radius, 0);
+}
+
+static void blast(lab_controller *controller, double x, double y, double radius) {
+    perform(controller, ACTION_BLAST, x, y, 3 * radius, 60);
+}
+
+// As many substeps as the library wants on the sides that stand still.
+static void cure(lab_controller *controller, const lab_model *model) {
+    for (int i = 0; i < model->side_count; i++)
+        if (model->sides[i].complaint[0] && model->sides[i].cure > 0 && model->sides[i].cure <= 1000)
+            perform(controller, ACTION_SUBSTEPS, 1 << i, model->sides[i].cure, 0, 0);
 }
 
 static void next_scene(lab_controller *controller, const lab_model *model) {
@@ -120,7 +132,7 @@ static void press_key(lab_controller *controller, const lab_model *model, const 
         perform(controller, ACTION_FIT, 0, 0, 0, 0);
         break;
     case 'b':
-        perform(controller, ACTION_BLAST, x, y, 3 * radius, 60);
+        blast(controller, x, y, radius);
         break;
     case 'c':
         perform(controller, ACTION_COLOUR, (look->colour + 1) % COLOUR_CHOICES, 0, 0, 0);
@@ -146,6 +158,9 @@ static void press_key(lab_controller *controller, const lab_model *model, const 
         break;
     case 'l':
         perform(controller, ACTION_LAYOUT, (look->layout + 1) % 3, 0, 0, 0);
+        break;
+    case 'm':
+        cure(controller, model);
         break;
     case 'n':
         next_scene(controller, model);
@@ -223,8 +238,12 @@ static void press(lab_controller *controller, const lab_model *model, const lab_
     const double scale = place(controller, model, view, &controller->from_x, &controller->from_y);
     if (input->button != BUTTON_LEFT) {
         controller->drag = DRAG_MOVE;
-    } else if (controller->cuts || input->shift) {
+    } else if (controller->cuts || input->shift || model->look.tool == TOOL_CUT) {
         controller->drag = DRAG_CUT;
+    } else if (model->look.tool == TOOL_PIN) {
+        toggle_pin(controller, model, controller->from_x, controller->from_y, controller->radius / scale);
+    } else if (model->look.tool == TOOL_BLAST) {
+        blast(controller, controller->from_x, controller->from_y, controller->radius / scale);
     } else {
         controller->drag = DRAG_PULL;
         perform(controller, ACTION_GRAB, controller->from_x, controller->from_y, controller->radius / scale, 0);
@@ -321,7 +340,7 @@ lab_pointer controller_pointer(const lab_controller *controller, const lab_model
         made.y = controller->from_y;
     } else if (controller->drag == DRAG_NONE && layout_side_at(&view->layout, controller->x, controller->y) >= 0) {
         made.kind = POINTER_CIRCLE;
-        made.colour = controller->cuts ? TINT_WARNING : 0xffffff;
+        made.colour = controller->cuts || model->look.tool == TOOL_CUT ? TINT_WARNING : 0xffffff;
         made.x = made.x2;
         made.y = made.y2;
         made.radius = controller->radius / scale;

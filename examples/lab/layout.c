@@ -83,7 +83,8 @@ static lab_action number(action_kind kind, double value) {
 
 static void add_playing(control_stack *stack, const lab_model *model) {
     static const char *const scene_labels[] = {"<", "", ">"};
-    static const char *const play_labels[] = {"pause", "step", "undo", "reset"};
+    static const char *const play_labels[] = {"pause", "undo", "reset"};
+    static const char *const step_labels[] = {"single step", "settle"};
     lab_control *which = add_buttons(stack, 3, scene_labels);
     if (!which)
         return;
@@ -100,20 +101,30 @@ static void add_playing(control_stack *stack, const lab_model *model) {
     which[2].action = action_of_text(ACTION_SCENE, ready_scenes[(now + 1) % READY_COUNT].name);
     which[1].label = model->stage.made.name;
     which[1].action = number(ACTION_RESET, 0);
-    lab_control *play = add_buttons(stack, 4, play_labels);
-    if (!play)
+    lab_control *play = add_buttons(stack, 3, play_labels), *step = add_buttons(stack, 2, step_labels);
+    if (!play || !step)
         return;
     play[0].label = model->playing ? "pause" : "play";
     play[0].is_on = !model->playing;
     play[0].action = number(model->playing ? ACTION_PAUSE : ACTION_PLAY, 0);
-    play[1].action = number(ACTION_STEP, 1);
-    play[2].action = number(ACTION_UNDO, 0);
-    play[3].action = number(ACTION_RESET, 0);
+    play[1].action = number(ACTION_UNDO, 0);
+    play[2].action = number(ACTION_RESET, 0);
+    step[0].action = number(ACTION_STEP, 1);
+    step[1].action = number(ACTION_SETTLE, 0);
+}
+
+// What the left button of the mouse does.
+static void add_tools(control_stack *stack, const lab_model *model) {
+    static const char *const labels[TOOL_CHOICES] = {"pull", "cut", "pin", "blast"};
+    lab_control *tool = add_buttons(stack, TOOL_CHOICES, labels);
+    for (int i = 0; tool && i < TOOL_CHOICES; i++) {
+        tool[i].is_on = (int)model->look.tool == i;
+        tool[i].action = number(ACTION_TOOL, i);
+    }
 }
 
 static void add_physics(control_stack *stack, const lab_model *model) {
     const lab_settings *now = &model->settings;
-    static const char *const toggles[2][2] = {{"relative", "breaking"}, {"floor", "collide"}};
     add_slider(stack, "gravity", number(ACTION_GRAVITY, now->gravity), 0, 0, 30, false, "%.1f m/s^2", now->gravity);
     add_slider(stack, "mass", number(ACTION_MASS, now->mass), 0, 0.1, 10, true, "x %.2f", now->mass);
     if (model->stage.relative)
@@ -123,15 +134,30 @@ static void add_physics(control_stack *stack, const lab_model *model) {
         add_slider(stack, "stiffness", number(ACTION_STIFFNESS, now->stiffness), 0, 0.001, 1000, true, "x %.3g",
                    now->stiffness);
     add_slider(stack, "damping", number(ACTION_DAMPING, now->damping), 0, 0, 10, false, "x %.2f", now->damping);
-    add_slider(stack, "air", number(ACTION_AIR, now->air), 0, 0, 4, false, "%.2f /s", now->air);
-    add_slider(stack, "step", number(ACTION_DT, now->dt), 0, 1.0 / 512, 1.0 / 8, true, "%.2f ms", 1e3 * now->dt);
-    const bool is_on[2][2] = {{model->stage.relative, now->breaking}, {now->has_floor, now->collides}};
-    static const action_kind kinds[2][2] = {{ACTION_RELATIVE, ACTION_BREAKING}, {ACTION_FLOOR, ACTION_COLLIDE}};
+    add_slider(stack, "drag", number(ACTION_AIR, now->air), 0, 0, 4, false, "%.2f /s", now->air);
+    add_slider(stack, "time step", number(ACTION_DT, now->dt), 0, 1.0 / 512, 1.0 / 8, true, "%.2f ms", 1e3 * now->dt);
+}
+
+static void add_toggles(control_stack *stack, const lab_model *model) {
+    const lab_settings *now = &model->settings;
+    const struct {
+        const char *labels[3];
+        int count;
+        bool is_on[3];
+        action_kind kinds[3];
+    } rows[2] = {{{"breaking", "yielding", "relative"},
+                  3,
+                  {now->breaking, now->yielding, model->stage.relative},
+                  {ACTION_BREAKING, ACTION_YIELDING, ACTION_RELATIVE}},
+                 {{"floor", "collide"},
+                  2,
+                  {now->has_floor, now->collides},
+                  {ACTION_FLOOR, ACTION_COLLIDE}}};
     for (int row = 0; row < 2; row++) {
-        lab_control *toggle = add_buttons(stack, 2, toggles[row]);
-        for (int i = 0; toggle && i < 2; i++) {
-            toggle[i].is_on = is_on[row][i];
-            toggle[i].action = number(kinds[row][i], !is_on[row][i]);
+        lab_control *toggle = add_buttons(stack, rows[row].count, rows[row].labels);
+        for (int i = 0; toggle && i < rows[row].count; i++) {
+            toggle[i].is_on = rows[row].is_on[i];
+            toggle[i].action = number(rows[row].kinds[i], !rows[row].is_on[i]);
         }
     }
 }
@@ -163,14 +189,16 @@ static void add_solver(control_stack *stack, const lab_model *model, int side) {
 }
 
 static void add_colours(control_stack *stack, const lab_model *model) {
-    static const char *const labels[2][3] = {{"strain", "force", "speed"}, {"island", "plan", "material"}};
+    static const char *const labels[2][4] = {{"strain", "force", "speed", "bent"}, {"island", "plan", "material"}};
+    static const int counts[2] = {4, 3};
+    static const colour_choice choices[2][4] = {{COLOUR_STRAIN, COLOUR_FORCE, COLOUR_SPEED, COLOUR_BENT},
+                                                {COLOUR_ISLAND, COLOUR_PLAN, COLOUR_MATERIAL}};
     stack->y += 6;
     for (int row = 0; row < 2; row++) {
-        lab_control *colour = add_buttons(stack, 3, labels[row]);
-        for (int i = 0; colour && i < 3; i++) {
-            const int choice = 3 * row + i;
-            colour[i].is_on = (int)model->look.colour == choice;
-            colour[i].action = number(ACTION_COLOUR, choice);
+        lab_control *colour = add_buttons(stack, counts[row], labels[row]);
+        for (int i = 0; colour && i < counts[row]; i++) {
+            colour[i].is_on = model->look.colour == choices[row][i];
+            colour[i].action = number(ACTION_COLOUR, choices[row][i]);
         }
     }
 }
@@ -202,6 +230,52 @@ static void place_sides(lab_layout *made, const lab_model *model, lab_box area) 
     }
 }
 
+// Beside a step that was refused: what lets it go on.
+static void add_cures(lab_layout *made, const lab_model *model) {
+    enum { WIDTH = 180, ABOVE = 94, LEAST_HEIGHT = 116 };
+    for (int i = 0; i < model->side_count; i++) {
+        const lab_side *side = &model->sides[i];
+        const lab_box view = made->views[i];
+        if (!side->complaint[0] || side->cure == 0 || side->cure > 1000 || side->cure <= side->substeps ||
+            view.height < LEAST_HEIGHT || view.width < 2 * WIDTH)
+            continue;
+        control_stack stack = {made, view.x + 12, view.y + view.height - ABOVE - BUTTON, WIDTH, view.y + view.height};
+        lab_control *cure = add(&stack, CONTROL_BUTTON, BUTTON, "");
+        if (!cure)
+            return;
+        snprintf(cure->value, sizeof cure->value, "more substeps: %u", side->cure);
+        cure->is_on = true;
+        cure->side_colour = i + 1;
+        cure->action = action_of(ACTION_SUBSTEPS, 1 << i, side->cure, 0, 0);
+    }
+}
+
+// All controls one below the other; or, in a low window, on two pages.
+static void add_controls(control_stack *stack, const lab_model *model) {
+    enum { WHOLE = 610 };
+    static const char *const labels[2] = {"play", "settings"};
+    const bool has_pages = stack->bottom - stack->y < WHOLE;
+    lab_control *pages = has_pages ? add_buttons(stack, 2, labels) : NULL;
+    for (int i = 0; pages && i < 2; i++) {
+        pages[i].is_on = model->look.page == i;
+        pages[i].action = number(ACTION_PAGE, i + 1);
+    }
+    if (!has_pages || model->look.page == 0) {
+        add_playing(stack, model);
+        add_tools(stack, model);
+        add_toggles(stack, model);
+    }
+    if (has_pages && model->look.page == 0)
+        add_colours(stack, model);
+    if (has_pages && model->look.page == 0)
+        return;
+    add_physics(stack, model);
+    for (int i = 0; i < model->side_count; i++)
+        add_solver(stack, model, i);
+    if (!has_pages)
+        add_colours(stack, model);
+}
+
 void layout_make(lab_layout *made, const lab_model *model, int width, int height) {
     memset(made, 0, sizeof *made);
     made->width = width;
@@ -220,15 +294,12 @@ void layout_make(lab_layout *made, const lab_model *model, int width, int height
         rest.height -= PLOTS + GAP;
     }
     place_sides(made, model, rest);
+    add_cures(made, model);
     if (made->panel.width == 0)
         return;
     control_stack stack = {made, made->panel.x + 10, made->panel.y + 10, made->panel.width - 20,
                            made->panel.y + made->panel.height - 6};
-    add_playing(&stack, model);
-    add_physics(&stack, model);
-    for (int i = 0; i < model->side_count; i++)
-        add_solver(&stack, model, i);
-    add_colours(&stack, model);
+    add_controls(&stack, model);
 }
 
 const lab_control *layout_control_at(const lab_layout *layout, int x, int y) {

@@ -7,7 +7,7 @@
 
 #include "lab/model.h"
 
-enum { LAYOUT_CONTROLS = 48, LAYOUT_LEAST_WIDTH = 480, LAYOUT_LEAST_HEIGHT = 320 };
+enum { LAYOUT_CONTROLS = 56, LAYOUT_LEAST_WIDTH = 480, LAYOUT_LEAST_HEIGHT = 320 };
 
 typedef enum control_kind {
     CONTROL_LABEL,
@@ -19,7 +19,7 @@ typedef struct lab_control {
     control_kind kind;
     lab_box box;
     const char *label;
-    char value[32];    ///< what a slider stands at, as text
+    char value[32];    ///< what a slider stands at, as text; or a label that is made up
     lab_action action; ///< what a button does; a slider's, whose value is values[place]
     int place;
     double least, most, now; ///< of a slider

@@ -59,7 +59,15 @@ static lab_settings settings_for(const lab_stage *stage) {
                           .grip = 30,
                           .breaking = stage->collides && stage->made.break_strain,
                           .has_floor = !stage->has_pins && stage->gravity > 0,
-                          .collides = stage->collides};
+                          .collides = stage->collides,
+                          .yielding = stage->yields};
+}
+
+// What is there to be bent shows its dents, until another scene comes.
+static colour_choice colour_for(const lab_model *model, const lab_stage *stage) {
+    if (stage->is_ready && stage->yields)
+        return COLOUR_BENT;
+    return model->look.colour == COLOUR_BENT ? COLOUR_STRAIN : model->look.colour;
 }
 
 static void begin_anew(lab_model *model) {
@@ -90,7 +98,7 @@ static void choose_solvers(const lab_model *model, const lab_stage *stage, lab_s
         chosen[i] = model->solvers[i];
         if (stage->substeps > 0 && chosen[i].solver == MSPRING_SOLVER_EXPLICIT)
             chosen[i].substeps = stage->substeps;
-        if (stage->collides && chosen[i].solver != MSPRING_SOLVER_EXPLICIT)
+        if ((stage->collides || stage->has_wall) && chosen[i].solver != MSPRING_SOLVER_EXPLICIT)
             chosen[i].solver = MSPRING_SOLVER_EXPLICIT, chosen[i].substeps = 60;
     }
 }
@@ -131,6 +139,7 @@ static bool open_scene(lab_model *model, const char *name, bool relative, int si
         model->time = 0;
         model->probe = model->stage.probe;
         model->look.metres = 0;
+        model->look.colour = colour_for(model, &stage);
     }
     if (!keeps && !stage.is_ready)
         make_stable(model);
@@ -187,6 +196,8 @@ static bool change_setting(lab_model *model, const lab_action *action, scene_err
         settings.breaking = action->values[0] != 0;
     else if (action->kind == ACTION_COLLIDE)
         settings.collides = action->values[0] != 0;
+    else if (action->kind == ACTION_YIELDING)
+        settings.yielding = action->values[0] != 0;
     else
         settings.has_floor = action->values[0] != 0;
     remember(model, action->kind, true);
@@ -321,6 +332,12 @@ static void look(lab_model *model, const lab_action *action) {
     case ACTION_LAYOUT:
         look->layout = (layout_choice)values[0];
         break;
+    case ACTION_TOOL:
+        look->tool = (tool_choice)values[0];
+        break;
+    case ACTION_PAGE:
+        look->page = (int)values[0] - 1;
+        break;
     case ACTION_PLOTS:
         look->plots = values[0] != 0;
         break;
@@ -371,6 +388,7 @@ bool model_do(lab_model *model, const lab_action *action, scene_error *error) {
     case ACTION_BREAKING:
     case ACTION_FLOOR:
     case ACTION_COLLIDE:
+    case ACTION_YIELDING:
         return change_setting(model, action, error);
     case ACTION_GRAB:
     case ACTION_PIN:

@@ -33,6 +33,8 @@ typedef struct lab_series {
 typedef struct lab_look {
     colour_choice colour;
     layout_choice layout;
+    tool_choice tool;
+    int page; ///< of the controls, from 0
     bool plots, panel, help;
     double x, y, metres; ///< of the camera: middle, and width of what is seen; metres is 0 to see everything
 } lab_look;

@@ -180,7 +180,7 @@ static bool make_jellies(lab_stage *made, bool relative, scene_error *error) {
 const ready_scene ready_scenes[READY_COUNT] = {{"ship", make_ship},      {"bar", make_bar},     {"beam", make_beam},
                                                {"bridge", make_bridge},  {"net", make_net},     {"rope", make_rope},
                                                {"graph", make_graph},    {"ships", make_ships}, {"pile", make_pile},
-                                               {"jellies", make_jellies}};
+                                               {"jellies", make_jellies}, {"car", ready_car}};
 
 const ready_scene *ready_find(const char *name) {
     for (int i = 0; i < READY_COUNT; i++)

@@ -17,7 +17,9 @@ typedef struct ready_scene {
 } ready_scene;
 
 /// In the order in which keys go through them.
-enum { READY_COUNT = 10 };
+enum { READY_COUNT = 11 };
+/// A car of metal that yields, driven into a wall.
+bool ready_car(lab_stage *made, bool relative, scene_error *error);
 extern const ready_scene ready_scenes[READY_COUNT];
 
 /// The scene of this name, or NULL.

@@ -49,6 +49,7 @@ bool side_set_solver(lab_side *side, const lab_solver *solver) {
     side->solver = *solver;
     side->substeps = solver->substeps ? solver->substeps : 1;
     side->complaint[0] = 0;
+    side->cure = 0;
     side_start_measuring_time(side);
     return true;
 }
@@ -117,11 +118,11 @@ static mspring_result set_breaking(lab_side *side, bool breaking) {
 }
 
 static mspring_result set_floor(lab_side *side, bool has_floor) {
-    const double plane[4] = {0, side->stage->floor_y, 0, 1};
+    const double planes[2][4] = {{0, side->stage->floor_y, 0, 1}, {side->stage->wall_x, 0, -1, 0}};
     mspring_floor_def def;
     mspring_floor_def_init(&def, sizeof def);
-    def.plane_count = 1;
-    def.planes = plane;
+    def.plane_count = side->stage->has_wall ? 2 : 1;
+    def.planes = planes[0];
     def.friction = 0.6f;
     return mspring_network_set_floor(side->network, has_floor ? &def : NULL);
 }
@@ -152,6 +153,7 @@ static mspring_result set_surroundings(lab_side *side, const lab_settings *setti
 
 bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_settings *before) {
     mspring_result result = set_surroundings(side, settings);
+    side->cure = 0;
     if (result == MSPRING_OK && settings->mass != before->mass)
         result = set_masses(side, settings->mass);
     if (side->stage->spring_count > 0) {
@@ -161,6 +163,9 @@ bool side_set_settings(lab_side *side, const lab_settings *settings, const lab_s
             result = set_dampings(side, settings->damping);
         if (result == MSPRING_OK && settings->breaking != before->breaking)
             result = set_breaking(side, settings->breaking);
+        if (result == MSPRING_OK && settings->yielding != before->yielding &&
+            !side_set_yielding(side, settings->yielding))
+            return false;
     }
     return accepted(side, result) && side_set_obstacles(side, settings, before);
 }
@@ -174,10 +179,11 @@ bool side_make(lab_side *made, const lab_stage *stage, const lab_settings *setti
     const size_t springs = stage->spring_count ? stage->spring_count : 1;
     made->strain = calloc(springs, sizeof *made->strain);
     made->broken = calloc(springs, sizeof *made->broken);
+    made->plastic = calloc(springs, sizeof *made->plastic);
     made->held = malloc(stage->particle_count * sizeof *made->held);
     made->held_x = malloc(stage->particle_count * sizeof *made->held_x);
     made->held_y = malloc(stage->particle_count * sizeof *made->held_y);
-    if (!made->strain || !made->broken || !made->held || !made->held_x || !made->held_y) {
+    if (!made->strain || !made->broken || !made->plastic || !made->held || !made->held_x || !made->held_y) {
         side_free(made);
         return scene_fail_memory(error, "cannot make the network");
     }
@@ -194,7 +200,7 @@ bool side_make(lab_side *made, const lab_stage *stage, const lab_settings *setti
     made->view.struct_size = sizeof made->view;
     const float *velocity = stage->made.velocity;
     const lab_settings fresh = {
-        .gravity = settings->gravity, .mass = 1, .stiffness = 1, .damping = stage->has_damping ? 1 : 0};
+        .gravity = settings->gravity, .mass = 1, .stiffness = 1, .damping = stage->has_damping ? 1 : 0, .yielding = stage->yields};
     if ((!velocity || accepted(made, mspring_network_set_velocities(made->network, 0, stage->particle_count,
                                                                     velocity, velocity + 1, 2))) &&
         accepted(made, mspring_network_view(made->network, &made->view)) &&
@@ -210,6 +216,7 @@ void side_free(lab_side *unwanted) {
     mspring_network_destroy(unwanted->network);
     free(unwanted->strain);
     free(unwanted->broken);
+    free(unwanted->plastic);
     free(unwanted->held);
     free(unwanted->held_x);
     free(unwanted->held_y);
@@ -243,9 +250,13 @@ void side_step(lab_side *side, const lab_settings *settings) {
     const double begin = clock_seconds();
     const mspring_result result = mspring_network_step(side->network, settings->dt);
     const double seconds = clock_seconds() - begin;
-    if (!accepted(side, result))
+    if (!accepted(side, result)) {
+        if (side->solver.solver == MSPRING_SOLVER_EXPLICIT && side->cure == 0)
+            side->cure = side_suggest_substeps(side, settings->dt);
         return;
+    }
     side->complaint[0] = 0;
+    side->cure = 0;
     mspring_step_info info = {.struct_size = sizeof info};
     if (mspring_network_get_step_info(side->network, &info) == MSPRING_OK)
         side->substeps = info.substeps;
@@ -311,7 +322,7 @@ static void measure_springs(lab_side *side, const lab_settings *settings) {
         return;
     for (uint32_t i = 0; i < stage->spring_count; i++) {
         const float strain = side->strain[i];
-        const double longer = (double)strain * stage->rest[i];
+        const double longer = (double)strain * stage->rest[i] * (1 + (double)side->plastic[i]);
         const double stiffness = stage->relative ? side_spring_stiffness(side, settings, i) : stage->stiffness[i];
         elastic += stiffness * longer * longer;
         squares += (double)strain * strain;
@@ -346,6 +357,8 @@ static void measure_particles(lab_side *side, const lab_settings *settings) {
 void side_measure(lab_side *side, const lab_settings *settings, mspring_id probe) {
     double x, y;
     read_broken(side);
+    if (settings->yielding || side->bent_count > 0)
+        side_measure_bent(side);
     measure_springs(side, settings);
     measure_particles(side, settings);
     side_position(side, probe, &x, &y);

@@ -10,7 +10,7 @@
 /// What both sides have in common.
 typedef struct lab_settings {
     double gravity, mass, stiffness, damping, air, dt, grip; ///< as the actions of these names
-    bool breaking, has_floor, collides;
+    bool breaking, has_floor, collides, yielding;
 } lab_settings;
 
 enum { LAB_COMPLAINT_SIZE = 256 };
@@ -41,6 +41,9 @@ typedef struct lab_side {
     float *strain; ///< [springs] as of the last measurement; 0 of broken ones
     bool *broken;  ///< [springs]
     uint32_t broken_count;
+    float *plastic; ///< [springs] as of the last measurement: how much of their length changed for good
+    uint32_t bent_count;
+    uint32_t cure; ///< substeps that would have done for the step that was refused; 0: not known
     char complaint[LAB_COMPLAINT_SIZE]; ///< why the last step was refused, "" if it was not
     // What is held by the mouse.
     mspring_id *held;        ///< [particles]
@@ -74,6 +77,15 @@ void side_measure(lab_side *side, const lab_settings *settings, mspring_id probe
 double side_spring_stiffness(const lab_side *side, const lab_settings *settings, uint32_t spring);
 /// Read anew which springs are broken, after a snapshot was loaded.
 void side_find_broken(lab_side *side);
+
+/* side_bent.c */
+
+/// Let springs yield: at the scene's strains, or at a usual one.
+bool side_set_yielding(lab_side *side, bool yielding);
+/// Refresh plastic and bent_count.
+void side_measure_bent(lab_side *side);
+/// Take over what another network of the same scene has bent.
+bool side_copy_bent(lab_side *side, const lab_side *from);
 
 /// World position of a particle.
 void side_position(const lab_side *side, mspring_id particle, double *x, double *y);

@@ -121,7 +121,7 @@ bool side_copy_state(lab_side *side, const lab_side *from) {
              accepted(side, mspring_network_get_velocities(from->network, 0, particles, vx, vy, 1)) &&
              accepted(side, mspring_network_set_positions(side->network, 0, particles, x, y, 1)) &&
              accepted(side, mspring_network_set_velocities(side->network, 0, particles, vx, vy, 1)) &&
-             break_listed(side, list, count);
+             break_listed(side, list, count) && side_copy_bent(side, from);
         for (uint32_t i = 0; ok && i < particles; i++) {
             const float scale = side_is_pinned(from, i) ? 0 : 1;
             if (side_is_pinned(from, i) != side_is_pinned(side, i))

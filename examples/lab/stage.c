@@ -91,9 +91,11 @@ static bool allocate(lab_stage *made) {
     made->rest = malloc(springs * sizeof *made->rest);
     made->stiffness = malloc(springs * sizeof *made->stiffness);
     made->damping = malloc(springs * sizeof *made->damping);
+    made->yield_strain = malloc(springs * sizeof *made->yield_strain);
     made->long_springs = malloc(springs * sizeof *made->long_springs);
     return made->x && made->y && made->mass && made->pinned && made->a && made->b && made->rest &&
-           made->stiffness && made->damping && made->long_springs;
+           made->stiffness && made->damping && made->yield_strain &&
+           made->long_springs;
 }
 
 static int compare_floats(const void *a, const void *b) {
@@ -154,7 +156,8 @@ static bool read_network(lab_stage *made, const mspring_network *network) {
         mspring_network_get_ends(network, 0, springs, MSPRING_ENDS_IDS, made->a, made->b, 1) == MSPRING_OK &&
         mspring_network_get(network, MSPRING_REST_LENGTH, 0, springs, made->rest, 1) == MSPRING_OK &&
         mspring_network_get(network, MSPRING_STIFFNESS, 0, springs, made->stiffness, 1) == MSPRING_OK &&
-        mspring_network_get(network, MSPRING_DAMPING, 0, springs, made->damping, 1) == MSPRING_OK;
+        mspring_network_get(network, MSPRING_DAMPING, 0, springs, made->damping, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_YIELD_STRAIN, 0, springs, made->yield_strain, 1) == MSPRING_OK;
     for (uint32_t i = 0; ok && i < particles; i++)
         made->pinned[i] = view.inverse_mass[view.slot_of_particle[i]] == 0;
     uint32_t flags = 0;
@@ -162,6 +165,8 @@ static bool read_network(lab_stage *made, const mspring_network *network) {
         made->relative = made->relative || (flags & MSPRING_SPRING_RELATIVE) != 0;
     for (uint32_t i = 0; ok && i < springs; i++)
         made->has_damping = made->has_damping || made->damping[i] > 0;
+    for (uint32_t i = 0; ok && i < springs; i++)
+        made->yields = made->yields || made->yield_strain[i] < MSPRING_NEVER;
     return ok;
 }
 
@@ -228,6 +233,7 @@ void stage_free(lab_stage *unwanted) {
     free(unwanted->rest);
     free(unwanted->stiffness);
     free(unwanted->damping);
+    free(unwanted->yield_strain);
     free(unwanted->long_springs);
     memset(unwanted, 0, sizeof *unwanted);
 }

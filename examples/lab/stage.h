@@ -18,6 +18,7 @@ typedef struct lab_stage {
     mspring_id *a, *b;          ///< [spring_count], the lower one first
     float *rest;                ///< [spring_count], m
     float *stiffness, *damping; ///< [spring_count], as in mspring_spring_def
+    float *yield_strain;        ///< [spring_count]
     uint32_t *long_springs;     ///< [long_count] springs that do not join neighbours of a grid
     uint32_t long_count;
     double spacing; ///< of neighbours, m: that of most particles
@@ -29,7 +30,10 @@ typedef struct lab_stage {
     bool is_ready;  ///< one of the ready scenes
     bool collides;  ///< its bodies are there to meet
     double gravity; ///< m/s^2, down, that it begins with
+    bool has_wall;  ///< where the floor ends, at wall_x
+    double wall_x;  ///< m
     bool has_pins;
+    bool yields; ///< some of its springs do
     bool has_damping; ///< the scene's own; if not, some is made up for the slider
 } lab_stage;
 

@@ -24,6 +24,15 @@ lab_colour tint_speed(int step) {
     return between(stops, sizeof stops / sizeof *stops, step);
 }
 
+lab_colour tint_bent(int step) {
+    static const lab_colour stops[] = {0xf3c4ff, 0xc45cff, 0x7a4fb0, 0x4a5568, 0xb0423a, 0xff4d4d, 0xffc2a8};
+    return between(stops, sizeof stops / sizeof *stops, step);
+}
+
+lab_colour tint_of(colour_choice by, int step) {
+    return by == COLOUR_SPEED ? tint_speed(step) : by == COLOUR_BENT ? tint_bent(step) : tint_strain(step);
+}
+
 lab_colour tint_distinct(uint32_t index) {
     static const lab_colour colours[] = {0x5aa9e6, 0xf4a259, 0x7bd389, 0xe56b9f, 0xb8a1ff, 0xf2e266, 0x4ecdc4,
                                          0xd98e73, 0x9ad1d4, 0xc0ca33, 0xff8fa3, 0x8d99ae, 0x6a7fdb};

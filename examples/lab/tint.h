@@ -5,6 +5,7 @@
 #ifndef LAB_TINT_H
 #define LAB_TINT_H
 
+#include "lab/action.h"
 #include "lab/raster.h"
 
 enum {
@@ -32,6 +33,10 @@ lab_colour tint_of_side(int side);
 lab_colour tint_strain(int step);
 /// From slow, dark blue, to fast, yellow.
 lab_colour tint_speed(int step);
+/// What is bent for good: from shortened, violet, over steel to lengthened, red.
+lab_colour tint_bent(int step);
+/// The scale of a choice of colours.
+lab_colour tint_of(colour_choice by, int step);
 /// One of some colours that differ.
 lab_colour tint_distinct(uint32_t index);
 /// A colour of an image, light enough for a dark background.

@@ -145,8 +145,12 @@ static double mean_stiffness(const lab_model *model) {
     return model->stage.spring_count ? side_spring_stiffness(&model->sides[0], &model->settings, middle) : 1;
 }
 
+static bool now_is_bent(const lab_model *model, int side) {
+    return model->look.colour == COLOUR_BENT && model->sides[side].bent_count > 0;
+}
+
 static void adapt_scales(lab_view *view, const lab_model *model) {
-    double strain = 0, speed = 0, mass = 0;
+    double strain = 0, speed = 0, mass = 0, squares = 0, count = 0;
     for (uint32_t i = 0; i < model->stage.particle_count; i++)
         mass += model->stage.mass[i];
     for (int i = 0; i < model->side_count; i++) {
@@ -154,10 +158,13 @@ static void adapt_scales(lab_view *view, const lab_model *model) {
         // Only what all sides can be compared by: one that explodes does not take the colours from the other.
         const double here = 5 * now->rms_strain;
         strain = i == 0 || here < strain ? here : strain;
+        for (uint32_t s = 0; now_is_bent(model, i) && s < model->stage.spring_count; s++)
+            squares += pow(model->sides[i].plastic[s], 2), count++;
         speed = fmax(speed, 2.5 * sqrt(2 * now->kinetic / (mass * model->settings.mass)));
     }
     adapt(&view->limit[0], fmax(strain, 1e-4));
     adapt(&view->limit[1], fmax(strain, 1e-4) * mean_stiffness(model) * model->stage.spacing);
+    adapt(&view->bent_limit, fmax(5 * sqrt(squares / fmax(count, 1)), 0.02));
     adapt(&view->speed_limit, fmax(speed, 0.05));
 }
 
@@ -247,7 +254,7 @@ static void draw_head(lab_view *view, const lab_model *model, int index) {
     int right = head.x + head.width - 12;
     if (view->shows_costs && side->measured.seconds > 0) {
         snprintf(text, sizeof text, "%.2f ms", 1e3 * side->measured.seconds);
-        right = draw_figure(view, head, right, base, "a step", text, "00.00 ms");
+        right = draw_figure(view, head, right, base, "cost", text, "00.00 ms");
     }
     if (after + text_width(&view->normal, "implicit, 1 substep of 8 iterations") + 150 > right)
         return;
@@ -262,11 +269,13 @@ static void draw_scale(lab_view *view, const lab_model *model, lab_box box) {
     if (by == COLOUR_ISLAND || by == COLOUR_PLAN || box.width < 2 * WIDTH)
         return;
     const int left = box.x + box.width - WIDTH - 14, top = box.y + 20;
-    const char *title = by == COLOUR_SPEED ? "speed" : by == COLOUR_FORCE ? "force" : "strain";
+    const char *title = by == COLOUR_SPEED   ? "speed"
+                        : by == COLOUR_FORCE ? "force"
+                        : by == COLOUR_BENT  ? "bent for good"
+                                             : "strain";
     for (int i = 0; i < WIDTH; i++) {
         const int step = i * (TINT_STEPS - 1) / (WIDTH - 1);
-        raster_fill(&view->target, box, (lab_box){left + i, top, 1, 5},
-                    by == COLOUR_SPEED ? tint_speed(step) : tint_strain(step), 256);
+        raster_fill(&view->target, box, (lab_box){left + i, top, 1, 5}, tint_of(by, step), 256);
     }
     char high[64], low[72], digits[32];
     if (by == COLOUR_SPEED)
@@ -274,7 +283,7 @@ static void draw_scale(lab_view *view, const lab_model *model, lab_box box) {
     else if (by == COLOUR_FORCE)
         snprintf(high, sizeof high, "%sN", view_number(view->limit[1], digits));
     else
-        snprintf(high, sizeof high, "%.3g %%", 100 * view->limit[0]);
+        snprintf(high, sizeof high, "%.3g %%", 100 * (by == COLOUR_BENT ? view->bent_limit : view->limit[0]));
     snprintf(low, sizeof low, "%s%s", by == COLOUR_SPEED ? "0" : "-", by == COLOUR_SPEED ? "" : high);
     text_draw(&view->target, box, &view->small, left, top - 4, TEXT_LEFT, TINT_FAINT, low);
     text_draw(&view->target, box, &view->small, left + WIDTH, top - 4, TEXT_RIGHT, TINT_FAINT, high);
@@ -351,25 +360,33 @@ static void draw_top(lab_view *view, const lab_model *model, const lab_costs *co
     raster_fill(&view->target, box, box, TINT_WINDOW, 256);
     text_draw(&view->target, box, &view->large, 18, 24, TEXT_LEFT, TINT_TEXT, model->stage.made.name);
     const int after = 18 + text_width(&view->large, model->stage.made.name) + 14;
-    uint32_t broken = 0;
-    for (int i = 0; i < model->side_count; i++)
+    uint32_t broken = 0, bent = 0;
+    for (int i = 0; i < model->side_count; i++) {
         broken = model->sides[i].broken_count > broken ? model->sides[i].broken_count : broken;
+        bent = model->sides[i].bent_count > bent ? model->sides[i].bent_count : bent;
+    }
     snprintf(text, sizeof text, "%s particles   %s springs   %.2f s",
              whole_number(model->stage.particle_count, particles), whole_number(model->stage.spring_count, springs),
              model->time);
     if (box.width < 1000) // all of it leaves no room for the costs
         snprintf(text, sizeof text, "%.2f s", model->time);
     text_draw(&view->target, box, &view->normal, after, 24, TEXT_LEFT, TINT_FAINT, text);
-    const int state = after + text_width(&view->normal, text) + 16;
+    int state = after + text_width(&view->normal, text) + 16;
     if (broken) {
         snprintf(text, sizeof text, "%u broken", broken);
         text_draw(&view->target, box, &view->normal, state, 24, TEXT_LEFT, 0xff9340, text);
+        state += text_width(&view->normal, text) + 16;
+    }
+    if (bent) {
+        snprintf(text, sizeof text, "%u bent", bent);
+        text_draw(&view->target, box, &view->normal, state, 24, TEXT_LEFT, tint_bent(TINT_STEPS / 5), text);
+        state += text_width(&view->normal, text) + 16;
     }
     if (!model->playing)
-        text_draw(&view->target, box, &view->normal, state + (broken ? 100 : 0), 24, TEXT_LEFT, TINT_PIN, "paused");
+        text_draw(&view->target, box, &view->normal, state, 24, TEXT_LEFT, TINT_PIN, "paused");
     else if (model->speed > 1) {
         snprintf(text, sizeof text, "%u x", model->speed);
-        text_draw(&view->target, box, &view->normal, state + (broken ? 100 : 0), 24, TEXT_LEFT, TINT_PIN, text);
+        text_draw(&view->target, box, &view->normal, state, 24, TEXT_LEFT, TINT_PIN, text);
     }
     if (costs && view->shows_costs && costs->frame > 0 && box.width >= 640)
         draw_cost(view, costs, box);

@@ -52,6 +52,7 @@ typedef struct lab_view {
     view_side sides[2];
     uint32_t capacity; ///< particles that the sides have room for
     double limit[2];   ///< of strain and force, the ends of the colours
+    double bent_limit; ///< of plastic strain
     double speed_limit;
     double min_x, min_y, max_x, max_y; ///< what a camera that sees everything has seen so far
     const void *seen;                  ///< of which network

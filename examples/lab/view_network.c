@@ -24,10 +24,16 @@ static uint8_t step_of(double part) {
 // The value of a spring that colours show, -1 to 1 and beyond.
 static float spring_value(const lab_side *side, const lab_settings *settings, colour_choice by, double limit,
                           uint32_t spring) {
+    if (by == COLOUR_BENT)
+        return (float)(side->plastic[spring] / limit);
     if (by == COLOUR_FORCE)
         return (float)(side_spring_stiffness(side, settings, spring) * side->strain[spring] *
                        side->stage->rest[spring] / limit);
     return (float)(side->strain[spring] / limit);
+}
+
+static double limit_of(const lab_view *view, colour_choice by) {
+    return by == COLOUR_BENT ? view->bent_limit : view->limit[by == COLOUR_FORCE];
 }
 
 static void find_extremes(lab_view *view, const lab_model *model, int index) {
@@ -35,13 +41,14 @@ static void find_extremes(lab_view *view, const lab_model *model, int index) {
     const lab_stage *stage = side->stage;
     view_side *kept = &view->sides[index];
     float *extreme = kept->extreme;
-    const bool by_force = model->look.colour == COLOUR_FORCE;
+    const colour_choice by = model->look.colour == COLOUR_MATERIAL ? COLOUR_STRAIN : model->look.colour;
+    const bool by_strain = by == COLOUR_STRAIN;
     const float scale = (float)(1 / view->limit[0]);
     for (uint32_t i = 0; i < stage->particle_count; i++)
         extreme[i] = 0;
     for (uint32_t i = 0; i < stage->spring_count; i++) {
-        const float value = by_force ? spring_value(side, &model->settings, COLOUR_FORCE, view->limit[1], i)
-                                     : side->strain[i] * scale;
+        const float value = by_strain ? side->strain[i] * scale
+                                      : spring_value(side, &model->settings, by, limit_of(view, by), i);
         float *a = &extreme[stage->a[i]], *b = &extreme[stage->b[i]];
         *a = fabsf(value) > fabsf(*a) ? value : *a;
         *b = fabsf(value) > fabsf(*b) ? value : *b;
@@ -120,6 +127,8 @@ static lab_colour particle_colour(const lab_model *model, const view_side *kept,
         const lab_colour own = model->stage.material ? tint_material(model->stage.material[particle]) : 0x7d8aa0;
         return colour_mix(own, tint_strain(tint), glow > 16 ? (glow - 16) * 2 : 0);
     }
+    case COLOUR_BENT:
+        return tint_bent(kept->tint[particle]);
     default:
         return tint_strain(kept->tint[particle]);
     }
@@ -245,15 +254,15 @@ static void draw_springs(const lab_side *side, view_side *kept, const lab_model 
                          const uint32_t *list, uint32_t count, float width) {
     const lab_stage *stage = side->stage;
     const colour_choice by = model->look.colour;
-    const bool by_value = by == COLOUR_STRAIN || by == COLOUR_FORCE;
+    const bool by_value = by == COLOUR_STRAIN || by == COLOUR_FORCE || by == COLOUR_BENT;
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t spring = list ? list[i] : i, a = stage->a[spring], b = stage->b[spring];
         if (side->broken[spring])
             continue;
         lab_colour colour;
         if (by_value)
-            colour = tint_strain(step_of(
-                0.5 + 0.5 * spring_value(side, &model->settings, by, view->limit[by == COLOUR_FORCE], spring)));
+            colour = tint_of(
+                by, step_of(0.5 + 0.5 * spring_value(side, &model->settings, by, limit_of(view, by), spring)));
         else
             colour = particle_colour(model, kept, a);
         layer_line(&kept->layer, kept->x[a], kept->y[a], kept->x[b], kept->y[b], width, layer_colour_of(colour));
@@ -262,10 +271,10 @@ static void draw_springs(const lab_side *side, view_side *kept, const lab_model 
 
 static void draw_squares(const lab_side *side, view_side *kept, const lab_model *model, float half) {
     const colour_choice by = model->look.colour;
-    if (by <= COLOUR_SPEED) {
+    if (by <= COLOUR_SPEED || by == COLOUR_BENT) {
         layer_colour colours[TINT_STEPS];
         for (int i = 0; i < TINT_STEPS; i++)
-            colours[i] = layer_colour_of(by == COLOUR_SPEED ? tint_speed(i) : tint_strain(i));
+            colours[i] = layer_colour_of(tint_of(by, i));
         for (uint32_t i = 0; i < side->stage->particle_count; i++)
             layer_square(&kept->layer, kept->x[i], kept->y[i], half, colours[kept->tint[i]]);
         return;

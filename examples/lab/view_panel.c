@@ -14,7 +14,7 @@ static void draw_button(lab_view *view, const lab_control *control) {
     const lab_colour lit = colour_of_control(control);
     raster_round(&view->target, box, box, 4, control->is_on ? colour_mix(TINT_BUTTON, lit, 170) : TINT_BUTTON, 256);
     text_draw(&view->target, box, &view->normal, box.x + box.width / 2, box.y + 15, TEXT_CENTRE,
-              control->is_on ? TINT_WINDOW : TINT_TEXT, control->label);
+              control->is_on ? TINT_WINDOW : TINT_TEXT, control->value[0] ? control->value : control->label);
 }
 
 static void draw_slider(lab_view *view, const lab_control *control) {
@@ -38,9 +38,8 @@ static void draw_slider(lab_view *view, const lab_control *control) {
 void view_draw_panel(lab_view *view, const lab_model *model) {
     const lab_layout *layout = &view->layout;
     (void)model;
-    if (layout->panel.width == 0)
-        return;
-    raster_round(&view->target, layout->panel, layout->panel, 6, TINT_PANEL, 256);
+    if (layout->panel.width > 0)
+        raster_round(&view->target, layout->panel, layout->panel, 6, TINT_PANEL, 256);
     for (int i = 0; i < layout->control_count; i++) {
         const lab_control *control = &layout->controls[i];
         if (control->kind == CONTROL_BUTTON)

@@ -12,7 +12,7 @@
 static const struct {
     const char *title, *unit;
 } plots[PROBE_KINDS] = {
-    {"bending", "m"}, {"kinetic", "J"}, {"elastic", "J"}, {"max strain", "%"}, {"a step", "ms"}};
+    {"bending", "m"}, {"kinetic", "J"}, {"elastic", "J"}, {"max strain", "%"}, {"cost", "ms"}};
 
 static double shown_value(int kind, double value) {
     return kind == PROBE_STRAIN ? 100 * value : value;
@@ -78,14 +78,18 @@ static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box 
     raster_fill(&view->target, area, area, TINT_VIEW, 256);
     const int zero = area.y + area.height - 2 + (int)(low * (area.height - 3) / (high - low));
     raster_fill(&view->target, area, (lab_box){area.x, zero, area.width, 1}, TINT_EDGE, 256);
+    int used = 0;
     for (int side = 0; side < model->side_count; side++) {
         draw_line(view, series, kind, side, area, low, high);
         if (series->count == 0)
             continue;
         const double last = shown_value(kind, series->values[kind][side][series->count - 1]);
+        value_text(kind, last, text);
+        used += text_width(&view->normal, text) + 10;
+        // Where two values have no room beside each other, the second stands in the plot.
         text_draw(&view->target, box, &view->normal, side == 0 ? box.x + 10 : box.x + box.width - 10,
-                  box.y + box.height - 8, side == 0 ? TEXT_LEFT : TEXT_RIGHT, tint_of_side(side),
-                  value_text(kind, last, text));
+                  used + 10 > box.width ? box.y + 38 : box.y + box.height - 8, side == 0 ? TEXT_LEFT : TEXT_RIGHT,
+                  tint_of_side(side), text);
     }
 }
 

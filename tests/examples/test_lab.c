@@ -9,34 +9,10 @@
 #include <string.h>
 
 #include "lab/app.h"
+#include "lab_player.h"
 #include "support.h"
 
 /* ----------------------------------------------------------------------------------------------------- helpers */
-
-static void must_do(lab_model *model, const char *line) {
-    lab_action action;
-    action_error wrong = {0, ""};
-    scene_error error = {""};
-    if (!action_read(line, strlen(line), 1, &action, &wrong))
-        fail_msg("%s: %s", line, wrong.text);
-    if (!model_do(model, &action, &error))
-        fail_msg("%s: %s", line, error.text);
-}
-
-static void start(lab_model *model, const char *scene_name) {
-    scene_error error = {""};
-    if (!model_start(model, scene_name, &error))
-        fail_msg("%s", error.text);
-}
-
-static void frames(lab_model *model, int count) {
-    for (int i = 0; i < count; i++) {
-        const uint32_t steps = model_begin_frame(model);
-        for (int side = 0; side < model->side_count; side++)
-            model_play_side(model, side, steps);
-        model_end_frame(model, steps);
-    }
-}
 
 static void play(lab_model *model, const lab_script *script) {
     for (size_t i = 0; i < script->count; i++) {
@@ -230,6 +206,40 @@ static void what_is_too_stiff_is_refused_and_goes_on_when_it_is_not(void **state
     model_end(&model);
 }
 
+static const lab_control *control_labelled(const lab_layout *layout, const char *label) {
+    for (int i = 0; i < layout->control_count; i++) {
+        const lab_control *control = &layout->controls[i];
+        if (control->kind == CONTROL_BUTTON && strstr(control->value[0] ? control->value : control->label, label))
+            return control;
+    }
+    return NULL;
+}
+
+static void a_button_has_the_substeps_that_a_rejected_step_needs(void **state) {
+    (void)state;
+    static lab_model model;
+    static lab_layout layout;
+    start(&model, "bar");
+    frames(&model, 4);
+    layout_make(&layout, &model, 640, 480);
+    assert_null(control_labelled(&layout, "more substeps"));
+    must_do(&model, "stiffness 20");
+    frames(&model, 64);
+    assert_true(model.sides[0].complaint[0] != 0);
+    layout_make(&layout, &model, 640, 480);
+    const lab_control *cure = control_labelled(&layout, "more substeps");
+    assert_non_null(cure);
+    assert_true(box_holds(layout.views[0], cure->box.x, cure->box.y));
+    scene_error error = {""};
+    assert_true(model_do(&model, &cure->action, &error));
+    frames(&model, 16);
+    assert_string_equal(model.sides[0].complaint, "");
+    assert_true(model.sides[0].steps >= 16);
+    layout_make(&layout, &model, 640, 480);
+    assert_null(control_labelled(&layout, "more substeps"));
+    model_end(&model);
+}
+
 static void the_cost_of_a_step_is_not_that_of_the_first(void **state) {
     (void)state;
     static lab_model model;
@@ -339,6 +349,37 @@ static void a_recording_of_the_mouse_plays_to_the_same_state(void **state) {
     model_end(&model);
     script_free(&script);
     free(text);
+}
+
+static void tools_are_picked_by_buttons(void **state) {
+    (void)state;
+    static lab_app app;
+    lab_options options = {.scene = "bar", .width = 640, .height = 480, .frames = ".", .no_clock = true};
+    assert_true(app_start(&app, &options) && app_frame(&app, true));
+    static const char *const labels[] = {"pin", "cut", "blast"};
+    for (int i = 0; i < 3; i++) {
+        const lab_control *button = control_labelled(&app.view.layout, labels[i]);
+        assert_non_null(button);
+        lab_input input = {.kind = INPUT_PRESS, .x = button->box.x + 3, .y = button->box.y + 3, .button = BUTTON_LEFT};
+        controller_take(&app.controller, &app.model, &app.view, &input);
+        input.kind = INPUT_RELEASE;
+        controller_take(&app.controller, &app.model, &app.view, &input);
+        const lab_camera camera = view_camera(&app.view, &app.model, 0);
+        double x, y;
+        camera_to_pixel(&camera, 40, 2, &x, &y);
+        const uint32_t broken = app.model.sides[0].broken_count;
+        input = (lab_input){.kind = INPUT_PRESS, .x = (int)x, .y = (int)y - 20, .button = BUTTON_LEFT};
+        controller_take(&app.controller, &app.model, &app.view, &input);
+        input.kind = INPUT_RELEASE;
+        input.y += 40;
+        controller_take(&app.controller, &app.model, &app.view, &input);
+        assert_true(app_frame(&app, true));
+        assert_true((app.model.sides[0].broken_count > broken) == (i > 0));
+        if (i == 0)
+            assert_true(side_is_pinned(&app.model.sides[0], side_nearest(&app.model.sides[0], 40, 5)));
+        assert_false(app.model.holding);
+    }
+    assert_true(app_free(&app));
 }
 
 /* ------------------------------------------------------------------------------------------------ what is drawn */
@@ -494,6 +535,8 @@ int main(void) {
         cmocka_unit_test(undo_brings_back_the_state_of_before),
         cmocka_unit_test(undo_brings_back_contact_and_floor),
         cmocka_unit_test(what_is_too_stiff_is_refused_and_goes_on_when_it_is_not),
+        cmocka_unit_test(a_button_has_the_substeps_that_a_rejected_step_needs),
+        cmocka_unit_test(tools_are_picked_by_buttons),
         cmocka_unit_test(the_cost_of_a_step_is_not_that_of_the_first),
         cmocka_unit_test(a_scene_that_cannot_be_opened_changes_nothing),
         cmocka_unit_test(a_script_ends_in_the_same_state_everywhere),
