@@ -63,6 +63,9 @@ int main(int count, char **arguments) {
     case BENCH_SPARE:
         ok = bench_run_spare(&options);
         break;
+    case BENCH_CORES:
+        ok = bench_run_cores(&options);
+        break;
     case BENCH_LOOPS:
         ok = bench_run_loops(&options);
         break;

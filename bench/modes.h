@@ -9,7 +9,7 @@
 #include "options.h"
 
 /// Measure scenes against the naive step (scenes.c), what features cost (features.c), what contact costs
-/// (contact.c), what workers gain (workers.c), what is done to a network between its steps (session.c), what the
+/// (contact.c), what workers gain (workers.c), what more of them would gain (cores.c), what is done to a network between its steps (session.c), what the
 /// sparse direct solver costs (linear.c), what steps of the implicit and the direct solver cost (solvers.c), how
 /// far from the machine's bounds the scenes are (roofline.c), where networks are stable (map.c), one case of that
 /// (map_cases.c), how long the worst step takes (map_frames.c), whether the guard refuses ordinary steps (alarms.c)
@@ -31,6 +31,7 @@ bool bench_run_alarms(const bench_options *options);
 bool bench_run_guard(const bench_options *options);
 bool bench_run_check(const bench_options *options);
 bool bench_run_spare(const bench_options *options);
+bool bench_run_cores(const bench_options *options);
 bool bench_run_loops(const bench_options *options);
 
 /// One scene at one level.

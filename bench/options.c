@@ -22,6 +22,7 @@ void bench_options_help(void) {
          "  --features           what dampers, hooks, forces and ropes cost\n"
          "  --contact            what contact between bodies costs\n"
          "  --workers            what workers gain, next to as many threads that share nothing\n"
+         "  --cores              what 2 to 64 workers would gain, simulated; two of them measured\n"
          "  --session            what a game's edits, events and measurements cost, next to its step\n"
          "  --linear             what the sparse direct solver costs, in explicit substeps\n"
          "  --solvers            what steps of the implicit and the direct solver cost, in explicit substeps\n"
@@ -137,6 +138,7 @@ static bool is_switch(const char *option, bench_options *out) {
                  {"--frames", BENCH_FRAMES},     {"--alarms", BENCH_ALARMS},
                  {"--guard", BENCH_GUARD},       {"--check", BENCH_CHECK},
                  {"--spare", BENCH_SPARE},       {"--loops", BENCH_LOOPS},
+                 {"--cores", BENCH_CORES},
                  {"--list", BENCH_LIST},
                  {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {

@@ -28,6 +28,7 @@ typedef enum bench_mode {
     BENCH_CHECK,
     BENCH_SPARE,
     BENCH_LOOPS,
+    BENCH_CORES,
     BENCH_LIST,
     BENCH_HELP
 } bench_mode;

@@ -1,6 +1,7 @@
 /// What a network says of itself: its sizes, its error, its last step, and how it was laid out.
 #include <math.h>
 
+#include "solvers/explicit/explicit.h"
 #include "store/growth.h"
 #include "store/network.h"
 
@@ -89,6 +90,7 @@ mspring_result mspring_network_get_plan(const mspring_network *network, mspring_
         .has_relative = network->fractions.values != NULL,
         .simd_level = network->kernels->level,
         .irregular_layers = t->layer_count,
+        .pass_workers = mspringi_explicit_workers(network),
     };
     if (network->solver.ops->describe)
         network->solver.ops->describe(network->solver.object, &made);

@@ -52,7 +52,7 @@ SIZE(mspring_settle_result, 40, 40)
 SIZE(mspring_tune_scene, 64, 56)
 SIZE(mspring_tune_def, 112, 88)
 SIZE(mspring_tune_row, 248, 248)
-SIZE(mspring_plan, 136, 136)
+SIZE(mspring_plan, 144, 144)
 
 #define ENUM(type) _Static_assert(sizeof(type) == 4 && (type)-1 < 0, #type " is no int of 32 bits");
 

@@ -15,7 +15,7 @@ static const uint32_t worker_counts[] = {2, 3, 5, 8};
 typedef struct way {
     const char *name;
     uint32_t substeps, period; ///< of a hook after substeps; 0: none
-    bool undamped, held, ropes, wide;
+    bool undamped, held, ropes, wide, whole;
 } way;
 
 static const way ways[] = {
@@ -25,6 +25,7 @@ static const way ways[] = {
     {.name = "with ropes", .substeps = 20, .ropes = true},
     {.name = "hook after every substep", .substeps = 10, .period = 1},
     {.name = "hook after every third", .substeps = 11, .period = 3, .ropes = true, .held = true},
+    {.name = "with ropes, no holes", .substeps = 20, .ropes = true, .whole = true},
     {.name = "few long rows", .substeps = 12, .wide = true},
 };
 
@@ -34,7 +35,7 @@ static recipe lattice(const way *w) {
                                 .stiffness = {200, 400},
                                 .damping = {0, w->undamped ? 0 : 1},
                                 .pinned = 0.01,
-                                .holes = 0.15};
+                                .holes = w->whole ? 0 : 0.15};
     recipe made = {0};
     const uint32_t width = w->wide ? 1500 : 90;
     recipe_lattice(&made, width, w->wide ? 16 : 200, 0, 0, 1, &stuff, &seed);
@@ -81,6 +82,26 @@ static void any_division_gives_the_same_bits(void **state) {
         for (size_t w = 0; w < COUNT_OF(worker_counts); w++)
             if (run(&made, &ways[i], worker_counts[w]) != expected)
                 fail_msg("%s: other bits with %u workers", ways[i].name, (unsigned)worker_counts[w]);
+        recipe_free(&made);
+    }
+}
+
+/// Strips of a lattice with ropes have 2,048 particles each. Few of them are a share, down to the three that
+/// workers need at a border.
+static void heavy_strips_are_shared_by_weight(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t way, workers, used;
+    } cases[] = {{0, 1, 1}, {0, 2, 2}, {0, 8, 8}, {3, 8, 2}, {6, 1, 1}, {6, 2, 2}, {6, 8, 3}};
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        recipe made = lattice(&ways[cases[i].way]);
+        mspring_network_def def = support_def(-9.8f, 40);
+        mspring_plan plan = {.struct_size = sizeof plan};
+        def.worker_count = cases[i].workers;
+        mspring_network *network = recipe_network(&made, &def);
+        check_ok(mspring_network_get_plan(network, &plan));
+        assert_int_equal(plan.pass_workers, cases[i].used);
+        mspring_network_destroy(network);
         recipe_free(&made);
     }
 }
@@ -321,6 +342,7 @@ static void what_sleeps_in_between_changes_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_division_gives_the_same_bits),
+        cmocka_unit_test(heavy_strips_are_shared_by_weight),
         cmocka_unit_test(what_is_refused_is_taken_back),
         cmocka_unit_test(what_sleeps_beside_gives_the_same_bits),
         cmocka_unit_test(what_sleeps_beside_a_notch_changes_nothing),

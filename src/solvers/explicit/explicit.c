@@ -61,6 +61,13 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
     return near_depth > FEW_SUBSTEPS ? near_depth : depth_within(topology, parts, FAR_CACHE_BYTES);
 }
 
+uint32_t mspringi_explicit_workers(const mspring_network *network) {
+    const uint32_t count = network->substeps > 0 ? network->substeps : 1;
+    return network->topology.wavefront_strips > 0
+               ? mspringi_shares_count(network, NULL, count, network->depth).workers
+               : 1;
+}
+
 // One more than are under way, so that the processor can begin the next substep of a small network before the last row
 // of this one is done.
 uint32_t mspringi_explicit_carries(const mspringi_topology *topology, uint32_t depth) {

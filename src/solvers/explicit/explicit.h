@@ -11,6 +11,9 @@
 /// Deepest pass over the lattice rows that is worth it for this topology.
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
 
+/// Workers that a step of as many substeps as the last one shares the lattice rows among.
+uint32_t mspringi_explicit_workers(const mspring_network *network);
+
 /// Carry rows for each worker in passes of that depth: enough for the substeps that are under way at a time.
 uint32_t mspringi_explicit_carries(const mspringi_topology *topology, uint32_t depth);
 

@@ -1,8 +1,8 @@
 /// Equal shares.
 #include "solvers/explicit/shares.h"
 
-#include "solvers/explicit/halo.h"
 #include "sleep/sleep.h"
+#include "solvers/explicit/halo.h"
 
 /// Substeps of a step times springs from which more than one worker is worth it, and those of a pass: workers meet
 /// in each.
@@ -10,9 +10,11 @@
 #define SMALLEST_SHARED_PASS 40000u
 
 /// Strips that each of several workers should have: a bar of 640 x 10, whose rows go from one to the other and back
-/// every third substep, was 1.3 times as fast with two as with one where both cores were there, and 0.65 times where
-/// the host took turns.
+/// every third substep, was 1.3 times as fast with two as with one where both cores were there, and 0.65 times
+/// where the host took turns. Fewer strips are enough if they have more springs than this each, as those of
+/// lattices with ropes do.
 #define FEWEST_STRIPS 8u
+#define LIGHT_STRIP_SPRINGS 2048u
 
 /// What it takes to sweep a lattice block, to sweep a rung of the web, and to keep a block of a halo and sweep it.
 #define BLOCK_WEIGHT 8u
@@ -113,8 +115,17 @@ static void plan_passes(mspringi_shares *shares, uint32_t depth) {
     shares->group = (shares->count + passes - 1) / passes;
 }
 
-mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspringi_strip *web, uint32_t count,
-                                     uint32_t depth) {
+// Strips that a share should have at least: as many as its worker reads, and enough work.
+static uint32_t fewest_strips(uint32_t strips, uint32_t skew, uint64_t springs) {
+    const uint32_t least = mspringi_shares_least(skew);
+    const uint64_t work = (uint64_t)FEWEST_STRIPS * LIGHT_STRIP_SPRINGS;
+    const uint64_t enough = springs > 0 ? (work * strips + springs - 1) / springs : FEWEST_STRIPS;
+    const uint32_t fewest = enough < FEWEST_STRIPS ? (uint32_t)enough : FEWEST_STRIPS;
+    return fewest > least ? fewest : least;
+}
+
+mspringi_shares mspringi_shares_count(const mspring_network *network, const mspringi_strip *web, uint32_t count,
+                                      uint32_t depth) {
     const mspringi_topology *t = &network->topology;
     mspringi_shares shares = {.strips = web ? t->layer_count : t->wavefront_strips,
                               .skew = web ? 1 : t->skew,
@@ -124,10 +135,9 @@ mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspri
     // Both workers at a border compute the forces there: a rest length must not change in between.
     if (!web && network->plastic.yields && network->plastic.maps)
         shares.workers = 1;
-    const uint32_t least = mspringi_shares_least(shares.skew);
-    const uint32_t most = shares.strips / (least > FEWEST_STRIPS ? least : FEWEST_STRIPS);
     const uint64_t springs = mspringi_swept_count(t);
-    uint64_t below[MSPRING_MAX_WORKERS] = {0};
+    const uint32_t most =
+        shares.strips / fewest_strips(shares.strips, shares.skew, web ? t->leftover_count : t->lattice_springs);
     if (shares.workers > most)
         shares.workers = most > 1 ? most : 1;
     if (springs * network->substeps < SMALLEST_SHARED_WORK || network->graft.count > 0)
@@ -137,10 +147,17 @@ mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspri
         shares.workers = 1;
         plan_passes(&shares, depth);
     }
+    return shares;
+}
+
+mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspringi_strip *web, uint32_t count,
+                                     uint32_t depth) {
+    const mspringi_shares shares = mspringi_shares_count(network, web, count, depth);
+    uint64_t below[MSPRING_MAX_WORKERS] = {0};
     if (shares.workers == 1)
         return shares;
     weigh(network, web, shares.strips);
-    const uint64_t halo = web ? 0 : (uint64_t)HALO_WEIGHT * t->carry_blocks;
+    const uint64_t halo = web ? 0 : (uint64_t)HALO_WEIGHT * network->topology.carry_blocks;
     for (uint32_t pass = 0; pass < MSPRINGI_PLANNED_PASSES && pass * shares.group < count; ++pass)
         find_borders(network, &shares, pass, halo, below);
     return shares;

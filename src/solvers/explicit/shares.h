@@ -27,6 +27,10 @@ typedef struct mspringi_shares {
 mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspringi_strip *web, uint32_t count,
                                      uint32_t depth);
 
+/// The same without borders: how many workers share the strips, and how many substeps a pass has. Writes nothing.
+mspringi_shares mspringi_shares_count(const mspring_network *network, const mspringi_strip *web, uint32_t count,
+                                      uint32_t depth);
+
 /// Strips that a share needs at any time, for its worker to have what it reads around a border for itself.
 static inline uint32_t mspringi_shares_least(uint32_t skew) {
     return 2 * skew + 1;

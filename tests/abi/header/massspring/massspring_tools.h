@@ -370,6 +370,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_sl
 /* ---------------------------------------------------------------------------------- workers and instruction sets */
 
 /// Return the number of workers: 1 in a build without threads. NULL gives 0.
+/// A small network leaves some of them idle: see mspring_plan, pass_workers.
 /// @threads shared   @allocates never
 MSPRING_API uint32_t MSPRING_CALL mspring_network_worker_count(const mspring_network *network);
 
@@ -727,6 +728,8 @@ typedef struct mspring_plan {
     uint32_t irregular_layers; ///< with any solver: layers of the irregular part for passes over it; 0: none
     uint64_t factor_values;    ///< of the direct solver: numbers in its factor, which exists in both precisions
     double factor_products;    ///< products that computing that factor takes
+    uint32_t pass_workers;     ///< workers that share passes over lattice rows in explicit steps; 1: no sharing
+    uint32_t reserved;         ///< 0
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.
