@@ -7,6 +7,7 @@ precision highp float;
 precision highp sampler2D;
 layout(location = 0) in uvec2 ends;
 layout(location = 1) in float restLength;
+layout(location = 2) in float plastic;
 uniform sampler2D xs, ys;
 uniform vec2 centre, scale;   // world metres, clip units per metre
 uniform vec2 pixel;           // clip units per pixel
@@ -30,6 +31,7 @@ void main() {
   float much = sqrt(abs(strain));
   vec3 calm = vec3(0.36, 0.42, 0.50);
   colour = mix(calm, strain < 0.0 ? vec3(0.22, 0.62, 1.0) : vec3(1.0, 0.52, 0.12), much);
+  colour = mix(colour, vec3(0.77, 0.36, 1.0), min(1.0, 0.25 + abs(plastic) / 0.04) * float(plastic != 0.0));
 }`;
 
 const FRAGMENT = `#version 300 es
@@ -72,6 +74,11 @@ class Drawing {
     gl.enableVertexAttribArray(1);
     gl.vertexAttribPointer(1, 1, gl.FLOAT, false, 12, 8);
     gl.vertexAttribDivisor(1, 1);
+    this.dents = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.dents);
+    gl.enableVertexAttribArray(2);
+    gl.vertexAttribPointer(2, 1, gl.FLOAT, false, 4, 0);
+    gl.vertexAttribDivisor(2, 1);
     this.textures = [gl.createTexture(), gl.createTexture()];
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
@@ -99,8 +106,8 @@ class Drawing {
     if (rest > 0) gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, whole, rest, 1, gl.RED, gl.FLOAT, values, whole * ROW);
   }
 
-  // springs: bytes of [count] {slot, slot, rest length}; view: centre in metres relative to the origin, pixels per metre.
-  draw(x, y, springs, count, changes, view) {
+  // springs: bytes of [count] {slot, slot, rest length}; plastic: [count] how much of it has changed; view: centre in metres relative to the origin, pixels per metre.
+  draw(x, y, springs, plastic, changes, view) {
     const gl = this.gl, { width, height } = this.canvas;
     gl.viewport(0, 0, width, height);
     gl.clearColor(0.055, 0.067, 0.086, 1);
@@ -109,6 +116,8 @@ class Drawing {
     if (changes !== this.changes) {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.springs);
       gl.bufferData(gl.ARRAY_BUFFER, springs, gl.DYNAMIC_DRAW);
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.dents);
+      gl.bufferData(gl.ARRAY_BUFFER, plastic, gl.DYNAMIC_DRAW);
       this.changes = changes;
     }
     gl.activeTexture(gl.TEXTURE0);
@@ -123,6 +132,6 @@ class Drawing {
     gl.uniform1f(this.uniforms.halfWidth, Math.min(4, Math.max(0.75, 0.09 * view.scale)));
     gl.uniform1f(this.uniforms.strainLimit, view.strainLimit);
     gl.bindVertexArray(this.vertices);
-    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, plastic.length);
   }
 }

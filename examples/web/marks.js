@@ -56,13 +56,15 @@ class Marks {
     pen.moveTo(...place(a));
     pen.lineTo(...place(b));
     pen.stroke();
-    this.say(Math.hypot(x[b] - x[a], y[b] - y[a]), floats(core.springs(), ends.length)[at + 2]);
+    this.say(Math.hypot(x[b] - x[a], y[b] - y[a]), floats(core.springs(), ends.length)[at + 2],
+      floats(core.plastic(), ends.length / 3)[this.spring]);
   }
 
-  say(length, rest) {
+  say(length, rest, plastic) {
     const strain = length / rest - 1, much = Math.abs(100 * strain).toPrecision(2);
     const how = rest === 0 ? 'broken' : `${strain < 0 ? 'squeezed' : 'stretched'} by ${much} %`;
-    this.tip.textContent = `spring ${this.spring.toLocaleString('en')}: ${length.toFixed(3)} m, ${how}`;
+    const bent = plastic === 0 ? '' : `, bent by ${(100 * plastic).toPrecision(2)} % for good`;
+    this.tip.textContent = `spring ${this.spring.toLocaleString('en')}: ${length.toFixed(3)} m, ${how}${bent}`;
   }
 
   // Rest on the nearest spring within some pixels of a place (m, relative to the origin), if there is one.

@@ -80,6 +80,7 @@ static void drop_page(void) {
     page_leave(page.base_stiffness, page.spring_count * sizeof *page.base_stiffness);
     page_leave(page.break_strain, page.spring_count * sizeof *page.break_strain);
     page_leave(page.rest_length, page.spring_count * sizeof *page.rest_length);
+    page_leave(page.plastic, page.spring_count * sizeof *page.plastic);
     page_leave(page.list, page.list_capacity * sizeof *page.list);
     page_leave(page.events, EVENTS * sizeof *page.events);
     page_leave(page.held, page.particle_count * sizeof *page.held);
@@ -99,6 +100,7 @@ static bool take_arrays(void) {
     page.base_stiffness = page_take(page.spring_count * sizeof *page.base_stiffness);
     page.break_strain = page_take(page.spring_count * sizeof *page.break_strain);
     page.rest_length = page_take(page.spring_count * sizeof *page.rest_length);
+    page.plastic = page_take(page.spring_count * sizeof *page.plastic);
     page.list = page_take(page.list_capacity * sizeof *page.list);
     page.events = page_take(EVENTS * sizeof *page.events);
     page.held = page_take(page.particle_count * sizeof *page.held);
@@ -106,7 +108,7 @@ static bool take_arrays(void) {
     page.force_x = page_take(page.particle_count * sizeof *page.force_x);
     page.force_y = page_take(page.particle_count * sizeof *page.force_y);
     return page.springs && page.ends && page.values && page.base_stiffness && page.break_strain &&
-           page.rest_length && page.list && page.events && page.held && page.held_mass && page.force_x &&
+           page.rest_length && page.plastic && page.list && page.events && page.held && page.held_mass && page.force_x &&
            page.force_y;
 }
 
@@ -152,6 +154,12 @@ static void find_break_strains(const mspring_lattice_def *def, const page_materi
             }
         }
     }
+}
+
+static void find_strains(const mspring_lattice_def *def, const page_material *materials) {
+    find_break_strains(def, materials);
+    for (uint32_t i = 0; i < def->material_count; i++)
+        page.yield_strain = weaker(page.yield_strain, materials[i].yield_strain);
 }
 
 static mspring_result add_ropes(mspring_builder *builder, const page_rope *ropes, uint32_t count,
@@ -243,7 +251,7 @@ mspring_result page_make(uint32_t width, uint32_t height, uint32_t material_coun
     if (result == MSPRING_OK)
         result = make_network(builder);
     if (result == MSPRING_OK)
-        find_break_strains(&def, given);
+        find_strains(&def, given);
     else
         drop_page();
     mspring_builder_destroy(builder);
@@ -257,6 +265,7 @@ mspring_result page_make(uint32_t width, uint32_t height, uint32_t material_coun
 // Springs that broke are drawn no more.
 static void follow_events(void) {
     uint32_t count = 0;
+    bool yielded = false;
     do {
         if (mspring_network_read_events(page.network, page.events, EVENTS, &count, NULL) != MSPRING_OK)
             return;
@@ -265,10 +274,14 @@ static void follow_events(void) {
             if (event->kind == MSPRING_EVENT_BROKEN)
                 page.springs[event->id].rest_length = 0;
             else if (event->kind == MSPRING_EVENT_RESTORED)
-                page.springs[event->id].rest_length = page.rest_length[event->id];
+                page.springs[event->id].rest_length = page_rest_length(event->id);
+            else if (event->kind == MSPRING_EVENT_YIELDED)
+                yielded = true;
         }
         page.changes += count > 0;
     } while (count == EVENTS);
+    if (yielded)
+        page_find_bent();
 }
 
 mspring_result page_step(double dt) {

@@ -20,7 +20,7 @@
 
 /// What a cell is made of, as the script writes it.
 typedef struct page_material {
-    float mass, stiffness, damping, break_strain, pinned;
+    float mass, stiffness, damping, break_strain, pinned, yield_strain; ///< strains of 0: never
 } page_material;
 
 /// A rope between two cells.
@@ -56,7 +56,7 @@ PAGE_EXPORT(origin_y) double page_origin_y(void);
 /// [springs]; of a broken one the rest length is 0.
 PAGE_EXPORT(spring_count) uint32_t page_spring_count(void);
 PAGE_EXPORT(springs) const page_spring *page_springs(void);
-/// Counts up when springs break or are restored.
+/// Counts up when springs break, are restored or yield.
 PAGE_EXPORT(changes) uint32_t page_changes(void);
 
 PAGE_EXPORT(solver) mspring_result page_set_solver(uint32_t solver, uint32_t substeps, uint32_t iterations);
@@ -66,6 +66,18 @@ PAGE_EXPORT(damping) mspring_result page_set_damping(float rate);
 PAGE_EXPORT(stiffness) mspring_result page_set_stiffness(float factor);
 /// Whether springs break at their materials' strain.
 PAGE_EXPORT(breaking) mspring_result page_set_breaking(uint32_t on);
+/* bent.c: yielding */
+
+/// Whether springs yield: at the least yield strain of the materials, or at a usual one.
+PAGE_EXPORT(yielding) mspring_result page_set_yielding(uint32_t on);
+/// Take all dents back.
+PAGE_EXPORT(straighten) mspring_result page_straighten(void);
+/// [springs]: how much of a spring's length has changed for good; and how many are bent.
+PAGE_EXPORT(plastic) const float *page_plastic(void);
+PAGE_EXPORT(bent_count) uint32_t page_bent_count(void);
+
+/* page.c again */
+
 PAGE_EXPORT(substeps) uint32_t page_substeps(void);
 PAGE_EXPORT(level) const char *page_level(void);
 PAGE_EXPORT(kinetic_energy) double page_kinetic_energy(void);

@@ -9,7 +9,7 @@ const MOST_STEPS = 2; // in a frame: what is slower than time goes on in slow mo
 const HOLD_RADIUS = 14; // pixels
 const REST_TIME = 150; // ms that the pointer rests before it asks for a spring
 const SETTINGS = ['scene', 'solver', 'substeps', 'stiffness', 'gravity', 'damping', 'limit'];
-const SWITCHES = ['breaking', 'floor', 'collide'];
+const SWITCHES = ['breaking', 'floor', 'collide', 'yielding'];
 const byId = (id) => document.getElementById(id);
 const settings = new URLSearchParams(location.hash.slice(1));
 
@@ -40,6 +40,8 @@ async function sceneOf(name) {
       return weights();
     case 'rubble':
       return rubble();
+    case 'girder':
+      return girder();
     case 'own':
       return fromImage(ownImage, materials);
     default:
@@ -50,6 +52,7 @@ async function sceneOf(name) {
 async function load(name) {
   try {
     current = await sceneOf(name);
+    if (current.yields) toggle(byId('yielding'), true);
     if (current.collide) {
       toggle(byId('collide'), true);
       Object.assign(byId('solver'), { value: 0 });
@@ -148,6 +151,9 @@ const settingsOf = {
   breaking() {
     check(core.breaking(isOn('breaking') ? 1 : 0));
   },
+  yielding() {
+    check(core.yielding(isOn('yielding') ? 1 : 0));
+  },
   collide() {
     if (check(core.collide(isOn('collide') ? 1 : 0))) tell('');
     else toggle(byId('collide'), false);
@@ -180,6 +186,7 @@ function connectControls() {
   });
   byId('again').addEventListener('click', start);
   byId('repair').addEventListener('click', () => check(core.repair()));
+  byId('straighten').addEventListener('click', () => check(core.straighten()));
   byId('link').addEventListener('click', copyLink);
   // Too stiff for so few substeps: as many as it needs, and on.
   byId('cure').addEventListener('click', () => {
@@ -372,7 +379,7 @@ function draw() {
   const slots = core.slots(), springs = core.spring_count();
   const relative = { ...view, x: view.x - core.origin_x(), y: view.y - core.origin_y() };
   const bytes = new Uint8Array(core.memory.buffer, core.springs(), 12 * springs);
-  drawing.draw(floats(core.x(), slots), floats(core.y(), slots), bytes, springs, core.changes(), relative);
+  drawing.draw(floats(core.x(), slots), floats(core.y(), slots), bytes, floats(core.plastic(), springs), core.changes(), relative);
   marks.draw(core, relative);
 }
 
@@ -392,6 +399,8 @@ function showFigures(now) {
   }
   byId('taken').textContent = core.substeps();
   byId('strain').textContent = (100 * core.max_strain()).toPrecision(3) + ' %';
+  byId('bent').hidden = core.bent_count() === 0;
+  byId('bent-count').textContent = core.bent_count().toLocaleString('en');
   byId('kinetic').textContent = joules(core.kinetic_energy());
   byId('frames').textContent = Math.round((1000 * state.seconds) / (now - cost.shown)) + ' /s';
   Object.assign(cost, { sum: 0, count: 0, shown: now });

@@ -66,6 +66,18 @@ function rubble() {
   return scene;
 }
 
+// A block falls on a girder of steel that yields: its dent stays.
+function girder() {
+  const steel = { mass: 40, stiffness: 3e7, damping: 1500, breakStrain: 0, pinned: 0, yieldStrain: 0.01 };
+  const block = { ...steel, mass: 400, stiffness: 6e7, damping: 4000 };
+  const scene = { ...empty(120, 60, [steel, PINNED, block]), collide: true, yields: true };
+  const { cells, width, height } = scene;
+  for (let x = 0; x < width; x++)
+    for (let y = height - 8; y < height; y++) cells[y * width + x] = x < 2 || x >= width - 2 ? 1 : 0;
+  for (let x = 52; x < 68; x++) for (let y = 2; y < 14; y++) cells[y * width + x] = 2;
+  return scene;
+}
+
 // colour,name,mass,stiffness,damping,break_strain,pinned,probe
 function readMaterials(text) {
   const table = new Map(), materials = [];
@@ -102,7 +114,7 @@ async function fromImage(source, materials) {
 // Write a scene into the module and make its network. Throws with the library's words.
 function makeScene(module, scene) {
   const cellBytes = Math.ceil((2 * scene.cells.length) / 16) * 16;
-  const ropeBytes = 28, materialBytes = 20;
+  const ropeBytes = 28, materialBytes = 24;
   const size = cellBytes + scene.materials.length * materialBytes + scene.ropes.length * ropeBytes;
   const at = module.prepare(size);
   if (!at) throw new Error('out of memory');
@@ -116,7 +128,7 @@ function makeScene(module, scene) {
       place += 4;
     }
   };
-  for (const m of scene.materials) put(m.mass, m.stiffness, m.damping, m.breakStrain, m.pinned);
+  for (const m of scene.materials) put(m.mass, m.stiffness, m.damping, m.breakStrain, m.pinned, m.yieldStrain ?? 0);
   for (const rope of scene.ropes) {
     for (const id of [rope.from, rope.to, rope.segments]) {
       values.setUint32(place, id, true);
@@ -137,4 +149,4 @@ function hashText(part) {
 }
 
 if (typeof module !== 'undefined')
-  module.exports = { bar, bridge, weights, rubble, readMaterials, fromPixels, makeScene, textAt, hashText };
+  module.exports = { bar, bridge, weights, rubble, girder, readMaterials, fromPixels, makeScene, textAt, hashText };

@@ -7,7 +7,7 @@ const { readFileSync } = require('node:fs');
 const { resolve } = require('node:path');
 
 const [file, scenes] = process.argv.slice(2);
-const { bar, bridge, weights, rubble, readMaterials, fromPixels, makeScene, textAt, hashText } = require(resolve(scenes));
+const { bar, bridge, weights, rubble, girder, readMaterials, fromPixels, makeScene, textAt, hashText } = require(resolve(scenes));
 const compiled = new WebAssembly.Module(readFileSync(file));
 assert.deepStrictEqual(WebAssembly.Module.imports(compiled), [], 'the module needs nothing');
 const core = new WebAssembly.Instance(compiled, {}).exports;
@@ -102,6 +102,26 @@ assert.notStrictEqual(core.step(DT), 0);
 assert.match(textAt(core, core.error()), /particle/);
 good(core.stiffness(0.001));
 steps(4);
+
+// A block dents the girder; the dent stays when nothing yields any more, and can be taken back.
+makeScene(core, girder());
+good(core.solver(0, 40, 0));
+good(core.collide(1));
+good(core.yielding(1));
+steps(32);
+assert.strictEqual(core.bent_count(), 0, 'the block is still in the air');
+steps(224);
+const bent = core.bent_count();
+assert(bent > 20, `${bent} springs are bent`);
+good(core.yielding(0));
+steps(16);
+assert.strictEqual(core.bent_count(), bent);
+const dents = new Float32Array(core.memory.buffer, core.plastic(), core.spring_count());
+assert.strictEqual(dents.filter((value) => value !== 0).length, bent);
+good(core.straighten());
+assert.strictEqual(core.bent_count(), 0);
+steps(4);
+good(core.collide(0));
 
 // What is wrong is refused.
 assert.throws(() => makeScene(core, { ...bar(4, 4), ropes: [{ from: 99, to: 0, segments: 1, mass: 1, stiffness: 1, damping: 0, slack: 1 }] }));
