@@ -78,6 +78,13 @@ static bool translate(const SDL_Event *event, lab_input *input) {
     }
 }
 
+// A file that was dropped on the window is the next scene.
+static void open_dropped(lab_app *app, char *path) {
+    const lab_action action = action_of_text(ACTION_SCENE, path);
+    app_perform(&action, app);
+    SDL_free(path);
+}
+
 // Hands all that has happened to the controller. Movements count from frame to frame only.
 static void take_events(lab_app *app, bool *quits) {
     SDL_Event event;
@@ -85,6 +92,8 @@ static void take_events(lab_app *app, bool *quits) {
     while (SDL_PollEvent(&event)) {
         if (event.type == SDL_QUIT)
             *quits = true;
+        if (event.type == SDL_DROPFILE)
+            open_dropped(app, event.drop.file);
         if (!translate(&event, &input))
             continue;
         if (input.kind == INPUT_MOVE) {
