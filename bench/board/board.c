@@ -9,21 +9,12 @@
 #include <stdlib.h>
 
 #include "board/energy.h"
+#include "board/fracture.h"
 #include "board/measures.h"
 #include "common/output.h"
 #include "draw/scatter.h"
 
-static const method *const methods[] = {
-    &board_ours[0],  &board_ours[1], &board_ours[2], &board_naive,
-    &board_pbd,      &board_xpbd,    &board_vbd,     &board_projective,
-#ifdef BOARD_BOX2D
-    &board_box2d,
-#endif
-#ifdef BOARD_CHIPMUNK
-    &board_chipmunk,
-#endif
-};
-enum { METHODS = sizeof methods / sizeof *methods, MOST_EFFORTS = 6, OURS = 3 };
+enum { METHODS = BOARD_MOST_METHODS };
 
 /// What a picture shows against the time of a frame.
 typedef struct measured {
@@ -54,7 +45,8 @@ static bool draw(const stage *on, const result results[METHODS][MOST_EFFORTS], c
     scatter_series series[METHODS];
     char name[64];
     size_t all = 0;
-    for (int i = 0; i < METHODS; i++) {
+    int methods = 0;
+    for (int i = 0; board_methods[i]; i++) {
         size_t count = 0;
         for (int e = 0; e < MOST_EFFORTS && results[i][e].effort > 0; e++) {
             const scatter_point point = {.x = results[i][e].us, .y = what->of(&results[i][e])};
@@ -64,10 +56,11 @@ static bool draw(const stage *on, const result results[METHODS][MOST_EFFORTS], c
         series[i] = (scatter_series){.points = points[i],
                                      .count = count,
                                      .mark = i < OURS ? SCATTER_DISC : SCATTER_SQUARE,
-                                     .colour = methods[i]->colour,
-                                     .name = methods[i]->name,
+                                     .colour = board_methods[i]->colour,
+                                     .name = board_methods[i]->name,
                                      .joined = true};
         all += count;
+        methods++;
     }
     if (all == 0)
         return true;
@@ -78,7 +71,7 @@ static bool draw(const stage *on, const result results[METHODS][MOST_EFFORTS], c
                             .x_label = "time of a frame of 1/64 s, us",
                             .y_label = what->label,
                             .series = series,
-                            .series_count = METHODS,
+                            .series_count = (size_t)methods,
                             .percent = true},
                  0, 0, 800, 560);
     snprintf(name, sizeof name, "board_%s%s", on->name, what->ending);
@@ -107,8 +100,8 @@ static bool run(const stage *on, const char *folder) {
     if (!stage_read(on, &m))
         return false;
     bool good = reference_find(on, &m, &exact);
-    for (int i = 0; good && i < METHODS; i++)
-        run_method(on, &m, &exact, methods[i], results[i]);
+    for (int i = 0; good && board_methods[i]; i++)
+        run_method(on, &m, &exact, board_methods[i], results[i]);
     for (int i = 0; good && i < PICTURES; i++)
         good = draw(on, (const result(*)[MOST_EFFORTS])results, &pictures[i], folder);
     reference_free(&exact);
@@ -128,5 +121,5 @@ int main(int count, char **arguments) {
     bool good = true;
     for (int i = 0; good && i < STAGES; i++)
         good = run(&board_stages[i], folder);
-    return good && energy_board(folder) ? EXIT_SUCCESS : EXIT_FAILURE;
+    return good && fracture_board(folder) && energy_board(folder) ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -13,6 +13,7 @@ namespace {
 struct world {
     b2World engine;
     std::vector<b2Body *> bodies;
+    std::vector<b2Joint *> springs; // nullptr: between pinned ones, or broken
     explicit world(double gravity) : engine(b2Vec2(0, static_cast<float>(-gravity))) {
     }
 };
@@ -40,13 +41,14 @@ bool begin(motion *r, double) {
     }
     for (uint32_t s = 0; s < m->spring_count; s++) {
         b2DistanceJointDef def;
+        w->springs.push_back(nullptr);
         if (!(m->inverse_mass[m->a[s]] > 0) && !(m->inverse_mass[m->b[s]] > 0))
             continue;
         def.bodyA = w->bodies[m->a[s]];
         def.bodyB = w->bodies[m->b[s]];
         def.length = static_cast<float>(m->rest[s]);
         def.stiffness = static_cast<float>(m->stiffness[s]);
-        w->engine.CreateJoint(&def);
+        w->springs.back() = w->engine.CreateJoint(&def);
     }
     return true;
 }
@@ -56,6 +58,16 @@ void frame(motion *r, double dt) {
     const float h = static_cast<float>(dt / r->effort);
     for (uint32_t i = 0; i < r->effort; i++)
         static_cast<world *>(r->own)->engine.Step(h, 8, 3);
+}
+
+bool cut(motion *r, const uint32_t *springs, uint32_t count, double) {
+    world *w = static_cast<world *>(r->own);
+    for (uint32_t i = 0; i < count; i++) {
+        if (w->springs[springs[i]])
+            w->engine.DestroyJoint(w->springs[springs[i]]);
+        w->springs[springs[i]] = nullptr;
+    }
+    return true;
 }
 
 void state(const motion *r, model_state *to) {
@@ -74,5 +86,5 @@ void end(motion *r) {
 
 } // namespace
 
-const method board_box2d = {"Box2D, joints",     "substeps", begin,   frame, state, end,
+const method board_box2d = {"Box2D, joints",     "substeps", begin,   frame, cut, state, end,
                             {1, 4, 16, 64, 256}, false,      0x8e44ad};

@@ -51,6 +51,21 @@ static void frame(motion *r, double dt) {
         cpSpaceStep(((space *)r->own)->engine, dt / r->effort);
 }
 
+static void remove_spring(space *own, uint32_t spring) {
+    if (own->springs[spring]) {
+        cpSpaceRemoveConstraint(own->engine, own->springs[spring]);
+        cpConstraintFree(own->springs[spring]);
+    }
+    own->springs[spring] = NULL;
+}
+
+static bool cut(motion *r, const uint32_t *springs, uint32_t count, double dt) {
+    (void)dt;
+    for (uint32_t i = 0; i < count; i++)
+        remove_spring(r->own, springs[i]);
+    return true;
+}
+
 static void state(const motion *r, model_state *to) {
     const space *own = r->own;
     for (uint32_t i = 0; i < r->m->particle_count; i++) {
@@ -66,12 +81,8 @@ static void end(motion *r) {
     space *own = r->own;
     if (!own)
         return;
-    for (uint32_t s = 0; own->springs && s < r->m->spring_count; s++) {
-        if (own->springs[s]) {
-            cpSpaceRemoveConstraint(own->engine, own->springs[s]);
-            cpConstraintFree(own->springs[s]);
-        }
-    }
+    for (uint32_t s = 0; own->springs && s < r->m->spring_count; s++)
+        remove_spring(own, s);
     for (uint32_t i = 0; own->bodies && i < r->m->particle_count; i++) {
         if (own->bodies[i]) {
             cpSpaceRemoveBody(own->engine, own->bodies[i]);
@@ -89,6 +100,7 @@ const method board_chipmunk = {.name = "Chipmunk, damped springs",
                                .effort = "substeps",
                                .begin = begin,
                                .frame = frame,
+                               .cut = cut,
                                .state = state,
                                .end = end,
                                .efforts = {1, 2, 4},

@@ -181,10 +181,23 @@ static void projective_frame(motion *r, double dt) {
     }
 }
 
+// The matrix is another one now.
+static bool projective_cut(motion *r, const uint32_t *springs, uint32_t count, double dt) {
+    band *b = r->own;
+    const uint32_t n = r->m->particle_count;
+    (void)springs;
+    (void)count;
+    memset(b->factor, 0, (size_t)n * (b->width + 1) * sizeof *b->factor);
+    fill(r, b, dt);
+    factor(b, n);
+    return true;
+}
+
 const method board_projective = {.name = "projective dynamics",
                                  .effort = "iterations",
                                  .begin = projective_begin,
                                  .frame = projective_frame,
+                                 .cut = projective_cut,
                                  .end = band_end,
                                  .efforts = {2, 8, 32, 128, 512},
                                  .colour = 0x2e9e5b};

@@ -75,7 +75,7 @@ static void project(motion *r, uint32_t s, double compliance) {
     const model *m = r->m;
     const uint32_t a = m->a[s], b = m->b[s];
     const double wa = m->inverse_mass[a], wb = m->inverse_mass[b], w = wa + wb;
-    if (!(w > 0))
+    if (!(w > 0) || !(m->stiffness[s] > 0))
         return;
     const double dx = r->x[b] - r->x[a], dy = r->y[b] - r->y[a], length = sqrt(dx * dx + dy * dy);
     const double push = (length - m->rest[s]) / ((w + compliance) * length);

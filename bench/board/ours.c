@@ -1,10 +1,9 @@
 /// @file ours.c
-/// The library's solvers, and what motions of all methods share.
+/// The library's solvers.
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "board/methods.h"
 
@@ -64,11 +63,16 @@ static void state(const motion *r, model_state *to) {
         fprintf(stderr, "massspring-board: %s\n", mspring_network_error(network));
 }
 
+static bool cut(motion *r, const uint32_t *springs, uint32_t count, double dt) {
+    (void)dt;
+    return mspring_network_break_springs(r->own, springs, count) == MSPRING_OK;
+}
+
 static void end(motion *r) {
     mspring_network_destroy(r->own);
 }
 
-#define OURS .frame = frame, .state = state, .end = end, .effort = "substeps"
+#define OURS .frame = frame, .cut = cut, .state = state, .end = end, .effort = "substeps"
 
 const method board_precise = {.name = "ours, explicit, precise", .begin = begin_precise, .colour = 0x16a085, OURS};
 
@@ -82,45 +86,3 @@ const method board_ours[3] = {
     {.name = "ours, implicit", .begin = begin_implicit, .efforts = {1, 2, 4, 8, 16}, .colour = 0x2f7fd6, OURS},
     {.name = "ours, direct", .begin = begin_direct, .efforts = {1, 2, 4, 8, 16}, .colour = 0x7fb2e5, OURS},
 };
-
-/* --------------------------------------------------------------------------------------------------------- motions
- */
-
-bool motion_begin(motion *run, const method *by, const model *m, uint32_t effort, double damping, double dt) {
-    const size_t n = m->particle_count;
-    double *memory = calloc(8 * n, sizeof *memory);
-    *run = (motion){.m = m, .effort = effort, .damping = damping};
-    if (!memory)
-        return false;
-    double **arrays[] = {&run->x,     &run->y,     &run->vx,     &run->vy,
-                         &run->old_x, &run->old_y, &run->goal_x, &run->goal_y};
-    for (size_t i = 0; i < 8; i++)
-        *arrays[i] = memory + i * n;
-    for (size_t i = 0; i < n; i++) {
-        run->x[i] = m->x[i];
-        run->y[i] = m->y[i];
-    }
-    if (!by->begin || by->begin(run, dt))
-        return true;
-    motion_end(run, by);
-    return false;
-}
-
-void motion_state(const motion *run, const method *by, model_state *to) {
-    const size_t size = run->m->particle_count * sizeof *to->x;
-    if (by->state) {
-        by->state(run, to);
-        return;
-    }
-    memcpy(to->x, run->x, size);
-    memcpy(to->y, run->y, size);
-    memcpy(to->vx, run->vx, size);
-    memcpy(to->vy, run->vy, size);
-}
-
-void motion_end(motion *run, const method *by) {
-    if (by->end)
-        by->end(run);
-    free(run->x);
-    *run = (motion){0};
-}

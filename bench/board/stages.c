@@ -1,5 +1,5 @@
 /// @file stages.c
-/// Bars, a jelly and a truss, each clamped at its left end and let go.
+/// Bars, a jelly, a truss and a ship, each held at one end and let go.
 ///
 /// SPDX-License-Identifier: MIT
 #include "board/stages.h"
@@ -18,6 +18,26 @@ static bool make_bar(const stage *s, mspring_builder **builder, mspring_id *prob
     options.damping = 0;
     options.spacing = s->spacing;
     if (!scene_bar(s->columns, s->rows, &options, &made, &error)) {
+        fprintf(stderr, "massspring-board: %s\n", error.text);
+        return false;
+    }
+    *builder = made.builder;
+    *probe = made.probe;
+    made.builder = NULL;
+    scene_free(&made);
+    return true;
+}
+
+static bool make_ship(const stage *s, mspring_builder **builder, mspring_id *probe) {
+    const scene_options options = scene_options_from_file();
+    scene_materials materials = {0};
+    scene made;
+    scene_error error = {""};
+    const bool good = scene_materials_read(BENCH_DATA_DIR "/ship_materials.csv", &materials, &error) &&
+                      scene_image(BENCH_DATA_DIR "/ship.png", &materials, &options, &made, &error);
+    scene_materials_free(&materials);
+    (void)s;
+    if (!good) {
         fprintf(stderr, "massspring-board: %s\n", error.text);
         return false;
     }
@@ -66,6 +86,7 @@ const stage board_stages[STAGES] = {
     {"truss_17", "Truss of 16 bays, 1e8 N/m", make_truss, 17, 2, 1e8f, 50, 2, 131072, 20000, true},
     {"bar_272x34", "Bar of 272 x 34, 6.76e7 N/m", make_bar, 272, 34, 6.7643e7f, SCENE_IRON_MASS, 1, 16384, 20000,
      false},
+    {"ship", "Ship of 157,962 springs", make_ship, 0, 0, 0, 0, 1, 16384, 60000, false},
 };
 
 bool stage_read(const stage *from, model *made) {

@@ -18,7 +18,7 @@ typedef struct stage {
     bool settles;             ///< whether its sag at rest is measured, too
 } stage;
 
-enum { STAGES = 5 };
+enum { STAGES = 6 };
 extern const stage board_stages[STAGES];
 
 /// Make what a stage has. false: after a message.
