@@ -409,7 +409,8 @@ MSPRING_API const char *MSPRING_CALL mspring_simd_name(mspring_simd level);
 ///                   you stretch a network, it stiffens across and this limit gets shorter. May be NULL.
 /// @param any_shape  receives the limit in any shape that the network can reach, tangled ones included: at most
 ///                   now. For a full lattice at rest it is 0.71 of now, with dampers alone 0.49. It depends only
-///                   on springs (broken ones count as whole), masses and pins. May be NULL.
+///                   on springs (broken ones count as whole), masses and pins. Areas and angle springs count in
+///                   the shape that they were added in; with them it may be longer than now. May be NULL.
 /// @threads exclusive   @allocates yes, and frees it, if now is asked for   @since 0.2   @errors ARGUMENT for a
 ///          network NULL, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_stable_dt(
