@@ -628,7 +628,7 @@ typedef struct mspring_step_info {
     mspring_id particle;     ///< cause of a rejection, or of what the guard did; or MSPRING_NONE
     mspring_id spring;       ///< the same for a spring
     uint32_t flags;          ///< of the last step: MSPRING_STEP_FALLBACK and so on
-    uint32_t substeps;       ///< of the last step that succeeded; 0 before
+    uint32_t substeps;       ///< of the last step that succeeded, with pieces of cut ones; 0 before
     uint64_t step_count;     ///< steps that have succeeded
     uint64_t fallback_count; ///< of these with MSPRING_STEP_FALLBACK or MSPRING_STEP_CLAMPED
     double time;             ///< simulated time of these, s

@@ -33,8 +33,10 @@
 /// a ramp.
 ///
 /// Springs yield in each substep of any solver. Where the explicit solver is used, dents hardly depend on the number of
-/// substeps, if these are well below the stability limit. Implicit and direct substeps damp a blow before it can dent.
-/// They follow slow loads. A blow that lasts 16 substeps leaves nine tenths of its dent, a shorter one less.
+/// substeps, if these are well below the stability limit. Long implicit and direct substeps would damp a blow before it
+/// can dent. So while springs that are near yield, or would be by the end of a substep, are stretched fast, it is cut
+/// into up to 16 pieces. Each costs as much as a substep; hooks and ramps see none of them. substeps of
+/// mspring_step_info counts them. Slow loads are not cut. If a step is longer than a blow, the dent is still too small.
 /// mspring_network_settle() gives MSPRING_ERROR_EQUILIBRIUM where a spring would yield on the way to rest.
 /// mspring_network_tune() compares as if they did not, unless a scene has MSPRING_TUNE_SCENE_BREAKING. The guide
 /// examples/guides/materials.md has examples.

@@ -102,6 +102,16 @@ mspringi_field mspringi_stages_before_substep(mspring_network *network, const ms
     return base;
 }
 
+uint32_t mspringi_stages_shares(mspring_network *network, const mspringi_attempt *attempt, uint32_t left) {
+    const mspringi_stages *stages = attempt->stages;
+    uint32_t least = left;
+    for (size_t i = 0; i < stages->count; ++i) {
+        const uint32_t most = stages->used[i]->shares ? stages->used[i]->shares(network, attempt, left) : left;
+        least = most < least ? most : least;
+    }
+    return least;
+}
+
 void mspringi_stages_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     const mspringi_stages *stages = attempt->stages;
     for (size_t i = 0; i < stages->count; ++i)

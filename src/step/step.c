@@ -32,9 +32,20 @@ static void copy_state(const mspring_network *network, const mspringi_state *fro
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
+// Take a substep, or count of them. A single one may have to be taken in pieces.
+static void run_solver(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force,
+                       uint32_t count) {
+    const mspringi_solver *solver = attempt->solver;
+    for (uint32_t left = MSPRINGI_SHARES, shares; left > 0; left -= shares) {
+        shares = count > 1 ? left : mspringi_stages_shares(network, attempt, left);
+        const float h = attempt->h * ((float)shares / (float)MSPRINGI_SHARES);
+        network->added_substeps += shares < left;
+        solver->ops->substeps(network, solver->object, h, force, count);
+    }
+}
+
 static void run_substeps(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
                          bool is_cut) {
-    const mspringi_solver *solver = attempt->solver;
     const mspringi_stages *stages = attempt->stages;
     for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
         count = mspringi_stages_free_substeps(network, attempt, substep);
@@ -45,7 +56,7 @@ static void run_substeps(mspring_network *network, const mspringi_attempt *attem
         if (stages->follow_substeps)
             mspringi_sleep_hold(network);
         if (!mspringi_sleep_is_whole(network))
-            solver->ops->substeps(network, solver->object, attempt->h, force, count);
+            run_solver(network, attempt, force, count);
         if (stages->follow_substeps)
             mspringi_sleep_put_back(network);
         mspringi_stages_after_substep(network, attempt, substep + count - 1);
@@ -84,6 +95,7 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
     const bool is_cut = mspringi_stages_cut(network, attempt);
     mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     mspringi_field base = {NULL, NULL};
+    network->added_substeps = 0;
     tidy(network);
     if (ops->begin)
         ops->begin(network);
@@ -420,7 +432,8 @@ static void note(mspring_network *network, double dt, mspring_result result) {
         mspringi_shared_clear(network->shared); // of hooks: this one says why the step failed
         return;
     }
-    steps->substeps = flags & MSPRING_STEP_FALLBACK ? 1 : network->substeps;
+    steps->substeps = (flags & MSPRING_STEP_FALLBACK ? 1 : network->substeps) + network->added_substeps;
+    steps->substeps = steps->substeps < MSPRING_MAX_SUBSTEPS ? steps->substeps : MSPRING_MAX_SUBSTEPS;
     steps->count++;
     steps->fallback_count += (flags & (MSPRING_STEP_FALLBACK | MSPRING_STEP_CLAMPED)) != 0;
     steps->time += dt;
@@ -432,6 +445,7 @@ mspring_result mspring_network_step(mspring_network *network, double dt) {
     if (result != MSPRING_OK)
         return result;
     network->outcome = mspringi_outcome_none();
+    network->added_substeps = 0;
     result = mspringi_tasks_follow(network->tasks, &network->message);
     if (result == MSPRING_OK) {
         const size_t used = network->memory.used;

@@ -230,6 +230,7 @@ typedef struct mspringi_plastic {
         *has_flowed; ///< [places / MSPRINGI_WIDTH] a bit for each place: its rest length has changed in the step
     mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] springs that were warm at the last look
     uint32_t hit_count;
+    float *ahead;        ///< [2 slots] x and y where particles would be at the end of a substep
     uint8_t *warmth;     ///< [strips] MSPRINGI_WARM, ...
     uint32_t substep;    ///< of the step, the first of those that are being taken
     bool is_swept;       ///< the sweeps of rows test their springs
@@ -452,6 +453,7 @@ struct mspring_network {
     mspring_settings settings;
     mspringi_steps steps;
     mspringi_outcome outcome; ///< of the step that is being made
+    uint32_t added_substeps;  ///< by pieces of substeps in it
     uint32_t substeps;        ///< of the last step or, unless auto_substeps, of the next
     uint32_t max_substeps;
     bool auto_substeps;             ///< each step chooses them, if its solver can

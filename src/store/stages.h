@@ -7,7 +7,8 @@
 ///   forces           add forces from outside, the same in all substeps; forces.base has been reserved for that
 ///   forces_known     once, with those of the first substep
 ///   before_substep   each substep, or each free group of them; returns the forces that act in them
-///   after_substep    likewise
+///   shares           before each piece of a substep that follows no other: how long it may be
+///   after_substep    as before_substep
 ///   has_missed       after the substeps: it counted on what did not hold, so they are undone and repeated
 ///   judge            after the substeps, or what stands for them: whether it could do what it is for (only
 ///                    if some stage can be quiet or can miss something)
@@ -20,6 +21,9 @@
 #define MSPRINGI_STAGES_H
 
 #include "store/network.h"
+
+/// Parts of equal length that a substep has. A piece of it is some of them.
+#define MSPRINGI_SHARES 16u
 
 /// Places where a stage does nothing are NULL.
 typedef struct mspringi_stage {
@@ -38,6 +42,8 @@ typedef struct mspringi_stage {
                               uint32_t substep); ///< that it lets follow each other; NULL: one
     mspringi_field (*before_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base);
+    uint32_t (*shares)(mspring_network *network, const mspringi_attempt *attempt,
+                       uint32_t left); ///< of MSPRINGI_SHARES, that may be taken at once; NULL: all that are left
     void (*after_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
     bool (*has_missed)(mspring_network *network, const mspringi_attempt *attempt);
     mspring_result (*judge)(mspring_network *network);
@@ -85,6 +91,7 @@ uint32_t mspringi_stages_free_substeps(const mspring_network *network, const msp
 mspringi_field mspringi_stages_before_substep(mspring_network *network, const mspringi_attempt *attempt,
                                               uint32_t substep, mspringi_field base,
                                               mspringi_field *outside); ///< outside: without those within bodies
+uint32_t mspringi_stages_shares(mspring_network *network, const mspringi_attempt *attempt, uint32_t left);
 void mspringi_stages_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
 bool mspringi_stages_have_missed(mspring_network *network, const mspringi_attempt *attempt);
 mspring_result mspringi_stages_judge(mspring_network *network, const mspringi_attempt *attempt);

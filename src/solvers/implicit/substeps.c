@@ -237,6 +237,8 @@ void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_fiel
     if (network->floor)
         mspringi_floor_keep_alone(network);
     follow_edits(network);
+    if (network->plastic.yields && mspringi_implicit_of(network)->history.h != h)
+        mspringi_implicit_of(network)->age = 0; // a piece of a substep: the coarse matrix is one of another length
     mspringi_substep_of substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_guard_looks(network->settings.guard)};
     for (uint32_t i = 0; i < count; ++i) {
