@@ -242,24 +242,25 @@ static void draw_head(lab_view *view, const lab_model *model, int index) {
                   head = {box.x, box.y, box.width, view->layout.views[index].y - box.y};
     const lab_colour colour = tint_of_side(index);
     const char *name = action_choice_name(ACTION_SOLVER, 1, side->solver.solver);
-    char text[128], digits[32];
+    char about[128], text[128], digits[32];
     raster_fill(&view->target, head, head, TINT_PANEL, 256);
     raster_fill(&view->target, head, (lab_box){head.x, head.y, 4, head.height}, colour, 256);
     const int base = head.y + 18;
     text_draw(&view->target, head, &view->large, head.x + 14, base, TEXT_LEFT, colour, name);
-    describe_solver(side, text, sizeof text);
+    describe_solver(side, about, sizeof about);
     const int after = head.x + 14 + text_width(&view->large, name) + 10;
-    text_draw(&view->target, head, &view->normal, after, base, TEXT_LEFT, TINT_FAINT, text);
-    // Right: cost, then bending to its left.
+    // Right: cost, then bending to its left. What is left is for the description.
     int right = head.x + head.width - 12;
     if (view->shows_costs && side->measured.seconds > 0) {
         snprintf(text, sizeof text, "%.2f ms", 1e3 * side->measured.seconds);
         right = draw_figure(view, head, right, base, "cost", text, "00.00 ms");
     }
-    if (after + text_width(&view->normal, "implicit, 1 substep of 8 iterations") + 150 > right)
-        return;
-    snprintf(text, sizeof text, "%sm", view_number(side->measured.bending, digits));
-    draw_figure(view, head, right, base, "bending", text, "00.00 m");
+    if (after + text_width(&view->normal, "implicit, 1 substep of 8 iterations") + 150 <= right) {
+        snprintf(text, sizeof text, "%sm", view_number(side->measured.bending, digits));
+        right = draw_figure(view, head, right, base, "bending", text, "00.00 m");
+    }
+    text_draw(&view->target, (lab_box){head.x, head.y, right - head.x, head.height}, &view->normal, after, base,
+              TEXT_LEFT, TINT_FAINT, about);
 }
 
 // What the colours mean, in the upper right corner.

