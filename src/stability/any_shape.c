@@ -12,11 +12,13 @@
 
 #include "stability/border.h"
 #include "stability/pencil.h"
+#include "store/one_way.h"
 #include "store/springs.h"
 
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place) {
     const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
-    const double stiffness = (double)nominal.stiffness, damping = (double)nominal.damping;
+    const double share = mspringi_side_of(network, spring) == 0 ? 1.0 : MSPRINGI_ONE_WAY_SHARE;
+    const double stiffness = share * (double)nominal.stiffness, damping = (double)nominal.damping;
     if (!mspringi_spring_is_relative(network, spring))
         return (mspringi_strength){.stiffness = stiffness, .damping = damping};
     const mspringi_topology *t = &network->topology;

@@ -13,6 +13,11 @@ typedef struct mspringi_strength {
     double stiffness, damping;
     double relative_stiffness, relative_damping;
 } mspringi_strength;
+/// Those that only pull or only push count with so much of their stiffness. Where they begin to act, motion is not
+/// linear, and gains energy in substeps of a third, a quarter or a fifth of a period (chains at 0.9 of the border
+/// of a linear motion were strained 75 times as much as in short substeps). At half of that border a period has
+/// six.
+#define MSPRINGI_ONE_WAY_SHARE 4.0
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place);
 
 /// What areas add to the sums of springs' stiffness and damping by slot (areas.c), in the shape that they were
