@@ -16,6 +16,7 @@ typedef struct variant {
     bool precise;     ///< low words count in the lengths of springs
     uint32_t ropes;   ///< more of them
     bool absolute;    ///< the same springs in N/m and N s/m
+    bool limits;      ///< each spring stiffens beyond a strain
     bool held_forces; ///< a force on every particle in every step
     bool snapshots;   ///< one of a frame before every step
     bool hooked;
@@ -37,6 +38,7 @@ static const variant variants[] = {
     {.name = "empty hook after every 8", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP, .period = 8},
     {.name = "springs that could yield", .yield_strain = 10},
     {.name = "every spring always flows", .yield_strain = 1e-9f},
+    {.name = "strain limits", .limits = true},
     {.name = "areas of cells", .areas = 1},
     {.name = "areas of cells as forces", .areas = 2},
     {.name = "force on every particle", .held_forces = true},
@@ -77,6 +79,16 @@ static bool create_absolute(const bench_network *plain, mspring_simd level, uint
     return ok;
 }
 
+/// Add a limit to each spring, soft enough to need no more substeps.
+static bool add_limits(mspring_builder *builder, scene_error *error) {
+    const mspring_result result =
+        mspring_builder_add_strain_limits(builder, 0, mspring_builder_spring_count(builder), 0.1f, 1e-3f, NULL);
+    if (result != MSPRING_OK) {
+        bench_library_error(error, "adding strain limits", result, mspring_builder_error(builder));
+    }
+    return result == MSPRING_OK;
+}
+
 /// Add an area to each cell, of a stiffness that is nothing to that of springs.
 static bool add_areas(bench_network *out, scene_error *error) {
     mspring_area_def def;
@@ -98,7 +110,7 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
     bool ok;
     if (kind->absolute) {
         ok = create_absolute(plain, level, workers, out, error);
-    } else if (kind->undamped || kind->ropes > 0) {
+    } else if (kind->undamped || kind->ropes > 0 || kind->limits) {
         bench_scene_settings settings = options->settings;
         settings.damping = kind->undamped ? 0.0f : settings.damping;
         settings.ropes += kind->ropes;
@@ -106,7 +118,8 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
         if (!bench_scene_make(&subject->source, &settings, &other, error)) {
             return false;
         }
-        ok = bench_network_create(other.made.builder, level, workers, plain->substeps, out, error);
+        ok = (!kind->limits || add_limits(other.made.builder, error)) &&
+             bench_network_create(other.made.builder, level, workers, plain->substeps, out, error);
         bench_scene_free(&other);
     } else {
         ok = bench_network_create_with(subject->made.builder, level, workers, plain->substeps,

@@ -1,8 +1,10 @@
 /// @file massspring_laws.h
 /// Material laws beyond the linear spring: springs that yield, so that what bends stays bent; ropes that only pull;
-/// areas that keep jelly from turning inside out, and balloons inflated; angle springs for beams and spines.
+/// strain limits; areas that keep jelly from turning inside out, and balloons inflated; angle springs for beams and
+/// spines.
 ///
 ///     plasticity  network_get_plasticity
+///     limits      builder_add_strain_limits
 ///     areas       network_add_area, _add_cell_areas, _remove_area, _set_area, _get_area, _get_area_info,
 ///                 _get_area_particles, _get_areas; area_def_init
 ///     angles      network_add_angles, _remove_angle, _set_angle, _set_rest_angles, _get_angle, _get_angle_info,
@@ -49,13 +51,17 @@
 ///     it pushes   max(0, k (r - L) - c dL/dt) where L < r, else 0
 ///
 /// Slack springs have no elastic energy, no force, and neither break nor yield; their strain is what it is. They stay
-/// live: stable_dt, components and sleep take them as all others. mspring_network_settle() knows them.
+/// live: components and sleep take them as all others. mspring_network_stable_dt() counts their stiffness fourfold:
+/// where they begin to act, substeps of less than six a period gain energy. mspring_network_settle() knows them.
 /// mspring_network_tune() compares trajectories as if they did both. mspring_network_get_spring_flags() reports the
 /// flags. They are given at creation: mspring_network_add_springs() rejects them.
 ///
 /// Explicit substeps have the forces of their start, implicit and direct ones those of their end: such a step is taken
 /// twice where a slack spring tightens in it. While one is awake, the explicit solver takes substeps one by one, as
 /// with a hook, and looks at all of them before each.
+///
+/// Such a spring may lie beside another: between particles that a spring joins already. Where two springs join the same
+/// particles, one at least has to be such.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MASSSPRING_MASSSPRING_LAWS_H
@@ -90,6 +96,33 @@ typedef struct mspring_plasticity {
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_plasticity(
     const mspring_network *network, mspring_plasticity *report);
+
+/* -------------------------------------------------------------------------------------------------------- limits */
+
+/// Have springs stiffen beyond a strain: cloth, rubber, ligaments.
+/// Beside each of them lies another spring then, that only pulls or only pushes. With k the stiffness, r the rest
+/// length, q the strain, s the stiffening:
+///
+///     q > 0    k (L - r) + s k (L - (1 + q) r)    where L > (1 + q) r
+///     q < 0    the same                           where L < (1 + q) r
+///
+/// Call it twice to have both. The limit is no wall: for a limit of s = 9, ten times the force brings about twice the
+/// strain of q. mspring_network_stable_dt() counts its stiffness fourfold, whether it acts or not. So explicit
+/// substeps are shorter by a factor of sqrt(1 + 4 s), or sqrt(1 + 8 s) with both. The implicit and the direct solver
+/// have it in their linear system.
+///
+/// Limits are springs with ids of their own, without damping, and relative if those beside them are. They break as soon
+/// as those do. They never yield. What you change, break, restore or remove later, change on both.
+///
+/// @param first, count  the springs that get one
+/// @param strain        q, above -1, not 0
+/// @param stiffening    s, above 0, at most 30
+/// @param first_limit   receives the id of the first limit; the others follow; may be NULL
+/// @threads exclusive   @allocates yes   @since 0.2
+/// @errors ID if there is no such spring; ARGUMENT also for a spring that breaks before its limit, or has rest length 0
+///         (the message names it); LIMIT, MEMORY. On error none is added.
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_strain_limits(mspring_builder *builder,
+    mspring_id first, uint32_t count, float strain, float stiffening, mspring_id *first_limit);
 
 /* --------------------------------------------------------------------------------------------------------- areas */
 

@@ -59,6 +59,8 @@ export interface Builder {
   addLattice(options: LatticeOptions): Uint32Array;
   /** Returns the particles along the rope, both ends included. */
   addRope(options: RopeOptions): { particles: Uint32Array; firstSpring: number };
+  /** Have springs stiffen beyond a strain: above 0 of stretching, below 0 of pressing. Returns the first limit's id. */
+  addStrainLimits(firstSpring: number, count: number, strain: number, stiffening: number): number;
   addMesh(options: MeshOptions): { firstParticle: number; firstSpring: number };
   addDisc(options: DiscOptions): { firstParticle: number; firstSpring: number };
   /** Frees it now. Otherwise the garbage collector does so some time. */

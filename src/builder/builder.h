@@ -44,7 +44,8 @@ static inline float mspringi_strain_of(float length, float kept) {
 }
 
 /// Flags of definitions that a spring keeps.
-#define MSPRINGI_KEPT_SPRING_FLAGS (MSPRING_SPRING_RELATIVE | MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY)
+#define MSPRINGI_ONE_WAY_FLAGS (MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY)
+#define MSPRINGI_KEPT_SPRING_FLAGS (MSPRING_SPRING_RELATIVE | MSPRINGI_ONE_WAY_FLAGS)
 
 typedef struct mspringi_spring {
     mspring_id a, b;
@@ -121,6 +122,7 @@ bool mspringi_has_plasticity(mspringi_limits limits);
 /// Make room for those of count springs more, if these are any; give them to all springs from one on.
 mspring_result mspringi_builder_reserve_limits(mspring_builder *builder, size_t count, mspringi_limits limits);
 void mspringi_builder_put_limits(mspring_builder *builder, size_t first, mspringi_limits limits);
+mspringi_limits mspringi_builder_limits_of(const mspring_builder *builder, size_t spring);
 /// Make room for so many areas and corners more; append one, whose corners are given with so much added to each.
 mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t areas, size_t corners);
 void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, const mspring_id *corners,

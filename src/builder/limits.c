@@ -65,6 +65,10 @@ void mspringi_builder_put_limits(mspring_builder *builder, size_t first, mspring
         builder->limits[builder->limit_count++] = limits;
 }
 
+mspringi_limits mspringi_builder_limits_of(const mspring_builder *builder, size_t spring) {
+    return spring < builder->limit_count ? builder->limits[spring] : none;
+}
+
 void mspringi_builder_cut_springs(mspring_builder *builder, size_t count) {
     builder->spring_count = count;
     builder->limit_count = builder->limit_count < count ? builder->limit_count : count;

@@ -98,9 +98,22 @@ static bool is_inside(const mspring_network *network, const mspringi_outline *o,
     return left && right;
 }
 
+// Whether another live spring that joins the same particles stands for both.
+static bool lies_beside(const mspring_network *network, mspring_id spring) {
+    mspring_id ends[2], beside, other;
+    if (network->topology.second_count == 0)
+        return false;
+    mspringi_outline_ends(network, spring, ends);
+    mspringi_around around = mspringi_around_begin(network, ends[0]);
+    while ((beside = next_live(network, &around, ends[0], &other)) != MSPRING_NONE)
+        if (other == ends[1] && beside < spring)
+            return true;
+    return false;
+}
+
 static void judge(const mspring_network *network, mspringi_outline *o, mspring_id spring) {
     o->is_edge[spring] = mspringi_spring_exists(network, spring) && mspringi_spring_is_live(network, spring) &&
-                         !is_inside(network, o, spring);
+                         !lies_beside(network, spring) && !is_inside(network, o, spring);
 }
 
 static void judge_all(const mspring_network *network, mspringi_outline *o) {

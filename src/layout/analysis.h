@@ -11,11 +11,14 @@
 /// Sort keys in place by radix; scratch is as long as keys.
 void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
 
-/// Springs by particle: those of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id.
+/// Springs by particle: those of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id. Those
+/// that lie beside another are left out: they are leftover springs, wherever their particles lie.
 typedef struct mspringi_graph {
     const mspring_builder *builder;
     uint32_t *first;                ///< [particles + 1]
     uint32_t *springs;              ///< [2 * springs]
+    uint8_t *is_second; ///< [springs] 1 of those; NULL if there are none
+    uint32_t second_count;
     uint32_t *stamp_of, *spring_to; ///< [particles] while it is checked that no springs join the same particles
 } mspringi_graph;
 
@@ -44,8 +47,8 @@ static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspri
     return spring->a == particle ? spring->b : spring->a;
 }
 
-/// Index the springs by particle. If it is not known that no two springs join the same particles, that fails with
-/// MSPRING_ERROR_DUPLICATE for two that do.
+/// Index the springs by particle. If it is not known that no two springs join the same particles, those are looked
+/// for: MSPRING_ERROR_DUPLICATE for two that do and act both ways.
 mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
                                      mspringi_memory *memory, mspringi_message *message);
 void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory);
@@ -144,6 +147,10 @@ typedef struct mspringi_lattice_spring {
 
 /// Find the place of a spring; false if it does not join neighbouring cells of one grid.
 bool mspringi_grids_place(const mspringi_grids *grids, const mspringi_spring *spring,
+                          mspringi_lattice_spring *found);
+
+/// The same by id; false if it lies beside another, too.
+bool mspringi_graph_place(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
                           mspringi_lattice_spring *found);
 
 /// Largest skew worth having: with more, too few substeps of too many strips share the cache.

@@ -38,6 +38,7 @@ static mspring_result begin_web(mspringi_assembly *a) {
                                     .first_slot = t->web_first * MSPRINGI_WIDTH,
                                     .own_count = t->web_blocks * MSPRINGI_WIDTH,
                                     .homed_count = a->homed_blocks * MSPRINGI_WIDTH,
+                                    .has_seconds = t->second_count > 0,
                                     .block_count = t->block_count,
                                     .herd_first = t->web_blocks - a->herds.group_count,
                                     .rung_above = a->herds.rung_above,
@@ -112,7 +113,11 @@ static mspring_result make_graph(mspringi_assembly *a) {
     if (!a->kinds)
         return mspringi_assembly_fail(a);
     memset(a->kinds, MSPRINGI_ROW_LOOSE, particles);
-    return mspringi_graph_create(&a->graph, a->builder, a->is_checked, a->memory, a->message);
+    const mspring_result result =
+        mspringi_graph_create(&a->graph, a->builder, a->is_checked, a->memory, a->message);
+    a->topology->second_count = a->graph.second_count;
+    a->has_herds = a->has_herds && a->graph.second_count == 0;
+    return result;
 }
 
 static mspring_result begin_herds(mspringi_assembly *a) {

@@ -130,6 +130,7 @@ typedef struct mspringi_topology {
     uint32_t herd_strip;       ///< strip of the web's trees that stand in herds, or MSPRING_NONE
     uint32_t herd_springs;     ///< springs of these
 
+    uint32_t second_count;  ///< springs that lie beside another
     uint32_t layer_count;   ///< of the web row, if it is swept in layers, each with springs to the next ones only
     uint32_t *layer_blocks; ///< [layer_count + 1] where each begins, counted from the row's first block
 

@@ -91,8 +91,12 @@ mspring_result mspringi_left_list(mspring_job *job, uint32_t first, uint32_t end
             continue;
         mspringi_topology_ends(t, place, &base, &tip);
         job->ids[job->listed] = s;
-        job->left.springs[job->listed++] =
-            (mspringi_spring){.a = t->particle_of_slot[base], .b = t->particle_of_slot[tip]};
+        job->left.springs[job->listed++] = (mspringi_spring){
+            .a = t->particle_of_slot[base],
+            .b = t->particle_of_slot[tip],
+            .flags =
+                t->second_count > 0 ? MSPRINGI_ONE_WAY_FLAGS : 0, // all may be beside another: that was checked
+        };
     }
     return MSPRING_OK;
 }
@@ -101,7 +105,8 @@ mspring_result mspringi_left_list(mspring_job *job, uint32_t first, uint32_t end
 // for a wreck that mostly stands in such.
 mspring_result mspringi_left_begin_layout(mspring_job *job) {
     const bool has_herds = job->from.solver.ops->has_herds;
-    return mspringi_topology_begin(&job->left, &mspringi_job_first(job)->reserve, true, has_herds, job->workers,
+    const mspringi_topology *t = mspringi_job_first(job);
+    return mspringi_topology_begin(&job->left, &t->reserve, t->second_count == 0, has_herds, job->workers,
                                    job->from.kernels->lanes, &job->to.memory, &job->to.message, &job->assembly);
 }
 

@@ -33,14 +33,23 @@ typedef struct stretch {
 
 static stretch stretch_of(const mspring_network *network, const mspringi_one_way_spring *spring) {
     const mspringi_state *s = &network->state;
-    const mspringi_spring_values values = mspringi_place_get(network, spring->place);
-    const double dx = mspringi_x_of(s, values.tip) - mspringi_x_of(s, values.base);
-    const double dy = mspringi_y_of(s, values.tip) - mspringi_y_of(s, values.base);
-    const double dvx = (double)s->vx[values.tip] - (double)s->vx[values.base];
-    const double dvy = (double)s->vy[values.tip] - (double)s->vy[values.base];
+    const uint32_t base = spring->base, tip = spring->tip;
+    const double dx = mspringi_x_of(s, tip) - mspringi_x_of(s, base);
+    const double dy = mspringi_y_of(s, tip) - mspringi_y_of(s, base);
+    const double dvx = (double)s->vx[tip] - (double)s->vx[base];
+    const double dvy = (double)s->vy[tip] - (double)s->vy[base];
     const double length = sqrt(dx * dx + dy * dy);
-    return (stretch){length - (double)mspringi_read_length(values.rest_length),
-                     length > 0.0 ? (dvx * dx + dvy * dy) / length : 0.0};
+    return (stretch){length - (double)spring->rest_length, length > 0.0 ? (dvx * dx + dvy * dy) / length : 0.0};
+}
+
+// What a root would tell, for most of those that are slack: a limit beside another spring nearly always is. (Without,
+// a cloth of 60x60 with limits both ways took 2.9 times as long.)
+static bool is_slack_by_far(const mspring_network *network, const mspringi_one_way_spring *spring) {
+    const mspringi_state *s = &network->state;
+    const double dx = mspringi_x_of(s, spring->tip) - mspringi_x_of(s, spring->base);
+    const double dy = mspringi_y_of(s, spring->tip) - mspringi_y_of(s, spring->base);
+    const double square = dx * dx + dy * dy, rest = (double)spring->rest_length, border = rest * rest;
+    return spring->side > 0 ? square < border * (1.0 - 1e-9) : square > border * (1.0 + 1e-9);
 }
 
 static void let_act(mspring_network *network, mspringi_one_way_spring *spring, bool acts) {
@@ -68,21 +77,41 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
         const mspringi_place place = mspringi_place_of(t, s);
         const mspringi_spring_values values = mspringi_place_get(network, place);
         if (mspringi_place_is_live(network, place))
-            one_way->list[one_way->listed++] = (mspringi_one_way_spring){.place = place,
-                                                                         .stiffness = values.stiffness,
-                                                                         .damping = values.damping,
-                                                                         .due = MSPRING_NONE,
-                                                                         .side = one_way->side[s],
-                                                                         .acts = true};
+            one_way->list[one_way->listed++] =
+                (mspringi_one_way_spring){.place = place,
+                                          .base = values.base,
+                                          .tip = values.tip,
+                                          .rest_length = mspringi_read_length(values.rest_length),
+                                          .stiffness = values.stiffness,
+                                          .damping = values.damping,
+                                          .due = MSPRING_NONE,
+                                          .side = one_way->side[s],
+                                          .acts = true};
     }
+}
+
+// Ramps and actuators change them from one substep to the next, and so does yielding.
+static void follow_rest_lengths(mspring_network *network) {
+    mspringi_one_way *one_way = &network->one_way;
+    if (network->ramps.count == 0 && network->actuators.count == 0 && !network->plastic.nominal)
+        return;
+    for (uint32_t i = 0; i < one_way->listed; ++i)
+        one_way->list[i].rest_length =
+            mspringi_read_length(mspringi_place_get(network, one_way->list[i].place).rest_length);
 }
 
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
     mspringi_one_way *one_way = &network->one_way;
-    const double ahead = attempt->solver->ops->has_border ? 0.0 : (double)attempt->h;
+    const bool is_explicit = attempt->solver->ops->has_border;
+    const double ahead = is_explicit ? 0.0 : (double)attempt->h;
+    follow_rest_lengths(network);
     for (uint32_t i = 0; i < one_way->listed; ++i) {
         mspringi_one_way_spring *spring = &one_way->list[i];
+        if (is_explicit && is_slack_by_far(network, spring)) {
+            let_act(network, spring, false);
+            continue;
+        }
         const stretch now = stretch_of(network, spring);
         const double there = now.length + ahead * now.rate, side = (double)spring->side;
         const double force = (double)spring->stiffness * there + (double)spring->damping * now.rate;
@@ -93,7 +122,10 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     mspringi_one_way *one_way = &network->one_way;
-    for (uint32_t i = 0; !attempt->solver->ops->has_border && i < one_way->listed; ++i) {
+    if (attempt->solver->ops->has_border)
+        return;
+    follow_rest_lengths(network);
+    for (uint32_t i = 0; i < one_way->listed; ++i) {
         mspringi_one_way_spring *spring = &one_way->list[i];
         if (spring->acts || spring->due != MSPRING_NONE ||
             !((double)spring->side * stretch_of(network, spring).length > 0.0))

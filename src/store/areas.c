@@ -6,6 +6,7 @@
 #include "store/angles.h"
 #include "store/changed.h"
 #include "store/growth.h"
+#include "store/one_way.h"
 #include "store/springs.h"
 #include "store/store.h"
 
@@ -163,15 +164,20 @@ static bool is_ringed(const mspring_network *network, const mspringi_area *area)
     return true;
 }
 
+// The one that acts both ways, if there is one, else the first.
 static mspring_id spring_between(const mspring_network *network, mspring_id a, mspring_id b) {
     const uint32_t there = network->topology.slot_of_particle[b];
     mspringi_around around = mspringi_around_begin(network, a);
+    mspring_id found = MSPRING_NONE;
     for (mspring_id s; (s = mspringi_around_next(network, &around)) != MSPRING_NONE;) {
         const mspringi_ends ends = mspringi_spring_ends(network, s);
-        if (mspringi_spring_is_live(network, s) && (ends.a == there || ends.b == there))
+        if (!mspringi_spring_is_live(network, s) || (ends.a != there && ends.b != there))
+            continue;
+        if (mspringi_side_of(network, s) == 0)
             return s;
+        found = found == MSPRING_NONE ? s : found;
     }
-    return MSPRING_NONE;
+    return found;
 }
 
 /* ------------------------------------------------------------------------------------------------------ bounds */

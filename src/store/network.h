@@ -203,6 +203,8 @@ typedef struct mspringi_strain {
 /// A spring that only pulls or only pushes, in a step.
 typedef struct mspringi_one_way_spring {
     mspringi_place place;
+    uint32_t base, tip;       ///< slots
+    float rest_length;        ///< as the host reads it
     float stiffness, damping; ///< where it acts
     uint32_t due;             ///< substep in which it acts whatever is expected; MSPRING_NONE: in none
     int32_t side;             ///< 1: it pulls; -1: it pushes

@@ -124,8 +124,12 @@ static bool make_twins(twins *made, const recipe *from, bool mild, fuzz_bytes *b
     bool whole =
         mspring_builder_add_particles(builder, from->particles, from->particle_count, NULL) == MSPRING_OK &&
         mspring_builder_add_springs(builder, from->springs, from->spring_count, NULL) == MSPRING_OK;
+    const uint32_t limited = more % 8 == 1 && !mild ? from->spring_count / 2 : 0; // the reference knows none
+    const bool has_limits = whole && limited > 0 &&
+                            mspring_builder_add_strain_limits(builder, 0, limited, more & 16 ? -0.05f : 0.05f,
+                                                              more & 32 ? 9 : 0.5f, NULL) == MSPRING_OK;
     *made = (twins){.particles = from->particle_count + def.spare_particles,
-                    .springs = from->spring_count + def.spare_springs};
+                    .springs = from->spring_count + (has_limits ? limited : 0) + def.spare_springs};
     for (int i = 0; i < TWINS && whole; i++) {
         def.simd_level = i == 0 ? MSPRING_SIMD_SCALAR : MSPRING_SIMD_AUTO;
         def.worker_count = i == 2 && workers ? 2 : 1;

@@ -39,6 +39,8 @@ function shapes(ms) {
   assert.deepStrictEqual(disc, { firstParticle: 8, firstSpring: 8 });
   const mesh = builder.addMesh({ x: [30, 31, 30], y: [0, 0, 1], triangles: [0, 1, 2], stiffness: 10 });
   assert.deepStrictEqual(mesh, { firstParticle: builder.particleCount - 3, firstSpring: builder.springCount - 3 });
+  assert.strictEqual(builder.addStrainLimits(0, 2, 0.1, 9), builder.springCount - 2);
+  refused(() => builder.addStrainLimits(0, 2, 0, 9), 'argument', /strain limit is 0/);
   const network = new ms.Network(builder, { solver: 'implicit', gravityY: -1, worldly: undefined });
   network.step(1 / 60, 10);
   assert.strictEqual(network.getSolver().solver, 'implicit');

@@ -81,6 +81,8 @@ class Arguments(unittest.TestCase):
             ("add_lattice", (np.full((2, 2), 70000), IRON), {}), ("add_lattice", ([[0, 0]], {"mass": NAN}), {}),
             ("add_lattice", ([[0, 0]], {"weight": 1}), {}), ("add_lattice", ([[0, 0]], IRON), {"spacing": 0}),
             ("add_lattice", ([[0, 0]], IRON), {"cells": 0}), ("add_lattice", ([[0, 0]], 5), {}),
+            ("add_strain_limits", (range(99), 0.1, 9), {}), ("add_strain_limits", (range(2), NAN, 9), {}),
+            ("add_strain_limits", (range(0, 4, 2), 0.1, 9), {}),
             ("add_rope", (0, 1, 0), {}), ("add_rope", (0, 1, -1), {}), ("add_rope", (0, 99, 3), {}),
             ("add_rope", (0, 1, 1 << 31), {}), ("add_mesh", ([[0, 0]], [[0, 1, 2]]), {}),
             ("add_mesh", ([[0, 0, 0]], []), {}), ("add_disc", (0, 0, -1), {}), ("add_disc", (0, 0, 1), {"ring_count": 0}))

@@ -36,6 +36,7 @@ class Calls(unittest.TestCase):
         self.assertEqual((list(particles), springs), ([0, 2, 3, 4, 5, 1], range(0, 5)))
         self.assertEqual(builder.add_mesh([[0, 5], [1, 5], [0, 6]], [[0, 1, 2]], stiffness=3), (range(6, 9), range(5, 8)))
         self.assertEqual(builder.add_disc(3, 9, 1, ring_count=1, young_modulus=10.0), (range(9, 16), range(8, 20)))
+        self.assertEqual(builder.add_strain_limits(springs, 0.1, 9), range(20, 25))
         network = builder.network()
         of_particle, of_spring = massspring.Builder().add_network(network, [0, 1, 2])
         np.testing.assert_array_equal(of_particle[:4], [0, 1, 2, -1])

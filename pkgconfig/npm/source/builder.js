@@ -84,6 +84,11 @@ export class Builder extends Handle {
     return { particles, firstSpring };
   }
 
+  addStrainLimits(firstSpring, count, strain, stiffening) {
+    return this.#add((core, exports, pointer, id) =>
+      exports.mspring_builder_add_strain_limits(pointer, firstSpring, count, strain, stiffening, id))[0];
+  }
+
   addMesh(options) {
     const [firstParticle, firstSpring] = this.#add((core, exports, pointer, ids) => {
       if (!options?.x || !options.y || !options.triangles) fail('a mesh needs x, y and triangles');

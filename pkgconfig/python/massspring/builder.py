@@ -159,6 +159,19 @@ class Builder(Handle):
         self._call(lib.mspring_builder_add_springs, pointer("mspring_spring_def", rows), len(rows), made)
         return range(made[0], made[0] + len(rows)) if len(rows) else range(0)
 
+    def add_strain_limits(self, springs: range, strain: float, stiffening: float) -> range:
+        """Have springs stiffen beyond a strain. Returns the ids of their limits, which are springs beside them.
+
+        springs     a range of ids, as add_springs() returns it
+        strain      above 0: of stretching; below 0, above -1: of pressing
+        stiffening  by how many times their stiffness they get stiffer, up to 30
+        """
+        if len(springs) and springs.step != 1:
+            raise bad_argument(f"springs is {springs}: it must be a range without steps")
+        made = ffi.new("mspring_id *")
+        self._call(lib.mspring_builder_add_strain_limits, springs.start, len(springs), strain, stiffening, made)
+        return range(made[0], made[0] + len(springs))
+
     # ------------------------------------------------------------------------------------------------- shapes
 
     @with_keywords("mspring_lattice_def")

@@ -71,7 +71,7 @@ void mspringi_assembly_assign_places(mspringi_assembly *a, uint32_t first, uint3
         mspringi_lattice_spring found;
         if (places[s] != MSPRING_NONE)
             continue;
-        if (!mspringi_grids_place(&a->grids, &a->builder->springs[s], &found)) {
+        if (!mspringi_graph_place(&a->graph, &a->grids, s, &found)) {
             places[s] = t->chain_places + t->leftover_count++;
             continue;
         }

@@ -100,7 +100,7 @@ mspring_result mspringi_web_begin(mspringi_weaving *w, mspringi_memory *memory, 
     if (result != MSPRING_OK)
         return result;
     count_degrees(w);
-    if (w->homed_count > 0)
+    if (w->homed_count > 0 && !w->has_seconds)
         stand_upright(w);
     result = reserve_groups(w, list_attached(w, NULL), memory, message);
     if (result == MSPRING_OK)

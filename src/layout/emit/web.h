@@ -58,6 +58,7 @@ typedef struct mspringi_weaving {
     uint32_t *strip_of_block;               ///< [block_count] in what strip another slot is; freed with the rest
     uint32_t *degree, *node_of_slot, *used; ///< by slot, by slot and by node
     uint32_t homed_count;                   ///< the first of these, that have a home
+    bool has_seconds;                       ///< some springs lie beside another: then none stands upright
     uint8_t *upright;                       ///< [own groups] springs that could stand there
     uint32_t upright_count;                 ///< that do
 } mspringi_weaving;

@@ -1,4 +1,4 @@
-/// Springs by particle.
+/// Springs by particle, and those that lie beside another.
 #include "layout/analysis.h"
 
 static mspring_result reserve(mspringi_graph *graph, bool is_checked, mspringi_memory *memory,
@@ -32,9 +32,26 @@ static void sort_springs(mspringi_graph *graph) {
     }
 }
 
+static bool is_one_way(const mspringi_spring *spring) {
+    return spring->flags & MSPRINGI_ONE_WAY_FLAGS;
+}
+
+// The later of two springs that join the same particles.
+static mspring_result note_second(mspringi_graph *graph, uint32_t spring, mspringi_memory *memory,
+                                  mspringi_message *message) {
+    const size_t springs = graph->builder->spring_count;
+    if (!graph->is_second)
+        graph->is_second = mspringi_alloc(memory, springs, sizeof *graph->is_second);
+    if (!graph->is_second)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the graph of %zu springs", springs);
+    graph->is_second[spring] = 1;
+    graph->second_count++;
+    return MSPRING_OK;
+}
+
 // Each particle's neighbours with higher ids are stamped with the spring that leads there, and a stamp that is
-// there already names the first of the two.
-static mspring_result check(const mspringi_graph *graph, mspringi_message *message) {
+// there already names the first of the two: the one that acts both ways, if there is one.
+static mspring_result check(mspringi_graph *graph, mspringi_memory *memory, mspringi_message *message) {
     const mspring_builder *builder = graph->builder;
     uint32_t *stamp_of = graph->stamp_of, *spring_to = graph->spring_to;
     for (uint32_t p = 0; p < builder->particle_count; ++p) {
@@ -43,15 +60,39 @@ static mspring_result check(const mspringi_graph *graph, mspringi_message *messa
             const mspring_id other = mspringi_other_end(&builder->springs[spring], p);
             if (other < p)
                 continue;
-            if (stamp_of[other] == p + 1)
+            const bool is_second = stamp_of[other] == p + 1, may_be_second = is_one_way(&builder->springs[spring]);
+            if (is_second && !may_be_second && !is_one_way(&builder->springs[spring_to[other]]))
                 return mspringi_fail(message, MSPRING_ERROR_DUPLICATE,
                                      "springs %u and %u both join particles %u and %u", (unsigned)spring_to[other],
                                      (unsigned)spring, (unsigned)p, (unsigned)other);
+            const mspring_result result = is_second ? note_second(graph, spring, memory, message) : MSPRING_OK;
+            if (result != MSPRING_OK)
+                return result;
             stamp_of[other] = p + 1;
-            spring_to[other] = spring;
+            if (!is_second || !may_be_second)
+                spring_to[other] = spring;
         }
     }
     return MSPRING_OK;
+}
+
+// What is recognised has one spring between two particles.
+static void drop_seconds(mspringi_graph *graph) {
+    uint32_t kept = 0, begin = 0;
+    for (size_t p = 0; p < graph->builder->particle_count; ++p) {
+        const uint32_t end = graph->first[p + 1];
+        for (uint32_t i = begin; i < end; ++i)
+            if (!graph->is_second[graph->springs[i]])
+                graph->springs[kept++] = graph->springs[i];
+        graph->first[p + 1] = kept;
+        begin = end;
+    }
+}
+
+bool mspringi_graph_place(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
+                          mspringi_lattice_spring *found) {
+    return !(graph->is_second && graph->is_second[spring]) &&
+           mspringi_grids_place(grids, &graph->builder->springs[spring], found);
 }
 
 mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
@@ -63,7 +104,9 @@ mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builde
     sort_springs(graph);
     if (is_checked)
         return MSPRING_OK;
-    result = check(graph, message);
+    result = check(graph, memory, message);
+    if (graph->is_second)
+        drop_seconds(graph);
     mspringi_free(memory, graph->stamp_of);
     mspringi_free(memory, graph->spring_to);
     graph->stamp_of = graph->spring_to = NULL;
@@ -75,4 +118,5 @@ void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory) {
     mspringi_free(memory, graph->springs);
     mspringi_free(memory, graph->stamp_of);
     mspringi_free(memory, graph->spring_to);
+    mspringi_free(memory, graph->is_second);
 }

@@ -38,24 +38,25 @@ struct mspringi_sheet {
 
 typedef enum spring_kind { ELSEWHERE, INNER, OUTER, ACROSS } spring_kind;
 
-static spring_kind kind_of(const mspringi_grids *grids, const uint8_t *kinds, const mspringi_spring *spring) {
+static spring_kind kind_of(const mspringi_graph *graph, const mspringi_grids *grids, const uint8_t *kinds,
+                           uint32_t s) {
+    const mspringi_spring *spring = &graph->builder->springs[s];
     const uint32_t of_a = grids->grid_of[spring->a], of_b = grids->grid_of[spring->b];
     mspringi_lattice_spring found;
     if ((of_a == MSPRING_NONE && of_b == MSPRING_NONE) || kinds[spring->a] == MSPRINGI_ROW_CHAIN ||
         kinds[spring->b] == MSPRINGI_ROW_CHAIN)
         return ELSEWHERE;
-    if (mspringi_grids_place(grids, spring, &found))
+    if (mspringi_graph_place(graph, grids, s, &found))
         return INNER;
     return of_a != MSPRING_NONE && of_b != MSPRING_NONE && of_a != of_b ? ACROSS : OUTER;
 }
 
 void mspringi_sheets_survey(mspringi_sheets *sheets, const mspringi_graph *graph, const mspringi_grids *grids,
                             const uint8_t *kinds, uint32_t first, uint32_t end) {
-    const mspring_builder *builder = graph->builder;
     if (grids->count == 0)
         return;
     for (uint32_t s = first; s < end; ++s) {
-        const spring_kind kind = kind_of(grids, kinds, &builder->springs[s]);
+        const spring_kind kind = kind_of(graph, grids, kinds, s);
         sheets->inner += kind == INNER;
         sheets->outer += kind > INNER;
     }
@@ -99,7 +100,7 @@ void mspringi_sheets_count_springs(mspringi_sheets *sheets, const mspringi_graph
     if (!sheets->piece)
         return;
     for (uint32_t s = first; s < end; ++s) {
-        const spring_kind kind = kind_of(grids, kinds, &builder->springs[s]);
+        const spring_kind kind = kind_of(graph, grids, kinds, s);
         struct mspringi_sheet *sums = sums_of(sheets, builder->springs[s].a);
         sums->inner += kind == INNER;
         sums->outer += kind > INNER;

@@ -142,7 +142,7 @@ typedef enum mspring_result {
     MSPRING_ERROR_MEMORY = -3,            ///< the allocator returned NULL
     MSPRING_ERROR_LIMIT = -4,             ///< more particles, springs, cells, pairs, points or grips than fit
     MSPRING_ERROR_STRUCT = -5,            ///< struct_size is impossible, or what this version does not know is not 0
-    MSPRING_ERROR_DUPLICATE = -6,         ///< two springs join the same two particles
+    MSPRING_ERROR_DUPLICATE = -6,         ///< two springs join the same two particles, see massspring_laws.h
     MSPRING_ERROR_UNSTABLE = -7,          ///< the step was unstable and has been rolled back
     MSPRING_ERROR_BUSY = -8,              ///< called inside a hook; a second job; or a job that is not ready
     MSPRING_ERROR_THREAD = -9,            ///< the system gave no thread or no lock
@@ -517,7 +517,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_pa
     mspring_builder *builder, const mspring_particle_def *defs, uint32_t count, mspring_id *first_id);
 
 /// Add one spring between two particles.
-/// mspring_network_create() rejects a second spring between the same two.
+/// mspring_network_create() rejects a second spring between the same two, unless it only pulls or only pushes.
 /// @param id  receives its id; may be NULL
 /// @threads exclusive   @allocates yes   @errors ID for a particle that does not exist; ARGUMENT also for a spring
 ///          from a particle to itself, or for MSPRING_REST_LENGTH_DISTANCE at distance 0; STRUCT, LIMIT, MEMORY
