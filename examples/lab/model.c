@@ -447,6 +447,9 @@ void model_play_side(lab_model *model, int side, uint32_t steps) {
 static void note(lab_model *model) {
     lab_series *series = &model->series;
     const bool full = series->count == SERIES_LENGTH;
+    if (full)
+        memmove(series->times, series->times + 1, (SERIES_LENGTH - 1) * sizeof *series->times);
+    series->times[full ? SERIES_LENGTH - 1 : series->count] = model->time;
     for (int i = 0; i < model->side_count; i++) {
         const lab_measures *now = &model->sides[i].measured;
         const double values[PROBE_KINDS] = {now->bending, now->kinetic, now->elastic, now->max_strain,

@@ -26,6 +26,7 @@ enum { SERIES_LENGTH = 512, SERIES_FRAMES = 4 };
 /// What was measured, the oldest first; every SERIES_FRAMES frames.
 typedef struct lab_series {
     float values[PROBE_KINDS][2][SERIES_LENGTH];
+    double times[SERIES_LENGTH]; ///< s
     int count;
 } lab_series;
 

@@ -11,8 +11,7 @@
 
 static const struct {
     const char *title, *unit;
-} plots[PROBE_KINDS] = {
-    {"bending", "m"}, {"kinetic", "J"}, {"elastic", "J"}, {"max strain", "%"}, {"cost", "ms"}};
+} plots[PROBE_KINDS] = {{"bending", "m"}, {"kinetic", "J"}, {"elastic", "J"}, {"max strain", "%"}, {"cost", "ms"}};
 
 static double shown_value(int kind, double value) {
     return kind == PROBE_STRAIN ? 100 * value : value;
@@ -63,6 +62,23 @@ static void draw_line(lab_view *view, const lab_series *series, int kind, int si
     }
 }
 
+// Where each ten seconds begin.
+static void draw_times(lab_view *view, const lab_series *series, lab_box area) {
+    enum { SECONDS = 10, LABELLED = 110 };
+    const double across = (area.width - 3) / (double)(SERIES_LENGTH - 1);
+    for (int i = 1; i < series->count; i++) {
+        const double part = floor(series->times[i] / SECONDS);
+        if (!(part > floor(series->times[i - 1] / SECONDS)))
+            continue;
+        char text[32];
+        const int x = area.x + 1 + (int)(i * across);
+        raster_fill(&view->target, area, (lab_box){x, area.y, 1, area.height}, TINT_EDGE, 256);
+        snprintf(text, sizeof text, "%.0f s", part * SECONDS);
+        if (area.width >= LABELLED && x + 3 + text_width(&view->small, text) <= area.x + area.width)
+            text_draw(&view->target, area, &view->small, x + 3, area.y + 11, TEXT_LEFT, TINT_FAINT, text);
+    }
+}
+
 static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box box) {
     const lab_series *series = &model->series;
     char text[64];
@@ -78,6 +94,7 @@ static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box 
     raster_fill(&view->target, area, area, TINT_VIEW, 256);
     const int zero = area.y + area.height - 2 + (int)(low * (area.height - 3) / (high - low));
     raster_fill(&view->target, area, (lab_box){area.x, zero, area.width, 1}, TINT_EDGE, 256);
+    draw_times(view, series, area);
     int used = 0;
     for (int side = 0; side < model->side_count; side++) {
         draw_line(view, series, kind, side, area, low, high);
@@ -88,8 +105,8 @@ static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box 
         used += text_width(&view->normal, text) + 10;
         // Where two values have no room beside each other, the second stands in the plot.
         text_draw(&view->target, box, &view->normal, side == 0 ? box.x + 10 : box.x + box.width - 10,
-                  used + 10 > box.width ? box.y + 38 : box.y + box.height - 8, side == 0 ? TEXT_LEFT : TEXT_RIGHT,
-                  tint_of_side(side), text);
+                  side > 0 && used + 10 > box.width ? box.y + 38 : box.y + box.height - 8,
+                  side == 0 ? TEXT_LEFT : TEXT_RIGHT, tint_of_side(side), text);
     }
 }
 
