@@ -607,6 +607,8 @@ static void add_hook(arguments *a) {
       mspring_network_get_contact(a->network, a->out[0]))                                                          \
     X(mspring_network_get_contact_info, "nP", OUT_STRUCT(0, contact_info),                                         \
       mspring_network_get_contact_info(a->network, a->out[0]))                                                     \
+    X(mspring_builder_add_strain_limits, "BRXYo", NOTHING,                                                         \
+      mspring_builder_add_strain_limits(a->builder, a->first, a->count, a->x, a->y, a->out[0]))                    \
     X(mspring_builder_add_copies, "BDE", NOTHING, add_copies(a))                                                   \
     X(mspring_network_set_groups, "NA", make_groups(a), mspring_network_set_groups(a->network, a->ids, 1))         \
     X(mspring_network_group_count, "v", NOTHING, note_size(mspring_network_group_count(a->network)))               \

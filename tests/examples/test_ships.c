@@ -51,14 +51,18 @@ static void check_refused(const char *image, const char *ropes, const char *json
 static int start(void **state) {
     (void)state;
     options = structure_options_default();
-#ifndef LOADERS_HAVE_CJSON
-    structure made;
-    scene_error error = {""};
-    assert_false(parse("P3 1 1 255 16 32 48\n", NULL, materials, &made, &error));
-    check_contains(error.text, "built without cJSON");
-    skip();
-#endif
     return 0;
+}
+
+#ifdef LOADERS_HAVE_CJSON
+static const bool has_cjson = true;
+#else
+static const bool has_cjson = false;
+#endif
+
+static void without_cjson_a_ship_names_what_is_missing(void **state) {
+    (void)state;
+    check_refused("P3 1 1 255 16 32 48\n", NULL, materials, "built without cJSON");
 }
 
 static uint32_t spring_between(const structure *in, mspring_id a, mspring_id b) {
@@ -415,5 +419,8 @@ int main(void) {
         cmocka_unit_test_setup(the_sample_boat_is_one_ship_in_both_formats, start),
         cmocka_unit_test_setup(materials_lie_beside_the_ship_or_are_given, start),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest without[] = {
+        cmocka_unit_test_setup(without_cjson_a_ship_names_what_is_missing, start),
+    };
+    return has_cjson ? cmocka_run_group_tests(tests, NULL, NULL) : cmocka_run_group_tests(without, NULL, NULL);
 }
