@@ -9,12 +9,14 @@ class Marks {
     this.canvas = canvas;
     this.tip = tip;
     this.pins = null; // slots; null: to be found
-    this.spring = -1; // that the pointer rests on
+    this.spring = -1; // that the pointer rests on, or that was clicked
+    this.kept = false; // by a click
   }
 
   // Pins have come or gone, or the network is another one.
   forget() {
     this.pins = null;
+    this.kept = false;
     this.leave();
   }
 
@@ -56,15 +58,18 @@ class Marks {
     pen.moveTo(...place(a));
     pen.lineTo(...place(b));
     pen.stroke();
-    this.say(Math.hypot(x[b] - x[a], y[b] - y[a]), floats(core.springs(), ends.length)[at + 2],
+    this.say(core, Math.hypot(x[b] - x[a], y[b] - y[a]), floats(core.springs(), ends.length)[at + 2],
       floats(core.plastic(), ends.length / 3)[this.spring]);
   }
 
-  say(length, rest, plastic) {
+  say(core, length, rest, plastic) {
     const strain = length / rest - 1, much = Math.abs(100 * strain).toPrecision(2);
     const how = rest === 0 ? 'broken' : `${strain < 0 ? 'squeezed' : 'stretched'} by ${much} %`;
     const bent = plastic === 0 ? '' : `, bent by ${(100 * plastic).toPrecision(2)} % for good`;
-    this.tip.textContent = `spring ${this.spring.toLocaleString('en')}: ${length.toFixed(3)} m, ${how}${bent}`;
+    const force = rest === 0 ? '' : `, ${withPrefix(Math.abs(core.force(this.spring)), 'N')}`;
+    const [from, to] = [0, 1].map((which) => core.end(this.spring, which).toLocaleString('en'));
+    this.tip.textContent = `spring ${this.spring.toLocaleString('en')} of particles ${from} and ${to}: ` +
+      `${length.toFixed(3)} m, ${how}${force}${bent}`;
   }
 
   // Rest on the nearest spring within some pixels of a place (m, relative to the origin), if there is one.
@@ -81,8 +86,7 @@ class Marks {
       if (distance < least) [least, this.spring] = [distance, i / 3];
     }
     if (this.spring < 0) return;
-    const right = event.clientX > innerWidth - 240;
-    Object.assign(this.tip.style, { display: 'block', top: event.clientY + 14 + 'px',
-      left: right ? '' : event.clientX + 14 + 'px', right: right ? innerWidth - event.clientX + 14 + 'px' : '' });
+    const wide = 320, left = Math.max(8, Math.min(event.clientX + 14, innerWidth - wide));
+    Object.assign(this.tip.style, { display: 'block', top: event.clientY + 14 + 'px', left: left + 'px' });
   }
 }

@@ -383,6 +383,20 @@ uint32_t page_substeps(void) {
     return mspring_network_get_step_info(page.network, &info) == MSPRING_OK ? info.substeps : 0;
 }
 
+uint32_t page_needed_substeps(double dt) {
+    uint32_t needed = 0;
+    return mspring_network_suggest_substeps(page.network, dt, 0.7, &needed) == MSPRING_OK ? needed : 0;
+}
+
+float page_spring_force(uint32_t spring) {
+    float force = 0;
+    return mspring_network_get(page.network, MSPRING_FORCE, spring, 1, &force, 1) == MSPRING_OK ? force : 0;
+}
+
+uint32_t page_spring_end(uint32_t spring, uint32_t which) {
+    return page.ends[2 * spring + which];
+}
+
 const char *page_level(void) {
     return mspring_simd_name(mspring_network_simd_level(page.network));
 }

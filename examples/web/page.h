@@ -79,6 +79,11 @@ PAGE_EXPORT(bent_count) uint32_t page_bent_count(void);
 /* page.c again */
 
 PAGE_EXPORT(substeps) uint32_t page_substeps(void);
+/// Substeps that an explicit step of that length needs; 0 if they are too many.
+PAGE_EXPORT(needed) uint32_t page_needed_substeps(double dt);
+/// Force along a spring, N: above 0 it pulls. And the particle at its end 0 or 1.
+PAGE_EXPORT(force) float page_spring_force(uint32_t spring);
+PAGE_EXPORT(end) uint32_t page_spring_end(uint32_t spring, uint32_t which);
 PAGE_EXPORT(level) const char *page_level(void);
 PAGE_EXPORT(kinetic_energy) double page_kinetic_energy(void);
 PAGE_EXPORT(elastic_energy) double page_elastic_energy(void);

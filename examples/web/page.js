@@ -7,6 +7,7 @@
 const DT = 1 / 64;
 const MOST_STEPS = 2; // in a frame: what is slower than time goes on in slow motion
 const HOLD_RADIUS = 14; // pixels
+const CLICK_REACH = 4; // pixels that a click may move
 const REST_TIME = 150; // ms that the pointer rests before it asks for a spring
 const SETTINGS = ['scene', 'solver', 'substeps', 'stiffness', 'gravity', 'damping', 'limit'];
 const SWITCHES = ['breaking', 'floor', 'collide', 'yielding'];
@@ -16,7 +17,7 @@ const settings = new URLSearchParams(location.hash.slice(1));
 let core, drawing, marks, materials, current, ownImage;
 const view = { x: 0, y: 0, scale: 1, strainLimit: 0.01 };
 const state = { running: true, tool: 'drag', broken: '', debt: 0, last: 0, frames: 0, seconds: 0, floorAt: 0 };
-const cost = { sum: 0, count: 0, shown: 0 };
+const cost = { sum: 0, count: 0, drawing: 0, shown: 0 }; // ms
 
 /* ----------------------------------------------------------------------------------------------- resources */
 
@@ -112,7 +113,9 @@ function tell(text) {
   if (text === state.broken) return;
   state.broken = text;
   byId('what').textContent = text;
-  byId('cure').hidden = !text.startsWith('unstable');
+  const needed = text.startsWith('unstable') && value('solver') === 0 ? core.needed(DT) : 0;
+  byId('cure').hidden = needed === 0;
+  Object.assign(byId('cure'), { value: needed, textContent: `More substeps: ${needed}` });
   byId('message').style.display = text ? 'block' : 'none';
 }
 
@@ -122,6 +125,13 @@ function check(result) {
 }
 
 const value = (id) => Number(byId(id).value);
+
+// The slider may have to become longer.
+function setSubsteps(count) {
+  const slider = byId('substeps');
+  slider.max = Math.max(slider.max, count);
+  slider.value = count;
+}
 
 const isOn = (id) => byId(id).getAttribute('aria-pressed') === 'true';
 
@@ -146,7 +156,9 @@ const settingsOf = {
   },
   limit() {
     view.strainLimit = 10 ** value('limit');
-    byId('limit-text').textContent = (100 * view.strainLimit).toPrecision(2) + ' %';
+    const percent = (100 * view.strainLimit).toPrecision(2) + ' %';
+    byId('limit-text').textContent = percent;
+    byId('ends').textContent = `\u00b1${percent}`;
   },
   breaking() {
     check(core.breaking(isOn('breaking') ? 1 : 0));
@@ -188,9 +200,9 @@ function connectControls() {
   byId('repair').addEventListener('click', () => check(core.repair()));
   byId('straighten').addEventListener('click', () => check(core.straighten()));
   byId('link').addEventListener('click', copyLink);
-  // Too stiff for so few substeps: as many as it needs, and on.
+  // Too stiff for so few substeps: as many as it needs, and on it goes.
   byId('cure').addEventListener('click', () => {
-    byId('substeps').value = 0;
+    setSubsteps(byId('cure').value);
     settingsOf.solver();
     noteAddress();
     state.running = toggle(byId('play'), true);
@@ -274,7 +286,7 @@ function zoom(event, factor) {
 
 function connectHand() {
   const canvas = drawing.canvas, fingers = new Map();
-  let held = false, last = null, spread = 0;
+  let held = false, last = null, spread = 0, pressed = null;
   const radius = () => (HOLD_RADIUS * devicePixelRatio) / view.scale;
   const middle = () => {
     const [a, b] = [...fingers.values()];
@@ -286,7 +298,9 @@ function connectHand() {
       canvas.setPointerCapture(event.pointerId);
     } catch { /* events that scripts make have no pointer */ }
     fingers.set(event.pointerId, event);
+    document.body.classList.add('used'); // where there is little room, the help makes way
     last = event;
+    pressed = event.button === 0 && fingers.size === 1 && state.tool === 'drag' ? event : null;
     if (fingers.size === 2) {
       core.let_go();
       held = false;
@@ -320,22 +334,28 @@ function connectHand() {
     else if (held) core.hold_to(at.x, at.y);
     else if (state.tool === 'cut') check(core.cut(was.x, was.y, at.x, at.y));
   });
-  // A mouse that rests asks for the spring under it.
+  // A mouse that rests asks for the spring under it. A click keeps asking, until one beside all springs.
   let resting = 0;
+  const ask = (event) => {
+    const at = worldOf(event);
+    marks.rest(core, { x: at.x - core.origin_x(), y: at.y - core.origin_y() }, event, view.scale);
+  };
+  const leave = () => {
+    clearTimeout(resting);
+    if (!marks.kept) marks.leave();
+  };
   canvas.addEventListener('pointermove', (event) => {
-    clearTimeout(resting);
-    marks.leave();
-    if (event.buttons || event.pointerType === 'touch') return;
-    resting = setTimeout(() => {
-      const at = worldOf(event);
-      marks.rest(core, { x: at.x - core.origin_x(), y: at.y - core.origin_y() }, event, view.scale);
-    }, REST_TIME);
+    leave();
+    if (event.buttons || event.pointerType === 'touch' || marks.kept) return;
+    resting = setTimeout(() => ask(event), REST_TIME);
   });
-  canvas.addEventListener('pointerleave', () => {
-    clearTimeout(resting);
-    marks.leave();
-  });
+  canvas.addEventListener('pointerleave', leave);
   const end = (event) => {
+    if (pressed && Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) < CLICK_REACH) {
+      ask(event);
+      marks.kept = marks.spring >= 0;
+    }
+    pressed = null;
     fingers.delete(event.pointerId);
     core.let_go();
     held = false;
@@ -383,9 +403,9 @@ function draw() {
   marks.draw(core, relative);
 }
 
-function joules(energy) {
-  const [unit, name] = energy < 1e6 ? [1e3, 'kJ'] : energy < 1e9 ? [1e6, 'MJ'] : [1e9, 'GJ'];
-  return Number((energy / unit).toPrecision(3)) + ' ' + name;
+function withPrefix(value, unit) {
+  const [size, prefix] = value < 1e3 ? [1, ''] : value < 1e6 ? [1e3, 'k'] : value < 1e9 ? [1e6, 'M'] : [1e9, 'G'];
+  return `${Number((value / size).toPrecision(3))} ${prefix}${unit}`;
 }
 
 function showFigures(now) {
@@ -397,13 +417,14 @@ function showFigures(now) {
     bar.style.width = Math.min(100, (100 * each) / (1000 * DT)) + '%';
     bar.style.background = each < 700 * DT ? '#4cc38a' : each < 1000 * DT ? '#ffb224' : '#e5484d';
   }
+  byId('drawing').textContent = state.seconds ? (cost.drawing / state.seconds).toFixed(2) + ' ms' : '\u2013';
   byId('taken').textContent = core.substeps();
   byId('strain').textContent = (100 * core.max_strain()).toPrecision(3) + ' %';
   byId('bent').hidden = core.bent_count() === 0;
   byId('bent-count').textContent = core.bent_count().toLocaleString('en');
-  byId('kinetic').textContent = joules(core.kinetic_energy());
+  byId('kinetic').textContent = withPrefix(core.kinetic_energy(), 'J');
   byId('frames').textContent = Math.round((1000 * state.seconds) / (now - cost.shown)) + ' /s';
-  Object.assign(cost, { sum: 0, count: 0, shown: now });
+  Object.assign(cost, { sum: 0, count: 0, drawing: 0, shown: now });
   state.seconds = 0;
 }
 
@@ -412,7 +433,9 @@ function frame(now) {
   state.debt = Math.min(state.debt + (now - state.last) / 1000, MOST_STEPS * DT);
   state.last = now;
   for (; state.running && state.debt >= DT; state.debt -= DT) step();
+  const began = performance.now();
   draw();
+  cost.drawing += performance.now() - began;
   state.seconds++;
   showFigures(now);
   requestAnimationFrame(frame);
@@ -469,6 +492,7 @@ async function main() {
   materials = readMaterials(new TextDecoder().decode(await resource('ship_materials.csv')));
   for (const id of SETTINGS)
     if (settings.has(id)) byId(id).value = settings.get(id);
+  if (settings.has('substeps')) setSubsteps(settings.get('substeps'));
   for (const id of SWITCHES) if (settings.has(id)) toggle(byId(id), true);
   connectControls();
   connectHand();
