@@ -51,6 +51,13 @@ done
 png "$scratch/film.png" 00000140000000c8
 grep -q acTL "$scratch/film.png" || complain 'the film does not move'
 
+# Plots as a table: time and four quantities of two sides, the same on every machine.
+printf '0 scene bar\n1 spring left 40 2 5\n1 table plots\n1 end\n' >"$scratch/script.lab"
+succeed --headless --script "$scratch/script.lab" --frames "$scratch/frames" --every 1000 --no-clock
+head -n 1 "$scratch/frames/plots.csv" | grep -qx 'seconds\(,\(left\|right\)_[a-z_A-Z]*\)\{8\}' || complain 'a table without its columns'
+[ "$(wc -l <"$scratch/frames/plots.csv")" -eq 17 ] || complain 'another number of rows'
+tail -n 1 "$scratch/frames/plots.csv" | grep -q '^1\.0' || complain 'the table ends elsewhere'
+
 # Mistakes.
 refused 'script.lab:2:5: .*gravitas' --headless --script "$(
   printf '0 pause\n0.5 gravitas 3\n' >"$scratch/script.lab"

@@ -80,10 +80,13 @@ picture() {
 xdotool key w
 await test -s "$scratch/pictures/lab_000.png" || exit 1
 
-# Drag: from the bar's free end, wherever it is, downwards. The view is the upper one of two.
 xdotool key space # the bar holds still, so that it can be hit
-xdotool mousemove 1180 130 mousedown 1 mousemove 1170 140 sleep 0.2 mousemove 1160 150 sleep 0.2
+# A click asks for the spring under it; the mouse rests on a button, which explains itself.
+xdotool mousemove 384 178 click 1 sleep 0.2 mousemove 60 100 sleep 0.2
 picture 001
+# Drag: from the bar's free end, wherever it is, downwards. The view is the upper one of two.
+xdotool mousemove 1180 130 mousedown 1 mousemove 1170 140 sleep 0.2 mousemove 1160 150 sleep 0.2
+picture 002
 xdotool mouseup 1
 # Pin what is under the mouse, then cut there, by X and by shift.
 xdotool mousemove 1000 110 key p
@@ -95,28 +98,42 @@ xdotool mousemove 60 121 mousedown 1 sleep 0.1 mousemove 90 121 sleep 0.1 mouseu
 xdotool mousemove 900 160 key c key g key g
 xdotool key space
 sleep 0.5
-picture 002
-xdotool key h
 picture 003
+xdotool key h
+picture 004
 xdotool key h key u
 xdotool mousemove 900 160 click 4 click 4
 xdotool mousedown 3 mousemove 880 150 sleep 0.2 mousemove 860 140 mouseup 3
-picture 004
+# What a plot shows under the mouse; all of them as a table; what was done until now as a script; and the list of scenes.
+xdotool mousemove 244 640 sleep 0.2
+picture 005
+xdotool key v
+await test -s "$scratch/pictures/lab_006.csv"
+xdotool key y
+await test -s "$scratch/pictures/lab_007.lab"
+xdotool mousemove 120 57 click 1 sleep 0.2
+picture 008
+xdotool mousemove 900 160
 xdotool key q
 await sh -c "! kill -0 $window" || exit 1
 wait "$window" || complain "exit status $?"
 window=
 
 for action in 'grab [0-9]' 'pull [0-9]' 'drop' 'pin [0-9]' 'cut ([-0-9.]+ ){3}' 'solver left implicit' 'gravity [0-9]' \
-  'colour force' 'gravity 0$' 'help on' 'help off' 'undo' 'camera [0-9]' 'screenshot lab_004' 'pause' 'play'; do
+  'colour force' 'gravity 0$' 'help on' 'help off' 'undo' 'camera [0-9]' 'screenshot lab_005' 'pause' 'play' \
+  'spring left [0-9]' 'table lab_006' 'scenes on'; do
   recorded "^[0-9.]+ $action" || complain "not recorded: $action"
 done
 [ "$(grep -cE ' cut ' "$scratch/recording.lab")" -eq 2 ] || complain 'two cuts were made'
 grep -q '^left .*implicit' "$scratch/out" || complain "no switch of solvers: $(cat "$scratch/out")"
 
 # What was recorded, again: to the same frame and the same state.
+[ "$(head -n 1 "$scratch/pictures/lab_006.csv" | tr , '\n' | wc -l)" -eq 11 ] || complain 'a table of other columns'
+(cd "$scratch" && "$lab" --headless --script pictures/lab_007.lab --frames saved_pictures --every 100000 --no-clock >saved) || complain 'the saved script does not play'
+grep -q '^right implicit' "$scratch/saved" || complain "the saved script ends elsewhere: $(cat "$scratch/saved")"
+
 frames=$(sed -n 's/^state after \([0-9]*\) frames.*/\1/p' "$scratch/out")
-grep -vE ' screenshot ' "$scratch/recording.lab" >"$scratch/again.lab"
+grep -vE ' (screenshot|table) ' "$scratch/recording.lab" >"$scratch/again.lab"
 echo "$(awk -v frames="$frames" 'BEGIN { printf "%.6f", frames / 64 }') end" >>"$scratch/again.lab"
 "$lab" --headless --script "$scratch/again.lab" --stop-after "$frames" --no-clock >"$scratch/again" ||
   complain 'the recording does not play'
@@ -125,7 +142,7 @@ echo "$(awk -v frames="$frames" 'BEGIN { printf "%.6f", frames / 64 }') end" >>"
 
 if [ $# -gt 2 ]; then
   mkdir -p "$3"
-  cp "$scratch"/pictures/*.png "$scratch/recording.lab" "$3"
+  cp "$scratch"/pictures/* "$scratch/recording.lab" "$3"
 fi
 cat "$scratch/out"
 echo "$wrong wrong"

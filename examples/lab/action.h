@@ -24,7 +24,7 @@ typedef enum action_kind {
     ACTION_MASS,       ///< times the scene's
     ACTION_STIFFNESS,  ///< times the scene's, or times half the limit if relative
     ACTION_DAMPING,    ///< times the scene's
-    ACTION_AIR,        ///< global damping, 1/s
+    ACTION_DRAG,       ///< global damping, 1/s
     ACTION_DT,         ///< s
     ACTION_RELATIVE,   ///< off, on
     ACTION_BREAKING,   ///< off, on
@@ -35,11 +35,12 @@ typedef enum action_kind {
     ACTION_GRAB,       ///< x, y, radius
     ACTION_PULL,       ///< x, y
     ACTION_DROP,
-    ACTION_PIN,   ///< x, y, radius
-    ACTION_UNPIN, ///< x, y, radius
-    ACTION_CUT,   ///< x, y, x2, y2
-    ACTION_BLAST, ///< x, y, radius, speed
-    ACTION_PROBE, ///< x, y: the nearest particle is the probe
+    ACTION_PIN,    ///< x, y, radius
+    ACTION_UNPIN,  ///< x, y, radius
+    ACTION_CUT,    ///< x, y, x2, y2
+    ACTION_BLAST,  ///< x, y, radius, speed
+    ACTION_PROBE,  ///< x, y: the nearest particle is the probe
+    ACTION_SPRING, ///< sides, x, y, radius: tell of the nearest spring what it bears
     ACTION_SETTLE,
     ACTION_PLAY,
     ACTION_PAUSE,
@@ -53,10 +54,13 @@ typedef enum action_kind {
     ACTION_PAGE,   ///< of the controls, where the window is too low for all of them
     ACTION_PLOTS,  ///< off, on
     ACTION_PANEL,  ///< off, on
+    ACTION_SCENES, ///< off, on
     ACTION_HELP,   ///< off, on
     ACTION_CAMERA, ///< x, y of the middle, metres shown across
     ACTION_FIT,
     ACTION_SCREENSHOT, ///< text: a name
+    ACTION_TABLE,      ///< text: a name
+    ACTION_RECORDING,  ///< text: a name
     ACTION_END,
     ACTION_KINDS
 } action_kind;

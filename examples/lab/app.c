@@ -4,9 +4,8 @@
 /// SPDX-License-Identifier: MIT
 #include "lab/app.h"
 #include "common/clock.h"
-#include "common/output.h"
-#include "draw/png.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,12 +38,16 @@ bool app_start(lab_app *made, const lab_options *options) {
     }
     made->helper = helper_start();
     bool ok = view_make(&made->view, options->width, options->height) || complain("out of memory for the window");
-    if (ok && options->record) {
-        made->record = fopen(options->record, "w");
-        ok = made->record || complain("cannot write the recording");
-        const lab_action first = action_of_text(ACTION_SCENE, options->scene);
-        ok = ok && script_record(made->record, 0, &first);
-    }
+    // What mouse and keys do is kept, even where nobody has asked for it: somebody may, later.
+    if (ok && options->record)
+        made->record = fopen(options->record, "w+");
+    else if (ok && !options->headless)
+        made->record = tmpfile();
+    if (ok && options->record && !made->record)
+        ok = complain("cannot write the recording");
+    const lab_action first = action_of_text(ACTION_SCENE, options->scene);
+    if (ok && made->record)
+        ok = script_record(made->record, 0, &first);
     made->view.shows_costs = !options->no_clock;
     controller_start(&made->controller, app_perform, made);
     if (!ok)
@@ -56,7 +59,7 @@ void app_perform(const lab_action *action, void *user) {
     lab_app *app = user;
     scene_error error = {""};
     const lab_action rounded = action_rounded(action);
-    if (app->record)
+    if (app->record && rounded.kind != ACTION_RECORDING)
         script_record(app->record, app->model.frame, &rounded);
     if (!model_do(&app->model, &rounded, &error))
         snprintf(app->model.message, sizeof app->model.message, "%.250s", error.text);
@@ -101,13 +104,15 @@ static void play_side(void *user) {
     job->drawn = clock_seconds() - stepped;
 }
 
-static void note_costs(lab_app *app, double begin, double end) {
+static void note_costs(lab_app *app, double begin, double stepped, double end) {
     lab_costs *costs = &app->costs;
     const double seconds = end - begin, between = begin - app->last_begin;
     const bool first = app->frames == 0;
     // The first frame is the first to touch most of the memory.
-    if (!first)
+    if (!first) {
         costs->frame = costs->frame > 0 ? costs->frame + 0.1 * (seconds - costs->frame) : seconds;
+        costs->steps = costs->steps > 0 ? costs->steps + 0.1 * (stepped - costs->steps) : stepped;
+    }
     if (!first && between > 0)
         costs->per_second = costs->per_second > 0
                                 ? 1 / (1 / costs->per_second + 0.1 * (between - 1 / costs->per_second))
@@ -142,18 +147,8 @@ bool app_frame(lab_app *app, bool show_pointer) {
     if (show_pointer)
         pointer = controller_pointer(&app->controller, &app->model, &app->view);
     view_end(&app->view, &app->model, &pointer, &app->costs);
-    note_costs(app, begin, clock_seconds());
-    if (app->model.screenshot[0]) {
-        const bool written = output_make_folder(app->options->frames) &&
-                             app_write_png(&app->view.target, app->options->frames, app->model.screenshot);
-        snprintf(app->model.message, sizeof app->model.message, "%s %.100s.png %s %.100s",
-                 written ? "written" : "cannot write", app->model.screenshot, written ? "into" : "to",
-                 app->options->frames);
-        app->model.screenshot[0] = 0;
-        if (!written && app->options->headless)
-            return false;
-    }
-    return true;
+    note_costs(app, begin, fmax(jobs[0].stepped, jobs[1].stepped), clock_seconds());
+    return app_write_wanted(app);
 }
 
 void app_report(const lab_app *app) {
@@ -181,21 +176,4 @@ void app_report(const lab_app *app) {
                1e3 * app->total_drawn[i] / (double)app->frames);
     printf("state after %llu frames: %016llx\n", (unsigned long long)model->frame,
            (unsigned long long)model_hash(model));
-}
-
-bool app_write_png(const lab_raster *source, const char *folder, const char *name) {
-    char path[OUTPUT_PATH_SIZE];
-    draw_error error = {""};
-    canvas pixels = {0};
-    bool ok = output_path(path, folder, name, ".png");
-    ok = ok && (canvas_make(&pixels, (uint32_t)source->width, (uint32_t)source->height, 0) ||
-                complain("out of memory for a picture"));
-    if (!ok)
-        return false;
-    for (size_t i = 0; i < (size_t)source->width * (size_t)source->height; i++)
-        for (int channel = 0; channel < 3; channel++)
-            pixels.rgb[3 * i + (size_t)channel] = (uint8_t)(source->pixels[i] >> (16 - 8 * channel));
-    ok = png_write(&pixels, path, &error) || complain(error.text);
-    canvas_free(&pixels);
-    return ok;
 }

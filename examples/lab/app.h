@@ -18,14 +18,14 @@ typedef struct lab_app {
     lab_helper *helper;
     lab_script script; ///< may be empty
     size_t script_at;  ///< its next line
-    FILE *record;      ///< or NULL
+    FILE *record;      ///< what mouse and keys have done, or NULL
     lab_costs costs;
     double last_begin;
     bool script_failed;
     uint32_t slow_frames; ///< frames that took longer than the budget
     uint32_t late_frames; ///< frames that began more than 1/60 s after the one before
     double total_frame, longest_frame;
-    double total_shown; ///< seconds that the display took
+    double total_shown;                      ///< seconds that the display took
     double total_stepped[2], total_drawn[2]; ///< of each side's thread
     uint64_t frames;
 } lab_app;
@@ -45,6 +45,10 @@ bool app_script_done(const lab_app *app);
 /// What frames cost, and the state's hash, on standard output.
 void app_report(const lab_app *app);
 
+/* app_files.c */
+
+/// Write the files that the last actions asked for. Returns false if that fails and nobody sees the window.
+bool app_write_wanted(lab_app *app);
 /// Write what the view shows as a PNG file.
 bool app_write_png(const lab_raster *source, const char *folder, const char *name);
 

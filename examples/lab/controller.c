@@ -13,6 +13,7 @@
 
 const key_help keys_help[] = {
     {"drag", "pull what is under the mouse"},
+    {"click", "a spring: its strain, force and number"},
     {"X drag, shift drag", "cut springs with a line"},
     {"P", "pin, or let go of a pin"},
     {"B", "blast"},
@@ -36,7 +37,7 @@ const key_help keys_help[] = {
     {"A", "see all"},
     {"L", "one above the other, side by side"},
     {"D, K", "plots, controls: show, hide"},
-    {"W", "write a picture"},
+    {"W, V, Y", "write a picture, the plots as CSV, a script"},
     {"H, F1", "this help"},
     {"Q, escape", "quit"},
 };
@@ -91,10 +92,10 @@ static void next_scene(lab_controller *controller, const lab_model *model) {
     controller->perform(&action, controller->user);
 }
 
-static void take_picture(lab_controller *controller) {
+static void write_file(lab_controller *controller, action_kind kind) {
     char name[32];
-    snprintf(name, sizeof name, "lab_%03u", controller->pictures++);
-    const lab_action action = action_of_text(ACTION_SCREENSHOT, name);
+    snprintf(name, sizeof name, "lab_%03u", controller->files++);
+    const lab_action action = action_of_text(kind, name);
     controller->perform(&action, controller->user);
 }
 
@@ -184,7 +185,13 @@ static void press_key(lab_controller *controller, const lab_model *model, const 
         perform(controller, ACTION_UNDO, 0, 0, 0, 0);
         break;
     case 'w':
-        take_picture(controller);
+        write_file(controller, ACTION_SCREENSHOT);
+        break;
+    case 'v':
+        write_file(controller, ACTION_TABLE);
+        break;
+    case 'y':
+        write_file(controller, ACTION_RECORDING);
         break;
     case 'x':
         controller->cuts = true;
@@ -209,6 +216,9 @@ static void press_key(lab_controller *controller, const lab_model *model, const 
 
 /* ------------------------------------------------------------------------------------------------------- mouse */
 
+// Pixels that a click may move, and how far from a spring it finds it.
+enum { CLICK_REACH = 3, SPRING_REACH = 10 };
+
 static void move_slider(lab_controller *controller) {
     const lab_box track = control_track(&controller->slider);
     const lab_action action =
@@ -217,6 +227,11 @@ static void move_slider(lab_controller *controller) {
 }
 
 static void press_control(lab_controller *controller, const lab_control *control) {
+    if (control->kind == CONTROL_BUTTON && control->action.kind >= ACTION_SCREENSHOT &&
+        control->action.kind <= ACTION_RECORDING) {
+        write_file(controller, control->action.kind);
+        return;
+    }
     if (control->kind == CONTROL_BUTTON) {
         controller->perform(&control->action, controller->user);
         return;
@@ -246,6 +261,8 @@ static void press(lab_controller *controller, const lab_model *model, const lab_
         blast(controller, controller->from_x, controller->from_y, controller->radius / scale);
     } else {
         controller->drag = DRAG_PULL;
+        controller->pressed_x = input->x;
+        controller->pressed_y = input->y;
         perform(controller, ACTION_GRAB, controller->from_x, controller->from_y, controller->radius / scale, 0);
     }
 }
@@ -268,9 +285,13 @@ static void move(lab_controller *controller, const lab_model *model, const lab_v
 
 static void release(lab_controller *controller, const lab_model *model, const lab_view *view) {
     double x, y;
-    place(controller, model, view, &x, &y);
-    if (controller->drag == DRAG_PULL)
+    const double scale = place(controller, model, view, &x, &y);
+    if (controller->drag == DRAG_PULL) {
         perform(controller, ACTION_DROP, 0, 0, 0, 0);
+        // A click that has moved nothing asks for the spring; one beside all springs for none.
+        if (hypot(controller->x - controller->pressed_x, controller->y - controller->pressed_y) < CLICK_REACH)
+            perform(controller, ACTION_SPRING, 1 << controller->side, x, y, SPRING_REACH / scale);
+    }
     if (controller->drag == DRAG_CUT)
         perform(controller, ACTION_CUT, controller->from_x, controller->from_y, x, y);
     controller->drag = DRAG_NONE;
@@ -329,7 +350,10 @@ void controller_take(lab_controller *controller, const lab_model *model, const l
 }
 
 lab_pointer controller_pointer(const lab_controller *controller, const lab_model *model, const lab_view *view) {
-    lab_pointer made = {.kind = POINTER_NONE};
+    lab_pointer made = {.kind = POINTER_NONE,
+                        .hovers = controller->drag == DRAG_NONE,
+                        .at_x = controller->x,
+                        .at_y = controller->y};
     if (controller->side >= model->side_count)
         return made;
     const double scale = place(controller, model, view, &made.x2, &made.y2);

@@ -31,15 +31,16 @@ typedef struct lab_controller {
     perform_fn perform;
     void *user;
     drag_kind drag;
-    int side;              ///< that the mouse works in
-    int x, y;              ///< of the mouse
-    double from_x, from_y; ///< world coordinates where it was pressed
-    double radius;         ///< of the tool, pixels
-    lab_control slider;    ///< that is dragged
-    double gravity;        ///< to come back to
-    bool cuts;             ///< the key for cutting is down
+    int side;                 ///< that the mouse works in
+    int x, y;                 ///< of the mouse
+    double from_x, from_y;    ///< world coordinates where it was pressed
+    int pressed_x, pressed_y; ///< and pixels
+    double radius;            ///< of the tool, pixels
+    lab_control slider;       ///< that is dragged
+    double gravity;           ///< to come back to
+    bool cuts;                ///< the key for cutting is down
     bool quits;
-    uint32_t pictures; ///< taken so far
+    uint32_t files; ///< written so far
 } lab_controller;
 
 void controller_start(lab_controller *made, perform_fn perform, void *user);

@@ -99,8 +99,8 @@ static void add_playing(control_stack *stack, const lab_model *model) {
     which[2].box.x = which[1].box.x + which[1].box.width + 4;
     which[0].action = action_of_text(ACTION_SCENE, ready_scenes[before].name);
     which[2].action = action_of_text(ACTION_SCENE, ready_scenes[(now + 1) % READY_COUNT].name);
-    which[1].label = model->stage.made.name;
-    which[1].action = number(ACTION_RESET, 0);
+    snprintf(which[1].value, sizeof which[1].value, "%.26s ...", model->stage.made.name);
+    which[1].action = number(ACTION_SCENES, 1);
     lab_control *play = add_buttons(stack, 3, play_labels), *step = add_buttons(stack, 2, step_labels);
     if (!play || !step)
         return;
@@ -111,6 +111,30 @@ static void add_playing(control_stack *stack, const lab_model *model) {
     play[2].action = number(ACTION_RESET, 0);
     step[0].action = number(ACTION_STEP, 1);
     step[1].action = number(ACTION_SETTLE, 0);
+}
+
+// The list of scenes stands in place of the controls, until one is chosen.
+static void add_scenes(control_stack *stack, const lab_model *model) {
+    static const char *const back[] = {"back"};
+    for (int i = 0; i < READY_COUNT; i++) {
+        lab_control *one = add_buttons(stack, 1, &ready_scenes[i].name);
+        if (!one)
+            return;
+        one->is_on = strcmp(model->scene_name, ready_scenes[i].name) == 0;
+        one->action = action_of_text(ACTION_SCENE, ready_scenes[i].name);
+    }
+    stack->y += 6;
+    lab_control *last = add_buttons(stack, 1, back);
+    if (last)
+        last->action = number(ACTION_SCENES, 0);
+}
+
+// Pictures, tables and scripts, written where pictures go.
+static void add_files(control_stack *stack) {
+    static const char *const labels[] = {"picture", "table", "script"};
+    lab_control *file = add_buttons(stack, 3, labels);
+    for (int i = 0; file && i < 3; i++)
+        file[i].action.kind = (action_kind)(ACTION_SCREENSHOT + i);
 }
 
 // What the left button of the mouse does.
@@ -134,8 +158,9 @@ static void add_physics(control_stack *stack, const lab_model *model) {
         add_slider(stack, "stiffness", number(ACTION_STIFFNESS, now->stiffness), 0, 0.001, 1000, true, "x %.3g",
                    now->stiffness);
     add_slider(stack, "damping", number(ACTION_DAMPING, now->damping), 0, 0, 10, false, "x %.2f", now->damping);
-    add_slider(stack, "drag", number(ACTION_AIR, now->air), 0, 0, 4, false, "%.2f /s", now->air);
-    add_slider(stack, "time step", number(ACTION_DT, now->dt), 0, 1.0 / 512, 1.0 / 8, true, "%.2f ms", 1e3 * now->dt);
+    add_slider(stack, "drag", number(ACTION_DRAG, now->drag), 0, 0, 4, false, "%.2f /s", now->drag);
+    add_slider(stack, "time step", number(ACTION_DT, now->dt), 0, 1.0 / 512, 1.0 / 8, true, "%.2f ms",
+               1e3 * now->dt);
 }
 
 static void add_toggles(control_stack *stack, const lab_model *model) {
@@ -149,10 +174,7 @@ static void add_toggles(control_stack *stack, const lab_model *model) {
                   3,
                   {now->breaking, now->yielding, model->stage.relative},
                   {ACTION_BREAKING, ACTION_YIELDING, ACTION_RELATIVE}},
-                 {{"floor", "collide"},
-                  2,
-                  {now->has_floor, now->collides},
-                  {ACTION_FLOOR, ACTION_COLLIDE}}};
+                 {{"floor", "collide"}, 2, {now->has_floor, now->collides}, {ACTION_FLOOR, ACTION_COLLIDE}}};
     for (int row = 0; row < 2; row++) {
         lab_control *toggle = add_buttons(stack, rows[row].count, rows[row].labels);
         for (int i = 0; toggle && i < rows[row].count; i++) {
@@ -239,7 +261,8 @@ static void add_cures(lab_layout *made, const lab_model *model) {
         if (!side->complaint[0] || side->cure == 0 || side->cure > 1000 || side->cure <= side->substeps ||
             view.height < LEAST_HEIGHT || view.width < 2 * WIDTH)
             continue;
-        control_stack stack = {made, view.x + 12, view.y + view.height - ABOVE - BUTTON, WIDTH, view.y + view.height};
+        control_stack stack = {made, view.x + 12, view.y + view.height - ABOVE - BUTTON, WIDTH,
+                               view.y + view.height};
         lab_control *cure = add(&stack, CONTROL_BUTTON, BUTTON, "");
         if (!cure)
             return;
@@ -252,8 +275,12 @@ static void add_cures(lab_layout *made, const lab_model *model) {
 
 // All controls one below the other; or, in a low window, on two pages.
 static void add_controls(control_stack *stack, const lab_model *model) {
-    enum { WHOLE = 610 };
+    enum { WHOLE = 636 };
     static const char *const labels[2] = {"play", "settings"};
+    if (model->look.scenes) {
+        add_scenes(stack, model);
+        return;
+    }
     const bool has_pages = stack->bottom - stack->y < WHOLE;
     lab_control *pages = has_pages ? add_buttons(stack, 2, labels) : NULL;
     for (int i = 0; pages && i < 2; i++) {
@@ -265,15 +292,18 @@ static void add_controls(control_stack *stack, const lab_model *model) {
         add_tools(stack, model);
         add_toggles(stack, model);
     }
-    if (has_pages && model->look.page == 0)
+    if (has_pages && model->look.page == 0) {
         add_colours(stack, model);
-    if (has_pages && model->look.page == 0)
+        add_files(stack);
         return;
+    }
     add_physics(stack, model);
     for (int i = 0; i < model->side_count; i++)
         add_solver(stack, model, i);
-    if (!has_pages)
-        add_colours(stack, model);
+    if (has_pages)
+        return;
+    add_colours(stack, model);
+    add_files(stack);
 }
 
 void layout_make(lab_layout *made, const lab_model *model, int width, int height) {

@@ -7,7 +7,7 @@
 
 #include "lab/model.h"
 
-enum { LAYOUT_CONTROLS = 56, LAYOUT_LEAST_WIDTH = 480, LAYOUT_LEAST_HEIGHT = 320 };
+enum { LAYOUT_CONTROLS = 64, LAYOUT_LEAST_WIDTH = 480, LAYOUT_LEAST_HEIGHT = 320 };
 
 typedef enum control_kind {
     CONTROL_LABEL,

@@ -54,7 +54,7 @@ static lab_settings settings_for(const lab_stage *stage) {
                           .mass = 1,
                           .stiffness = 1,
                           .damping = stage->has_damping ? 1 : 0,
-                          .air = 0,
+                          .drag = 0,
                           .dt = 1.0 / FRAMES_PER_SECOND,
                           .grip = 30,
                           .breaking = stage->collides && stage->made.break_strain,
@@ -74,6 +74,7 @@ static void begin_anew(lab_model *model) {
     undo_clear(&model->undo);
     model->series.count = 0;
     model->holding = false;
+    model->has_spring = false;
     for (int i = 0; i < model->side_count; i++)
         side_measure(&model->sides[i], &model->settings, model->probe);
 }
@@ -139,6 +140,7 @@ static bool open_scene(lab_model *model, const char *name, bool relative, int si
         model->time = 0;
         model->probe = model->stage.probe;
         model->look.metres = 0;
+        model->look.scenes = false;
         model->look.colour = colour_for(model, &stage);
     }
     if (!keeps && !stage.is_ready)
@@ -182,12 +184,9 @@ static bool set_settings(lab_model *model, const lab_settings *settings, scene_e
 static bool change_setting(lab_model *model, const lab_action *action, scene_error *error) {
     lab_settings settings = model->settings;
     double *const places[ACTION_KINDS] = {
-        [ACTION_GRAVITY] = &settings.gravity,
-        [ACTION_MASS] = &settings.mass,
-        [ACTION_STIFFNESS] = &settings.stiffness,
-        [ACTION_DAMPING] = &settings.damping,
-        [ACTION_AIR] = &settings.air,
-        [ACTION_DT] = &settings.dt,
+        [ACTION_GRAVITY] = &settings.gravity,     [ACTION_MASS] = &settings.mass,
+        [ACTION_STIFFNESS] = &settings.stiffness, [ACTION_DAMPING] = &settings.damping,
+        [ACTION_DRAG] = &settings.drag,           [ACTION_DT] = &settings.dt,
         [ACTION_GRIP] = &settings.grip,
     };
     if (places[action->kind])
@@ -344,6 +343,9 @@ static void look(lab_model *model, const lab_action *action) {
     case ACTION_PANEL:
         look->panel = values[0] != 0;
         break;
+    case ACTION_SCENES:
+        look->scenes = values[0] != 0;
+        break;
     case ACTION_HELP:
         look->help = values[0] != 0;
         break;
@@ -356,7 +358,7 @@ static void look(lab_model *model, const lab_action *action) {
         look->metres = 0;
         break;
     default:
-        snprintf(model->screenshot, sizeof model->screenshot, "%s", action->text);
+        snprintf(model->wanted[action->kind - ACTION_SCREENSHOT], ACTION_TEXT, "%s", action->text);
         break;
     }
 }
@@ -382,7 +384,7 @@ bool model_do(lab_model *model, const lab_action *action, scene_error *error) {
     case ACTION_MASS:
     case ACTION_STIFFNESS:
     case ACTION_DAMPING:
-    case ACTION_AIR:
+    case ACTION_DRAG:
     case ACTION_DT:
     case ACTION_GRIP:
     case ACTION_BREAKING:
@@ -404,6 +406,12 @@ bool model_do(lab_model *model, const lab_action *action, scene_error *error) {
         model->probe = side_nearest(&model->sides[0], values[0], values[1]);
         model->series.count = 0;
         return true;
+    case ACTION_SPRING: {
+        const int side = (int)values[0] == SIDE_RIGHT && model->side_count == 2;
+        model->has_spring =
+            side_nearest_spring(&model->sides[side], values[1], values[2], values[3], &model->spring);
+        return true;
+    }
     case ACTION_SETTLE:
         return settle(model, error);
     case ACTION_PLAY:

@@ -30,13 +30,16 @@ typedef struct lab_series {
     int count;
 } lab_series;
 
+/// Files that are to be written after a frame.
+typedef enum lab_wanted { WANTED_PICTURE, WANTED_TABLE, WANTED_RECORDING, WANTED_KINDS } lab_wanted;
+
 /// What is shown, and where.
 typedef struct lab_look {
     colour_choice colour;
     layout_choice layout;
     tool_choice tool;
     int page; ///< of the controls, from 0
-    bool plots, panel, help;
+    bool plots, panel, scenes, help;
     double x, y, metres; ///< of the camera: middle, and width of what is seen; metres is 0 to see everything
 } lab_look;
 
@@ -53,14 +56,16 @@ typedef struct lab_model {
     uint64_t frame;
     double time; ///< simulated, s
     mspring_id probe;
+    bool has_spring; ///< one is told of
+    uint32_t spring;
     lab_series series;
     lab_undo undo;
     action_kind last_undo_kind; ///< what the last undo is for,
     uint64_t last_undo_frame;   ///< and when: a slider that is moved is one edit
     bool holding;
-    double grab_x, grab_y, hold_x, hold_y; ///< where the mouse took hold, and where it is
-    char message[256];                     ///< what to tell about the last action
-    char screenshot[ACTION_TEXT];          ///< name of a picture that is wanted, or ""
+    double grab_x, grab_y, hold_x, hold_y;  ///< where the mouse took hold, and where it is
+    char message[256];                      ///< what to tell about the last action
+    char wanted[WANTED_KINDS][ACTION_TEXT]; ///< names of files that are wanted, or ""
 } lab_model;
 
 /// A model with the ship on both sides, explicit and implicit.

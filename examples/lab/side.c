@@ -147,7 +147,7 @@ static mspring_result set_surroundings(lab_side *side, const lab_settings *setti
     mspring_settings now = {.struct_size = sizeof now};
     const mspring_result result = mspring_network_get_settings(side->network, &now);
     now.gravity_y = (float)-settings->gravity;
-    now.global_damping = (float)settings->air;
+    now.global_damping = (float)settings->drag;
     return result == MSPRING_OK ? mspring_network_set_settings(side->network, &now) : result;
 }
 
@@ -199,8 +199,11 @@ bool side_make(lab_side *made, const lab_stage *stage, const lab_settings *setti
     }
     made->view.struct_size = sizeof made->view;
     const float *velocity = stage->made.velocity;
-    const lab_settings fresh = {
-        .gravity = settings->gravity, .mass = 1, .stiffness = 1, .damping = stage->has_damping ? 1 : 0, .yielding = stage->yields};
+    const lab_settings fresh = {.gravity = settings->gravity,
+                                .mass = 1,
+                                .stiffness = 1,
+                                .damping = stage->has_damping ? 1 : 0,
+                                .yielding = stage->yields};
     if ((!velocity || accepted(made, mspring_network_set_velocities(made->network, 0, stage->particle_count,
                                                                     velocity, velocity + 1, 2))) &&
         accepted(made, mspring_network_view(made->network, &made->view)) &&
@@ -375,6 +378,26 @@ mspring_id side_nearest(const lab_side *side, double x, double y) {
     mspring_id nearest;
     return mspring_network_nearest_particle(side->network, x, y, INFINITY, &nearest, NULL) == MSPRING_OK ? nearest
                                                                                                          : 0;
+}
+
+bool side_nearest_spring(const lab_side *side, double x, double y, double radius, uint32_t *spring) {
+    const lab_stage *stage = side->stage;
+    double least = radius;
+    bool found = false;
+    for (uint32_t i = 0; i < stage->spring_count; i++) {
+        double ax, ay, bx, by;
+        side_position(side, stage->a[i], &ax, &ay);
+        side_position(side, stage->b[i], &bx, &by);
+        const double dx = bx - ax, dy = by - ay, square = dx * dx + dy * dy;
+        const double along = square > 0 ? fmin(fmax(((x - ax) * dx + (y - ay) * dy) / square, 0), 1) : 0;
+        const double distance = hypot(ax + along * dx - x, ay + along * dy - y);
+        if (!(distance < least))
+            continue;
+        least = distance;
+        *spring = i;
+        found = true;
+    }
+    return found;
 }
 
 bool side_is_pinned(const lab_side *side, mspring_id particle) {

@@ -9,7 +9,7 @@
 
 /// What both sides have in common.
 typedef struct lab_settings {
-    double gravity, mass, stiffness, damping, air, dt, grip; ///< as the actions of these names
+    double gravity, mass, stiffness, damping, drag, dt, grip; ///< as the actions of these names
     bool breaking, has_floor, collides, yielding;
 } lab_settings;
 
@@ -91,6 +91,8 @@ bool side_copy_bent(lab_side *side, const lab_side *from);
 void side_position(const lab_side *side, mspring_id particle, double *x, double *y);
 mspring_id side_nearest(const lab_side *side, double x, double y);
 bool side_is_pinned(const lab_side *side, mspring_id particle);
+/// The nearest spring within a radius; false if there is none.
+bool side_nearest_spring(const lab_side *side, double x, double y, double radius, uint32_t *spring);
 
 /// Edits, by mouse: those within a radius, or the nearest particle if there is none. They return false when the
 /// library refuses, which complaint tells.

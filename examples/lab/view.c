@@ -211,10 +211,12 @@ bool view_begin(lab_view *view, const lab_model *model) {
 
 /* -------------------------------------------------------------------------------------------------------- sides */
 
-static void describe_solver(const lab_side *side, char *text, size_t size) {
+static void describe_solver(const lab_side *side, bool in_short, char *text, size_t size) {
     static const char *const integrators[] = {"ga0", "bdf2", "Euler"};
     const uint32_t substeps = side->substeps;
-    if (side->solver.solver == MSPRING_SOLVER_EXPLICIT)
+    if (in_short)
+        snprintf(text, size, "%u substep%s", substeps, substeps == 1 ? "" : "s");
+    else if (side->solver.solver == MSPRING_SOLVER_EXPLICIT)
         snprintf(text, size, "%u substep%s%s", substeps, substeps == 1 ? "" : "s",
                  side->solver.substeps ? "" : ", chosen by the library");
     else if (side->solver.solver == MSPRING_SOLVER_DIRECT)
@@ -247,7 +249,7 @@ static void draw_head(lab_view *view, const lab_model *model, int index) {
     raster_fill(&view->target, head, (lab_box){head.x, head.y, 4, head.height}, colour, 256);
     const int base = head.y + 18;
     text_draw(&view->target, head, &view->large, head.x + 14, base, TEXT_LEFT, colour, name);
-    describe_solver(side, about, sizeof about);
+    describe_solver(side, false, about, sizeof about);
     const int after = head.x + 14 + text_width(&view->large, name) + 10;
     // Right: cost, then bending to its left. What is left is for the description.
     int right = head.x + head.width - 12;
@@ -259,6 +261,8 @@ static void draw_head(lab_view *view, const lab_model *model, int index) {
         snprintf(text, sizeof text, "%sm", view_number(side->measured.bending, digits));
         right = draw_figure(view, head, right, base, "bending", text, "00.00 m");
     }
+    if (after + text_width(&view->normal, about) > right)
+        describe_solver(side, true, about, sizeof about);
     text_draw(&view->target, (lab_box){head.x, head.y, right - head.x, head.height}, &view->normal, after, base,
               TEXT_LEFT, TINT_FAINT, about);
 }
@@ -339,18 +343,18 @@ void view_draw_side(lab_view *view, const lab_model *model, int side) {
 /* --------------------------------------------------------------------------------------------------------- rest */
 
 static void draw_cost(lab_view *view, const lab_costs *costs, lab_box box) {
-    enum { WIDTH = 140 };
     const double budget = 1.0 / FRAMES_PER_SECOND;
-    const int left = box.x + box.width - WIDTH - 12, top = box.y + 15;
+    const int width = box.width >= 1000 ? 140 : 80, left = box.x + box.width - width - 12, top = box.y + 15;
     char text[96];
-    const int used = (int)(fmin(costs->frame / (1.5 * budget), 1) * WIDTH);
-    raster_fill(&view->target, box, (lab_box){left, top, WIDTH, 7}, TINT_BUTTON, 256);
+    const int used = (int)(fmin(costs->frame / (1.5 * budget), 1) * width);
+    raster_fill(&view->target, box, (lab_box){left, top, width, 7}, TINT_BUTTON, 256);
     raster_fill(&view->target, box, (lab_box){left, top, used, 7},
                 costs->frame <= budget ? TINT_GOOD : TINT_WARNING, 256);
-    raster_fill(&view->target, box, (lab_box){left + WIDTH * 2 / 3, top - 3, 1, 13}, TINT_TEXT, 256);
+    raster_fill(&view->target, box, (lab_box){left + width * 2 / 3, top - 3, 1, 13}, TINT_TEXT, 256);
     snprintf(text, sizeof text,
-             box.width >= 1000 ? "frame %.1f of %.1f ms, %.0f a second" : "frame %.1f of %.1f ms",
-             1e3 * costs->frame, 1e3 * budget, costs->per_second);
+             box.width >= 1000 ? "steps %.1f + drawing %.1f of %.1f ms, %.0f a second"
+                               : "steps %.1f + drawing %.1f of %.1f ms",
+             1e3 * costs->steps, 1e3 * fmax(costs->frame - costs->steps, 0), 1e3 * budget, costs->per_second);
     text_draw(&view->target, box, &view->normal, left - 12, top + 8, TEXT_RIGHT,
               costs->frame <= budget ? TINT_TEXT : TINT_WARNING, text);
 }
@@ -396,11 +400,11 @@ static void draw_top(lab_view *view, const lab_model *model, const lab_costs *co
 static void draw_status(lab_view *view, const lab_model *model) {
     const lab_box box = view->layout.status;
     raster_fill(&view->target, box, box, TINT_WINDOW, 256);
-    const char *usual =
-        "drag: pull   X drag: cut   P: pin   B: blast   U: undo   space: pause   C: colours   wheel: zoom   "
-        "right drag: move   H: all keys";
-    if (box.width < 1000)
-        usual = "drag: pull   X drag: cut   space: pause   H: all keys";
+    const char *usual = "Masses on springs, moved by two solvers.   drag: pull   click: ask a spring   X drag: cut "
+                        "  P: pin   B: blast   "
+                        "U: undo   space: pause   wheel: zoom   right drag: move   H: all keys";
+    if (box.width < 1100)
+        usual = "Masses on springs, moved by two solvers.   drag: pull   X drag: cut   H: all keys";
     const char *text = model->message[0] ? model->message : usual;
     text_draw(&view->target, box, &view->normal, 18, box.y + 16, TEXT_LEFT,
               model->message[0] ? TINT_PIN : TINT_FAINT, text);
@@ -429,8 +433,10 @@ void view_end(lab_view *view, const lab_model *model, const lab_pointer *pointer
     draw_status(view, model);
     view_draw_panel(view, model);
     view_draw_plots(view, model);
-    if (pointer)
+    if (pointer) {
         draw_pointer(view, model, pointer);
+        view_draw_hover(view, model, pointer);
+    }
     if (model->look.help)
         view_draw_help(view);
 }

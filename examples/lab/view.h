@@ -14,11 +14,14 @@ typedef struct lab_pointer {
     pointer_kind kind;
     double x, y, x2, y2, radius; ///< world coordinates; of a cut, its ends
     lab_colour colour;
+    bool hovers;    ///< no button is down:
+    int at_x, at_y; ///< what lies under this pixel is explained
 } lab_pointer;
 
 /// What frames take.
 typedef struct lab_costs {
     double frame;      ///< seconds from its beginning to its end, without waiting
+    double steps;      ///< of these until both sides have stepped; the rest is drawing
     double per_second; ///< frames
 } lab_costs;
 
@@ -75,11 +78,19 @@ lab_camera view_camera(const lab_view *view, const lab_model *model, int side);
 void camera_to_world(const lab_camera *camera, double pixel_x, double pixel_y, double *x, double *y);
 void camera_to_pixel(const lab_camera *camera, double x, double y, double *pixel_x, double *pixel_y);
 
-/* view_network.c, view_panel.c, view_plots.c, view_help.c */
+/* view_network.c, view_panel.c, view_plots.c, view_tip.c, view_help.c */
 
 void view_draw_network(lab_view *view, const lab_model *model, int side);
 void view_draw_panel(lab_view *view, const lab_model *model);
 void view_draw_plots(lab_view *view, const lab_model *model);
+/// What the plot under a pixel shows there; false if there is none.
+bool view_describe_plot(lab_view *view, const lab_model *model, int x, int y, char *text, size_t size);
+/// What a control does, and its key.
+const char *view_hint(const lab_control *control);
+/// What the spring that was clicked bears.
+void view_draw_spring(lab_view *view, const lab_model *model, int side, const lab_camera *camera);
+/// What lies under the mouse.
+void view_draw_hover(lab_view *view, const lab_model *model, const lab_pointer *pointer);
 void view_draw_help(lab_view *view);
 
 /// A number as people write it: three digits, and k, M, G.

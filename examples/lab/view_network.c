@@ -47,8 +47,8 @@ static void find_extremes(lab_view *view, const lab_model *model, int index) {
     for (uint32_t i = 0; i < stage->particle_count; i++)
         extreme[i] = 0;
     for (uint32_t i = 0; i < stage->spring_count; i++) {
-        const float value = by_strain ? side->strain[i] * scale
-                                      : spring_value(side, &model->settings, by, limit_of(view, by), i);
+        const float value =
+            by_strain ? side->strain[i] * scale : spring_value(side, &model->settings, by, limit_of(view, by), i);
         float *a = &extreme[stage->a[i]], *b = &extreme[stage->b[i]];
         *a = fabsf(value) > fabsf(*a) ? value : *a;
         *b = fabsf(value) > fabsf(*b) ? value : *b;
@@ -360,4 +360,5 @@ void view_draw_network(lab_view *view, const lab_model *model, int index) {
     draw_probe(view, model, index, box, &camera);
     draw_hold(view, model, index, box, &camera);
     draw_ruler(view, &camera, box);
+    view_draw_spring(view, model, index, &camera);
 }

@@ -79,6 +79,10 @@ static void draw_times(lab_view *view, const lab_series *series, lab_box area) {
     }
 }
 
+static lab_box plot_area(lab_box box) {
+    return (lab_box){box.x + 8, box.y + 24, box.width - 16, box.height - 48};
+}
+
 static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box box) {
     const lab_series *series = &model->series;
     char text[64];
@@ -90,7 +94,7 @@ static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box 
     if (text_width(&view->normal, plots[kind].title) + text_width(&view->small, text) + 28 <= box.width)
         text_draw(&view->target, box, &view->small, box.x + box.width - 10, box.y + 17, TEXT_RIGHT, TINT_FAINT,
                   text);
-    const lab_box area = {box.x + 8, box.y + 24, box.width - 16, box.height - 48};
+    const lab_box area = plot_area(box);
     raster_fill(&view->target, area, area, TINT_VIEW, 256);
     const int zero = area.y + area.height - 2 + (int)(low * (area.height - 3) / (high - low));
     raster_fill(&view->target, area, (lab_box){area.x, zero, area.width, 1}, TINT_EDGE, 256);
@@ -110,14 +114,41 @@ static void draw_plot(lab_view *view, const lab_model *model, int kind, lab_box 
     }
 }
 
-void view_draw_plots(lab_view *view, const lab_model *model) {
+// As many as have room to be read.
+static int plot_count(const lab_view *view) {
+    enum { LEAST_WIDTH = 96 };
+    const int count = view->shows_costs ? PROBE_KINDS : PROBE_KINDS - 1,
+              room = view->layout.plots.width / LEAST_WIDTH;
+    return room < count ? room : count;
+}
+
+static lab_box plot_box(const lab_view *view, int index) {
+    enum { GAP = 8 };
     const lab_box box = view->layout.plots;
-    const int count = view->shows_costs ? PROBE_KINDS : PROBE_KINDS - 1, gap = 8;
-    if (box.width == 0)
-        return;
-    for (int i = 0; i < count; i++) {
-        const int left = box.x + (box.width + gap) * i / count,
-                  right = box.x + (box.width + gap) * (i + 1) / count - gap;
-        draw_plot(view, model, i, (lab_box){left, box.y, right - left, box.height});
+    const int count = plot_count(view), left = box.x + (box.width + GAP) * index / count,
+              right = box.x + (box.width + GAP) * (index + 1) / count - GAP;
+    return (lab_box){left, box.y, right - left, box.height};
+}
+
+void view_draw_plots(lab_view *view, const lab_model *model) {
+    for (int i = 0; i < plot_count(view); i++)
+        draw_plot(view, model, i, plot_box(view, i));
+}
+
+bool view_describe_plot(lab_view *view, const lab_model *model, int x, int y, char *text, size_t size) {
+    const lab_series *series = &model->series;
+    for (int kind = 0; kind < plot_count(view); kind++) {
+        const lab_box area = plot_area(plot_box(view, kind));
+        const int sample = (int)((x - area.x - 1) * (SERIES_LENGTH - 1) / (double)(area.width - 3) + 0.5);
+        if (!box_holds(area, x, y) || sample < 0 || sample >= series->count)
+            continue;
+        char values[2][64];
+        for (int side = 0; side < model->side_count; side++)
+            value_text(kind, shown_value(kind, series->values[kind][side][sample]), values[side]);
+        raster_fill(&view->target, area, (lab_box){x, area.y, 1, area.height}, TINT_TEXT, 160);
+        snprintf(text, size, "%.2f s: %s%s%s", series->times[sample], values[0], model->side_count == 2 ? ", " : "",
+                 model->side_count == 2 ? values[1] : "");
+        return true;
     }
+    return false;
 }
