@@ -1,7 +1,8 @@
 /// Forces for the next step, and impulses, which change velocities at once.
 ///
 /// What is given adds up, where a list names a particle twice as well. So the sums are made in the backup, which is
-/// free between steps, and taken from there once all of them are right.
+/// free between steps, and taken from there once all of them are right: those of a list by slot, those of a range,
+/// which names each particle once, by index.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -37,8 +38,47 @@ static float plus(float sum, float push, double factor) {
     return (float)((double)sum + (double)push * factor);
 }
 
-static MSPRINGI_NOINLINE mspring_result add(mspring_network *network, const mspringi_selection *at,
+// Make the sums of a range. Returns the index of one that is not right, or the count.
+static MSPRINGI_NOINLINE uint32_t sum_range(const mspring_network *network, const mspringi_selection *at,
                                             const pushes *given, const target *to) {
+    const uint32_t *const slots = network->topology.slot_of_particle + at->first;
+    const mspringi_field sum = to->sum;
+    float *const made_x = network->backup.vx, *const made_y = network->backup.vy;
+    uint32_t wrong = at->count;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = slots[i];
+        const bool is_there = mspringi_particle_exists(network, at->first + i);
+        const uint32_t ahead = mspringi_slot_ahead(network, at, i);
+        MSPRINGI_PREFETCH(&sum.x[ahead]);
+        MSPRINGI_PREFETCH(&sum.y[ahead]);
+        const double factor = !to->inverse_mass ? 1.0 : (double)to->inverse_mass[slot];
+        const float x = plus(sum.x[slot], given->x[(size_t)i * given->stride], factor);
+        const float y = plus(sum.y[slot], given->y[(size_t)i * given->stride], factor);
+        made_x[i] = is_there ? x : sum.x[slot];
+        made_y[i] = is_there ? y : sum.y[slot];
+        wrong = is_there && !is_right(to, x, y) && wrong == at->count ? i : wrong;
+    }
+    return wrong;
+}
+
+static mspring_result add_range(mspring_network *network, const mspringi_selection *at, const pushes *given,
+                                const target *to) {
+    const uint32_t *const slots = network->topology.slot_of_particle + at->first;
+    const float *const made_x = network->backup.vx, *const made_y = network->backup.vy;
+    const mspringi_field sum = to->sum;
+    const uint32_t wrong = sum_range(network, at, given, to);
+    if (wrong < at->count)
+        return fail(network, to, at->first + wrong, given->x[(size_t)wrong * given->stride],
+                    given->y[(size_t)wrong * given->stride]);
+    for (uint32_t i = 0; i < at->count; ++i) {
+        sum.x[slots[i]] = made_x[i];
+        sum.y[slots[i]] = made_y[i];
+    }
+    return MSPRING_OK;
+}
+
+static MSPRINGI_NOINLINE mspring_result add_list(mspring_network *network, const mspringi_selection *at,
+                                                 const pushes *given, const target *to) {
     const mspringi_field made = {network->backup.vx, network->backup.vy};
     const uint32_t *slots = network->topology.slot_of_particle;
     for (uint32_t i = 0; i < at->count; ++i) {
@@ -71,7 +111,7 @@ static MSPRINGI_NOINLINE mspring_result add(mspring_network *network, const mspr
 static mspring_result add_rounding_to_nearest(mspring_network *network, const mspringi_selection *at,
                                               const pushes *given, const target *to) {
     const mspringi_fp_state before = mspringi_fp_enter();
-    const mspring_result result = add(network, at, given, to);
+    const mspring_result result = at->list ? add_list(network, at, given, to) : add_range(network, at, given, to);
     mspringi_fp_leave(before);
     return result;
 }

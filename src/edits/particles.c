@@ -37,6 +37,7 @@ static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspri
     for (; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
         const float mass = mspringi_value_of(values, i);
+        MSPRINGI_PREFETCH(&network->inverse_mass[mspringi_slot_ahead(network, at, i)]);
         if (!mspringi_particle_exists(network, particle))
             continue;
         float *inverse_mass = &network->inverse_mass[network->topology.slot_of_particle[particle]];

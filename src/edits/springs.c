@@ -30,6 +30,9 @@ static inline float *in_plane(const plane *from, mspringi_place place) {
 // in the near caches.
 #define AHEAD 256
 
+/// The same in a list, whose springs may lie anywhere.
+#define AHEAD_IN_LIST 32
+
 static inline void fetch(const plane *from, mspringi_place place) {
     if (place < from->end)
         MSPRINGI_PREFETCH(in_plane(from, place));
@@ -119,6 +122,19 @@ static inline uint32_t skip_equal_fractions(const mspringi_fractions *fractions,
     return i;
 }
 
+// The same of a list.
+static uint32_t skip_equal_listed_fractions(const mspringi_fractions *fractions, const mspring_id *list,
+                                            bool is_damping, const float *values, size_t stride, uint32_t i,
+                                            uint32_t count) {
+    for (; i < count; ++i) {
+        if (count - i > AHEAD_IN_LIST && !fractions->of_spring)
+            MSPRINGI_PREFETCH(&fractions->values[list[i + AHEAD_IN_LIST]]);
+        if (skip_equal_fractions(fractions, list[i], is_damping, values + i * stride, stride, 0, 1) == 0)
+            break;
+    }
+    return i;
+}
+
 // Index of the first spring, from one on, that is to get another value than it has.
 static uint32_t next_other(const mspring_network *network, const mspringi_selection *at,
                            const mspringi_values *values, uint32_t i) {
@@ -139,7 +155,10 @@ static uint32_t next_other(const mspring_network *network, const mspringi_select
                            at->count);
         else if (!at->list)
             i = skip_equal(places, known, values->first, values->stride, i, at->count);
-        else if (!has_fractions)
+        else if (has_fractions)
+            i = skip_equal_listed_fractions(&network->fractions, at->list, is_damping, values->first,
+                                            values->stride, i, at->count);
+        else
             i = skip_equal_listed(network, at->list, known, values->first, values->stride, i, at->count);
         if (i == at->count ||
             differs(network, values->property, mspringi_selected(at, i), mspringi_value_of(values, i)))
@@ -392,6 +411,8 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
         if (runs)
             i = lattice.has_relative ? set_run(network, at, values, &lattice, i, true, &traces)
                                      : set_run(network, at, values, &lattice, i, false, &traces);
+        else if (at->list)
+            i = next_other(network, at, values, i);
         if (i == at->count)
             break;
         const mspring_id spring = mspringi_selected(at, i);

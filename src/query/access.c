@@ -12,42 +12,41 @@
 /* ---------------------------------------------------------------------------------------------------------- get */
 
 // A removed particle is where the local origin is, whatever the host has written to its slot through a view.
-static double x_from_origin(const mspring_network *network, mspring_id particle) {
-    const uint32_t slot = network->topology.slot_of_particle[particle];
-    return mspringi_particle_exists(network, particle) ? mspringi_x_of(&network->state, slot) : 0.0;
-}
-
-static double y_from_origin(const mspring_network *network, mspring_id particle) {
-    const uint32_t slot = network->topology.slot_of_particle[particle];
-    return mspringi_particle_exists(network, particle) ? mspringi_y_of(&network->state, slot) : 0.0;
-}
-
 static void get_positions(const mspring_network *network, const mspringi_selection *at, double *x, double *y,
                           size_t stride) {
+    const double origin_x = network->origin_x, origin_y = network->origin_y;
+    const mspringi_state state = network->state;
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
-        x[i * stride] = network->origin_x + x_from_origin(network, particle);
-        y[i * stride] = network->origin_y + y_from_origin(network, particle);
+        const uint32_t slot = network->topology.slot_of_particle[particle];
+        const bool is_there = mspringi_particle_exists(network, particle);
+        x[i * stride] = origin_x + (is_there ? mspringi_x_of(&state, slot) : 0.0);
+        y[i * stride] = origin_y + (is_there ? mspringi_y_of(&state, slot) : 0.0);
     }
 }
 
 static void get_positions_float(const mspring_network *network, const mspringi_selection *at, float *x, float *y,
                                 size_t stride) {
+    const double origin_x = network->origin_x, origin_y = network->origin_y;
+    const mspringi_state state = network->state;
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
-        x[i * stride] = (float)(network->origin_x + x_from_origin(network, particle));
-        y[i * stride] = (float)(network->origin_y + y_from_origin(network, particle));
+        const uint32_t slot = network->topology.slot_of_particle[particle];
+        const bool is_there = mspringi_particle_exists(network, particle);
+        x[i * stride] = (float)(origin_x + (is_there ? mspringi_x_of(&state, slot) : 0.0));
+        y[i * stride] = (float)(origin_y + (is_there ? mspringi_y_of(&state, slot) : 0.0));
     }
 }
 
 static void get_velocities(const mspring_network *network, const mspringi_selection *at, float *vx, float *vy,
                            size_t stride) {
+    const mspringi_state state = network->state;
     for (uint32_t i = 0; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
         const uint32_t slot = network->topology.slot_of_particle[particle];
         const bool is_there = mspringi_particle_exists(network, particle);
-        vx[i * stride] = is_there ? network->state.vx[slot] : 0.0f;
-        vy[i * stride] = is_there ? network->state.vy[slot] : 0.0f;
+        vx[i * stride] = is_there ? state.vx[slot] : 0.0f;
+        vy[i * stride] = is_there ? state.vy[slot] : 0.0f;
     }
 }
 

@@ -5,6 +5,7 @@
 #ifndef MSPRINGI_SELECTION_H
 #define MSPRINGI_SELECTION_H
 
+#include "base/cpu.h"
 #include "store/network.h"
 
 /// What ids are of.
@@ -18,6 +19,18 @@ typedef struct mspringi_selection {
 
 static inline mspring_id mspringi_selected(const mspringi_selection *selection, uint32_t i) {
     return selection->list ? selection->list[i] : selection->first + i;
+}
+
+/// Particles whose state is fetched before it is read: neighbours by id may lie anywhere in the rows, and a step
+/// leaves little of the state in the near caches.
+#define MSPRINGI_AHEAD 32u
+
+/// The slot of the particle that a loop over a selection comes to so many later, or of its last.
+static inline uint32_t mspringi_slot_ahead(const mspring_network *network, const mspringi_selection *selection,
+                                           uint32_t i) {
+    const uint32_t left = selection->count - 1 - i;
+    return network->topology
+        .slot_of_particle[mspringi_selected(selection, i + (left < MSPRINGI_AHEAD ? left : MSPRINGI_AHEAD))];
 }
 
 /// Check that an edit may be made now, that all it names exists, and that its values (two arrays of them, or one
