@@ -571,7 +571,8 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
         const bool gains = judge_all(network, &o, &exceeds);
         if ((gains || (exceeds && step > MOST_STEPS_BACK)) && may_halve)
             return false;
-        if (mspringi_implicit_of(network)->holding != MSPRINGI_HOLD_AFTER && mspringi_bodies_gain(network, o.h))
+        if (mspringi_implicit_of(network)->holding != MSPRINGI_HOLD_AFTER &&
+            mspringi_bodies_gain(network, o.h, base))
             return false;
         if (!exceeds || step > MOST_STEPS_BACK)
             break;

@@ -163,8 +163,7 @@ typedef struct mspringi_centre {
 mspringi_centre mspringi_centre_of(const mspringi_account *account);
 /// What of an energy may be rounding, J.
 double mspringi_account_rounding(const mspringi_account *account, double energy);
-/// Whether components that touch would have more energy together than before a substep of h, but for work from
-/// outside.
-bool mspringi_bodies_gain(const mspring_network *network, double h);
+/// Whether all that touches would have more energy together than before a substep of h, but for work from outside.
+bool mspringi_bodies_gain(const mspring_network *network, double h, mspringi_field base);
 
 #endif
