@@ -94,6 +94,7 @@ typedef struct mspringi_touch {
     double ax, ay, bx, by;   ///< friction on the ends of the edge by a unit on the point
     double slide_mass;       ///< the same along; 0: no friction
     double across, along;    ///< impulses, N s
+    bool bounces;            ///< target is what restitution makes of it
 } mspringi_touch;
 
 /// A row of a particle that contact may press into the floor.
@@ -253,6 +254,7 @@ struct mspringi_pairs {
     bool is_crowded;            ///< a row had no room
     mspringi_row_hold *holds;   ///< [row_capacity] the same rows, of an implicit substep; NULL: no solver has such
     double passed;              ///< of an implicit substep, in pieces, s
+    double fall_x, fall_y;      ///< velocity that gravity gives in one, m/s; 0: forces have acted already
     mspringi_bearing *bearings; ///< [MSPRINGI_BEARINGS * nodes]
     uint32_t bearing_count;
     uint32_t touching; ///< pairs that pushed each other in a substep, at most
@@ -310,6 +312,9 @@ void mspringi_rows_begin(const mspring_network *network, mspringi_pairs *pairs);
 void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs);
 /// After it: let contact act. Returns whether anything touched, or could have.
 bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs);
+/// The same of nodes as they are in mspringi_active, in double precision, and no further. Floors bear what they
+/// find in the network.
+bool mspringi_rows_solve(const mspring_network *network, mspringi_pairs *pairs, double h);
 
 /// Make the rows of an implicit substep of h seconds, or of a piece of one, from what was noted: more of them, as
 /// springs and other bodies may push in it. Returns the speed of the fastest.

@@ -151,16 +151,29 @@ static void add_friction(const mspringi_pairs *pairs, mspringi_touch *t) {
                            k->weight[t->b] * (t->bx * t->bx + t->by * t->by));
 }
 
-// The speed across that a row is to have at least, when it touches.
-static double wanted(const mspringi_pairs *pairs, const mspringi_touch *t, double restitution, double h) {
-    double speed = -t->gap / h;
+// What gravity does to the speed across in an implicit substep: free flight ends slower than it bounces, or it
+// would end higher than it began.
+static double fall_across(const mspringi_pairs *pairs, const mspringi_touch *t) {
+    const double *weight = pairs->active.weight;
+    const double share = (weight[t->p] > 0.0 ? 1.0 : 0.0) - (weight[t->a] > 0.0 ? t->share_a : 0.0) -
+                         (weight[t->b] > 0.0 ? t->share_b : 0.0);
+    return share * (t->nx * pairs->fall_x + t->ny * pairs->fall_y);
+}
+
+// Say which speed across a row is to have at least, when it touches.
+static void aim(const mspringi_pairs *pairs, mspringi_touch *t, double restitution, double h) {
+    t->target = -t->gap / h;
     if (t->gap <= 0.0) {
-        speed *= PUSHED_SHARE;
-        speed = speed < pairs->push ? speed : pairs->push;
+        t->target *= PUSHED_SHARE;
+        t->target = t->target < pairs->push ? t->target : pairs->push;
     }
     const double before = mspringi_speed_across(t, pairs->active.from_vx, pairs->active.from_vy);
-    const double bounce = before < -SLOWEST_BOUNCE ? -restitution * before : speed;
-    return bounce > speed ? bounce : speed;
+    if (!(before < -SLOWEST_BOUNCE))
+        return;
+    const double back = -restitution * before, fall = fall_across(pairs, t);
+    const double bounce = fall < 0.0 ? (back + fall > 0.0 ? back + fall : 0.0) : back;
+    t->bounces = bounce > t->target && bounce > 0.0;
+    t->target = bounce > t->target ? bounce : t->target;
 }
 
 static double square_of_speed(const mspringi_active *k, uint32_t p, uint32_t q) {
@@ -219,7 +232,7 @@ static void put_row(mspringi_pairs *pairs, uint32_t candidate, const mspringi_co
     const mspringi_rough rough = rough_of(pairs, &pairs->list[c->pair], collider);
     t->mass = 1.0 / resistance;
     t->friction = rough.friction;
-    t->target = wanted(pairs, t, (double)rough.restitution, h);
+    aim(pairs, t, (double)rough.restitution, h);
     if (rough.friction > 0.0f)
         add_friction(pairs, t);
     ++pairs->touch_count;
@@ -272,6 +285,8 @@ static double make_rows(const mspring_network *network, mspringi_pairs *pairs, d
 
 double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h) {
     const mspringi_active *k = &pairs->active;
+    pairs->fall_x = h * (double)network->settings.gravity_x;
+    pairs->fall_y = h * (double)network->settings.gravity_y;
     for (uint32_t i = 0; i < k->own; ++i) {
         k->vx[i] = k->from_vx[i];
         k->vy[i] = k->from_vy[i];
@@ -382,8 +397,13 @@ static void restore_velocities(const mspringi_active *k) {
     memcpy(k->vy, k->old_vy, k->own * sizeof *k->vy);
 }
 
-// Go along for a piece of h seconds. What contact adds to the move is counted apart.
+// Go along for a piece of h seconds. What contact adds to the move is counted apart. The next piece bounces by what
+// this one has left.
 static void advance(const mspring_network *network, const mspringi_active *k, double h, bool is_last) {
+    for (uint32_t i = 0; i < k->own && !is_last; ++i) {
+        k->from_vx[i] += k->vx[i] - k->old_vx[i];
+        k->from_vy[i] += k->vy[i] - k->old_vy[i];
+    }
     for (uint32_t i = 0; i < k->own; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         k->way_x[i] += h * (k->vx[i] - (double)network->state.vx[slot]);
@@ -450,15 +470,21 @@ static void count_thrown(mspringi_pairs *pairs, double speed) {
     }
 }
 
-bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
-    const double h = (double)pairs->h;
-    begin(network, &pairs->active);
+bool mspringi_rows_solve(const mspring_network *network, mspringi_pairs *pairs, double h) {
     const double fastest = make_rows(network, pairs, h, 0.0);
     if (pairs->touch_count == 0)
         return false;
     mspringi_bearing_find(network, pairs);
     const double thicknesses = h * fastest / pairs->thickness;
     take_pieces(network, pairs, h, thicknesses < MOST_PIECES ? (uint32_t)thicknesses + 1 : MOST_PIECES);
+    return true;
+}
+
+bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
+    begin(network, &pairs->active);
+    pairs->fall_x = pairs->fall_y = 0.0;
+    if (!mspringi_rows_solve(network, pairs, (double)pairs->h))
+        return false;
     count_thrown(pairs, put_back(network, pairs));
     return true;
 }

@@ -6,6 +6,9 @@
 ///
 /// A heavy body presses a light one against another as hard as it takes, which a few sweeps may not come to. So
 /// rows that would get deeper are swept on until none does. Where bodies lie on each other there are none.
+///
+/// Rows that bounce may give energy together: one throws a point at another, which it was moving away from. Then
+/// all of them bounce less.
 #include "base/cpu.h"
 #include "contact/pairs.h"
 
@@ -20,6 +23,12 @@
 #define LEAST_GIVEN_SWEEPS 16
 #define MOST_LOOKS 16384
 #define MOST_COLLIDER_SWEEPS 64
+
+/// Bounces that give energy are that much lower, and the last time there are none. A smaller share of the work is
+/// rounding.
+#define BOUNCE_SHARE 0.5
+#define MOST_BOUNCES 3
+#define SEEN_SHARE 1e-9
 
 /// A piece is too long if a row would still end deeper than this share of the thickness.
 #define MOST_SHARE 0.1
@@ -39,15 +48,19 @@ MSPRINGI_ALWAYS_INLINE void push_apart(const mspringi_active *k, mspringi_touch 
     k->vy[t->b] -= t->share_b * k->weight[t->b] * y;
 }
 
+// How fast a point slides along an edge.
+MSPRINGI_ALWAYS_INLINE double speed_along(const mspringi_pairs *pairs, const mspringi_touch *t, const double *vx,
+                                          const double *vy) {
+    const double speed = vx[t->p] * -t->ny + vy[t->p] * t->nx + vx[t->a] * t->ax + vy[t->a] * t->ay +
+                         vx[t->b] * t->bx + vy[t->b] * t->by;
+    return t->collider == MSPRING_NONE ? speed : speed + mspringi_collider_drag(pairs, t);
+}
+
 MSPRINGI_ALWAYS_INLINE void rub(const mspringi_pairs *pairs, mspringi_touch *t) {
     const mspringi_active *k = &pairs->active;
     if (t->slide_mass == 0.0 || (t->across == 0.0 && t->along == 0.0))
         return;
-    const double tx = -t->ny, ty = t->nx;
-    double speed = k->vx[t->p] * tx + k->vy[t->p] * ty + k->vx[t->a] * t->ax + k->vy[t->a] * t->ay +
-                   k->vx[t->b] * t->bx + k->vy[t->b] * t->by;
-    if (t->collider != MSPRING_NONE)
-        speed += mspringi_collider_drag(pairs, t);
+    const double tx = -t->ny, ty = t->nx, speed = speed_along(pairs, t, k->vx, k->vy);
     const double most = (double)t->friction * t->across, sum = t->along - speed * t->slide_mass;
     const double along = sum > most ? most : sum < -most ? -most : sum, by = along - t->along;
     t->along = along;
@@ -105,13 +118,46 @@ static bool press(const mspringi_pairs *pairs, double h) {
     return false;
 }
 
-bool mspringi_rows_sweep(const mspringi_pairs *pairs, double h, uint32_t sweeps) {
+static void sweep_all(const mspringi_pairs *pairs, double h, uint32_t sweeps) {
     for (uint32_t n = 0; n < sweeps; ++n) {
         for (uint32_t i = 0; i < pairs->touch_count; ++i) {
             push_apart(&pairs->active, &pairs->touches[i], h);
             rub(pairs, &pairs->touches[i]);
         }
         mspringi_bearing_sweep(pairs);
+    }
+}
+
+// Whether rows, some of which bounce, have given energy: twice the work of their impulses is by the sum of the
+// speeds before the substep's forces and now. What is pushed out of an overlap may be given some.
+static bool give_energy(const mspringi_pairs *pairs) {
+    const mspringi_active *k = &pairs->active;
+    double work = 0.0, size = 0.0;
+    bool any = false;
+    for (uint32_t i = 0; i < pairs->touch_count && !any; ++i)
+        any = pairs->touches[i].bounces && pairs->touches[i].across > 0.0;
+    for (uint32_t i = 0; i < pairs->touch_count && any; ++i) {
+        const mspringi_touch *t = &pairs->touches[i];
+        if ((t->across == 0.0 && t->along == 0.0) || (t->target > 0.0 && !t->bounces))
+            continue;
+        work +=
+            t->across * (mspringi_speed_across(t, k->from_vx, k->from_vy) + mspringi_speed_across(t, k->vx, k->vy));
+        work += t->along * (speed_along(pairs, t, k->from_vx, k->from_vy) + speed_along(pairs, t, k->vx, k->vy));
+        size += t->across * t->across / t->mass;
+    }
+    return work > SEEN_SHARE * size;
+}
+
+static void bounce_less(const mspringi_pairs *pairs, double share) {
+    for (uint32_t i = 0; i < pairs->touch_count; ++i)
+        pairs->touches[i].target *= pairs->touches[i].bounces ? share : 1.0;
+}
+
+bool mspringi_rows_sweep(const mspringi_pairs *pairs, double h, uint32_t sweeps) {
+    sweep_all(pairs, h, sweeps);
+    for (uint32_t n = 1; n <= MOST_BOUNCES && give_energy(pairs); ++n) {
+        bounce_less(pairs, n < MOST_BOUNCES ? BOUNCE_SHARE : 0.0);
+        sweep_all(pairs, h, sweeps);
     }
     if (press(pairs, h))
         return true;

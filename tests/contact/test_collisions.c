@@ -11,76 +11,6 @@
 
 #define THICKNESS 0.5
 
-static uint32_t between(uint64_t *seed, uint32_t low, uint32_t high) {
-    return low + (uint32_t)(support_random_between(seed, 0, 1) * (high - low + 1));
-}
-
-/// A hull with holes, a block, a rope, a wedge, a block with a needle, a particle.
-static uint32_t add_shape(bodies *b, uint64_t *seed, double x, double y, double mass, double f) {
-    uint8_t mask[64];
-    bodies_lattice l = {.x = x,
-                        .y = y,
-                        .angle = support_random_between(seed, 0, 6.283),
-                        .spacing = 1,
-                        .mass = mass,
-                        .f = f,
-                        .width = 1,
-                        .height = 1};
-    for (int i = 0; i < 64; i++)
-        mask[i] = 0;
-    switch (between(seed, 0, 5)) {
-    case 0:
-        l.width = 8, l.height = 5, l.mask = mask;
-        for (int i = 0; i < 40; i++)
-            mask[i] = support_random_between(seed, 0, 1) > 0.15;
-        break;
-    case 1:
-        l.width = between(seed, 2, 8), l.height = between(seed, 2, 5);
-        break;
-    case 2:
-        l.width = between(seed, 3, 11);
-        break;
-    case 3:
-        l.width = 9, l.height = 5, l.mask = mask;
-        for (int r = 0; r < 5; r++)
-            for (int c = r; c < 9 - r; c++)
-                mask[r * 9 + c] = 1;
-        break;
-    case 4:
-        l.width = 7, l.height = 3, l.mask = mask;
-        for (int i = 0; i < 21; i++)
-            mask[i] = i < 7 || i % 7 < 3;
-        break;
-    default:
-        break;
-    }
-    return bodies_add(b, &l);
-}
-
-/// Two bodies, 14 m apart, that fly at each other and turn.
-static bodies *two_bodies(uint64_t trial, double fastest, double h, double *speed) {
-    uint64_t seed = trial;
-    bodies *b = bodies_begin(h);
-    const double ratio = support_random_between(&seed, -0.5, 0.5) * log(1000),
-                 f = exp(support_random_between(&seed, log(0.05), log(0.5)));
-    (void)add_shape(b, &seed, 0, 0, exp(ratio) * 10, f);
-    const double angle = support_random_between(&seed, 0, 6.283), x = 14 * cos(angle), y = 14 * sin(angle);
-    const uint32_t second = add_shape(b, &seed, x, y, exp(-ratio) * 10, f);
-    *speed = fastest * pow(10, support_random_between(&seed, -2, 0));
-    const double off = angle + support_random_between(&seed, -0.25, 0.25),
-                 turn = support_random_between(&seed, -0.04, 0.04) * *speed,
-                 turn_2 = support_random_between(&seed, -0.04, 0.04) * *speed;
-    for (uint32_t p = 0; p < second; p++) {
-        b->vx[p] = (float)(-turn * b->y[p]);
-        b->vy[p] = (float)(turn * b->x[p]);
-    }
-    for (uint32_t p = second; p < b->count; p++) {
-        b->vx[p] = (float)(-*speed * cos(off) - turn_2 * (b->y[p] - y));
-        b->vy[p] = (float)(-*speed * sin(off) + turn_2 * (b->x[p] - x));
-    }
-    return b;
-}
-
 typedef struct outcome {
     bool met, crossed;
     double deepest, gain, momentum, turn;
@@ -100,7 +30,7 @@ static outcome collide(uint64_t trial, const kind *of, bool touches) {
     const uint32_t stable = SUBSTEPS[trial % COUNT_OF(SUBSTEPS)];
     const double dt = 1.0 / 64;
     double speed;
-    bodies *b = two_bodies(trial, of->fastest, dt / stable, &speed);
+    bodies *b = bodies_two(trial, of->fastest, dt / stable, &speed);
     mspring_network_def def = support_def(0, is_explicit ? stable : FEW_SUBSTEPS[trial % COUNT_OF(FEW_SUBSTEPS)]);
     def.solver = of->solver;
     mspring_network *network = bodies_network(b, &def);

@@ -215,14 +215,15 @@ static void block_slides_at_its_friction_angle(void **state) {
 
 /* -------------------------------------------------------------------------------------------------- bounce */
 
-/// A loose particle that falls 5 m comes back with the restitution's part of its speed.
-static void check_bounce(float restitution) {
-    const uint32_t substeps = 120;
-    bodies *b = bodies_begin(DT / substeps);
+/// A loose particle that falls 5 m comes back with the restitution's part of its speed, within what gravity gives
+/// in a substep. It never comes back higher than that rounding lets it.
+static void check_bounce(mspring_solver solver, uint32_t substeps, float restitution) {
+    bodies *b = bodies_begin(DT / 120);
     lay_ground(b, 5, -THICKNESS);
     const uint32_t ball =
         bodies_add(b, &(bodies_lattice){.width = 1, .height = 1, .x = 0.2, .y = 5, .spacing = 1, .mass = 3});
-    const mspring_network_def def = support_def(-9.8f, substeps);
+    mspring_network_def def = support_def(-9.8f, substeps);
+    def.solver = solver;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.5f, restitution));
     double low = 5, high = 0;
@@ -236,16 +237,22 @@ static void check_bounce(float restitution) {
     }
     report("restitution %.2f: back to %.4f m, of speed %.4f\n", (double)restitution, high, sqrt(high / 5));
     assert_true(low > -1e-3);
-    check_near(sqrt(high / 5), (double)restitution, 0.01);
+    assert_true(high < 5 + 1e-3);
+    check_near(sqrt(high / 5), (double)restitution, substeps > 1 ? 0.01 : 0.02);
     mspring_network_destroy(network);
     bodies_free(b);
 }
 
 static void loose_particles_bounce(void **state) {
     (void)state;
-    check_bounce(0.5f);
-    check_bounce(0.8f);
-    check_bounce(1.0f);
+    static const float restitutions[] = {0.5f, 0.8f, 1.0f};
+    for (uint32_t i = 0; i < COUNT_OF(restitutions); i++) {
+        check_bounce(MSPRING_SOLVER_EXPLICIT, 120, restitutions[i]);
+        for (uint32_t substeps = 1; substeps <= 16; substeps *= 4) {
+            check_bounce(MSPRING_SOLVER_IMPLICIT, substeps, restitutions[i]);
+            check_bounce(MSPRING_SOLVER_DIRECT, substeps, restitutions[i]);
+        }
+    }
 }
 
 int main(void) {

@@ -238,11 +238,11 @@ static void nothing_is_thrown_through_the_next_in_a_row(void **state) {
     check_trials(row_of_bodies, 300001, trials, 1000, 0, 1e-2);
 }
 
-/// A row of bodies that bounce in one substep gains energy: each bounces by its own speed of before.
+/// Bounces that would give energy are lowered. Of full ones little is left, where springs are compressed deeply.
 static void nothing_bounces_through_the_next_in_a_row(void **state) {
     (void)state;
-    check_trials(row_of_bodies, 100001, trials, 300, 0.5f, 2e-2);
-    check_trials(row_of_bodies, 200001, trials, 300, 1, 0.3);
+    check_trials(row_of_bodies, 100001, trials, 300, 0.5f, 2e-3);
+    check_trials(row_of_bodies, 200001, trials, 300, 1, 0.1);
 }
 
 static void nothing_gets_through_others_where_several_meet(void **state) {

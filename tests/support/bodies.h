@@ -43,6 +43,10 @@ bodies *bodies_begin(double h);
 /// @return its first particle
 uint32_t bodies_add(bodies *b, const bodies_lattice *lattice);
 
+/// Two bodies of random shapes and of masses to 1:1000, 14 m apart, that fly at each other and turn.
+/// @param speed set to that of the second, at most fastest
+bodies *bodies_two(uint64_t trial, double fastest, double h, double *speed);
+
 /// Make the network, with the velocities in vx and vy, and the outline of the bodies as they are. The builder is
 /// destroyed.
 mspring_network *bodies_network(bodies *b, const mspring_network_def *def);
