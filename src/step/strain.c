@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/cpu.h"
 #include "sleep/sleep.h"
 #include "step/breaking.h"
 #include "store/changed.h"
@@ -17,6 +18,9 @@
 
 /// Room for rounding in the least strain of a spring that has flowed.
 #define ROUNDING (1.0f - 1e-5f)
+
+/// Words of places whose thresholds are fetched before they are looked at.
+#define AHEAD 8
 
 /* ---------------------------------------------------------------------------------------------------- the pass */
 
@@ -148,10 +152,15 @@ static void compare(mspring_network *network, double dt) {
          first = end)
         count += network->kernels->chain_strain(&sweep, first, end, hits + count);
     count += leftover_strain(network, hits + count);
-    for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit)
+    for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit) {
+        const size_t ahead = (hit + AHEAD < hits + count ? hit + AHEAD : hit)->word;
+        MSPRINGI_PREFETCH(strain->break_strain + ahead * MSPRINGI_WIDTH);
+        if (strain->stress_strain)
+            MSPRINGI_PREFETCH(strain->stress_strain + ahead * MSPRINGI_WIDTH);
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
             if (hit->bits >> lane & 1)
                 look_at(network, hit->word * MSPRINGI_WIDTH + lane);
+    }
 }
 
 /* -------------------------------------------------------------------------------------------------- thresholds */
