@@ -289,8 +289,10 @@ MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def
 ///
 /// While there is one, the explicit solver takes substeps one by one, as with a hook. mspring_network_stable_dt()
 /// counts angles: with particles of m and links of d, a straight beam is stable up to d / 2 sqrt(m / k). The implicit
-/// and the direct solver take their forces from the start of a substep, and reject one that is too long for these as
-/// unstable. mspring_network_settle() rejects networks with angles. mspring_network_tune() counts them, without a rest.
+/// and the direct solver have angles in their linear system, if springs join a and b, and b and c: then any substep is
+/// stable. They take the forces of other angles from the start of a substep, and reject one that is too long for these
+/// as unstable. The direct solver takes fewest iterations if the angles of a beam are added in their order along it.
+/// mspring_network_settle() rejects networks with angles. mspring_network_tune() counts them, without a rest.
 ///
 /// @param particles    [3 * count]: a, b, c of each; no two that follow each other are in one place
 /// @param first_angle  receives the first id; the others follow; may be NULL

@@ -21,7 +21,7 @@ typedef struct mspringi_area {
     float damping;          ///< of an angle
     bool is_angle;          ///< of the two arms between its three corners
     bool is_open;           ///< a spring of its outline was not whole when the step began
-    bool is_ringed;         ///< each side of its outline has a spring
+    bool is_ringed;         ///< each side of its outline has a spring, or both arms of an angle
     uint32_t cell;          ///< where in areas.cells the sweep finds it; MSPRINGI_NO_CELL: nowhere
     double rest_area;       ///< of an angle 1
     double rest_angle;      ///< rad, and

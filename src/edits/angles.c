@@ -73,7 +73,7 @@ mspring_result mspring_network_add_angles(mspring_network *network, const msprin
             result = check_arms(network, particles + (size_t)3 * i);
     }
     if (result == MSPRING_OK && count > 0)
-        result = mspringi_areas_check_room(network, count, (size_t)3 * count);
+        result = mspringi_areas_check_room(network, count, (size_t)3 * count, count);
     if (result != MSPRING_OK)
         return result;
     if (first_angle)

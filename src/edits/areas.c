@@ -142,7 +142,7 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
                              size);
     result = choose_rest_area(network, def, fabs(size), &rest_area);
     if (result == MSPRING_OK)
-        result = mspringi_areas_check_room(network, 1, count);
+        result = mspringi_areas_check_room(network, 1, count, 0);
     if (result != MSPRING_OK)
         return result;
     for (uint32_t i = 0; i < count; ++i)
@@ -184,7 +184,7 @@ mspring_result mspring_network_add_cell_areas(mspring_network *network, const ms
     if (result == MSPRING_OK)
         result = mspringi_each_cell(network, check_cell, &cells);
     if (result == MSPRING_OK && cells.count > 0)
-        result = mspringi_areas_check_room(network, cells.count, (size_t)4 * cells.count);
+        result = mspringi_areas_check_room(network, cells.count, (size_t)4 * cells.count, 0);
     if (result != MSPRING_OK)
         return result;
     if (first_area)

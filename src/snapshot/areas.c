@@ -101,7 +101,7 @@ static mspring_result check_corner(mspring_network *network, const mspringi_area
 
 // Check the areas of a section whose head is that; count their corners.
 static mspring_result check_list(mspring_network *network, const uint8_t *from, size_t left, const uint32_t head[2],
-                                 size_t *corners) {
+                                 size_t *corners, size_t *angles) {
     const mspringi_section *section = &mspringi_section_areas;
     mspring_result result = MSPRING_OK;
     uint32_t least = 0;
@@ -123,21 +123,22 @@ static mspring_result check_list(mspring_network *network, const uint8_t *from, 
         }
         left -= result == MSPRING_OK ? area.count * CORNER_BYTES : 0;
         *corners += area.count;
+        *angles += area.is_angle;
     }
     return result == MSPRING_OK ? mspringi_section_check_size(network, section, left, 0) : result;
 }
 
 static mspring_result areas_check(mspring_network *network, const uint8_t *from, size_t size) {
     uint32_t head[2];
-    size_t corners = 0;
+    size_t corners = 0, angles = 0;
     if (size == 0)
         return MSPRING_OK;
     if (size < HEAD_BYTES)
         return mspringi_section_fail(network, &mspringi_section_areas, "they take %zu bytes", size);
     from = mspringi_get(from, head, 2, sizeof head[0]);
-    const mspring_result result = check_list(network, from, size - HEAD_BYTES, head, &corners);
+    const mspring_result result = check_list(network, from, size - HEAD_BYTES, head, &corners, &angles);
     // Room for all of them, whatever is there now.
-    return result == MSPRING_OK && head[1] > 0 ? mspringi_areas_reserve(network, head[1], corners) : result;
+    return result == MSPRING_OK && head[1] > 0 ? mspringi_areas_reserve(network, head[1], corners, angles) : result;
 }
 
 // After the section of growth: areas with a corner that is not there are left out.
@@ -161,6 +162,7 @@ static void areas_load(mspring_network *network, const uint8_t *from, size_t siz
                        mspringi_particle_exists(network, corner->particle);
         }
         a->count += is_whole;
+        a->angle_count += is_whole && area->is_angle;
         a->corner_count += is_whole ? area->count : 0;
     }
     network->edits.values++; // what is stable in any shape

@@ -158,7 +158,8 @@ bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *
 }
 
 static bool is_ringed(const mspring_network *network, const mspringi_area *area) {
-    for (uint32_t i = 0; i < area->count; ++i)
+    const uint32_t sides = area->is_angle ? 2 : area->count;
+    for (uint32_t i = 0; i < sides; ++i)
         if (network->areas.corners[area->first + i].spring == MSPRING_NONE)
             return false;
     return true;
@@ -217,9 +218,9 @@ double mspringi_area_largest(const mspring_network *network, const mspringi_area
 
 /* ---------------------------------------------------------------------------------------------------- the list */
 
-mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners) {
+mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners, size_t angles) {
     mspringi_areas *a = &network->areas;
-    void *list = a->list, *all = a->corners;
+    void *list = a->list, *all = a->corners, *hinges = a->hinges;
     const mspring_result result = mspringi_incidence_reserve(network);
     if (result != MSPRING_OK)
         return result;
@@ -228,6 +229,9 @@ mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, si
     whole = whole && mspringi_grow(&network->memory, &all, &a->corner_capacity, a->corner_count + corners,
                                    sizeof *a->corners);
     a->corners = all;
+    whole = whole && (angles == 0 || mspringi_grow(&network->memory, &hinges, &a->hinge_capacity,
+                                                   a->angle_count + angles, sizeof *a->hinges));
+    a->hinges = hinges;
     if (whole && mspringi_store_reserve(network, MSPRINGI_STORE_AREAS))
         return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %zu areas", a->count + areas);
@@ -239,6 +243,7 @@ void mspringi_areas_append(mspring_network *network, const mspringi_area *area, 
     *made = *area;
     made->first = (uint32_t)a->corner_count;
     made->cell = MSPRINGI_NO_CELL;
+    a->angle_count += area->is_angle;
     for (uint32_t i = 0; i < area->count; ++i) {
         const mspring_id next = particles[i + 1 < area->count ? i + 1 : 0];
         a->corners[a->corner_count++] = (mspringi_corner){
@@ -257,6 +262,7 @@ void mspringi_areas_drop(mspring_network *network, mspringi_area *area) {
     const uint32_t first = area->first, count = area->count;
     const size_t behind = (size_t)(a->list + --a->count - area);
     a->corner_count -= count;
+    a->angle_count -= area->is_angle;
     memmove(a->corners + first, a->corners + first + count, (a->corner_count - first) * sizeof *a->corners);
     memmove(area, area + 1, behind * sizeof *area);
     for (size_t i = 0; i < behind; ++i)
@@ -278,7 +284,7 @@ void mspringi_areas_forget(mspring_network *network, mspring_id particle) {
 }
 
 void mspringi_areas_clear(mspring_network *network) {
-    network->areas.count = network->areas.corner_count = 0;
+    network->areas.count = network->areas.corner_count = network->areas.angle_count = 0;
     network->areas.changes++;
 }
 
@@ -360,6 +366,13 @@ static double find_longest(mspring_network *network, bool of_all) {
     return largest + damped > 0.0 ? 4.0 / (damped + sqrt(damped * damped + 4.0 * largest)) : INFINITY;
 }
 
+static void add_hinge(mspringi_areas *a, const mspringi_area *angle) {
+    const mspringi_corner *corners = a->corners + angle->first;
+    MSPRINGI_ASSERT(a->hinge_count < a->hinge_capacity);
+    a->hinges[a->hinge_count++] = (mspringi_hinge){.angle = (uint32_t)(angle - a->list),
+                                                   .slots = {corners[0].slot, corners[1].slot, corners[2].slot}};
+}
+
 void mspringi_areas_refresh(mspring_network *network) {
     mspringi_areas *a = &network->areas;
     const mspringi_edits *e = &network->edits;
@@ -369,6 +382,7 @@ void mspringi_areas_refresh(mspring_network *network) {
         return;
     a->seen = now;
     a->swept = a->unswept = a->unringed = 0;
+    a->hinge_count = 0;
     if (!a->cells)
         return;
     const size_t cells = (size_t)2 * MSPRINGI_WIDTH * network->topology.lattice_blocks;
@@ -384,6 +398,8 @@ void mspringi_areas_refresh(mspring_network *network) {
         if (area->is_open)
             continue;
         a->unringed += !area->is_ringed;
+        if (area->is_angle && area->is_ringed)
+            add_hinge(a, area);
         if (enter_cell(network, area))
             a->swept++;
         else
@@ -395,13 +411,13 @@ void mspringi_areas_refresh(mspring_network *network) {
 
 /* ------------------------------------------------------------------------------------------------------- edits */
 
-mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners) {
+mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners, size_t angles) {
     const mspringi_areas *a = &network->areas;
     if (areas >= MSPRING_NONE - a->next_id || corners >= MSPRING_NONE - a->corner_count)
         return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
                              "there are %zu areas and angles already, of %u ever made", a->count,
                              (unsigned)a->next_id);
-    return mspringi_areas_reserve(network, areas, corners);
+    return mspringi_areas_reserve(network, areas, corners, angles);
 }
 
 void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area) {
@@ -422,7 +438,11 @@ void mspringi_area_add(mspring_network *network, mspringi_area made, const mspri
 mspring_result mspringi_areas_of_builder(mspring_network *network, const mspring_builder *builder) {
     if (builder->area_count == 0)
         return MSPRING_OK;
-    const mspring_result result = mspringi_areas_check_room(network, builder->area_count, builder->corner_count);
+    size_t angles = 0;
+    for (size_t i = 0; i < builder->area_count; ++i)
+        angles += builder->areas[i].is_angle;
+    const mspring_result result =
+        mspringi_areas_check_room(network, builder->area_count, builder->corner_count, angles);
     for (size_t i = 0; result == MSPRING_OK && i < builder->area_count; ++i)
         mspringi_area_add(network, builder->areas[i], builder->corners + builder->areas[i].first);
     return result;

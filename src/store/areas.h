@@ -22,8 +22,8 @@
 
 #include "store/network.h"
 
-/// Room for so many more areas and corners, and for what steps need of them.
-mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners);
+/// Room for so many more areas and corners, and for what steps need of them; some of the areas are angles.
+mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners, size_t angles);
 
 /// Add one to the list, for which there is room: its corners in the order in which its area is positive. Its rest
 /// area is set.
@@ -45,7 +45,7 @@ bool mspringi_cell_at(const mspring_network *network, uint32_t slot, uint32_t co
 /* ------------------------------------------------------------------------------------------------------- edits */
 
 /// Reserve room for so many more.
-mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners);
+mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners, size_t angles);
 
 /// Give one the next id and add it: there is room, and all has been checked.
 void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles);

@@ -259,12 +259,23 @@ typedef struct mspringi_areas_seen {
     uint64_t changes, links, growth, layouts, masses;
 } mspringi_areas_seen;
 
+/// A closed angle with springs along both arms, in the linear system of a substep.
+typedef struct mspringi_hinge {
+    uint32_t angle;              ///< in the list
+    uint32_t slots[3];           ///< of its corners
+    double pull_x[3], pull_y[3]; ///< the gradient, times the root of the stiffness
+    // The direct solver iterates for the torque.
+    double left, search, answer;    ///< residual, direction, what comes of that
+    double beside[2], pivot, given; ///< factor of what is near their matrix, and what it gives for the residual
+} mspringi_hinge;
+
 /// All of them.
 typedef struct mspringi_areas {
     mspringi_area *list; ///< [count] in the order of ids
     size_t count, capacity;
     mspringi_corner *corners; ///< [corner_count] of the first area, of the second, and so on
     size_t corner_count, corner_capacity;
+    size_t angle_count; ///< areas in the list that are angles
     mspring_id next_id;
     uint64_t changes; ///< times that any was edited
 
@@ -272,10 +283,12 @@ typedef struct mspringi_areas {
     mspringi_areas_seen seen;
     uint32_t swept, unswept; ///< closed areas that the explicit solver's sweeps have in them, and others
     uint32_t unringed;       ///< and those without springs all around
-    double longest;          ///< substep that is stable with forces of these alone, s
-    double longest_of_all;   ///< and with those of all
-    float *cells;            ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
-    mspringi_field force;    ///< from outside and of areas, in a substep
+    mspringi_hinge *hinges;  ///< [hinge_count] in the order of ids
+    size_t hinge_count, hinge_capacity;
+    double longest;        ///< substep that is stable with forces of these alone, s
+    double longest_of_all; ///< and with those of all
+    float *cells;          ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
+    mspringi_field force;  ///< from outside and of areas, in a substep
 } mspringi_areas;
 
 /// What came of a step beside its result: see mspring_step_info.

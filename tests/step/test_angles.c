@@ -251,8 +251,7 @@ static void stable_dt_counts_angles(void **state) {
     }
 }
 
-// In linear systems they are forces from the start of a substep: a curled chain comes to the same rest, and a
-// substep that is too long is rejected.
+// A curled chain comes to the same rest with all solvers; see test_angle_solvers.c.
 static void other_solvers_have_angles(void **state) {
     (void)state;
     static const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT,
@@ -268,9 +267,6 @@ static void other_solvers_have_angles(void **state) {
         support_steps(network, 2000, 1.0 / 64);
         for (mspring_id a = 0; a < 6; a++)
             check_near(info_of(network, a).angle, curl, 1e-3);
-        check_error(mspring_network_step(network, 20), MSPRING_ERROR_UNSTABLE);
-        if (i > 0)
-            check_contains(mspring_network_error(network), "angles");
         check_error(mspring_network_settle(network, NULL, NULL), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "angle 0");
         mspring_network_destroy(network);

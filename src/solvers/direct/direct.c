@@ -189,7 +189,8 @@ static mspring_result reserve_system(making *m) {
     d->edges_twice.xx = mspringi_alloc_unset(memory, 3 * whole, sizeof *d->edges_twice.xx);
     d->nodes_twice.xx = mspringi_alloc_unset(memory, 3 * all_nodes, sizeof *d->nodes_twice.xx);
     d->solution = mspringi_alloc(memory, 2 * nodes, sizeof *d->solution);
-    if (!d->edges.xx || !d->edges_twice.xx || !d->nodes_twice.xx || !d->solution)
+    d->answer = mspringi_alloc_unset(memory, 2 * nodes, sizeof *d->answer);
+    if (!d->edges.xx || !d->edges_twice.xx || !d->nodes_twice.xx || !d->solution || !d->answer)
         return no_memory(m);
     d->edges.xy = d->edges.xx + places;
     d->edges.yy = d->edges.xy + places;
@@ -307,7 +308,7 @@ void mspringi_direct_end(making *m) {
 static const mspringi_column list[] = {
     ARRAY(end_a),         ARRAY(end_b),          ARRAY(edge_blocks),   ARRAY(edges.xx),      VIEW(edges.xy),
     VIEW(edges.yy),       ARRAY(edges_twice.xx), VIEW(edges_twice.xy), VIEW(edges_twice.yy), ARRAY(nodes_twice.xx),
-    VIEW(nodes_twice.xy), VIEW(nodes_twice.yy),  ARRAY(solution),
+    VIEW(nodes_twice.xy), VIEW(nodes_twice.yy),  ARRAY(solution),      ARRAY(answer),
 };
 static const mspringi_columns columns = MSPRINGI_COLUMNS(list);
 
@@ -449,6 +450,7 @@ static bool solve_in_double(mspring_network *network) {
         fill_twice(network, added);
         if (mspringi_cholesky_double_factor_solve(&d->twice, &matrix, x, y) != MSPRING_NONE)
             continue;
+        mspringi_direct_hold_angles(network, x, y);
         for (size_t i = 0; i < slots; ++i) {
             n->displacement.x[i] = (float)x[i];
             n->displacement.y[i] = (float)y[i];
@@ -467,6 +469,7 @@ static void solve_more_in_double(const mspring_network *network, mspringi_field 
         y[i] = (double)field.y[i];
     }
     mspringi_cholesky_double_solve(&d->twice, x, y);
+    mspringi_direct_hold_angles(network, x, y);
     for (size_t i = 0; i < slots; ++i) {
         field.x[i] = (float)x[i];
         field.y[i] = (float)y[i];
@@ -486,7 +489,8 @@ void mspringi_direct_solve(mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t slots = mspringi_slot_count(network);
     const bool is_soft = finish_diagonal(&n->system, slots);
-    const bool in_single = is_soft && solve_in_single(network);
+    // Without angles particles go far, and nearly all of that is taken back.
+    const bool in_single = is_soft && network->areas.hinge_count == 0 && solve_in_single(network);
     if (!in_single && !solve_in_double(network)) {
         // Numbers overflowed: see to it that the step is refused.
         mspring_id named = 0;

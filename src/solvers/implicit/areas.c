@@ -97,7 +97,7 @@ void mspringi_areas_add_terms(const mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     for (size_t i = 0; i < network->areas.count; ++i) {
         const mspringi_area *area = &network->areas.list[i];
-        if (!acts(network, n, area))
+        if (area->is_angle || !acts(network, n, area))
             continue;
         const polygon p = look(network, n, area);
         add_forces(n, &p);

@@ -235,6 +235,7 @@ void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) 
         if (mate->index == 0) {
             assemble_leftover(network);
             mspringi_areas_add_terms(network);
+            mspringi_angles_add_terms(network);
         }
         mspringi_meet(mate);
     }
@@ -250,13 +251,14 @@ double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate
     multiply_panels(network, mate);
     mspringi_meet(mate);
     const bool has_terms = (network->floor && network->floor->contact_count > 0) || network->grips.count > 0 ||
-                           mspringi_bodies_are_near(network);
+                           network->areas.hinge_count > 0 || mspringi_bodies_are_near(network);
     const bool has_others = network->topology.web_blocks > 0 || network->topology.leftover_count > 0 || has_terms;
     if (has_others) {
         if (mate->index == 0)
             n->leftover_product = multiply_leftover(network, n->direction, n->product) +
                                   mspringi_floor_multiply(network, n->direction, n->product) +
                                   mspringi_grips_multiply(network, n->direction, n->product) +
+                                  mspringi_angles_multiply(network, n->direction, n->product) +
                                   mspringi_bodies_multiply(network, n->direction, n->product);
         mspringi_meet(mate);
     }

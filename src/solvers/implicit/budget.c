@@ -132,9 +132,9 @@ static bool knows_elastic(const mspring_network *network) {
     uint64_t now[MSPRINGI_BUDGET_EDITS];
     count_edits(network, now);
     return budget->knows_elastic && !network->is_open && network->ramps.count == 0 &&
-           !network->actuators.are_pending && !network->fractions.values && !network->one_way.side &&
-           budget->origin_x == network->origin_x && budget->origin_y == network->origin_y &&
-           memcmp(now, budget->seen, sizeof now) == 0;
+           !network->actuators.are_pending && network->areas.hinge_count == 0 && !network->fractions.values &&
+           !network->one_way.side && budget->origin_x == network->origin_x &&
+           budget->origin_y == network->origin_y && memcmp(now, budget->seen, sizeof now) == 0;
 }
 
 void mspringi_budget_open(mspring_network *network) {

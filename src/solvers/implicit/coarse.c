@@ -220,6 +220,33 @@ void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, doub
     add_diagonal(rows_of(coarse, tile, tile), xx, xy, yy, turn_x, turn_y, x * turn_y - y * turn_x);
 }
 
+static bool has_place(const mspringi_coarse *coarse, uint32_t tile, uint32_t other) {
+    return tile >= other ? other >= coarse->first[tile] : tile >= coarse->first[other];
+}
+
+// Add rows of one tile times those of another to the lower triangle.
+static void add_outer(const mspringi_coarse *coarse, const mspringi_coarse_pulls *pulls, uint32_t i, uint32_t j,
+                      double times) {
+    const block_rows to = rows_of(coarse, pulls->tiles[i], pulls->tiles[j]);
+    for (int r = 0; r < MSPRINGI_RIGID; ++r)
+        for (int c = 0; c < MSPRINGI_RIGID && (i != j || c <= r); ++c)
+            to.row[r][c] += times * pulls->rows[i][r] * pulls->rows[j][c];
+}
+
+void mspringi_coarse_add_pulls(mspringi_coarse *coarse, const mspringi_coarse_pulls *pulls) {
+    bool is_whole = true;
+    for (uint32_t i = 0; i < pulls->count; ++i)
+        for (uint32_t j = 0; j < i; ++j)
+            is_whole &= has_place(coarse, pulls->tiles[i], pulls->tiles[j]);
+    // (a + b + c)^2 is at most three times the sum of the squares.
+    for (uint32_t i = 0; i < pulls->count; ++i)
+        add_outer(coarse, pulls, i, i, is_whole ? 1.0 : (double)pulls->count);
+    for (uint32_t i = 0; is_whole && i < pulls->count; ++i)
+        for (uint32_t j = 0; j < pulls->count; ++j)
+            if (pulls->tiles[i] > pulls->tiles[j])
+                add_outer(coarse, pulls, i, j, 1.0);
+}
+
 /* --------------------------------------------------------------------------------------- factoring and solving */
 
 // to -= a b^T over count columns.

@@ -54,6 +54,15 @@ void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *til
 void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, double xy, double yy, double x,
                          double y);
 
+/// What pulls at the rigid motions of a few tiles at once.
+typedef struct mspringi_coarse_pulls {
+    uint32_t count, tiles[3];
+    double rows[3][MSPRINGI_RIGID];
+} mspringi_coarse_pulls;
+
+/// Add the product of that with itself. Where the envelope has no place for two of the tiles, what is added is more.
+void mspringi_coarse_add_pulls(mspringi_coarse *coarse, const mspringi_coarse_pulls *pulls);
+
 /// Factor in place. Never fails: a pivot that rounding has made too small is replaced.
 void mspringi_coarse_factor(mspringi_coarse *coarse);
 

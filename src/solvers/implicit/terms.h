@@ -6,6 +6,7 @@
 ///   held.c       grips
 ///   bodies.c     contact between bodies
 ///   areas.c      areas
+///   angles.c     angle springs
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TERMS_H
@@ -51,6 +52,14 @@ void mspringi_grips_account(const mspringi_measuring *all);
 /// components.
 void mspringi_areas_add_terms(const mspring_network *network);
 void mspringi_areas_account(const mspring_network *network);
+
+/// The same of angles that have springs along both arms, to a product and to the coarse matrix, too. Their energies are
+/// those of areas.
+void mspringi_angles_add_terms(const mspring_network *network);
+/// The next that is, from one on; NULL: there is none.
+mspringi_hinge *mspringi_next_hinge(const mspring_network *network, size_t *at);
+double mspringi_angles_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
+void mspringi_angles_stiffen(const mspring_network *network);
 
 /// Of contact between bodies: whether any may touch in this substep.
 static inline bool mspringi_bodies_are_near(const mspring_network *network) {
