@@ -33,6 +33,9 @@ int main(int count, char **arguments) {
     case BENCH_SESSION:
         ok = bench_run_session(&options);
         break;
+    case BENCH_GAME:
+        ok = bench_run_game(&options);
+        break;
     case BENCH_LINEAR:
         ok = bench_run_linear(&options);
         break;

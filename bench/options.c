@@ -24,6 +24,7 @@ void bench_options_help(void) {
          "  --workers            what workers gain, next to as many threads that share nothing\n"
          "  --cores              what 2 to 64 workers would gain, simulated; two of them measured\n"
          "  --session            what a game's edits, events and measurements cost, next to its step\n"
+         "  --game               a whole frame of a game: its calls, and frames in which springs break\n"
          "  --linear             what the sparse direct solver costs, in explicit substeps\n"
          "  --solvers            what steps of the implicit and the direct solver cost, in explicit substeps\n"
          "  --roofline           the bounds of this machine, and how near to them each scene comes\n"
@@ -133,7 +134,7 @@ static bool is_switch(const char *option, bench_options *out) {
         bench_mode mode;
     } modes[] = {{"--features", BENCH_FEATURES}, {"--contact", BENCH_CONTACT},
                  {"--workers", BENCH_WORKERS},   {"--session", BENCH_SESSION},
-                 {"--linear", BENCH_LINEAR},     {"--solvers", BENCH_SOLVERS},
+                 {"--game", BENCH_GAME}, {"--linear", BENCH_LINEAR},     {"--solvers", BENCH_SOLVERS},
                  {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
                  {"--frames", BENCH_FRAMES},     {"--alarms", BENCH_ALARMS},
                  {"--guard", BENCH_GUARD},       {"--check", BENCH_CHECK},

@@ -17,6 +17,7 @@ typedef enum bench_mode {
     BENCH_CONTACT,
     BENCH_WORKERS,
     BENCH_SESSION,
+    BENCH_GAME,
     BENCH_LINEAR,
     BENCH_SOLVERS,
     BENCH_ROOFLINE,

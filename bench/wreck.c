@@ -1,5 +1,5 @@
 /// @file wreck.c
-/// Networks of which nine springs of ten have broken, in one way or another.
+/// Networks of which nine springs of ten have broken, or a quarter, in one way or another.
 ///
 /// SPDX-License-Identifier: MIT
 #include "wreck.h"
@@ -25,7 +25,8 @@ static uint32_t scatter(uint32_t index) {
 }
 
 const char *bench_wreck_name(bench_wreck kind) {
-    static const char *const names[] = {"a wreck in pieces", "a wreck of blasts", "a shattered wreck"};
+    static const char *const names[] = {"a wreck in pieces", "a wreck of blasts", "a shattered wreck",
+                                        "a quarter blown off"};
     return names[kind];
 }
 
@@ -72,9 +73,10 @@ static void break_all_but_pieces(const bench_network *n, wreckage *all) {
     }
 }
 
-static void blast(const bench_network *n, wreckage *all) {
+/// Until so many springs have broken.
+static void blast(const bench_network *n, wreckage *all, uint32_t most) {
     const double *x = n->start_x, *y = n->start_y;
-    for (uint32_t i = 0; all->count < n->spring_count - n->spring_count / 10; i++) {
+    for (uint32_t i = 0; all->count < most; i++) {
         const mspring_id centre = scatter(2 * i) % n->particle_count;
         const double radius = SMALLEST_BLAST + BLAST_RANGE * (double)scatter(2 * i + 1) / 4294967296.0;
         for (mspring_id s = 0; s < n->spring_count; s++) {
@@ -119,7 +121,9 @@ bool bench_wreck_make(const bench_network *network, bench_wreck kind, scene_erro
     if (ok && kind == BENCH_WRECK_PIECES) {
         break_all_but_pieces(network, &all);
     } else if (ok && kind == BENCH_WRECK_BLASTS) {
-        blast(network, &all);
+        blast(network, &all, network->spring_count - network->spring_count / 10);
+    } else if (ok && kind == BENCH_WRECK_QUARTER) {
+        blast(network, &all, network->spring_count / 4);
     }
     for (mspring_id s = 0; ok && kind == BENCH_WRECK_SHATTERED && s < network->spring_count; s++) {
         if (scatter(s) % 10 != 0) {
