@@ -425,8 +425,12 @@ bool mspringi_near_renew(const mspring_network *network, mspringi_pairs *pairs) 
         pairs->is_listed = make_list(network, pairs, more) || make_list(network, pairs, most);
         pairs->is_full = !pairs->is_listed;
     }
-    if (pairs->is_full)
+    if (pairs->is_full) {
+        // The step will be rejected. Its other substeps have no candidates: these were of another list.
+        pairs->hot_count = 0;
+        activate_all(pairs);
         return false;
+    }
     look_at_pairs(pairs);
     const uint32_t valid = count_valid(pairs);
     const uint32_t hot = (uint32_t)hot_substeps(pairs);
