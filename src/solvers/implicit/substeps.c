@@ -157,9 +157,10 @@ static void run_substep(mspringi_substep_of *substep, bool is_piece) {
         mspringi_floor_bear(network, substep->h);
     mspringi_scheme_close(substep);
     n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
+    mspringi_bodies_mend(network, substep->h);
+    // Last: what lay below the floor would be lifted out of it in the next piece, however short that is.
     if (network->floor)
         mspringi_floor_touch_all(network, substep->h);
-    mspringi_bodies_mend(network, substep->h);
 }
 
 static void take_halves(mspringi_substep_of *substep, uint32_t halvings);
