@@ -45,6 +45,9 @@ static const entry entries[] = {
     {"wheel_1000x40", "ring of 1000 around by 40 deep: a lattice that is bent"},
     {"rope_1000", "rope of 1000 particles between two pins"},
     {"graph_100000", "100,000 particles at random places, each joined to about 8 near ones"},
+    {"robots_256", "256 equal robots of 20 particles that are no lattice"},
+    {"blocks_4x256", "256 lattices of 4 by 4"},
+    {"braced_6x256", "256 lattices of 6 by 6 with 20 to 40 springs across two cells"},
 };
 
 static const char *const quick[] = {"bar_80x5",      "grid_96x96", "bar_544x68", "ship",
@@ -66,7 +69,8 @@ void bench_catalogue_print(void) {
     for (size_t i = 0; i < sizeof entries / sizeof *entries; i++) {
         printf("%-16s %s\n", entries[i].name, entries[i].description);
     }
-    puts("\nOther sizes go by the same names: bar_CxR, grid_CxR, wheel_CxR, rope_N, graph_N.\n"
+    puts("\nOther sizes go by the same names: bar_CxR, grid_CxR, wheel_CxR, rope_N, graph_N, robots_N, "
+         "blocks_SxN,\nbraced_SxN.\n"
          "Any scene's name may end in " ROPES "N: with N ropes; and after that in " UNDAMPED
          ": springs without dampers.");
 }
@@ -152,6 +156,16 @@ static bool make_named(const char *name, const bench_scene_settings *settings, s
     if (is_single(name, "graph_", &number)) {
         options = spring_options(settings, GRAPH_FRACTION);
         return scene_random_graph(number, GRAPH_NEIGHBOURS, SEED, &options, out, error);
+    }
+    if (is_single(name, "robots_", &number)) {
+        options = spring_options(settings, GRAPH_FRACTION);
+        return bench_scene_copies(BENCH_COPIES_ROBOTS, 0, number, &options, out, error);
+    }
+    if (is_pair(name, "blocks_", &rows, &number)) {
+        return bench_scene_copies(BENCH_COPIES_BLOCKS, rows, number, &options, out, error);
+    }
+    if (is_pair(name, "braced_", &rows, &number)) {
+        return bench_scene_copies(BENCH_COPIES_BRACED, rows, number, &options, out, error);
     }
     if (strcmp(name, "ship") == 0) {
         return make_ship(settings, out, error);

@@ -31,6 +31,12 @@ typedef struct bench_scene {
     char label[96];      ///< its name in results
 } bench_scene;
 
+/// Many equal bodies (copies.c): robots of 20 particles that are no lattice, lattices of side x side particles, and
+/// such with 40 springs of a knight's move.
+typedef enum bench_copies { BENCH_COPIES_ROBOTS, BENCH_COPIES_BLOCKS, BENCH_COPIES_BRACED } bench_copies;
+bool bench_scene_copies(bench_copies kind, uint32_t side, uint32_t count, const scene_options *options, scene *out,
+                        scene_error *error);
+
 bool bench_scene_make(const bench_source *source, const bench_scene_settings *settings, bench_scene *out,
                       scene_error *error);
 

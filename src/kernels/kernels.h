@@ -138,28 +138,6 @@ typedef struct mspringi_glide {
 typedef void (*mspringi_loose_fn)(const mspringi_sweep *sweep, const mspringi_span *span,
                                   const mspringi_glide *glide);
 
-/// A spring between two groups of a herd.
-typedef struct mspringi_herd_spring {
-    uint32_t above, below; ///< first slots of its groups
-    uint32_t rung;         ///< where its record is
-} mspringi_herd_spring;
-
-/// Where in the carry row the forces that a group's springs exert on the groups above are.
-typedef struct mspringi_herd_group {
-    uint32_t above;                  ///< of the spring to the one above it, or of none, which is behind the last
-    uint32_t first_below, end_below; ///< of the springs to those below it
-} mspringi_herd_group;
-
-/// Herds that are swept together: see layout/emit/web.h.
-typedef struct mspringi_herd {
-    uint32_t first_slot, group_count, spring_count;
-    mspringi_herd_group groups[MSPRINGI_LONGEST_HERD];
-    mspringi_herd_spring springs[MSPRINGI_LONGEST_HERD];
-} mspringi_herd;
-
-/// As a row's, with the forces of springs in the carry row, where that of none is 0.
-typedef void (*mspringi_herd_fn)(const mspringi_sweep *sweep, const mspringi_herd *herd);
-
 /// Copy position and velocity of block_count blocks of slots behind one another into packed.
 typedef void (*mspringi_pack_fn)(const mspringi_sweep *sweep, size_t first_block, size_t block_count,
                                  float *gathered);
@@ -294,8 +272,7 @@ typedef void (*mspringi_checksum_fn)(uint8_t *to, const uint8_t *from, size_t un
 /// Those in which low words count. They look for themselves whether there are dampers (parts) and forces (force_x
 /// not NULL): all of them take 50 kB in the four levels of x86, a copy of each of the others 104.
 typedef struct mspringi_precise_kernels {
-    mspringi_row_fn lattice, cells, chain, web;
-    mspringi_herd_fn herd;
+    mspringi_row_fn lattice, cells, chain, web, herd;
     mspringi_attached_fn attached;
 } mspringi_precise_kernels;
 
@@ -306,7 +283,7 @@ typedef struct mspringi_kernels {
     mspringi_row_fn cells[2][2];   ///< lattices with areas
     mspringi_row_fn chain[2][2];
     mspringi_row_fn web[2][2];
-    mspringi_herd_fn herd[2][2];
+    mspringi_row_fn herd[2][2]; ///< of spans of whole herds, with a carry row for the forces of all rungs
     mspringi_loose_fn loose[2]; ///< [with forces]
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]

@@ -346,27 +346,39 @@ MSPRINGI_INLINE void sweep_web(const mspringi_sweep *s, const mspringi_span *spa
     }
 }
 
-// The same forces as those of web(), each computed once.
-MSPRINGI_INLINE void sweep_herd(const mspringi_sweep *s, const mspringi_herd *herd, mspringi_variant of) {
-    for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
-        for (size_t i = 0; i < herd->spring_count; ++i) {
-            const mspringi_herd_spring *spring = &herd->springs[i];
-            const float *record = s->web_springs + (size_t)spring->rung * s->parts * MSPRINGI_WIDTH + lane;
-            const vector pull = spring_force(at(s, spring->below + lane), at(s, spring->above + lane),
-                                             record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                                             record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
-            s->carry_x[i * MSPRINGI_WIDTH + lane] = pull.x;
-            s->carry_y[i * MSPRINGI_WIDTH + lane] = pull.y;
-        }
-        for (size_t i = 0; i < herd->group_count; ++i) {
-            const mspringi_herd_group *group = &herd->groups[i];
-            const size_t above = group->above + lane;
-            vector force = {0.0f - s->carry_x[above], 0.0f - s->carry_y[above]};
-            for (size_t below = group->first_below + lane; below < group->end_below; below += MSPRINGI_WIDTH) {
-                force.x = force.x + s->carry_x[below];
-                force.y = force.y + s->carry_y[below];
+// The force of a spring from a herd's group to one below, at both ends.
+MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, size_t slot, const mspringi_link *link, size_t first_rung,
+                               mspringi_variant of) {
+    const float *record = s->web_springs + (size_t)link->rung * s->parts * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+    const vector pull =
+        spring_force(at(s, slot + link->below), at(s, slot), record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                     record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
+    s->carry_x[link->rung - first_rung] = pull.x;
+    s->carry_y[link->rung - first_rung] = pull.y;
+    s->carry_x[link->back - first_rung] = 0.0f - pull.x;
+    s->carry_y[link->back - first_rung] = 0.0f - pull.y;
+}
+
+// The same forces as those of web(), each computed once, and summed up in the same order. The carry row holds them
+// by rung.
+MSPRINGI_INLINE void sweep_herd(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
+                                mspringi_variant of) {
+    const mspringi_web *web = s->web;
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        const size_t groups = (span->end_slot - span->first_slot) / MSPRINGI_WIDTH;
+        const size_t first_rung = web->first_rung[span->first_record];
+        for (size_t i = 0; i < groups * MSPRINGI_WIDTH; ++i) { // lane after lane
+            const size_t group = span->first_record + i % groups;
+            const size_t slot = span->first_slot + i % groups * MSPRINGI_WIDTH + i / groups;
+            const uint32_t *first_link = web->first_link + (group - web->first_herd);
+            for (uint32_t link = first_link[0]; link < first_link[1]; ++link)
+                pull_herd(s, slot, &web->links[link], first_rung, of);
+            vector force = {0.0f, 0.0f};
+            for (size_t rung = web->first_rung[group]; rung < web->first_rung[group + 1]; ++rung) {
+                force.x = force.x + s->carry_x[rung - first_rung];
+                force.y = force.y + s->carry_y[rung - first_rung];
             }
-            move(s, herd->first_slot + i * MSPRINGI_WIDTH + lane, force, of);
+            move(s, slot, force, of);
         }
     }
 }
@@ -394,11 +406,11 @@ SHARED void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t co
         sweep_web(s, spans, count, BUT_PRECISE(of));
 }
 
-SHARED void herd(const mspringi_sweep *s, const mspringi_herd *which, mspringi_variant of) {
+SHARED void herd(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
     if (of & MSPRINGI_PRECISE)
-        sweep_herd(s, which, of | MSPRINGI_PRECISE);
+        sweep_herd(s, spans, count, of | MSPRINGI_PRECISE);
     else
-        sweep_herd(s, which, BUT_PRECISE(of));
+        sweep_herd(s, spans, count, BUT_PRECISE(of));
 }
 
 static inline void attached(const mspringi_sweep *s, uint32_t first, uint32_t count, float *x, float *y,

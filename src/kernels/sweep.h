@@ -14,8 +14,8 @@
 #include "base/cpu.h"
 #include "kernels/spring_law.h"
 
-/// Springs of a herd that are computed together.
-#define HERD_BATCH (LANES == 16 ? 4 : 2)
+/// Springs of a herd's group that are computed together.
+#define HERD_BATCH 2
 
 typedef struct vector {
     vec x, y;
@@ -463,54 +463,71 @@ MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, ui
     }
 }
 
-// The forces of a herd's springs on the groups above, one spring's after the other's. Several springs' roots and
-// divisions come before any force, so that more of them are under way at a time than a processor would look ahead
-// for.
-MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, const mspringi_herd *herd, size_t first, size_t count,
-                               size_t lane, float *pull_x, float *pull_y, mspringi_variant of) {
+// Where a herd's forces are summed up from: those of each rung, LANES of them, in the order of rungs.
+typedef struct pulls {
+    float *x, *y;
+    size_t first; ///< rung
+} pulls;
+
+// Compute the forces of some springs from a herd's group to those below, for both rungs. All roots and divisions
+// come before any force, so that more of them are under way at a time than a processor would look ahead for.
+MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, size_t slot, motion here, const mspringi_link *links,
+                               size_t count, pulls to, mspringi_variant of) {
     const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
-    motion above[HERD_BATCH], below[HERD_BATCH];
-    extent to[HERD_BATCH];
+    motion below[HERD_BATCH];
+    extent between[HERD_BATCH];
     vec inverse[HERD_BATCH];
     for (size_t i = 0; i < count; ++i) {
-        above[i] = load_motion(s, herd->springs[first + i].above + lane, of);
-        below[i] = load_motion(s, herd->springs[first + i].below + lane, of);
-        to[i] = spring_extent(below[i], above[i], of);
+        below[i] = load_motion(s, slot + links[i].below, of);
+        between[i] = spring_extent(below[i], here, of);
     }
     for (size_t i = 0; i < count; ++i)
-        inverse[i] = inverse_or_zero(to[i].square);
+        inverse[i] = inverse_or_zero(between[i].square);
     for (size_t i = 0; i < count; ++i) {
-        const float *record = s->web_springs + herd->springs[first + i].rung * stride + lane;
-        const vector force =
-            spring_force(to[i], inverse[i], below[i], above[i], record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
+        const float *record = s->web_springs + links[i].rung * stride + slot % MSPRINGI_WIDTH;
+        const size_t rung = (links[i].rung - to.first) * LANES, back = (links[i].back - to.first) * LANES;
+        const vector pull =
+            spring_force(between[i], inverse[i], below[i], here, record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
                          record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
-        store(pull_x + (first + i) * MSPRINGI_WIDTH + lane, force.x);
-        store(pull_y + (first + i) * MSPRINGI_WIDTH + lane, force.y);
+        store(to.x + rung, pull.x);
+        store(to.y + rung, pull.y);
+        store(to.x + back, sub(zero(), pull.x));
+        store(to.y + back, sub(zero(), pull.y));
     }
 }
 
-MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_herd *herd, mspringi_variant of) {
+// When a group's springs to those below are done, so are all of its springs: it can be moved.
+MSPRINGI_INLINE void sweep_group(const mspringi_sweep *s, size_t group, size_t slot, pulls to,
+                                 mspringi_variant of) {
+    const motion here = load_motion(s, slot, of);
+    const uint32_t *first_link = s->web->first_link + (group - s->web->first_herd);
+    const mspringi_link *links = s->web->links + first_link[0];
+    size_t left = first_link[1] - first_link[0];
+    for (; !(of & MSPRINGI_PRECISE) && left >= HERD_BATCH; left -= HERD_BATCH, links += HERD_BATCH)
+        pull_herd(s, slot, here, links, HERD_BATCH, to, of);
+    for (; left > 0; --left, ++links)
+        pull_herd(s, slot, here, links, 1, to, of);
+    vector force = {zero(), zero()};
+    const size_t end = (s->web->first_rung[group + 1] - to.first) * LANES;
+    for (size_t rung = (s->web->first_rung[group] - to.first) * LANES; rung < end; rung += LANES) {
+        force.x = add(force.x, load(to.x + rung));
+        force.y = add(force.y, load(to.y + rung));
+    }
+    move_apart(s, slot, here, force, of);
+}
+
+MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count,
+                          mspringi_variant of) {
     mspringi_sweep copy = *sweep;
     copy.keep = NULL; // herds are kept and looked at apart
     copy.watch = NULL;
     const mspringi_sweep *const s = &copy;
-    const size_t springs = herd->spring_count, groups = herd->group_count;
-    float *pull_x = s->carry_x, *pull_y = s->carry_y;
-    for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
-        size_t first = 0;
-        for (; !(of & MSPRINGI_PRECISE) && first + HERD_BATCH <= springs; first += HERD_BATCH)
-            pull_herd(s, herd, first, HERD_BATCH, lane, pull_x, pull_y, of);
-        for (; first < springs; ++first)
-            pull_herd(s, herd, first, 1, lane, pull_x, pull_y, of);
-        size_t slot = herd->first_slot + lane;
-        for (size_t i = 0; i < groups; ++i, slot += MSPRINGI_WIDTH) {
-            const size_t above = herd->groups[i].above + lane, end = herd->groups[i].end_below + lane;
-            vector force = {sub(zero(), load(pull_x + above)), sub(zero(), load(pull_y + above))};
-            for (size_t below = herd->groups[i].first_below + lane; below < end; below += MSPRINGI_WIDTH) {
-                force.x = add(force.x, load(pull_x + below));
-                force.y = add(force.y, load(pull_y + below));
-            }
-            move_apart(s, slot, load_motion(s, slot, of), force, of);
+    for (const mspringi_span *span = spans; span < spans + count; ++span) {
+        const pulls to = {s->carry_x, s->carry_y, s->web->first_rung[span->first_record]};
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
+            size_t group = span->first_record;
+            for (size_t slot = span->first_slot + lane; slot < end_of(span); slot += MSPRINGI_WIDTH)
+                sweep_group(s, group++, slot, to, of);
         }
     }
 }

@@ -90,17 +90,11 @@ MSPRINGI_ROW_VARIANT(web, forced, MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(web, damped, MSPRINGI_DAMPED)
 MSPRINGI_ROW_VARIANT(web, damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(web, precise, MSPRINGI_VARIANT_FOUND)
-
-#define MSPRINGI_HERD_VARIANT(name, of)                                                                            \
-    static void herd_##name(const mspringi_sweep *sweep, const mspringi_herd *which) {                             \
-        herd(sweep, which, of);                                                                                    \
-    }
-
-MSPRINGI_HERD_VARIANT(plain, 0)
-MSPRINGI_HERD_VARIANT(forced, MSPRINGI_FORCED)
-MSPRINGI_HERD_VARIANT(damped, MSPRINGI_DAMPED)
-MSPRINGI_HERD_VARIANT(damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
-MSPRINGI_HERD_VARIANT(precise, MSPRINGI_VARIANT_FOUND)
+MSPRINGI_ROW_VARIANT(herd, plain, 0)
+MSPRINGI_ROW_VARIANT(herd, forced, MSPRINGI_FORCED)
+MSPRINGI_ROW_VARIANT(herd, damped, MSPRINGI_DAMPED)
+MSPRINGI_ROW_VARIANT(herd, damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
+MSPRINGI_ROW_VARIANT(herd, precise, MSPRINGI_VARIANT_FOUND)
 
 static void loose_plain(const mspringi_sweep *sweep, const mspringi_span *span, const mspringi_glide *glide) {
     loose(sweep, span, glide, false);

@@ -11,12 +11,12 @@
 /// Sort keys in place by radix; scratch is as long as keys.
 void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count);
 
-/// Springs by particle: those of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id. Those
-/// that lie beside another are left out: they are leftover springs, wherever their particles lie.
+/// Springs by particle: those of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id.
+/// Those that lie beside another are left out: they are leftover springs, wherever their particles lie.
 typedef struct mspringi_graph {
     const mspring_builder *builder;
-    uint32_t *first;                ///< [particles + 1]
-    uint32_t *springs;              ///< [2 * springs]
+    uint32_t *first;    ///< [particles + 1]
+    uint32_t *springs;  ///< [2 * springs]
     uint8_t *is_second; ///< [springs] 1 of those; NULL if there are none
     uint32_t second_count;
     uint32_t *stamp_of, *spring_to; ///< [particles] while it is checked that no springs join the same particles
@@ -47,6 +47,10 @@ static inline mspring_id mspringi_other_end(const mspringi_spring *spring, mspri
     return spring->a == particle ? spring->b : spring->a;
 }
 
+static inline uint32_t mspringi_degree_of(const mspringi_graph *graph, uint32_t particle) {
+    return graph->first[particle + 1] - graph->first[particle];
+}
+
 /// Index the springs by particle. If it is not known that no two springs join the same particles, those are looked
 /// for: MSPRING_ERROR_DUPLICATE for two that do and act both ways.
 mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
@@ -59,12 +63,13 @@ mspring_result mspringi_strands_find(mspringi_strands *strands, const mspringi_g
                                      mspringi_memory *memory, mspringi_message *message);
 void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory);
 
-/// Trees of a few particles that hang on nothing, sixteen of one shape side by side.
+/// Equal components, sixteen side by side.
 typedef struct mspringi_herds {
-    uint32_t *particles; ///< [group_count][MSPRINGI_WIDTH] herd after herd: those of the same place in their trees
-    uint8_t *rung_above; ///< [group_count] rung, at the group above it in the tree, of the spring to it; that of
+    uint32_t *particles; ///< [group_count][MSPRINGI_WIDTH] herd after herd: those of the same place in each
+    uint8_t *rung_above; ///< [group_count] of trees the rung, at the group above it, of the spring to it; that of
                          ///< the spring to the group above is the first
     uint32_t group_count;
+    uint32_t spring_count; ///< of one component of each herd
 
     // While they are looked for.
     uint8_t *known;                      ///< [particles]
@@ -74,8 +79,10 @@ typedef struct mspringi_herds {
     uint32_t listed, listed_particles;
 } mspringi_herds;
 
-/// What rung_above has for the first group of a tree.
+/// What rung_above has for the first group of a herd, and for others whose springs have rungs in the order of their
+/// ids.
 #define MSPRINGI_ROOT 0xff
+#define MSPRINGI_BY_ORDER 0xfe
 
 /// Find them, in this order; those with a range look at particles. Their particles get MSPRINGI_ROW_WEB in kinds.
 mspring_result mspringi_herds_begin(mspringi_herds *herds, const mspringi_graph *graph, mspringi_memory *memory,
@@ -88,6 +95,34 @@ mspring_result mspringi_herds_fill(mspringi_herds *herds, uint8_t *kinds, msprin
 /// Free what is needed only while they are looked for.
 void mspringi_herds_forget(mspringi_herds *herds, mspringi_memory *memory);
 void mspringi_herds_destroy(mspringi_herds *herds, mspringi_memory *memory);
+
+/// Components of at most MSPRINGI_LARGEST_COPY particles, while those that are equal are looked for.
+typedef struct mspringi_copies {
+    uint16_t *number;               ///< [particles] in its component
+    uint32_t count, particle_count; ///< components, and particles in them
+    uint32_t *in_order;             ///< [particle_count] component after component, by number
+    uint32_t *first;                ///< [count + 1] in these
+    uint64_t *keys, *scratch;       ///< [count] hash of the graph, and component
+    uint32_t *chosen; ///< [count] components that stand in herds, sixteen of a shape in turn; from the end on those
+                      ///< of the same shapes that fill none
+    uint32_t chosen_count, left_count, group_count;
+    uint32_t listed, looked_at;
+} mspringi_copies;
+struct mspringi_assembly;
+
+/// Find them, behind the trees, in this order: explore and list look at particles; choose is called until it no
+/// longer asks to be called again. Their particles get MSPRINGI_ROW_WEB in kinds. So do
+/// those that are left of their shapes, until grids and strands have been found: they become loose.
+mspring_result mspringi_copies_begin(mspringi_copies *copies, const mspringi_graph *graph, mspringi_memory *memory,
+                                     mspringi_message *message);
+void mspringi_copies_explore(mspringi_copies *copies, const mspringi_graph *graph, const uint8_t *kinds,
+                             uint32_t first, uint32_t end);
+mspring_result mspringi_copies_reserve(mspringi_copies *copies, mspringi_memory *memory, mspringi_message *message);
+void mspringi_copies_list(mspringi_copies *copies, const mspringi_graph *graph, uint32_t first, uint32_t end);
+mspring_result mspringi_copies_choose(struct mspringi_assembly *assembly);
+mspring_result mspringi_copies_fill(struct mspringi_assembly *assembly);
+mspring_result mspringi_copies_release(struct mspringi_assembly *assembly);
+void mspringi_copies_destroy(mspringi_copies *copies, mspringi_memory *memory);
 
 /// Find the grids among the particles that are loose in kinds: their particles get MSPRINGI_ROW_LATTICE. The graph
 /// and kinds must stay. For each of MSPRINGI_GRID_SEARCHES: flood, in two steps for each particle at most; then

@@ -40,7 +40,8 @@ static mspring_result begin_web(mspringi_assembly *a) {
                                     .homed_count = a->homed_blocks * MSPRINGI_WIDTH,
                                     .has_seconds = t->second_count > 0,
                                     .block_count = t->block_count,
-                                    .herd_first = t->web_blocks - a->herds.group_count,
+                                    .herd_groups = a->herds.group_count,
+                                    .herd_springs = a->herds.spring_count,
                                     .rung_above = a->herds.rung_above,
                                     .strip_of_block = mspringi_assembly_list_strips_of_blocks(a)};
     if (!a->weaving.strip_of_block)
@@ -57,6 +58,11 @@ static mspring_result lay_rungs(mspringi_assembly *a) {
 
 static mspring_result fill_web(mspringi_assembly *a, uint32_t first, uint32_t end) {
     mspringi_web_fill(&a->weaving, first, end);
+    return MSPRING_OK;
+}
+
+static mspring_result link_herds(mspringi_assembly *a) {
+    mspringi_web_link(&a->weaving);
     return MSPRING_OK;
 }
 
@@ -116,16 +122,19 @@ static mspring_result make_graph(mspringi_assembly *a) {
     const mspring_result result =
         mspringi_graph_create(&a->graph, a->builder, a->is_checked, a->memory, a->message);
     a->topology->second_count = a->graph.second_count;
-    a->has_herds = a->has_herds && a->graph.second_count == 0;
+    if (a->graph.second_count > 0)
+        a->herding = MSPRINGI_NO_HERDS;
     return result;
 }
 
 static mspring_result begin_herds(mspringi_assembly *a) {
-    return !a->has_herds ? MSPRING_OK : mspringi_herds_begin(&a->herds, &a->graph, a->memory, a->message);
+    return a->herding != MSPRINGI_HERDS_OF_WRECKAGE
+               ? MSPRING_OK
+               : mspringi_herds_begin(&a->herds, &a->graph, a->memory, a->message);
 }
 
 static mspring_result explore_trees(mspringi_assembly *a, uint32_t first, uint32_t end) {
-    if (a->has_herds)
+    if (a->herds.known)
         mspringi_herds_explore(&a->herds, &a->graph, first, end);
     return MSPRING_OK;
 }
@@ -141,6 +150,26 @@ static mspring_result compare_trees(mspringi_assembly *a, uint32_t first, uint32
 
 static mspring_result fill_herds(mspringi_assembly *a) {
     return mspringi_herds_fill(&a->herds, a->kinds, a->memory, a->message);
+}
+
+static mspring_result begin_copies(mspringi_assembly *a) {
+    return a->herding == MSPRINGI_NO_HERDS ? MSPRING_OK
+                                           : mspringi_copies_begin(&a->copies, &a->graph, a->memory, a->message);
+}
+
+static mspring_result explore_copies(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    if (a->copies.number)
+        mspringi_copies_explore(&a->copies, &a->graph, a->kinds, first, end);
+    return MSPRING_OK;
+}
+
+static mspring_result reserve_copies(mspringi_assembly *a) {
+    return mspringi_copies_reserve(&a->copies, a->memory, a->message);
+}
+
+static mspring_result list_copies(mspringi_assembly *a, uint32_t first, uint32_t end) {
+    mspringi_copies_list(&a->copies, &a->graph, first, end);
+    return MSPRING_OK;
 }
 
 static mspring_result find_strands(mspringi_assembly *a) {
@@ -313,6 +342,12 @@ static const layout_pass layout_passes[] = {
     MSPRINGI_ONCE(reserve_herds),
     MSPRINGI_EACH(compare_trees, particles_of, 4000),
     MSPRINGI_ONCE(fill_herds),
+    MSPRINGI_ONCE(begin_copies),
+    MSPRINGI_EACH(explore_copies, particles_of, 16000),
+    MSPRINGI_ONCE(reserve_copies),
+    MSPRINGI_EACH(list_copies, particles_of, 8000),
+    MSPRINGI_ONCE(mspringi_copies_choose),
+    MSPRINGI_ONCE(mspringi_copies_fill),
     MSPRINGI_ONCE(find_strands),
     MSPRINGI_ONCE(begin_grids),
     SEARCH,
@@ -323,6 +358,7 @@ static const layout_pass layout_passes[] = {
     MSPRINGI_EACH(join_sheets, springs_of, 32000),
     MSPRINGI_EACH(count_sheet_springs, springs_of, 16000),
     MSPRINGI_ONCE(give_up_sheets),
+    MSPRINGI_ONCE(mspringi_copies_release),
     MSPRINGI_EACH(shelve_grids, narrow_grids_of, 64),
     MSPRINGI_ONCE(begin_homes),
     MSPRINGI_EACH(attach_homes, members_of, 8000),
@@ -352,10 +388,11 @@ static const layout_pass layout_passes[] = {
     MSPRINGI_ONCE(begin_web),
     MSPRINGI_ONCE(lay_rungs),
     MSPRINGI_EACH(fill_web, web_springs_of, 16000),
+    MSPRINGI_ONCE(link_herds),
 };
 
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
+                                       bool is_checked, mspringi_herding herding, uint32_t workers, uint32_t lanes,
                                        mspringi_memory *memory, mspringi_message *message,
                                        mspringi_assembly **begun) {
     mspringi_assembly *a = mspringi_alloc(memory, 1, sizeof *a);
@@ -370,7 +407,7 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
     a->message = message;
     a->builder = builder;
     a->is_checked = is_checked;
-    a->has_herds = has_herds;
+    a->herding = herding;
     a->workers = workers;
     a->lanes = lanes;
     *begun = a;
@@ -395,6 +432,7 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_weaving_destroy(&begun->weaving, memory);
     mspringi_graph_destroy(&begun->graph, memory);
     mspringi_herds_destroy(&begun->herds, memory);
+    mspringi_copies_destroy(&begun->copies, memory);
     mspringi_strands_destroy(&begun->strands, memory);
     mspringi_grids_destroy(&begun->grids, memory);
     mspringi_sheets_destroy(&begun->sheets, memory);
@@ -428,11 +466,11 @@ static mspring_result keep_spare(mspringi_topology *t, mspringi_memory *memory, 
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        const mspringi_reserve *reserve, uint32_t workers, uint32_t lanes,
-                                        mspringi_memory *memory, mspringi_message *message) {
+                                        const mspringi_reserve *reserve, mspringi_herding herding, uint32_t workers,
+                                        uint32_t lanes, mspringi_memory *memory, mspringi_message *message) {
     mspringi_assembly *begun = NULL;
     mspring_result result =
-        mspringi_topology_begin(builder, reserve, false, false, workers, lanes, memory, message, &begun);
+        mspringi_topology_begin(builder, reserve, false, herding, workers, lanes, memory, message, &begun);
     for (bool is_done = false; result == MSPRING_OK && !is_done;)
         result = mspringi_topology_run(begun, &is_done);
     if (result != MSPRING_OK) {
@@ -464,6 +502,8 @@ static const mspringi_column columns[] = {
     ARRAY(web.entry),
     ARRAY(web.is_upright),
     ARRAY(web.is_read),
+    ARRAY(web.first_link),
+    ARRAY(web.links),
     ARRAY(spans),
     ARRAY(tight_spans),
     ARRAY(first_tight),

@@ -7,7 +7,7 @@
 ///   lattice  one row of a grid; each block has a record of four springs per slot (see mspringi_direction)
 ///   chain    strands packed end to end; a record of one spring per slot, to the next slot
 ///   web      particles with other springs; records by rung, see layout/emit/web.h. Herds (layout/recognise/
-///            herds.c) have a row of their own, whose spans have nothing to do with each other
+///            copies.c) have a row of their own, whose spans have nothing to do with each other
 ///   loose    particles without a spring; no record
 ///
 /// A spring that lies in no lattice or chain row is left over: the web has it. Web particles that hang on a lattice
@@ -168,18 +168,25 @@ static inline uint32_t mspringi_swept_count(const mspringi_topology *topology) {
     return topology->spring_count - topology->inactive_count;
 }
 
+/// What may stand in herds.
+typedef enum mspringi_herding {
+    MSPRINGI_NO_HERDS,
+    MSPRINGI_HERDS_OF_COPIES,  ///< equal components
+    MSPRINGI_HERDS_OF_WRECKAGE ///< these, and small trees of one shape in any order
+} mspringi_herding;
+
 /// Lay out what the builder holds, for steps that so many workers share and make with registers of so many lanes
 /// (MSPRINGI_QUARTER or more), with room for spare ids. Lanes make no difference to where anything lies.
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        const mspringi_reserve *reserve, uint32_t workers, uint32_t lanes,
-                                        mspringi_memory *memory, mspringi_message *message);
+                                        const mspringi_reserve *reserve, mspringi_herding herding, uint32_t workers,
+                                        uint32_t lanes, mspringi_memory *memory, mspringi_message *message);
 /// The same as a list of plain functions: begin, run one after the other until it is done unless one fails, then
 /// finish; or abandon at any time, which allows NULL. The builder and what memory and message point to must stay;
-/// is_checked: no two of its springs join the same particles; has_herds: small trees may stand in herds. What is
-/// finished has places for the builder's springs only, in an array with room for all ids.
+/// is_checked: no two of its springs join the same particles. What is finished has places for the builder's springs
+/// only, in an array with room for all ids.
 typedef struct mspringi_assembly mspringi_assembly;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
+                                       bool is_checked, mspringi_herding herding, uint32_t workers, uint32_t lanes,
                                        mspringi_memory *memory, mspringi_message *message,
                                        mspringi_assembly **begun);
 /// Run the next function, which takes a millisecond at most for 200,000 springs. How many there are depends neither

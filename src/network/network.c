@@ -256,6 +256,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                              const mspring_network_def *def) {
     bool damped, relative;
     mspringi_reserve reserve = {0};
+    const mspringi_solver_ops *const solver_ops = mspringi_solver_ops_of(def->solver); // NULL: is refused below
+    const bool has_herds = solver_ops && solver_ops->has_herds;
     network->solver.ops = mspringi_solver_ops_of(MSPRING_SOLVER_EXPLICIT);
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     mspring_result result = mspringi_shared_reserve(network);
@@ -267,6 +269,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
         result = mspringi_topology_create(&network->topology, builder, &reserve,
+                                          has_herds ? MSPRINGI_HERDS_OF_COPIES : MSPRINGI_NO_HERDS,
                                           mspringi_tasks_concurrency(network->tasks), network->kernels->lanes,
                                           &network->memory, &network->message);
     if (result != MSPRING_OK)

@@ -28,7 +28,7 @@ static inline mspringi_row_fn mspringi_row_kernel(const mspring_network *network
     }
 }
 
-static inline mspringi_herd_fn mspringi_herd_kernel(const mspring_network *network, bool forced) {
+static inline mspringi_row_fn mspringi_herd_kernel(const mspring_network *network, bool forced) {
     const mspringi_kernels *k = network->kernels;
     return network->is_precise ? k->precise.herd : k->herd[network->parts > MSPRINGI_DAMPING][forced];
 }

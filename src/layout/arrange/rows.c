@@ -55,11 +55,24 @@ static int64_t offset_between(uint32_t from_block, uint32_t to_block) {
     return ((int64_t)to_block - (int64_t)from_block) * MSPRINGI_WIDTH;
 }
 
+// Where the span of herds that begins with a group ends: herds are whole in it.
+static uint32_t end_of_herds(const mspringi_assembly *a, uint32_t first) {
+    uint32_t end = first + 1;
+    while (end < a->herds.group_count &&
+           (end - first < MSPRINGI_HERD_SPAN || a->herds.rung_above[end] != MSPRINGI_ROOT))
+        ++end;
+    return end;
+}
+
 static uint32_t widest_row(const mspringi_assembly *a) {
     uint32_t widest =
         a->topology->chain_blocks < LONGEST_CHAIN_SPAN ? a->topology->chain_blocks : LONGEST_CHAIN_SPAN;
-    if (a->herds.group_count > 0 && widest < MSPRINGI_LONGEST_HERD)
-        widest = MSPRINGI_LONGEST_HERD;
+    for (uint32_t first = 0, end, rungs = 0; first < a->herds.group_count; first = end, rungs = 0) {
+        end = end_of_herds(a, first);
+        for (uint32_t group = first; group < end; ++group)
+            rungs += mspringi_degree_of(&a->graph, a->herds.particles[group * MSPRINGI_WIDTH]);
+        widest = rungs > widest ? rungs : widest;
+    }
     for (size_t i = 0; i < a->block_count; ++i)
         widest = mspringi_column_block_of_key(a->blocks[i]) + 1 > widest
                      ? mspringi_column_block_of_key(a->blocks[i]) + 1
@@ -128,13 +141,9 @@ static bool append_herd_row(mspringi_assembly *a) {
         return true;
     a->herd_row = t->row_count;
     bool ok = append_row(a, MSPRINGI_ROW_WEB);
+    t->herd_springs = a->herds.spring_count * MSPRINGI_WIDTH;
     for (uint32_t first = 0, end; ok && first < groups; first = end) {
-        for (end = first + 1; end < groups; ++end) {
-            if (end - first >= MSPRINGI_HERD_SPAN && a->herds.rung_above[end] == MSPRINGI_ROOT)
-                break;
-            if (a->herds.rung_above[end] != MSPRINGI_ROOT)
-                t->herd_springs += MSPRINGI_WIDTH;
-        }
+        end = end_of_herds(a, first);
         const mspringi_span span = span_of_blocks(t->web_first + a->loner_blocks + first, end - first,
                                                   a->loner_blocks + first, MSPRINGI_WIDTH);
         t->rows[a->herd_row].span_count++;

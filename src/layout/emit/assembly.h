@@ -33,6 +33,7 @@ struct mspringi_assembly {
     uint8_t *kinds;
     mspringi_graph graph;
     mspringi_herds herds;
+    mspringi_copies copies;
     mspringi_strands strands;
     mspringi_grids grids;
     mspringi_sheets sheets;
@@ -50,7 +51,7 @@ struct mspringi_assembly {
     uint32_t home_blocks;        ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
     bool is_checked; ///< no two springs join the same particles
-    bool has_herds;  ///< small trees may stand in herds
+    mspringi_herding herding;
     mspringi_cursor cursor;
     uint32_t loose;        ///< the next loose slot
     uint32_t web_place;    ///< of the web's last particle so far

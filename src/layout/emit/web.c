@@ -1,4 +1,4 @@
-#include "layout/emit/web.h"
+#include "layout/analysis.h"
 
 #include <string.h>
 
@@ -153,6 +153,16 @@ static mspring_result reserve_rungs(mspringi_weaving *w, mspringi_memory *memory
     return web->neighbour && web->entry && w->used ? MSPRING_OK : out_of_memory(w, message);
 }
 
+static mspring_result reserve_links(const mspringi_weaving *w, mspringi_memory *memory, mspringi_message *message) {
+    mspringi_web *web = w->web;
+    web->first_herd = w->own_count / MSPRINGI_WIDTH - w->herd_groups;
+    if (w->herd_groups == 0)
+        return MSPRING_OK;
+    web->first_link = mspringi_alloc(memory, (size_t)w->herd_groups + 1, sizeof *web->first_link);
+    web->links = mspringi_alloc(memory, w->herd_springs, sizeof *web->links);
+    return web->first_link && web->links ? MSPRING_OK : out_of_memory(w, message);
+}
+
 mspring_result mspringi_web_lay_rungs(mspringi_weaving *w, mspringi_memory *memory, mspringi_message *message) {
     const mspringi_web *web = w->web;
     if (!w->degree)
@@ -161,6 +171,8 @@ mspring_result mspringi_web_lay_rungs(mspringi_weaving *w, mspringi_memory *memo
     mspring_result result = count_rungs(w, message);
     if (result == MSPRING_OK)
         result = reserve_rungs(w, memory, message);
+    if (result == MSPRING_OK)
+        result = reserve_links(w, memory, message);
     if (result != MSPRING_OK)
         return result;
     for (uint32_t group = 0; group < web->group_count; ++group) // every node is its own neighbour at first
@@ -181,12 +193,14 @@ static uint32_t take_entry(const mspringi_weaving *w, uint32_t node) {
     return entry_at(web, node, has_upright + w->used[node]++);
 }
 
-// The entry of a node for the spring to another. Those of herds are where the shape of their trees has them.
+// The entry of a node for the spring to another. Those of a herd of trees are where their shape has them.
 static uint32_t find_entry(const mspringi_weaving *w, uint32_t node, uint32_t other) {
-    const uint32_t group = node / MSPRINGI_WIDTH, group_below = other / MSPRINGI_WIDTH;
-    if (node >= w->own_count || group < w->herd_first)
+    const uint32_t group = node / MSPRINGI_WIDTH, other_group = other / MSPRINGI_WIDTH;
+    const uint32_t lower = group > other_group ? group : other_group;
+    if (node >= w->own_count || group < w->web->first_herd)
         return take_entry(w, node);
-    return entry_at(w->web, node, group_below < group ? 0 : w->rung_above[group_below - w->herd_first]);
+    const uint32_t rung = w->rung_above[lower - w->web->first_herd];
+    return rung == MSPRINGI_BY_ORDER ? take_entry(w, node) : entry_at(w->web, node, lower == group ? 0 : rung);
 }
 
 void mspringi_web_fill(const mspringi_weaving *w, uint32_t first, uint32_t end) {
@@ -206,6 +220,40 @@ void mspringi_web_fill(const mspringi_weaving *w, uint32_t first, uint32_t end) 
         if (web->is_read)
             web->is_read[node_a / MSPRINGI_WIDTH] = web->is_read[node_b / MSPRINGI_WIDTH] = 1;
     }
+}
+
+// The group above of a spring in the first lane of a herd, counted from the first that is in one; MSPRING_NONE if
+// the spring lies elsewhere. All lanes are alike.
+static uint32_t group_above(const mspringi_weaving *w, uint32_t spring) {
+    const uint32_t a = w->node_of_slot[w->a[spring]], b = w->node_of_slot[w->b[spring]], above = a < b ? a : b;
+    const bool is_in_herd = above < w->own_count && above / MSPRINGI_WIDTH >= w->web->first_herd;
+    return is_in_herd && above % MSPRINGI_WIDTH == 0 ? above / MSPRINGI_WIDTH - w->web->first_herd : MSPRING_NONE;
+}
+
+void mspringi_web_link(const mspringi_weaving *w) {
+    const mspringi_web *web = w->web;
+    for (uint32_t s = 0; web->links && s < w->count; ++s)
+        if (group_above(w, s) != MSPRING_NONE)
+            web->first_link[group_above(w, s) + 1]++;
+    for (uint32_t group = 0; group < w->herd_groups; ++group)
+        web->first_link[group + 1] += web->first_link[group];
+    // Each group's first moves up to its end, which is where the next one begins.
+    for (uint32_t s = 0; web->links && s < w->count; ++s) {
+        const uint32_t group = group_above(w, s);
+        if (group == MSPRING_NONE)
+            continue;
+        const uint32_t a = web->entry[2 * s], b = web->entry[2 * s + 1];
+        const uint32_t node_a = w->node_of_slot[w->a[s]], node_b = w->node_of_slot[w->b[s]];
+        web->links[web->first_link[group]++] = (mspringi_link){
+            .below = node_a < node_b ? node_b - node_a : node_a - node_b,
+            .rung = (a < b ? a : b) / MSPRINGI_WIDTH,
+            .back = (a < b ? b : a) / MSPRINGI_WIDTH,
+        };
+    }
+    for (uint32_t group = w->herd_groups; web->links && group > 0; --group)
+        web->first_link[group] = web->first_link[group - 1];
+    if (web->links)
+        web->first_link[0] = 0;
 }
 
 void mspringi_weaving_destroy(mspringi_weaving *w, mspringi_memory *memory) {

@@ -11,9 +11,11 @@
 /// rung then, and are computed once, in place and without gathering. Nodes that they join have no more than two
 /// springs, whose sum is the same in either order.
 ///
-/// The last of the own nodes may stand in herds: trees of up to MSPRINGI_LARGEST_TREE groups, sixteen at a time, in
-/// which a rung leads all nodes of a group to the same other group. The first is that to the group above in the
-/// tree, which comes before; the others lead to those below.
+/// The last of the own nodes may stand in herds: equal components of up to MSPRINGI_LARGEST_COPY groups, sixteen at
+/// a time, in which a rung leads all nodes of a group to the same other group. A herd's groups are in the order of
+/// a search from the first one. So each of the others has a spring to a group above, which comes before. A herd is
+/// swept by its links, which compute each spring once; its nodes sum up their rungs in the same order as all
+/// others.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_WEB_H
@@ -26,13 +28,21 @@
 /// sees whole ones.
 #define MSPRINGI_WIDTH 16
 
-/// Particles of the largest tree that may stand in a herd.
+/// Particles of the largest tree, and of the largest other component, that may stand in a herd.
 #define MSPRINGI_LARGEST_TREE 8
+#define MSPRINGI_LARGEST_COPY 256
+/// Ends of springs that such a component may have: a carry row holds a force for each.
+#define MSPRINGI_MOST_ENDS 2048
 
-/// Herds are swept together, about so many groups, few enough to stay in the first-level cache while all substeps
-/// are taken.
+/// Small herds are swept together, about so many groups, few enough to stay in the first-level cache while all
+/// substeps are taken.
 #define MSPRINGI_HERD_SPAN 16
-#define MSPRINGI_LONGEST_HERD (MSPRINGI_HERD_SPAN - 1 + MSPRINGI_LARGEST_TREE)
+
+/// Springs between two groups of a herd.
+typedef struct mspringi_link {
+    uint32_t below;      ///< slots from a node to its other end
+    uint32_t rung, back; ///< of the group above, and of the one below
+} mspringi_link;
 
 typedef struct mspringi_web {
     uint32_t own_count;      ///< nodes that are slots of web rows, in order
@@ -44,6 +54,9 @@ typedef struct mspringi_web {
     uint32_t *entry;         ///< [2 * springs] where in neighbour the two ends of each leftover spring are
     uint8_t *is_upright;     ///< [group_count] whether the group's first rung is upright; NULL if none is
     uint8_t *is_read;        ///< [group_count] whether a rung that is not leads to one of its nodes, likewise
+    uint32_t first_herd;     ///< first group that is in a herd
+    uint32_t *first_link;    ///< [groups in herds + 1]
+    mspringi_link *links;    ///< of those groups in order: their springs to groups below
 } mspringi_web;
 
 /// What a web is made of, and what is needed meanwhile.
@@ -53,7 +66,7 @@ typedef struct mspringi_weaving {
     uint32_t count;
     uint32_t first_slot, own_count;         ///< the slots of the web rows
     uint32_t block_count;                   ///< of all slots
-    uint32_t herd_first;                    ///< first group that is in a herd
+    uint32_t herd_groups, herd_springs;     ///< the last of these, in herds, and springs of one component of each
     const uint8_t *rung_above;              ///< as in mspringi_herds
     uint32_t *strip_of_block;               ///< [block_count] in what strip another slot is; freed with the rest
     uint32_t *degree, *node_of_slot, *used; ///< by slot, by slot and by node
@@ -69,6 +82,8 @@ mspring_result mspringi_web_begin(mspringi_weaving *weaving, mspringi_memory *me
 mspring_result mspringi_web_lay_rungs(mspringi_weaving *weaving, mspringi_memory *memory,
                                       mspringi_message *message);
 void mspringi_web_fill(const mspringi_weaving *weaving, uint32_t first, uint32_t end);
+/// When all are filled: link the groups of herds.
+void mspringi_web_link(const mspringi_weaving *weaving);
 void mspringi_weaving_destroy(mspringi_weaving *weaving, mspringi_memory *memory);
 
 #endif

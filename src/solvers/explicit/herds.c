@@ -1,4 +1,4 @@
-/// Sweeping trees that stand in herds.
+/// Sweeping equal components that stand in herds.
 #include "solvers/explicit/herds.h"
 
 #include <string.h>
@@ -31,13 +31,10 @@ bool mspringi_herds_are_apart(const mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------- herds of a span */
 
-static uint32_t group_of_rung(const mspringi_web *web, uint32_t rung) {
-    return web->neighbour[rung * MSPRINGI_WIDTH] / MSPRINGI_WIDTH;
-}
-
-// Whether a group is the first of its trees: its first rung leads down.
-static bool begins_trees(const mspringi_web *web, uint32_t group) {
-    return group_of_rung(web, web->first_rung[group]) > group;
+// Whether a group is the first of a herd: all of its rungs lead down.
+static bool begins_herd(const mspringi_web *web, uint32_t group) {
+    const uint32_t *first_link = web->first_link + (group - web->first_herd);
+    return first_link[1] - first_link[0] == web->first_rung[group + 1] - web->first_rung[group];
 }
 
 static uint32_t blocks_of(const mspringi_span *span) {
@@ -53,8 +50,8 @@ static mspringi_span part_of(const mspringi_span *span, uint32_t first, uint32_t
     return part;
 }
 
-// The next run of whole trees of which something is swept, from a span's block *at on, which goes behind it. What
-// else of such trees sleeps, beyond a pin, is swept with them, which does nothing to it.
+// The next run of whole herds of which something is swept, from a span's block *at on, which goes behind it. What
+// else of these sleeps, beyond a pin, is swept with them, which does nothing to it.
 static bool next_run(const mspring_network *network, const mspringi_span *span, uint32_t *at, mspringi_span *run) {
     const mspringi_web *web = &network->topology.web;
     const uint32_t first_block = span->first_slot / MSPRINGI_WIDTH, end = blocks_of(span);
@@ -62,7 +59,7 @@ static bool next_run(const mspring_network *network, const mspringi_span *span, 
     for (bool is_swept = true; *at < end; *at = behind) {
         do
             ++behind;
-        while (behind < end && !begins_trees(web, span->first_record + behind));
+        while (behind < end && !begins_herd(web, span->first_record + behind));
         is_swept = mspringi_is_any_swept(network, first_block + *at, first_block + behind);
         if (!is_swept && first < *at)
             break;
@@ -72,49 +69,15 @@ static bool next_run(const mspring_network *network, const mspringi_span *span, 
     return first < *at;
 }
 
-// What the groups of a span and the springs between them are. Each spring is found at its upper end.
-static mspringi_herd herd_of(const mspringi_web *web, const mspringi_span *span) {
-    mspringi_herd herd;
-    uint32_t springs = 0;
-    herd.first_slot = span->first_slot;
-    herd.group_count = blocks_of(span);
-    for (uint32_t i = 0; i < herd.group_count; ++i)
-        herd.groups[i].above = MSPRING_NONE;
-    for (uint32_t i = 0; i < herd.group_count; ++i) {
-        const uint32_t group = span->first_record + i;
-        herd.groups[i].first_below = springs * MSPRINGI_WIDTH;
-        for (uint32_t rung = web->first_rung[group]; rung < web->first_rung[group + 1]; ++rung) {
-            const uint32_t other = group_of_rung(web, rung);
-            if (other < group)
-                continue;
-            const uint32_t below = other - span->first_record;
-            herd.groups[below].above = springs * MSPRINGI_WIDTH;
-            herd.springs[springs++] = (mspringi_herd_spring){.above = span->first_slot + i * MSPRINGI_WIDTH,
-                                                             .below = span->first_slot + below * MSPRINGI_WIDTH,
-                                                             .rung = rung};
-        }
-        herd.groups[i].end_below = springs * MSPRINGI_WIDTH;
-    }
-    for (uint32_t i = 0; i < herd.group_count; ++i)
-        if (herd.groups[i].above == MSPRING_NONE)
-            herd.groups[i].above = springs * MSPRINGI_WIDTH;
-    herd.spring_count = springs;
-    return herd;
-}
-
 /* -------------------------------------------------------------------------------------------------- the sweeps */
 
 static void sweep_run(const job *herds, const mspringi_sweep *sweep, const mspringi_span *run) {
     const mspring_network *network = herds->network;
     const mspringi_strip *strip = &network->topology.strips[network->topology.herd_strip];
-    const mspringi_herd_fn sweep_herd = mspringi_herd_kernel(network, herds->base.x != NULL);
-    const mspringi_herd herd = herd_of(sweep->web, run);
-    const size_t none = (size_t)herd.spring_count * MSPRINGI_WIDTH;
-    memset(sweep->carry_x + none, 0, MSPRINGI_WIDTH * sizeof *sweep->carry_x);
-    memset(sweep->carry_y + none, 0, MSPRINGI_WIDTH * sizeof *sweep->carry_y);
+    const mspringi_row_fn sweep_herd = mspringi_herd_kernel(network, herds->base.x != NULL);
     for (uint32_t i = 0; i < herds->count; ++i) {
         mspringi_floor_note(network, strip, run, 1);
-        sweep_herd(sweep, &herd);
+        sweep_herd(sweep, run, 1);
         mspringi_floor_touch(network, strip, run, 1, herds->h);
     }
 }
