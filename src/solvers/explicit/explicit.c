@@ -68,8 +68,8 @@ uint32_t mspringi_explicit_workers(const mspring_network *network) {
                : 1;
 }
 
-// One more than are under way, so that the processor can begin the next substep of a small network before the last row
-// of this one is done.
+// One more than are under way, so that the processor can begin the next substep of a small network before the last
+// row of this one is done.
 uint32_t mspringi_explicit_carries(const mspringi_topology *topology, uint32_t depth) {
     const uint32_t enough =
         topology->wavefront_strips == 0 ? 1 : (topology->wavefront_strips - 1) / topology->skew + 2;
@@ -177,13 +177,16 @@ static void make_pass(turn *t) {
     const mspringi_shares *shares = &wavefront->shares;
     const uint32_t count = mspringi_shares_substeps(shares, t->pass), skew = shares->skew;
     const uint32_t carries = mspringi_explicit_carries(&network->topology, network->depth);
+    const mspringi_substep any =
+        mspringi_substep_prepare(network, wavefront->h, wavefront->base, 0, wavefront->count, 0);
     mspringi_substep substeps[DEEPEST];
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
     for (uint32_t i = 0; i < count; ++i) {
         const uint32_t number = t->pass * shares->group + i;
-        substeps[i] = mspringi_substep_prepare(network, wavefront->h, wavefront->base, number, wavefront->count,
-                                               wavefront->web ? 0 : t->share * carries + i % carries);
+        substeps[i] = any;
+        mspringi_substep_turn(network, &substeps[i], number, wavefront->count,
+                              wavefront->web ? 0 : t->share * carries + i % carries);
         mark_ends(wavefront, &substeps[i], number, watch);
     }
     const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, count - 1) + (count - 1) * skew;
@@ -485,9 +488,11 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
     mspringi_mate mate = {.index = index, .count = rest->workers, .progress = rest->progress};
+    const mspringi_substep any = mspringi_substep_prepare(network, rest->h, rest->base, 0, rest->count, 0);
     (void)worker;
     for (uint32_t i = 0; i < rest->count; ++i) {
-        mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, i, rest->count, 0);
+        mspringi_substep substep = any;
+        mspringi_substep_turn(network, &substep, i, rest->count, 0);
         substep.next_gathered = NULL;
         mspringi_span share;
         for (uint32_t s = t->wavefront_strips; s < t->strip_count; ++s) {

@@ -13,17 +13,9 @@
 
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
                                           uint32_t count, uint32_t carry_number) {
-    const mspringi_topology *t = &network->topology;
-    const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
-    const size_t gathered_floats = (size_t)mspringi_gathered_values(network) * t->web.group_count * MSPRINGI_WIDTH;
-    float *carry = network->carry + 2 * carry_number * carry_slots;
-    const bool tests = network->plastic.yields && network->plastic.is_swept;
-    return (mspringi_substep){
+    mspringi_substep substep = {
         .base = base,
-        .tests = tests,
-        .looks = tests && (network->plastic.substep + i) % MSPRINGI_YIELD_PERIOD == 0,
-        .gathered = network->gathered + i % 2 * gathered_floats,
-        .next_gathered = i + 1 < count ? network->gathered + (i + 1) % 2 * gathered_floats : NULL,
+        .tests = network->plastic.yields && network->plastic.is_swept,
         .sweep =
             {
                 .x = network->state.x,
@@ -35,17 +27,14 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .inverse_mass = mspringi_free_mass(network),
                 .force_x = base.x,
                 .force_y = base.y,
-                .carry_x = carry,
-                .carry_y = carry + carry_slots,
                 .lattice_springs = network->lattice_springs,
                 .springs_of_block = network->alike.of_block,
                 .cells = network->areas.swept > 0 ? network->areas.cells : NULL,
                 .rest_lengths = network->rests.lengths,
                 .rests_of_block = network->rests.of_block,
                 .chain_springs = network->chain_springs,
-                .web = &t->web,
+                .web = &network->topology.web,
                 .web_springs = network->web_springs,
-                .gathered = network->gathered + i % 2 * gathered_floats,
                 .parts = network->parts,
                 .h = h,
                 .decay = mspringi_decay(network->settings.global_damping, h),
@@ -55,6 +44,21 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .gravity_h_y = network->settings.gravity_y * h + 0.0f,
             },
     };
+    mspringi_substep_turn(network, &substep, i, count, carry_number);
+    return substep;
+}
+
+void mspringi_substep_turn(const mspring_network *network, mspringi_substep *substep, uint32_t i, uint32_t count,
+                           uint32_t carry_number) {
+    const mspringi_topology *t = &network->topology;
+    const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
+    const size_t gathered_floats = (size_t)mspringi_gathered_values(network) * t->web.group_count * MSPRINGI_WIDTH;
+    substep->looks = substep->tests && (network->plastic.substep + i) % MSPRINGI_YIELD_PERIOD == 0;
+    substep->gathered = network->gathered + i % 2 * gathered_floats;
+    substep->next_gathered = i + 1 < count ? network->gathered + (i + 1) % 2 * gathered_floats : NULL;
+    substep->sweep.gathered = substep->gathered;
+    substep->sweep.carry_x = network->carry + 2 * carry_number * carry_slots;
+    substep->sweep.carry_y = substep->sweep.carry_x + carry_slots;
 }
 
 // Pack what the web sees of the nodes that are slots of a strip.

@@ -21,6 +21,10 @@ typedef struct mspringi_substep {
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
                                           uint32_t count, uint32_t carry_number);
 
+/// Make one of these, which does not keep or watch anything, another of the count.
+void mspringi_substep_turn(const mspring_network *network, mspringi_substep *substep, uint32_t i, uint32_t count,
+                           uint32_t carry_number);
+
 /// Pack the web's nodes that a strip has.
 void mspringi_strip_pack(const mspring_network *network, const mspringi_substep *substep,
                          const mspringi_strip *strip);
