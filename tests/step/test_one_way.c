@@ -389,6 +389,42 @@ static void clones_and_snapshots_go_on(void **state) {
     }
 }
 
+/// Pairs of masses on slack ropes: what is slack when a snapshot is loaded joins them as it did before.
+static void slack_ropes_join_what_they_did(void **state) {
+    (void)state;
+    enum { PAIRS = 12 };
+    uint64_t seed = 5;
+    for (int scene = 0; scene < 20; scene++) {
+        mspring_network *networks[2];
+        const uint64_t begin = seed;
+        for (int n = 0; n < 2; n++) {
+            mspring_builder *builder = support_builder();
+            seed = begin;
+            for (mspring_id p = 0; p < 2 * PAIRS; p++) {
+                (void)support_particle(builder, 0.9 * p, support_random_between(&seed, -0.1, 0.1), 1);
+                if (p > 0)
+                    (void)join(builder, p - 1, p, 5000, 1, p % 2 ? 0 : MSPRING_SPRING_PULL_ONLY);
+            }
+            mspring_network_def def = support_def(0, 2);
+            def.solver = MSPRING_SOLVER_IMPLICIT;
+            networks[n] = support_network(builder, &def);
+            for (mspring_id p = 0; p < 2 * PAIRS; p++) {
+                const float vx = (float)support_random_between(&seed, -3, 3), vy = -vx;
+                check_ok(mspring_network_set_velocities(networks[n], p, 1, &vx, &vy, 1));
+            }
+        }
+        const mspring_id cut = 6; // tiles are cut where something breaks, and where it is found broken
+        check_ok(mspring_network_break_springs(networks[0], &cut, 1));
+        support_steps(networks[0], 5, 1.0 / 60);
+        support_bring(networks[0], networks[1], MSPRING_SNAPSHOT_ALL);
+        for (int n = 0; n < 2; n++)
+            support_steps(networks[n], 20, 1.0 / 60);
+        assert_int_equal(support_hash(networks[1]), support_hash(networks[0]));
+        mspring_network_destroy(networks[0]);
+        mspring_network_destroy(networks[1]);
+    }
+}
+
 static void another_layout_and_a_copy_have_them(void **state) {
     (void)state;
     mspring_network *network = mixed(0, 0, MSPRING_SPRING_PULL_ONLY);
@@ -427,6 +463,7 @@ int main(void) {
         cmocka_unit_test(a_jerk_is_seen),
         cmocka_unit_test(all_levels_have_the_same_bits),
         cmocka_unit_test(clones_and_snapshots_go_on),
+        cmocka_unit_test(slack_ropes_join_what_they_did),
         cmocka_unit_test(another_layout_and_a_copy_have_them),
     };
     return cmocka_run_group_tests_name("one way", tests, NULL, NULL);

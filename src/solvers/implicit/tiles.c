@@ -5,6 +5,7 @@
 
 #include "base/forest.h"
 #include "base/mix.h"
+#include "store/one_way.h"
 #include "store/springs.h"
 
 /// Room for pieces: tiles beyond twice the cells, numbers of the coarse matrix beyond four times those of cells in
@@ -13,10 +14,12 @@
 #define SPARE_VALUES ((size_t)4096)
 #define SPARE_ANCHORS 1024u
 
-// Whether a spring can pull.
+// Whether a spring can pull. One that only pulls or only pushes can, even where it is slack in this step: when
+// tiles are cut must not matter, as they are cut after a snapshot is loaded, too.
 static bool is_live(const mspring_network *network, mspring_id spring, mspringi_place place) {
     return mspringi_place_is_live(network, place) &&
-           mspringi_spring_get_nominal(network, spring, place).stiffness > 0.0f;
+           (mspringi_side_of(network, spring) != 0 ||
+            mspringi_spring_get_nominal(network, spring, place).stiffness > 0.0f);
 }
 
 static bool is_free(const mspring_network *network, uint32_t slot) {
