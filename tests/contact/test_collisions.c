@@ -60,21 +60,14 @@ static outcome collide(uint64_t trial, const kind *of, bool touches) {
     return o;
 }
 
-/// How deep bodies may get, and one in how many trials may get deeper without crossing; 0: none.
-typedef struct depth {
-    double most;
-    uint32_t one_in;
-} depth;
-
 /// A trial is worse than the same one without contact by its own rounding at most.
-static void check_trials(uint32_t first, uint32_t count, kind of, depth allowed, double gain, double turn) {
+static void check_trials(uint32_t first, uint32_t count, kind of, double deepest, double gain, double turn) {
     outcome most = {0}, without = {0};
-    uint32_t met = 0, deep = 0;
+    uint32_t met = 0;
     for (uint32_t trial = first; trial < first + count; trial++) {
         const outcome o = collide(trial, &of, true), free = collide(trial, &of, false);
         met += o.met;
-        deep += o.deepest > allowed.most;
-        if (o.crossed || o.deepest > allowed.most)
+        if (o.crossed || o.deepest > deepest)
             print_error("trial %u: crossed %d, deepest %g\n", (unsigned)trial, o.crossed, o.deepest);
         assert_false(o.crossed);
         most.deepest = fmax(most.deepest, o.deepest);
@@ -91,8 +84,7 @@ static void check_trials(uint32_t first, uint32_t count, kind of, depth allowed,
                (unsigned)count, (int)of.solver, of.fastest, (double)of.restitution, (unsigned)met, most.deepest,
                most.gain, most.momentum, most.turn, without.gain, without.turn);
     assert_true(met > count / 2);
-    assert_true(deep <= (allowed.one_in > 0 ? count / allowed.one_in : 0));
-    assert_true(most.deepest < THICKNESS);
+    assert_true(most.deepest <= deepest);
     assert_true(most.gain <= gain);
     assert_true(most.momentum <= 1e-4);
     assert_true(most.turn <= turn);
@@ -103,32 +95,38 @@ static uint32_t trials = ROUNDS(2000);
 
 static void nothing_gets_through(void **state) {
     (void)state;
-    check_trials(1, trials / 20 * 15, (kind){MSPRING_SOLVER_EXPLICIT, 100, 0}, (depth){0.1, 0}, 2e-3, 2e-3);
+    check_trials(1, trials / 20 * 15, (kind){MSPRING_SOLVER_EXPLICIT, 100, 0}, 0.1, 2e-3, 2e-3);
 }
 
 static void what_bounces_gets_through_no_more(void **state) {
     (void)state;
-    check_trials(100000, trials / 20 * 3, (kind){MSPRING_SOLVER_EXPLICIT, 100, 0.5f}, (depth){0.1, 0}, 2e-3, 2e-3);
+    check_trials(100000, trials / 20 * 3, (kind){MSPRING_SOLVER_EXPLICIT, 100, 0.5f}, 0.1, 2e-3, 2e-3);
 }
 
 /// So fast they overlap deeply now and then, 4 of 10,000 by a quarter of the thickness, and still nothing gets
 /// through.
 static void pieces_of_a_substep_hold_what_is_faster(void **state) {
     (void)state;
-    check_trials(200000, trials / 20 * 2, (kind){MSPRING_SOLVER_EXPLICIT, 1000, 0}, (depth){0.99 * THICKNESS, 0},
-                 1e-2, 2e-3);
+    check_trials(200000, trials / 20 * 2, (kind){MSPRING_SOLVER_EXPLICIT, 1000, 0}, 0.99 * THICKNESS, 1e-2, 2e-3);
 }
 
-/// Of 20,000 such trials 4 get deeper than half the thickness: to 0.25, 0.30, 0.30 and 0.48 m.
-/// Two of these are among the first 2,400, so one in 1,000 may.
 static void implicit_substeps_let_nothing_through(void **state) {
     (void)state;
-    check_trials(300000, trials / 20 * 4, (kind){MSPRING_SOLVER_IMPLICIT, 60, 0}, (depth){0.25, 1000}, 2e-3, 2e-3);
+    check_trials(300000, trials / 20 * 4, (kind){MSPRING_SOLVER_IMPLICIT, 60, 0}, 0.25, 2e-3, 2e-3);
+}
+
+/// Where springs throw together what had no row, a substep is taken again in halves. Without, these came to 0.25
+/// and 0.30 m.
+static void what_springs_throw_is_held(void **state) {
+    (void)state;
+    const kind of = {MSPRING_SOLVER_IMPLICIT, 60, 0};
+    assert_true(collide(302364, &of, true).deepest < 0.1);
+    assert_true(collide(302372, &of, true).deepest < 0.1);
 }
 
 static void factored_ones_let_nothing_through(void **state) {
     (void)state;
-    check_trials(400000, trials / 20 * 4, (kind){MSPRING_SOLVER_DIRECT, 60, 0}, (depth){0.25, 0}, 2e-3, 2e-3);
+    check_trials(400000, trials / 20 * 4, (kind){MSPRING_SOLVER_DIRECT, 60, 0}, 0.25, 2e-3, 2e-3);
 }
 
 int main(int argc, char **argv) {
@@ -139,6 +137,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(what_bounces_gets_through_no_more),
         cmocka_unit_test(pieces_of_a_substep_hold_what_is_faster),
         cmocka_unit_test(implicit_substeps_let_nothing_through),
+        cmocka_unit_test(what_springs_throw_is_held),
         cmocka_unit_test(factored_ones_let_nothing_through),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

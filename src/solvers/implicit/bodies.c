@@ -12,6 +12,7 @@
 ///
 /// A substep in which bodies touch is one of implicit Euler, and so is the next: see terms.c.
 #include <math.h>
+#include <string.h>
 
 #include "base/cpu.h"
 #include "contact/pairs.h"
@@ -32,6 +33,9 @@
 
 /// Work of contact, and pull, that may be rounding, as shares of the largest work and push.
 #define GIVEN_SHARE 1e-3
+
+/// Depth of a pair that had no row, as a share of the thickness, for which a substep is taken again in halves.
+#define MISSED_SHARE 0.1
 
 /// Times that all rows are mended.
 #define MOST_MENDING_SWEEPS 32
@@ -430,6 +434,55 @@ bool mspringi_bodies_are_sound(const mspring_network *network, float h) {
         least = t->across < least ? t->across : least;
     }
     return given <= GIVEN_SHARE * taken && -least <= GIVEN_SHARE * most;
+}
+
+/* ------------------------------------------------------------------------------------------- what has no row */
+
+// Where a node is at the end of a substep.
+static void end_of_node(const mspring_network *network, uint32_t node, double h, double *x, double *y) {
+    const mspringi_active *k = &network->pairs->active;
+    *x = k->x[node] + h * k->vx[node];
+    *y = k->y[node] + h * k->vy[node];
+    if (node < k->own) {
+        *x = mspringi_x_of(&network->state, slot_of(network, node));
+        *y = mspringi_y_of(&network->state, slot_of(network, node));
+    }
+}
+
+static double square_of(const mspringi_nearest *at) {
+    return at->x * at->x + at->y * at->y;
+}
+
+// Whether a pair did not touch at the start of a substep and is too deep at its end.
+static bool is_thrown(const mspring_network *network, const mspringi_candidate *c, double h) {
+    const mspringi_pairs *pairs = network->pairs;
+    const mspringi_active *k = &pairs->active;
+    const mspringi_pair *pair = &pairs->list[c->pair];
+    const double radius = mspringi_radius_of(pairs, pair->point, pair->edge);
+    const double touches = radius + pairs->thickness, deep = touches - MISSED_SHARE * pairs->thickness;
+    double px, py, ax, ay, bx, by;
+    end_of_node(network, c->p, h, &px, &py);
+    end_of_node(network, c->a, h, &ax, &ay);
+    end_of_node(network, c->b, h, &bx, &by);
+    const mspringi_nearest end = mspringi_nearest_on(px, py, ax, ay, bx, by);
+    if (!(square_of(&end) < deep * deep))
+        return false;
+    const mspringi_nearest start =
+        mspringi_nearest_on(k->x[c->p], k->y[c->p], k->x[c->a], k->y[c->a], k->x[c->b], k->y[c->b]);
+    return square_of(&start) >= touches * touches;
+}
+
+bool mspringi_bodies_are_thrown(const mspring_network *network, float h) {
+    const mspringi_pairs *pairs = pairs_of(network);
+    if (!pairs)
+        return false;
+    memset(pairs->is_seen, 0, pairs->hot_count);
+    for (uint32_t i = 0; i < pairs->touch_count; ++i)
+        pairs->is_seen[pairs->touches[i].candidate] = 1;
+    for (uint32_t i = 0; i < pairs->hot_count; ++i)
+        if (!pairs->is_seen[i] && is_thrown(network, &pairs->hot[i], (double)h))
+            return true;
+    return false;
 }
 
 /* --------------------------------------------------------------------------------------------- once it is taken */

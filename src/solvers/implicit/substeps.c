@@ -181,7 +181,8 @@ static void take_substep(mspringi_substep_of *substep, uint32_t tries) {
     run_substep(substep, tries > 0);
     const bool is_sound = mspringi_bodies_are_sound(network, substep->h);
     const bool is_last = !may_halve && (is_sound || n->holding == MSPRINGI_HOLD_AFTER);
-    if (!watches || ((is_sound || is_last) &&
+    const bool is_thrown = may_halve && mspringi_bodies_are_thrown(network, substep->h);
+    if (!watches || ((is_sound || is_last) && !is_thrown &&
                      mspringi_budget_close(network, substep->h, substep->base, may_halve))) {
         mspringi_grips_pass(network, substep->h);
         mspringi_bodies_pass(network, substep->h);

@@ -80,6 +80,8 @@ void mspringi_bodies_hand_on(mspring_network *network, float h);
 void mspringi_bodies_mend(const mspring_network *network, float h);
 /// Whether contact only pushed, and gave no energy.
 bool mspringi_bodies_are_sound(const mspring_network *network, float h);
+/// Whether springs have thrown something together that had no row.
+bool mspringi_bodies_are_thrown(const mspring_network *network, float h);
 /// Once it has been taken for good: count what was given; and what particles got that fly past the floor since.
 void mspringi_bodies_pass(mspring_network *network, float h);
 void mspringi_bodies_fly(const mspring_network *network);
