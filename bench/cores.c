@@ -13,9 +13,14 @@
 #include "modes.h"
 #include "solvers/explicit/explicit.h"
 #include "solvers/explicit/shares.h"
+#include "solvers/explicit/stint.h"
 
 /// Time until a worker sees what another one said, s.
 #define MESSAGE 0.27e-6
+
+/// Time of a run of independent tasks by threads that spin, besides the tasks, s: to call them, and to hear of the
+/// last.
+#define RUN 1e-6
 
 /// What a block of a border takes in a substep, in units of weight: HALO_WEIGHT of shares.c.
 #define BORDER_WEIGHT 12.0
@@ -38,6 +43,9 @@ static const bench_column columns[] = {
     {"waits", "waits %", 7},
     {"gain_simulated", "gain, simulated", 15},
     {"gain_measured", "gain, measured", 14},
+    {"tasks_used", "tasks, used", 11},
+    {"tasks_substeps", "tasks, substeps", 15},
+    {"tasks_gain", "tasks, gain", 11},
 };
 
 #define COLUMN_COUNT ((int)(sizeof columns / sizeof *columns))
@@ -108,6 +116,39 @@ static void simulate(simulation *s) {
     }
 }
 
+// Time of a strip range in a substep.
+static double time_of(const simulation *s, uint32_t begin, uint32_t end) {
+    return s->unit * (double)(s->weights[end] - s->weights[begin]);
+}
+
+// The longest task of each run, one run after the other. What both ends of the strips leave is one task's.
+static double simulate_tasks(const simulation *s) {
+    const mspringi_shares *all = s->shares;
+    double step = 0.0;
+    for (uint32_t pass = 0; pass * all->group < all->count; pass++) {
+        const uint32_t count = mspringi_shares_substeps(all, pass);
+        double tile = 0.0, border = 0.0;
+        for (uint32_t share = 0; share < all->workers; share++) {
+            mspringi_stint upright = {.shares = all, .share = share, .pass = pass};
+            mspringi_stint left = {.shares = all, .share = share, .pass = pass, .is_border = true};
+            mspringi_stint top = {.shares = all, .share = all->workers, .pass = pass, .is_border = true};
+            double first = 0.0, second = 0.0;
+            mspringi_stint_begin(&upright);
+            mspringi_stint_begin(&left);
+            mspringi_stint_begin(&top);
+            for (uint32_t i = 0; i < count; i++) {
+                first += time_of(s, upright.begin[i], upright.end[i]) + s->halo;
+                second += time_of(s, left.begin[i], left.end[i]) + s->halo;
+                second += share == 0 ? time_of(s, top.begin[i], top.end[i]) : 0.0;
+            }
+            tile = later(tile, first);
+            border = later(border, second);
+        }
+        step += tile + border + 2.0 * RUN;
+    }
+    return step;
+}
+
 /// What one worker takes.
 typedef struct single {
     double step, fixed; ///< s of a step; of that besides its substeps
@@ -123,7 +164,7 @@ static void MSPRING_CALL run_in_turn(uint32_t count, mspring_task_fn fn, void *a
 
 // A network that thinks it has so many workers. It is never stepped.
 static mspring_network *imagine(const bench_scene *subject, mspring_simd level, uint32_t workers,
-                                uint32_t substeps) {
+                                uint32_t concurrent, uint32_t substeps) {
     mspring_network_def def;
     mspring_tasks tasks;
     mspring_network *network = NULL;
@@ -131,7 +172,8 @@ static mspring_network *imagine(const bench_scene *subject, mspring_simd level, 
         mspring_tasks_init(&tasks, sizeof tasks) != MSPRING_OK) {
         return NULL;
     }
-    tasks.worker_count = tasks.concurrent_count = workers;
+    tasks.worker_count = workers;
+    tasks.concurrent_count = concurrent;
     tasks.run = run_in_turn;
     def.tasks = &tasks;
     def.simd_level = level;
@@ -139,8 +181,14 @@ static mspring_network *imagine(const bench_scene *subject, mspring_simd level, 
     return mspring_network_create(subject->made.builder, &def, &network) == MSPRING_OK ? network : NULL;
 }
 
+/// The same workers as independent tasks.
+typedef struct tasks_row {
+    uint32_t used, group;
+    double gain;
+} tasks_row;
+
 static void print_row(const bench_options *options, const char *label, const mspring_network *network,
-                      const simulation *s, uint32_t workers, const single *one) {
+                      const simulation *s, uint32_t workers, const single *one, const tasks_row *tasks) {
     const mspringi_shares *all = s->shares;
     double most = 0.0, sum = 0.0, end = 0.0;
     for (uint32_t i = 0; i < all->workers; i++) {
@@ -162,32 +210,60 @@ static void print_row(const bench_options *options, const char *label, const msp
         bench_cell_of("%.1f", 100.0 * (1.0 - sum / (all->workers * end))),
         bench_cell_of("%.2f", one->step / step),
         workers == 2 ? bench_cell_of("%.2f", one->two) : bench_cell_of("%s", ""),
+        bench_cell_of("%u", tasks->used),
+        bench_cell_of("%u", tasks->group),
+        bench_cell_of("%.2f", tasks->gain),
     };
     bench_table_row(options->format, columns, COLUMN_COUNT, cells);
 }
 
+// The time of a unit of weight, and of a border.
+static void scale(simulation *s, const mspring_network *network, const mspringi_shares *shares, const single *one) {
+    s->shares = shares;
+    s->weights = network->halos.weights;
+    s->unit = (one->step - one->fixed) / ((double)s->weights[shares->strips] * shares->count);
+    s->halo = s->unit * BORDER_WEIGHT * network->topology.carry_blocks;
+}
+
+static bool tasks_of(const bench_scene *subject, mspring_simd level, uint32_t workers, uint32_t substeps,
+                     const single *one, tasks_row *row) {
+    mspring_network *network = imagine(subject, level, workers, 1, substeps);
+    simulation *s = calloc(1, sizeof *s);
+    const bool ok = network != NULL && s != NULL;
+    if (ok) {
+        const mspringi_shares shares = mspringi_shares_plan(network, NULL, substeps, network->depth);
+        *row = (tasks_row){.used = shares.workers, .group = shares.group, .gain = 1.0};
+        if (shares.workers > 1) {
+            scale(s, network, &shares, one);
+            row->gain = one->step / (one->fixed + simulate_tasks(s));
+        }
+    }
+    free(s);
+    mspring_network_destroy(network);
+    return ok;
+}
+
 static bool row_of(const bench_scene *subject, const bench_options *options, mspring_simd level, uint32_t workers,
                    uint32_t substeps, const single *one, uint32_t *used) {
-    mspring_network *network = imagine(subject, level, workers, substeps);
+    mspring_network *network = imagine(subject, level, workers, workers, substeps);
     if (!network) {
         return false;
     }
     const mspringi_shares shares = mspringi_shares_plan(network, NULL, substeps, network->depth);
     simulation *s = calloc(1, sizeof *s);
-    const bool ok = s != NULL && shares.group <= MOST_SUBSTEPS;
+    tasks_row tasks;
+    const bool ok =
+        s != NULL && shares.group <= MOST_SUBSTEPS && tasks_of(subject, level, workers, substeps, one, &tasks);
     *used = shares.workers;
     if (ok && shares.workers == 1) {
         s->shares = &shares;
         s->now[0] = s->work[0] = one->step;
     } else if (ok) {
-        s->shares = &shares;
-        s->weights = network->halos.weights;
-        s->unit = (one->step - one->fixed) / ((double)s->weights[shares.strips] * substeps);
-        s->halo = s->unit * BORDER_WEIGHT * network->topology.carry_blocks;
+        scale(s, network, &shares, one);
         simulate(s);
     }
     if (ok) {
-        print_row(options, subject->label, network, s, workers, one);
+        print_row(options, subject->label, network, s, workers, one, &tasks);
     }
     free(s);
     mspring_network_destroy(network);

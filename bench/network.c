@@ -115,13 +115,8 @@ static bool run(void *self, uint32_t steps, scene_error *error) {
     return true;
 }
 
-bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
-                          bench_network *out, scene_error *error) {
-    return bench_network_create_with(builder, level, workers, substeps, 0, out, error);
-}
-
-bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
-                               uint32_t flags, bench_network *out, scene_error *error) {
+static bool create(mspring_builder *builder, mspring_simd level, const mspring_network_def *with, uint32_t substeps,
+                   bench_network *out, scene_error *error) {
     mspring_network_def def;
     mspring_result result = mspring_network_def_init(&def, sizeof def);
     if (result != MSPRING_OK) {
@@ -129,9 +124,10 @@ bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uin
         return false;
     }
     def.simd_level = level;
-    def.worker_count = workers;
+    def.worker_count = with->worker_count;
+    def.tasks = with->tasks;
     def.substeps = substeps;
-    def.flags = flags;
+    def.flags = with->flags;
     def.guard = MSPRING_GUARD_GROWTH;
     def.global_damping = BENCH_GLOBAL_DAMPING;
 
@@ -163,6 +159,22 @@ bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uin
     }
     *out = network;
     return true;
+}
+
+bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
+                          bench_network *out, scene_error *error) {
+    return bench_network_create_with(builder, level, workers, substeps, 0, out, error);
+}
+
+bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
+                               uint32_t flags, bench_network *out, scene_error *error) {
+    return create(builder, level, &(mspring_network_def){.worker_count = workers, .flags = flags}, substeps, out,
+                  error);
+}
+
+bool bench_network_create_on(mspring_builder *builder, mspring_simd level, const mspring_tasks *tasks,
+                             uint32_t substeps, bench_network *out, scene_error *error) {
+    return create(builder, level, &(mspring_network_def){.worker_count = 1, .tasks = tasks}, substeps, out, error);
 }
 
 void bench_network_free(bench_network *network) {

@@ -37,6 +37,9 @@ bool bench_network_create(mspring_builder *builder, mspring_simd level, uint32_t
 /// The same with bits of MSPRING_NETWORK_.
 bool bench_network_create_with(mspring_builder *builder, mspring_simd level, uint32_t workers, uint32_t substeps,
                                uint32_t flags, bench_network *out, scene_error *error);
+/// The same with threads of a host.
+bool bench_network_create_on(mspring_builder *builder, mspring_simd level, const mspring_tasks *tasks,
+                             uint32_t substeps, bench_network *out, scene_error *error);
 void bench_network_free(bench_network *network);
 
 /// From now on, give every particle a force before every step.

@@ -1,7 +1,8 @@
 /// @file workers.c
-/// What workers gain: one network that several of them step, in turn with the same network stepped by one, and with
-/// as many networks apart, each stepped by a thread of its own. The last is what the machine has to give at that
-/// moment: where others use its cores, workers can't be faster than threads that share nothing.
+/// What workers gain: one network that several of them step, in turn with the same network stepped by one, with
+/// the same stepped by independent tasks of a host, and with as many networks apart, each stepped by a thread of
+/// its own. The last is what the machine has to give at that moment: where others use its cores, workers can't be
+/// faster than threads that share nothing.
 ///
 /// SPDX-License-Identifier: MIT
 #include <pthread.h>
@@ -11,6 +12,7 @@
 #include <massspring/massspring_tools.h>
 
 #include "modes.h"
+#include "tasks/pool.h"
 
 static const char *const default_scenes[] = {"bar_80x5",      "grid_48x48",   "grid_64x64",
                                              "grid_96x96",    "bar_544x68",   "ship",
@@ -28,6 +30,9 @@ static const bench_column columns[] = {
     {"gain_apart_median", "apart, median", 13},
     {"gain_apart_best", "apart, best", 11},
     {"gain_over_apart_median", "gain/apart", 10},
+    {"gain_tasks_median", "tasks, median", 13},
+    {"gain_tasks_best", "tasks, best", 11},
+    {"tasks_over_gain_median", "tasks/gain", 10},
 };
 
 #define COLUMN_COUNT ((int)(sizeof columns / sizeof *columns))
@@ -113,23 +118,53 @@ static bool create_apart(mspring_builder *builder, mspring_simd level, uint32_t 
     return true;
 }
 
-/// The three of them.
+/// A host that promises independent tasks only, with threads that look for work for a while before they sleep.
+typedef struct host {
+    mspringi_memory memory;
+    mspringi_message message;
+    mspringi_pool *pool;
+    mspring_tasks tasks;
+} host;
+
+static void MSPRING_CALL run_tasks(uint32_t count, mspring_task_fn fn, void *argument, void *user) {
+    mspringi_pool_run(((host *)user)->pool, count, fn, argument);
+}
+
+static bool create_host(uint32_t workers, host *out, scene_error *error) {
+    if (mspring_tasks_init(&out->tasks, sizeof out->tasks) != MSPRING_OK ||
+        mspringi_memory_init(&out->memory, NULL, &out->message) != MSPRING_OK ||
+        mspringi_pool_create(workers, &out->memory, &out->message, &out->pool) != MSPRING_OK) {
+        snprintf(error->text, sizeof error->text, "no threads for %u workers", workers);
+        return false;
+    }
+    out->tasks.worker_count = workers;
+    out->tasks.run = run_tasks;
+    out->tasks.user = out;
+    return true;
+}
+
+/// The four of them.
 typedef struct contest {
-    bench_network one, shared;
+    bench_network one, shared, independent;
     apart apart;
+    host host;
     double one_median;
     double gain_median, gain_best, apart_median, apart_best, of_apart;
+    double tasks_median, tasks_best, of_gain;
 } contest;
 
 /// Pair by pair: what is compared is measured in turn.
 static bool measure(contest *c, uint32_t repeat, scene_error *error) {
     const bench_runner one = bench_network_runner(&c->one), shared = bench_network_runner(&c->shared);
+    const bench_runner independent = bench_network_runner(&c->independent);
     const bench_runner lanes = {.self = &c->apart, .reset = reset_apart, .run = run_apart};
     const double count = c->apart.count;
-    bench_turns gain, machine, share;
+    bench_turns gain, machine, share, tasks, loss;
     if (!bench_turns_measure(&one, &shared, repeat, &gain, error) ||
         !bench_turns_measure(&one, &lanes, repeat, &machine, error) ||
-        !bench_turns_measure(&shared, &lanes, repeat, &share, error)) {
+        !bench_turns_measure(&shared, &lanes, repeat, &share, error) ||
+        !bench_turns_measure(&one, &independent, repeat, &tasks, error) ||
+        !bench_turns_measure(&shared, &independent, repeat, &loss, error)) {
         return false;
     }
     c->one_median = gain.first_median;
@@ -138,6 +173,9 @@ static bool measure(contest *c, uint32_t repeat, scene_error *error) {
     c->apart_median = count / machine.ratio_median;
     c->apart_best = count * machine.first_min / machine.second_min;
     c->of_apart = share.ratio_median / count;
+    c->tasks_median = 1.0 / tasks.ratio_median;
+    c->tasks_best = tasks.first_min / tasks.second_min;
+    c->of_gain = 1.0 / loss.ratio_median;
     return true;
 }
 
@@ -154,6 +192,9 @@ static void print_row(const bench_options *options, const bench_scene *subject, 
         bench_cell_of("%.2f", c->apart_median),
         bench_cell_of("%.2f", c->apart_best),
         bench_cell_of("%.2f", c->of_apart),
+        bench_cell_of("%.2f", c->tasks_median),
+        bench_cell_of("%.2f", c->tasks_best),
+        bench_cell_of("%.2f", c->of_gain),
     };
     bench_table_row(options->format, columns, COLUMN_COUNT, cells);
 }
@@ -168,14 +209,19 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     scene_error error;
     bool ok = bench_network_create(builder, level, 1, substeps, &c.one, &error) &&
               bench_network_create(builder, level, workers, substeps, &c.shared, &error) &&
+              create_host(workers, &c.host, &error) &&
+              bench_network_create_on(builder, level, &c.host.tasks, substeps, &c.independent, &error) &&
               create_apart(builder, level, substeps, workers, &c.apart, &error) && measure(&c, repeat, &error) &&
-              bench_network_check(&c.one, &error) && bench_network_check(&c.shared, &error);
+              bench_network_check(&c.one, &error) && bench_network_check(&c.shared, &error) &&
+              bench_network_check(&c.independent, &error);
     if (ok) {
         print_row(options, subject, &c);
     } else {
         bench_complain(subject->label, &error);
     }
     free_apart(&c.apart);
+    bench_network_free(&c.independent);
+    mspringi_pool_destroy(c.host.pool, &c.host.memory);
     bench_network_free(&c.shared);
     bench_network_free(&c.one);
     return ok;

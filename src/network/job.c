@@ -106,7 +106,7 @@ static bool copy_all(mspring_job *job, const mspring_network *network) {
     job->to.whole = (mspringi_topology){0};
     job->from = job->to;
     job->from.rests = network->rests;
-    job->workers = mspringi_tasks_concurrency(network->tasks);
+    job->workers = mspringi_tasks_shares(network->tasks);
     job->links = network->edits.links;
     job->growth = network->edits.growth;
     job->is_needless = is_whole ? !network->is_compact : is_seen_compact(network);

@@ -110,8 +110,7 @@ void mspringi_field_clear(const mspring_network *network, mspringi_field field) 
 }
 
 mspring_result mspringi_carry_reserve(mspring_network *network) {
-    const uint32_t rows =
-        mspringi_explicit_carries(&network->topology, network->depth) * mspringi_tasks_concurrency(network->tasks);
+    const uint32_t rows = mspringi_explicit_carries(network) * mspringi_tasks_shares(network->tasks);
     if (network->carry && network->carry_rows >= rows)
         return mspringi_halos_reserve(network);
     const size_t values = (size_t)2 * rows * network->topology.carry_blocks * MSPRINGI_WIDTH;
@@ -268,10 +267,9 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
-        result = mspringi_topology_create(&network->topology, builder, &reserve,
-                                          has_herds ? MSPRINGI_HERDS_OF_COPIES : MSPRINGI_NO_HERDS,
-                                          mspringi_tasks_concurrency(network->tasks), network->kernels->lanes,
-                                          &network->memory, &network->message);
+        result = mspringi_topology_create(
+            &network->topology, builder, &reserve, has_herds ? MSPRINGI_HERDS_OF_COPIES : MSPRINGI_NO_HERDS,
+            mspringi_tasks_shares(network->tasks), network->kernels->lanes, &network->memory, &network->message);
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level == MSPRING_SIMD_AUTO)

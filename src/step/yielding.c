@@ -212,7 +212,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     p->hit_count = 0;
     p->substep = 0;
     p->is_swept = attempt->solver->ops->has_border;
-    p->maps = p->is_swept && (p->was_warm || mspringi_tasks_concurrency(network->tasks) == 1);
+    p->maps = p->is_swept && (p->was_warm || mspringi_tasks_shares(network->tasks) == 1);
     p->web_yields = p->is_swept && does_web_yield(network);
     memset(p->warmth, 0, network->topology.strip_count);
 }

@@ -112,6 +112,14 @@ uint32_t mspringi_tasks_concurrency(const mspringi_tasks *tasks) {
     return tasks ? tasks->concurrency : 1;
 }
 
+bool mspringi_tasks_are_independent(const mspringi_tasks *tasks) {
+    return tasks && tasks->concurrency == 1;
+}
+
+uint32_t mspringi_tasks_shares(const mspringi_tasks *tasks) {
+    return mspringi_tasks_are_independent(tasks) ? tasks->worker_count : mspringi_tasks_concurrency(tasks);
+}
+
 mspringi_progress *mspringi_tasks_progress(mspringi_tasks *tasks) {
     return tasks ? tasks->counters : NULL;
 }

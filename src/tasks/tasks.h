@@ -39,6 +39,13 @@ uint32_t mspringi_tasks_workers(const mspringi_tasks *tasks);
 /// How many bodies of one run are sure to run at the same time, 1 to the number of workers.
 uint32_t mspringi_tasks_concurrency(const mspringi_tasks *tasks);
 
+/// Whether there are several workers, and no body may wait for another one.
+bool mspringi_tasks_are_independent(const mspringi_tasks *tasks);
+
+/// How many shares to divide work into that can be done either way: the workers of independent bodies, else those
+/// that are sure to run at the same time.
+uint32_t mspringi_tasks_shares(const mspringi_tasks *tasks);
+
 /// Run fn(argument, index, worker) for every index below count, in the floating-point environment of a step, and
 /// return when all are done: what they have written is seen by the caller, and what the caller has written before,
 /// by them. Must not be called from a body.

@@ -27,6 +27,14 @@ static void run_in_reverse(uint32_t count, mspring_task_fn fn, void *argument, v
     }
 }
 
+static void run_from_both_ends(uint32_t count, mspring_task_fn fn, void *argument, void *user) {
+    host *self = user;
+    self->runs++;
+    for (uint32_t i = 0; i < count; i++) {
+        fn(argument, i % 2 == 0 ? i / 2 : count - 1 - i / 2, 0);
+    }
+}
+
 typedef struct chunk {
     mspring_task_fn fn;
     void *argument;
@@ -99,6 +107,7 @@ void hosts_fill(host hosts[HOST_COUNT], uint32_t worker_count) {
         int at_once;
     } kinds[HOST_COUNT] = {{"in order", run_in_order, 0},
                            {"in reverse", run_in_reverse, 0},
+                           {"from both ends", run_from_both_ends, 0},
                            {"in chunks", run_in_chunks, 0},
                            {"on threads", run_on_threads, 1},
                            {"on flushing threads", run_on_flushing_threads, 1}};

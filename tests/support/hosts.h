@@ -15,10 +15,10 @@ typedef struct host {
     uint32_t runs; ///< calls of tasks.run
 } host;
 
-enum { HOST_COUNT = 5 };
+enum { HOST_COUNT = 6 };
 
-/// The hosts, with worker_count workers each: in order and in reverse on the caller's thread, each worker number in
-/// turn; in chunks on two threads; each body on a new thread; each body on a new thread that flushes denormal
+/// The hosts, with worker_count workers each: in order, in reverse and from both ends on the caller's thread; in
+/// chunks on two threads; each body on a new thread; each body on a new thread that flushes denormal
 /// numbers to zero (where that can be had). The last two run all bodies at the same time.
 void hosts_fill(host hosts[HOST_COUNT], uint32_t worker_count);
 

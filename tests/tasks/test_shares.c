@@ -5,17 +5,48 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "hosts.h"
 #include "recipe.h"
 #include "store/network.h"
 #include "support.h"
 
-static const uint32_t worker_counts[] = {2, 3, 5, 8};
+/// Workers: the library's own, which may wait for each other, or independent bodies of a host.
+typedef struct team {
+    uint32_t count;
+    int host; ///< of hosts_fill(), or OWN
+} team;
+
+enum { OWN = -1, IN_ORDER, IN_REVERSE, FROM_BOTH_ENDS, IN_CHUNKS, ON_THREADS };
+
+static const team alone = {1, OWN};
+static const team teams[] = {{2, OWN},        {3, OWN},        {5, OWN},      {8, OWN},
+                             {3, ON_THREADS}, {2, IN_REVERSE}, {3, IN_ORDER}, {7, FROM_BOTH_ENDS},
+                             {7, IN_CHUNKS}};
+
+/// Those on one thread have no races.
+#ifdef __SANITIZE_THREAD__
+enum { TEAM_COUNT = 5 };
+#else
+enum { TEAM_COUNT = COUNT_OF(teams) };
+#endif
+
+static host hosts[HOST_COUNT];
+
+static void enlist(mspring_network_def *def, const team *who) {
+    if (who->host == OWN) {
+        def->worker_count = who->count;
+        return;
+    }
+    hosts_fill(hosts, who->count);
+    hosts[who->host].tasks.concurrent_count = 1;
+    def->tasks = &hosts[who->host].tasks;
+}
 
 /// How a lattice is stepped.
 typedef struct way {
     const char *name;
     uint32_t substeps, period; ///< of a hook after substeps; 0: none
-    bool undamped, held, ropes, wide, whole;
+    bool undamped, held, ropes, wide, whole, high, floor, yields;
 } way;
 
 static const way ways[] = {
@@ -27,6 +58,8 @@ static const way ways[] = {
     {.name = "hook after every third", .substeps = 11, .period = 3, .ropes = true, .held = true},
     {.name = "with ropes, no holes", .substeps = 20, .ropes = true, .whole = true},
     {.name = "few long rows", .substeps = 12, .wide = true},
+    {.name = "with ropes, on a floor", .substeps = 20, .ropes = true, .high = true, .floor = true},
+    {.name = "springs that yield", .substeps = 20, .yields = true},
 };
 
 static recipe lattice(const way *w) {
@@ -38,7 +71,7 @@ static recipe lattice(const way *w) {
                                 .holes = w->whole ? 0 : 0.15};
     recipe made = {0};
     const uint32_t width = w->wide ? 1500 : 90;
-    recipe_lattice(&made, width, w->wide ? 16 : 200, 0, 0, 1, &stuff, &seed);
+    recipe_lattice(&made, width, w->wide ? 16 : w->high ? 400 : 200, 0, 0, 1, &stuff, &seed);
     // Ropes between neighbouring rows: some strips away, so that passes stay deep.
     for (mspring_id p = 40; w->ropes && p < 15000; p += 1111)
         recipe_rope(&made, p, p + 3 * width, 9, &stuff, &seed);
@@ -50,11 +83,33 @@ static void hook(const mspring_hook_args *args, void *user) {
     (void)args, (void)user;
 }
 
-static uint64_t run(const recipe *made, const way *w, uint32_t worker_count) {
+/// Where the lowest rows come to it.
+static void lay_floor(mspring_network *network) {
+    const double plane[4] = {0, 0.5, 0.1, 1};
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.plane_count = 1;
+    floor.planes = plane;
+    floor.friction = 0.3f;
+    check_ok(mspring_network_set_floor(network, &floor));
+}
+
+/// In the first step springs are not warm yet, so workers share it; later ones yield.
+static void make_soft(mspring_network *network) {
+    const float strain = 0.3f;
+    for (mspring_id s = 0; s < mspring_network_spring_count(network); s++)
+        check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, s, 1, &strain, 1));
+}
+
+static uint64_t run(const recipe *made, const way *w, const team *who) {
     mspring_network_def def = support_def(-9.8f, ROUNDS(w->substeps));
-    def.worker_count = worker_count;
+    enlist(&def, who);
     mspring_network *network = recipe_network(made, &def);
-    assert_int_equal(network->halos.count > 0, worker_count > 1);
+    assert_int_equal(network->halos.count > 0, who->count > 1);
+    if (w->floor)
+        lay_floor(network);
+    if (w->yields)
+        make_soft(network);
     if (w->period > 0) {
         mspring_hook_def hooked;
         check_ok(mspring_hook_def_init(&hooked, sizeof hooked));
@@ -78,10 +133,11 @@ static void any_division_gives_the_same_bits(void **state) {
     (void)state;
     for (size_t i = 0; i < COUNT_OF(ways); i++) {
         recipe made = lattice(&ways[i]);
-        const uint64_t expected = run(&made, &ways[i], 1);
-        for (size_t w = 0; w < COUNT_OF(worker_counts); w++)
-            if (run(&made, &ways[i], worker_counts[w]) != expected)
-                fail_msg("%s: other bits with %u workers", ways[i].name, (unsigned)worker_counts[w]);
+        const uint64_t expected = run(&made, &ways[i], &alone);
+        for (size_t t = 0; t < TEAM_COUNT; t++)
+            if (run(&made, &ways[i], &teams[t]) != expected)
+                fail_msg("%s: other bits with %u workers of host %d", ways[i].name, (unsigned)teams[t].count,
+                         teams[t].host);
         recipe_free(&made);
     }
 }
@@ -91,13 +147,17 @@ static void any_division_gives_the_same_bits(void **state) {
 static void heavy_strips_are_shared_by_weight(void **state) {
     (void)state;
     static const struct {
-        uint32_t way, workers, used;
-    } cases[] = {{0, 1, 1}, {0, 2, 2}, {0, 8, 8}, {3, 8, 2}, {6, 1, 1}, {6, 2, 2}, {6, 8, 3}};
+        uint32_t way;
+        team team;
+        uint32_t used;
+    } cases[] = {{0, {1, OWN}, 1},      {0, {2, OWN}, 2},      {0, {8, OWN}, 8},      {3, {8, OWN}, 2},
+                 {6, {1, OWN}, 1},      {6, {2, OWN}, 2},      {6, {8, OWN}, 3},      {0, {2, IN_ORDER}, 2},
+                 {0, {7, IN_ORDER}, 7}, {6, {2, IN_ORDER}, 2}, {6, {8, IN_ORDER}, 2}, {8, {8, IN_ORDER}, 3}};
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         recipe made = lattice(&ways[cases[i].way]);
         mspring_network_def def = support_def(-9.8f, 40);
         mspring_plan plan = {.struct_size = sizeof plan};
-        def.worker_count = cases[i].workers;
+        enlist(&def, &cases[i].team);
         mspring_network *network = recipe_network(&made, &def);
         check_ok(mspring_network_get_plan(network, &plan));
         assert_int_equal(plan.pass_workers, cases[i].used);
@@ -108,9 +168,9 @@ static void heavy_strips_are_shared_by_weight(void **state) {
 
 /// Have steps refused in which a particle is torn away, one in each fourth row, and go on. Returns what was said,
 /// and the state, in one number.
-static uint64_t run_refused(const recipe *made, uint32_t worker_count) {
+static uint64_t run_refused(const recipe *made, const team *who) {
     mspring_network_def def = support_def(-9.8f, 40);
-    def.worker_count = worker_count;
+    enlist(&def, who);
     mspring_network *network = recipe_network(made, &def);
     support_steps(network, 1, 0.01);
     const uint64_t before = support_hash(network);
@@ -135,26 +195,26 @@ static uint64_t run_refused(const recipe *made, uint32_t worker_count) {
 static void what_is_refused_is_taken_back(void **state) {
     (void)state;
     recipe made = lattice(&ways[0]);
-    const uint64_t expected = run_refused(&made, 1);
-    for (size_t w = 0; w < COUNT_OF(worker_counts); w++)
-        assert_int_equal(run_refused(&made, worker_counts[w]), expected);
+    const uint64_t expected = run_refused(&made, &alone);
+    for (size_t t = 0; t < TEAM_COUNT; t++)
+        assert_int_equal(run_refused(&made, &teams[t]), expected);
     recipe_free(&made);
 }
 
 /// Four squares in the same rows, of which two fall asleep.
-static uint64_t run_sleepers(uint32_t worker_count) {
+static uint64_t run_sleepers(const team *who) {
     uint64_t seed = 6, hash = 0;
     const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {200, 200}, .damping = {1, 1}};
     recipe made = {0};
     for (int i = 0; i < 4; i++)
         recipe_lattice(&made, 60, 60, 100 * i, 0, 1, &stuff, &seed);
     mspring_network_def def = support_def(0, 10);
-    def.worker_count = worker_count;
+    enlist(&def, who);
     def.sleep_speed = 1e-3f;
     def.sleep_time = 0.02f;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
-    assert_int_equal(network->halos.count > 0, worker_count > 1);
+    assert_int_equal(network->halos.count > 0, who->count > 1);
     support_kick(network, 30 * 60 + 30, 3);
     support_kick(network, 2 * 3600 + 59 * 60 + 7, 3);
     for (int step = 0; step < 8; step++) {
@@ -168,9 +228,9 @@ static uint64_t run_sleepers(uint32_t worker_count) {
 
 static void what_sleeps_beside_gives_the_same_bits(void **state) {
     (void)state;
-    const uint64_t expected = run_sleepers(1);
-    for (size_t w = 0; w < COUNT_OF(worker_counts); w++)
-        assert_int_equal(run_sleepers(worker_counts[w]), expected);
+    const uint64_t expected = run_sleepers(&alone);
+    for (size_t t = 0; t < TEAM_COUNT; t++)
+        assert_int_equal(run_sleepers(&teams[t]), expected);
 }
 
 enum { WIDE = 96, STILL = 60, ROWS = 60, NOTCH = 32, COUNT = WIDE * ROWS };
@@ -200,9 +260,9 @@ static void add_cells(mspring_builder *builder, const uint16_t *cells, uint32_t 
 }
 
 static mspring_network *make_sleepy(mspring_builder *builder, uint32_t substeps, float sleep_speed,
-                                    uint32_t worker_count) {
+                                    const team *who) {
     mspring_network_def settings = support_def(0, substeps);
-    settings.worker_count = worker_count;
+    enlist(&settings, who);
     settings.sleep_speed = sleep_speed;
     settings.sleep_time = 0.02f;
     mspring_network *network;
@@ -214,7 +274,7 @@ static mspring_network *make_sleepy(mspring_builder *builder, uint32_t substeps,
 /// A lattice with a wide notch, as far from the left as it is deep, so that runs of the row below or of the column
 /// at its left end and begin side by side where the notch does; and one at its right in the same rows. The
 /// positions of the first, which moves, after some steps. Returns whether workers have shared it.
-static bool run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_count, double *x, double *y) {
+static bool run_beside_sleeper(int depth, float sleep_speed, const team *who, double *x, double *y) {
     static uint16_t cells[ROWS][WIDE];
     static const uint16_t full[ROWS][STILL];
     const uint32_t count = COUNT - NOTCH * (uint32_t)depth;
@@ -227,7 +287,7 @@ static bool run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_cou
     add_cells(builder, cells[0], WIDE, 0);
     assert_int_equal(mspring_builder_particle_count(builder), count);
     add_cells(builder, full[0], STILL, 200);
-    mspring_network *network = make_sleepy(builder, SUBSTEPS_BESIDE_NOTCH, sleep_speed, worker_count);
+    mspring_network *network = make_sleepy(builder, SUBSTEPS_BESIDE_NOTCH, sleep_speed, who);
     for (mspring_id p = 0; p < count; p += 3)
         support_kick(network, p, 1 + (float)(p % 7));
     support_steps(network, 8, 0.01);
@@ -241,16 +301,17 @@ static bool run_beside_sleeper(int depth, float sleep_speed, uint32_t worker_cou
 static void what_sleeps_beside_a_notch_changes_nothing(void **state) {
     (void)state;
     static double x[COUNT], y[COUNT], expected_x[COUNT], expected_y[COUNT];
+    static const team few[] = {{1, OWN}, {2, OWN}, {3, OWN}, {2, IN_REVERSE}};
     uint32_t shared = 0;
     for (int depth = 12; depth < 50; depth += 4) { // at 12, 28 and 44 a block beside the notch is empty
-        run_beside_sleeper(depth, 0, 1, expected_x, expected_y);
-        for (uint32_t workers = 1; workers <= 3; workers++) {
-            shared += run_beside_sleeper(depth, 1e-3f, workers, x, y);
+        run_beside_sleeper(depth, 0, &alone, expected_x, expected_y);
+        for (size_t i = 0; i < COUNT_OF(few); i++) {
+            shared += run_beside_sleeper(depth, 1e-3f, &few[i], x, y);
             assert_memory_equal(x, expected_x, sizeof x);
             assert_memory_equal(y, expected_y, sizeof y);
         }
     }
-    assert_true(shared > 10);
+    assert_true(shared > 15);
 }
 
 enum { WHITE, BLACK, NEITHER };
@@ -286,7 +347,7 @@ static uint32_t quilt(uint64_t seed, uint8_t sides[ROWS][WIDE]) {
 
 /// A hash of the positions of the colour that moves, while the other one, which lies still but not unstrained, is
 /// asleep or not. Counts in shared whether workers have shared it.
-static uint64_t run_quilt(uint64_t seed, int mover, float sleep_speed, uint32_t worker_count, uint32_t *shared) {
+static uint64_t run_quilt(uint64_t seed, int mover, float sleep_speed, const team *who, uint32_t *shared) {
     static uint8_t sides[ROWS][WIDE];
     static uint16_t cells[ROWS][WIDE];
     static uint8_t side_of[COUNT];
@@ -303,7 +364,7 @@ static uint64_t run_quilt(uint64_t seed, int mover, float sleep_speed, uint32_t 
     check_ok(mspring_builder_create(NULL, &builder));
     add_cells(builder, cells[0], WIDE, 0);
     assert_int_equal(mspring_builder_particle_count(builder), count);
-    mspring_network *network = make_sleepy(builder, SUBSTEPS_OF_QUILT, sleep_speed, worker_count);
+    mspring_network *network = make_sleepy(builder, SUBSTEPS_OF_QUILT, sleep_speed, who);
     for (p = 0; p < count; p++)
         support_kick(network, p, side_of[p] == mover ? 1 + (float)(p % 7) : 2e-3f * (float)(p % 3));
     support_steps(network, 5, 0.01);
@@ -331,12 +392,40 @@ static void what_sleeps_in_between_changes_nothing(void **state) {
     const uint32_t quilts = ROUNDS(4);
     for (uint64_t seed = 1; seed <= quilts; seed++)
         for (int mover = WHITE; mover <= BLACK; mover++) {
-            const uint64_t expected = run_quilt(seed, mover, 0, 1, &shared);
-            assert_true(run_quilt(seed, mover, 1e-2f, 1, &shared) == expected);
-            for (size_t w = 0; w < COUNT_OF(worker_counts); w++)
-                assert_true(run_quilt(seed, mover, 1e-2f, worker_counts[w], &shared) == expected);
+            const uint64_t expected = run_quilt(seed, mover, 0, &alone, &shared);
+            assert_true(run_quilt(seed, mover, 1e-2f, &alone, &shared) == expected);
+            for (size_t t = 0; t < TEAM_COUNT; t++)
+                assert_true(run_quilt(seed, mover, 1e-2f, &teams[t], &shared) == expected);
         }
-    assert_true(shared > 4 * quilts); // of 8
+    assert_true(shared > TEAM_COUNT * quilts); // of twice as many
+}
+
+/// A clone may share what its network does by other tasks.
+static void clones_are_shared_in_their_own_way(void **state) {
+    (void)state;
+    static const team pairs[][2] = {
+        {{3, OWN}, {3, IN_REVERSE}}, {{3, IN_ORDER}, {3, OWN}}, {{2, OWN}, {7, IN_ORDER}}};
+    recipe made = lattice(&ways[0]);
+    for (size_t i = 0; i < COUNT_OF(pairs); i++) {
+        mspring_network_def def = support_def(-9.8f, 40), other = def;
+        mspring_clone_def into;
+        mspring_network *clone = NULL;
+        check_ok(mspring_clone_def_init(&into, sizeof into));
+        enlist(&def, &pairs[i][0]);
+        mspring_network *network = recipe_network(&made, &def);
+        support_steps(network, 1, 0.01);
+        enlist(&other, &pairs[i][1]);
+        into.worker_count = other.worker_count;
+        into.tasks = other.tasks;
+        check_ok(mspring_network_clone(network, &into, &clone));
+        support_steps(network, 2, 0.01);
+        support_steps(clone, 2, 0.01);
+        assert_true(has_used_halos(clone));
+        assert_int_equal(support_hash(clone), support_hash(network));
+        mspring_network_destroy(clone);
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
 }
 
 int main(void) {
@@ -347,6 +436,7 @@ int main(void) {
         cmocka_unit_test(what_sleeps_beside_gives_the_same_bits),
         cmocka_unit_test(what_sleeps_beside_a_notch_changes_nothing),
         cmocka_unit_test(what_sleeps_in_between_changes_nothing),
+        cmocka_unit_test(clones_are_shared_in_their_own_way),
     };
     return cmocka_run_group_tests_name("shares", tests, NULL, NULL);
 }

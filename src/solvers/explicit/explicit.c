@@ -9,6 +9,7 @@
 #include "solvers/explicit/halo.h"
 #include "solvers/explicit/herds.h"
 #include "solvers/explicit/shares.h"
+#include "solvers/explicit/stint.h"
 #include "solvers/explicit/strip.h"
 #include "store/alike.h"
 #include "tasks/team.h"
@@ -19,9 +20,6 @@
 #define NEAR_CACHE_BYTES ((size_t)1 << 20)
 #define FAR_CACHE_BYTES ((size_t)4 << 20)
 #define FEW_SUBSTEPS 4u
-
-/// Most substeps in one pass: each that is under way needs a carry row of its own.
-#define DEEPEST 16
 
 /// Springs of the web times substeps from which more than one worker is worth it.
 #define SMALLEST_SHARED_WEB 400000u
@@ -51,7 +49,7 @@ static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, 
         cache_bytes / (floats_per_slot * sizeof(float)) * (uint64_t)topology->lattice_rows / slots;
     const uint64_t strips = rows * topology->wavefront_strips / topology->wavefront_rows;
     const uint64_t depth = strips > topology->skew ? (strips - 1) / topology->skew : 1;
-    return (uint32_t)(depth < DEEPEST ? depth : DEEPEST);
+    return (uint32_t)(depth < MSPRINGI_DEEPEST_PASS ? depth : MSPRINGI_DEEPEST_PASS);
 }
 
 uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts) {
@@ -70,10 +68,10 @@ uint32_t mspringi_explicit_workers(const mspring_network *network) {
 
 // One more than are under way, so that the processor can begin the next substep of a small network before the last
 // row of this one is done.
-uint32_t mspringi_explicit_carries(const mspringi_topology *topology, uint32_t depth) {
-    const uint32_t enough =
-        topology->wavefront_strips == 0 ? 1 : (topology->wavefront_strips - 1) / topology->skew + 2;
-    return depth < enough ? depth : enough;
+uint32_t mspringi_explicit_carries(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t enough = t->wavefront_strips == 0 ? 1 : (t->wavefront_strips - 1) / t->skew + 2;
+    return network->depth < enough ? network->depth : enough;
 }
 
 // If the substeps are a whole step, have the first one keep the state and the last one look at it.
@@ -122,111 +120,57 @@ static void sweep_layer(const job *wavefront, const mspringi_substep *substep, u
         mspringi_flush_to_zero(network, span.first_slot, span.end_slot);
 }
 
-/// What one worker does in a pass.
-typedef struct turn {
-    const job *wavefront;
-    uint32_t share, pass;
-    uint32_t passed; ///< what the worker's counter is at when the pass begins
-    uint32_t above;  ///< where the counter of the worker above was last
-} turn;
-
-// The counter of a worker says in how many substeps of a pass it has left its lower border behind, and one more at
-// the end of the pass.
-static void say(const turn *t, uint32_t passed) {
-    if (t->wavefront->progress)
-        mspringi_progress_advance(&t->wavefront->progress[t->share], t->passed + passed);
-}
-
-// Wait for the worker above where it and this one read what the other writes: in the last strips of the share,
-// whose springs lead to the first ones above the border, or to what is read from there.
-static void wait_for_above(turn *t, uint32_t substep, uint32_t strip) {
-    const mspringi_shares *shares = &t->wavefront->shares;
-    const uint32_t passed = t->passed + substep + 1;
-    if (t->share + 1 < shares->workers && t->above < passed &&
-        strip + 2 * shares->skew >= mspringi_shares_end(shares, t->share, t->pass, substep))
-        t->above = mspringi_progress_wait(&t->wavefront->progress[t->share + 1], passed);
-}
-
-// Take a substep of the pass for a strip of the share.
-static void take_strip(turn *t, uint32_t number, const mspringi_substep *substep, uint32_t strip) {
-    const job *wavefront = t->wavefront;
-    const mspringi_shares *shares = &wavefront->shares;
-    const uint32_t begin = mspringi_shares_begin(shares, t->share, t->pass, number);
-    const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, number);
-    wait_for_above(t, number, strip);
+// Take a substep of the pass for a strip of the stint.
+static void take_strip(const job *wavefront, mspringi_stint *stint, uint32_t number,
+                       const mspringi_substep *substep, uint32_t strip) {
+    const mspring_network *network = wavefront->network;
+    const bool is_first = strip == stint->begin[number], is_last = strip + 1 == stint->end[number];
+    if (stint->progress)
+        mspringi_stint_wait_above(stint, number, strip);
     if (wavefront->web) {
         sweep_layer(wavefront, substep, strip);
     } else {
-        const mspringi_strip *here = &wavefront->network->topology.strips[strip];
-        const mspringi_halo below = {.border = t->share - 1, .substep = number};
-        const mspringi_halo above = {.border = t->share, .substep = number};
-        if (strip == begin && t->share > 0)
-            mspringi_halo_keep(wavefront->network, &below, substep, here);
-        sweep_strip(wavefront, substep, t->share, here, strip + 1 == end && end < shares->strips ? &above : NULL);
+        const mspringi_strip *here = &network->topology.strips[strip];
+        const mspringi_halo below = {is_first ? mspringi_stint_halo_below(stint, number) : MSPRING_NONE, number};
+        const mspringi_halo above = {is_last ? mspringi_stint_halo_above(stint, number) : MSPRING_NONE, number};
+        if (below.border != MSPRING_NONE)
+            mspringi_halo_keep(network, &below, substep, here);
+        sweep_strip(wavefront, substep, stint->body, here, above.border != MSPRING_NONE ? &above : NULL);
     }
-    if (t->share > 0 && strip + 1 == begin + shares->skew)
-        say(t, number + 1);
+    if (stint->share > 0 && strip + 1 == stint->begin[number] + stint->shares->skew)
+        mspringi_stint_say(stint, number + 1);
 }
 
 // Make one pass: several substeps over all strips of a share, each skew strips behind the one before, so that a
 // strip is in the cache for all of them. A strip's substep needs the one before of the strip itself, of the row
 // above, and of the other ends of leftover springs: all are done by then, and none is further.
-static void make_pass(turn *t) {
-    const job *wavefront = t->wavefront;
+static void make_pass(const job *wavefront, mspringi_stint *stint) {
     const mspring_network *network = wavefront->network;
-    const mspringi_shares *shares = &wavefront->shares;
-    const uint32_t count = mspringi_shares_substeps(shares, t->pass), skew = shares->skew;
-    const uint32_t carries = mspringi_explicit_carries(&network->topology, network->depth);
+    const uint32_t count = mspringi_shares_substeps(stint->shares, stint->pass), skew = stint->shares->skew;
+    const uint32_t carries = mspringi_explicit_carries(network);
+    const uint32_t first_carry = mspringi_stint_carries(stint) * carries;
     const mspringi_substep any =
         mspringi_substep_prepare(network, wavefront->h, wavefront->base, 0, wavefront->count, 0);
-    mspringi_substep substeps[DEEPEST];
+    mspringi_substep substeps[MSPRINGI_DEEPEST_PASS];
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
     for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t number = t->pass * shares->group + i;
+        const uint32_t number = stint->pass * stint->shares->group + i;
         substeps[i] = any;
         mspringi_substep_turn(network, &substeps[i], number, wavefront->count,
-                              wavefront->web ? 0 : t->share * carries + i % carries);
+                              wavefront->web ? 0 : first_carry + i % carries);
         mark_ends(wavefront, &substeps[i], number, watch);
     }
-    const uint32_t end = mspringi_shares_end(shares, t->share, t->pass, count - 1) + (count - 1) * skew;
-    for (uint32_t front = mspringi_shares_begin(shares, t->share, t->pass, 0); front < end; ++front)
+    mspringi_stint_begin(stint);
+    const uint32_t end = stint->end[count - 1] + (count - 1) * skew;
+    for (uint32_t front = stint->begin[0]; front < end; ++front)
         for (uint32_t i = 0; i < count && i * skew <= front; ++i) {
             const uint32_t strip = front - i * skew;
-            if (strip >= mspringi_shares_begin(shares, t->share, t->pass, i) &&
-                strip < mspringi_shares_end(shares, t->share, t->pass, i))
-                take_strip(t, i, &substeps[i], strip);
+            if (strip >= stint->begin[i] && strip < stint->end[i])
+                take_strip(wavefront, stint, i, &substeps[i], strip);
         }
     if (wavefront->all_extrema)
-        add_extrema(wavefront, t->share, network->kernels->extrema_of(watch));
-}
-
-// Whether a share comes in a pass to strips that another one, which is no neighbour, had in the pass before, or
-// reads beside. Where most strips sleep, borders move that far.
-static bool comes_to(const turn *t, uint32_t other) {
-    const mspringi_shares *shares = &t->wavefront->shares;
-    const uint32_t least = mspringi_shares_least(shares->skew),
-                   last = mspringi_shares_substeps(shares, t->pass) - 1;
-    return mspringi_shares_begin(shares, t->share, t->pass, 0) <
-               mspringi_shares_end(shares, other, t->pass - 1, shares->group - 1) + least &&
-           mspringi_shares_begin(shares, other, t->pass - 1, 0) <
-               mspringi_shares_end(shares, t->share, t->pass, last) + least;
-}
-
-// Before a pass, wait for the worker below to have done with the last one and, where the border above has gone up
-// so far that strips which nobody waits for any more were the other's, for the one above.
-static void wait_for_last(const turn *t) {
-    const mspringi_shares *shares = &t->wavefront->shares;
-    if (t->pass == 0)
-        return;
-    if (t->share > 0)
-        mspringi_progress_wait(&t->wavefront->progress[t->share - 1], t->passed);
-    if (t->share + 1 < shares->workers && mspringi_shares_end(shares, t->share, t->pass, 0) >
-                                              mspringi_shares_end(shares, t->share, t->pass - 1, shares->group - 1))
-        mspringi_progress_wait(&t->wavefront->progress[t->share + 1], t->passed);
-    for (uint32_t other = 0; other < shares->workers; ++other)
-        if ((other + 1 < t->share || other > t->share + 1) && comes_to(t, other))
-            mspringi_progress_wait(&t->wavefront->progress[other], t->passed);
+        add_extrema(wavefront, stint->body, network->kernels->extrema_of(watch));
 }
 
 // Make all passes over a share. What is computed, and in which order, is the same for any number of workers. The
@@ -234,20 +178,59 @@ static void wait_for_last(const turn *t) {
 static void take_share(void *argument, uint32_t index, uint32_t worker) {
     const job *wavefront = argument;
     const mspringi_shares *shares = &wavefront->shares;
-    turn t = {.wavefront = wavefront, .share = shares->workers - 1 - index};
+    mspringi_stint stint = {.shares = shares,
+                            .progress = wavefront->progress,
+                            .share = shares->workers - 1 - index,
+                            .body = shares->workers - 1 - index};
     (void)worker;
-    for (; t.pass * shares->group < shares->count; t.pass++, t.passed += shares->group + 1) {
-        wait_for_last(&t);
-        make_pass(&t);
-        say(&t, shares->group + 1);
+    for (; stint.pass * shares->group < shares->count; stint.pass++, stint.passed += shares->group + 1) {
+        mspringi_stint_wait_last(&stint);
+        make_pass(wavefront, &stint);
+        mspringi_stint_say(&stint, shares->group + 1);
     }
+}
+
+/// A pass in two runs of bodies that wait for nobody.
+typedef struct tiles {
+    const job *wavefront;
+    uint32_t pass;
+} tiles;
+
+static void take_tile(void *argument, uint32_t index, uint32_t worker) {
+    const tiles *of = argument;
+    mspringi_stint stint = {.shares = &of->wavefront->shares, .share = index, .body = index, .pass = of->pass};
+    (void)worker;
+    make_pass(of->wavefront, &stint);
+}
+
+static void take_border(void *argument, uint32_t index, uint32_t worker) {
+    const tiles *of = argument;
+    mspringi_stint stint = {.shares = &of->wavefront->shares,
+                            .share = index > 0 ? index : of->wavefront->shares.workers,
+                            .body = index,
+                            .pass = of->pass,
+                            .is_border = true};
+    (void)worker;
+    make_pass(of->wavefront, &stint);
+    if (index > 0)
+        return;
+    stint.share = 0;
+    make_pass(of->wavefront, &stint);
 }
 
 static void run_wavefront(job *wavefront) {
     const mspring_network *network = wavefront->network;
-    wavefront->progress = wavefront->shares.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
-    mspringi_tasks_run(wavefront->progress ? network->tasks : NULL, wavefront->shares.workers, take_share,
-                       wavefront);
+    const mspringi_shares *shares = &wavefront->shares;
+    mspringi_tasks *tasks = shares->workers > 1 ? network->tasks : NULL;
+    if (!shares->are_independent) {
+        wavefront->progress = mspringi_tasks_progress(tasks);
+        mspringi_tasks_run(tasks, shares->workers, take_share, wavefront);
+        return;
+    }
+    for (tiles of = {.wavefront = wavefront}; of.pass * shares->group < shares->count; ++of.pass) {
+        mspringi_tasks_run(tasks, shares->workers, take_tile, &of);
+        mspringi_tasks_run(tasks, shares->workers, take_border, &of);
+    }
 }
 
 // Pack what the first substep sees of the web's nodes.
@@ -294,7 +277,7 @@ static uint32_t web_depth_within(const job *wavefront, size_t cache_bytes) {
     const uint64_t floats =
         rungs * parts + (uint64_t)groups * (MSPRINGI_STATE_ARRAYS + 1 + 2 * 4); // state, inverse mass, packed twice
     const uint64_t layers = cache_bytes * t->layer_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
-    return layers < 3 ? 1 : layers - 2 < DEEPEST ? (uint32_t)layers - 2 : DEEPEST;
+    return layers < 3 ? 1 : layers - 2 < MSPRINGI_DEEPEST_PASS ? (uint32_t)layers - 2 : MSPRINGI_DEEPEST_PASS;
 }
 
 // Sweep the web row in layers, if it has them and that is worth it: for several substeps, where a wavefront has
@@ -571,7 +554,7 @@ static void sweep_all(mspring_network *network, float h, mspringi_field base, ui
 
 mspringi_extrema mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     mspringi_extrema all_extrema[MSPRING_MAX_WORKERS];
-    const uint32_t workers = mspringi_tasks_concurrency(network->tasks);
+    const uint32_t workers = mspringi_tasks_shares(network->tasks);
     memset(all_extrema, 0, workers * sizeof *all_extrema);
     sweep_all(network, h, base, count, all_extrema);
     for (uint32_t worker = 1; worker < workers; ++worker)

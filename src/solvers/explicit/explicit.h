@@ -14,8 +14,8 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
 /// Workers that a step of as many substeps as the last one shares the lattice rows among.
 uint32_t mspringi_explicit_workers(const mspring_network *network);
 
-/// Carry rows for each worker in passes of that depth: enough for the substeps that are under way at a time.
-uint32_t mspringi_explicit_carries(const mspringi_topology *topology, uint32_t depth);
+/// Carry rows for each share: enough for the substeps that are under way at a time.
+uint32_t mspringi_explicit_carries(const mspring_network *network);
 
 /// After the last substep of a step: stop what creeps.
 void mspringi_explicit_end(mspring_network *network);

@@ -22,22 +22,24 @@ static uint32_t most_spans(const mspringi_topology *t) {
 
 static mspringi_halos plan_halos(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    const uint32_t concurrency = mspringi_tasks_concurrency(network->tasks);
+    const uint32_t shares = mspringi_tasks_shares(network->tasks);
     mspringi_halos halos = {.segment = ((size_t)t->carry_blocks + 1) * MSPRINGI_WIDTH};
-    if (concurrency == 1)
+    if (shares == 1)
         return halos;
     halos.substeps = network->depth;
-    halos.workers = concurrency;
+    halos.workers = shares;
     halos.row_spans = most_spans(t);
     const uint32_t most = t->wavefront_strips / mspringi_shares_least(t->skew);
-    halos.count = most < 2 ? 0 : (most < concurrency ? most : concurrency) - 1;
+    const uint32_t used = most < shares ? most : shares;
+    // Independent shares have one at the lower end, too.
+    halos.count = used < 2 ? 0 : mspringi_tasks_are_independent(network->tasks) ? used : used - 1;
     halos.strips = t->wavefront_strips > t->layer_count ? t->wavefront_strips : t->layer_count;
     return halos;
 }
 
 mspring_result mspringi_halos_reserve(mspring_network *network) {
     mspringi_halos *halos = &network->halos, planned = plan_halos(network);
-    if (planned.workers <= halos->workers)
+    if (planned.workers <= halos->workers && planned.count <= halos->count)
         return MSPRING_OK;
     mspringi_memory *memory = &network->memory;
     planned.values =

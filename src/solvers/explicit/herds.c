@@ -103,8 +103,8 @@ static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
     const uint32_t begin = (uint32_t)((uint64_t)row->span_count * index / herds->workers),
                    end = (uint32_t)((uint64_t)row->span_count * (index + 1) / herds->workers);
     // Each worker has a carry row of its own, which it leaves as it found it.
-    const mspringi_substep substep = mspringi_substep_prepare(network, herds->h, herds->base, 0, 1,
-                                                              index * mspringi_explicit_carries(t, network->depth));
+    const mspringi_substep substep =
+        mspringi_substep_prepare(network, herds->h, herds->base, 0, 1, index * mspringi_explicit_carries(network));
     (void)worker;
     for (const mspringi_span *span = spans + begin; span < spans + end; ++span)
         sweep_span(herds, &substep.sweep, span, index);
@@ -119,6 +119,6 @@ void mspringi_herds_sweep(mspring_network *network, float h, mspringi_field base
     if (mspringi_share_of_strip(network, &t->strips[t->herd_strip]) == MSPRINGI_ASLEEP)
         return;
     if ((uint64_t)t->herd_springs * count >= SMALLEST_SHARED_WORK)
-        herds.workers = mspringi_tasks_concurrency(network->tasks);
+        herds.workers = mspringi_tasks_shares(network->tasks);
     mspringi_tasks_run(herds.workers > 1 ? network->tasks : NULL, herds.workers, sweep_share, &herds);
 }

@@ -9,6 +9,10 @@
 #define SMALLEST_SHARED_WORK 400000u
 #define SMALLEST_SHARED_PASS 40000u
 
+/// Springs times substeps of a pass that each independent share should have, since a pass has two runs: a host
+/// takes some microseconds for each.
+#define SMALLEST_TILE 30000u
+
 /// Strips that each of several workers should have: a bar of 640 x 10, whose rows go from one to the other and back
 /// every third substep, was 1.3 times as fast with two as with one where both cores were there, and 0.65 times
 /// where the host took turns. Fewer strips are enough if they have more springs than this each, as those of
@@ -109,7 +113,9 @@ static void find_borders(const mspring_network *network, const mspringi_shares *
 // Equal passes, no longer than shares are high: the uppermost one is lowest in the last substep of a pass.
 static void plan_passes(mspringi_shares *shares, uint32_t depth) {
     const uint32_t least = mspringi_shares_least(shares->skew);
-    const uint32_t fits = 1 + (shares->strips / shares->workers - least) / shares->skew;
+    const uint32_t each = shares->strips / shares->workers;
+    const uint32_t fits =
+        shares->are_independent ? (each - 1) / (2 * shares->skew) : 1 + (each - least) / shares->skew;
     const uint32_t most = shares->workers == 1 || depth < fits ? depth : fits;
     const uint32_t passes = (shares->count + most - 1) / most;
     shares->group = (shares->count + passes - 1) / passes;
@@ -124,13 +130,18 @@ static uint32_t fewest_strips(uint32_t strips, uint32_t skew, uint64_t springs) 
     return fewest > least ? fewest : least;
 }
 
+static uint64_t least_work_of_pass(const mspringi_shares *shares) {
+    return shares->are_independent ? (uint64_t)SMALLEST_TILE * shares->workers : SMALLEST_SHARED_PASS;
+}
+
 mspringi_shares mspringi_shares_count(const mspring_network *network, const mspringi_strip *web, uint32_t count,
                                       uint32_t depth) {
     const mspringi_topology *t = &network->topology;
     mspringi_shares shares = {.strips = web ? t->layer_count : t->wavefront_strips,
                               .skew = web ? 1 : t->skew,
                               .count = count,
-                              .workers = mspringi_tasks_concurrency(network->tasks),
+                              .workers = mspringi_tasks_shares(network->tasks),
+                              .are_independent = mspringi_tasks_are_independent(network->tasks),
                               .borders = network->halos.borders};
     // Both workers at a border compute the forces there: a rest length must not change in between.
     if (!web && network->plastic.yields && network->plastic.maps)
@@ -143,11 +154,32 @@ mspringi_shares mspringi_shares_count(const mspring_network *network, const mspr
     if (springs * network->substeps < SMALLEST_SHARED_WORK || network->graft.count > 0)
         shares.workers = 1;
     plan_passes(&shares, depth);
-    if (springs * shares.group < SMALLEST_SHARED_PASS && shares.workers > 1) {
-        shares.workers = 1;
+    while (shares.workers > 1 && springs * shares.group < least_work_of_pass(&shares)) {
+        shares.workers = shares.are_independent ? shares.workers - 1 : 1;
         plan_passes(&shares, depth);
     }
+    shares.are_independent = shares.are_independent && shares.workers > 1;
     return shares;
+}
+
+/* ---------------------------------------------------------------------------------------- independent shares */
+
+// Find the borders of independent shares: each has its part of the weight, and strips left in the last substep of a
+// pass beside what grows around its borders.
+static void find_tiles(const mspring_network *network, const mspringi_shares *shares) {
+    const uint64_t *weights = network->halos.weights;
+    const uint32_t workers = shares->workers, least = 2 * shares->group * shares->skew + 1;
+    uint32_t *borders = shares->borders;
+    borders[0] = 0;
+    borders[workers] = shares->strips;
+    for (uint32_t share = 1; share < workers; ++share) {
+        const uint64_t wanted = weights[shares->strips] * share / workers;
+        const uint32_t last = shares->strips - (workers - share) * least;
+        uint32_t border = borders[share - 1] + least;
+        while (border < last && weights[border + 1] + weights[border] <= 2 * wanted)
+            border++;
+        borders[share] = border;
+    }
 }
 
 mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspringi_strip *web, uint32_t count,
@@ -157,6 +189,10 @@ mspringi_shares mspringi_shares_plan(const mspring_network *network, const mspri
     if (shares.workers == 1)
         return shares;
     weigh(network, web, shares.strips);
+    if (shares.are_independent) {
+        find_tiles(network, &shares);
+        return shares;
+    }
     const uint64_t halo = web ? 0 : (uint64_t)HALO_WEIGHT * network->topology.carry_blocks;
     for (uint32_t pass = 0; pass < MSPRINGI_PLANNED_PASSES && pass * shares.group < count; ++pass)
         find_borders(network, &shares, pass, halo, below);

@@ -5,11 +5,19 @@
 /// itself but for what it needs of its neighbours' shares at the borders, see halo.h. In a pass borders move up by
 /// the skew with each substep; before the next they go back.
 ///
+/// Bodies that may not wait for each other take a pass in two runs (split tiling: Grosser 2013). In the first one
+/// each share shrinks by the skew with each substep, at both of its sides. In the second one each body takes what
+/// has been left around a border, which grows. What is left at the lower and at the upper end is one body's, so
+/// that all runs have as many bodies as there are shares.
+///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SHARES_H
 #define MSPRINGI_SHARES_H
 
 #include "store/network.h"
+
+/// Most substeps in one pass: each that is under way needs a carry row of its own.
+#define MSPRINGI_DEEPEST_PASS 16u
 
 /// Passes that borders are found for; further ones have those of the first again, and so on.
 #define MSPRINGI_PLANNED_PASSES 16u
@@ -19,7 +27,9 @@ typedef struct mspringi_shares {
     uint32_t count;        ///< substeps
     uint32_t group;        ///< substeps in a pass; the last one may have fewer
     uint32_t workers;      ///< shares: share 0 is the lowest one
-    uint32_t *borders;     ///< [passes][workers] first strips of the shares in a pass's first substep
+    bool are_independent;  ///< and wait for nobody
+    uint32_t *borders;     ///< [passes][workers] first strips of the shares in a pass's first substep; of
+                           ///< independent shares [workers + 1], of all passes, and what is behind the last
 } mspringi_shares;
 
 /// Divide count substeps of strips of the wavefront or, if web is not NULL, of the layers of its row, in passes of
