@@ -8,6 +8,7 @@
 #include "map/body.h"
 
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_laws.h>
 
 typedef enum map_family {
     MAP_BLAST,    ///< velocities at random
@@ -22,6 +23,7 @@ typedef enum map_family {
     MAP_MEET,     ///< two bodies collide
     MAP_SILT,     ///< a body falls into silt above heights, which differ in friction and restitution
     MAP_PRESS,    ///< two bodies collide, with the implicit and the direct solver
+    MAP_BEND,     ///< springs that yield, act on one side or have limits, areas and angle springs
     MAP_FAMILIES
 } map_family;
 
@@ -29,6 +31,9 @@ const char *map_family_name(map_family family);
 
 /// How many cases there are of a family.
 uint32_t map_family_size(map_family family);
+
+/// Springs on one side, springs that yield, limits, areas, angles.
+enum { MAP_ONE_SIDED = 1, MAP_YIELDS = 2, MAP_LIMITS = 4, MAP_AREAS = 8, MAP_ANGLES = 16, MAP_ALL_LAWS = 31 };
 
 enum { MAP_HEIGHTS = 40, MAP_PLANES = 4, MAP_STEPS = 48 };
 
@@ -54,8 +59,11 @@ typedef struct map_case {
     double drift_x, drift_y; ///< m/s: velocity of all pinned particles
     uint32_t first_count;    ///< particles of the first of two bodies that meet; 0: there is no contact
     mspring_contact_def contact;
-    uint32_t break_at;    ///< step before which springs are broken; 0: none
-    uint32_t break_every; ///< which of them: every so many-th
+    double limit_strain, limit_stiffening; ///< of all springs; 0: none
+    float area_stiffness, angle_stiffness; ///< of all cells, N/m, and where springs follow each other, N m; 0: none
+    uint32_t laws;                         ///< bits: MAP_ONE_SIDED and so on; 0: springs are linear
+    uint32_t break_at;                     ///< step before which springs are broken; 0: none
+    uint32_t break_every;                  ///< which of them: every so many-th
 } map_case;
 
 /// Draw a case.

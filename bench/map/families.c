@@ -391,11 +391,53 @@ static void draw_silt(map_case *drawn, uint64_t *seed) {
         draw_velocities(drawn, map_decades(seed, 0.1, 20), seed);
 }
 
+// Each spring with a chance of its own, so that kinds lie side by side.
+static void draw_spring_laws(map_case *drawn, uint64_t *seed) {
+    const double strain = map_decades(seed, 1e-4, 0.3);
+    for (uint32_t i = 0; i < drawn->body.spring_count; i++) {
+        mspring_spring_def *def = &drawn->body.springs[i];
+        if ((drawn->laws & MAP_ONE_SIDED) != 0 && one_in(seed, 3))
+            def->flags |= one_in(seed, 4) ? MSPRING_SPRING_PUSH_ONLY : MSPRING_SPRING_PULL_ONLY;
+        if ((drawn->laws & MAP_YIELDS) != 0 && one_in(seed, 2)) {
+            def->yield_strain = (float)strain;
+            def->hardening = one_in(seed, 3) ? 0 : (float)map_decades(seed, 0.01, 2);
+        }
+    }
+}
+
+/// Explicit substeps no longer than this share of what is stable.
+static const double longest_with_laws = 0.5;
+
+static void draw_bend(map_case *drawn, uint64_t *seed) {
+    const map_stuff stuff = begin(drawn, seed);
+    drawn->laws = 1 + random_below(seed, MAP_ALL_LAWS);
+    drawn->share = fmin(drawn->share, longest_with_laws);
+    if ((drawn->laws & MAP_ONE_SIDED) != 0)
+        drawn->laws &= ~(uint32_t)MAP_LIMITS; // a limit is a spring beside one that acts on both sides
+    draw_spring_laws(drawn, seed);
+    if ((drawn->laws & MAP_LIMITS) != 0) {
+        drawn->limit_strain = map_decades(seed, 1e-3, 0.5);
+        drawn->limit_stiffening = map_decades(seed, 0.1, 30);
+    }
+    if ((drawn->laws & MAP_AREAS) != 0)
+        drawn->area_stiffness = (float)(stuff.stiffness * map_decades(seed, 0.1, 4));
+    if ((drawn->laws & MAP_ANGLES) != 0)
+        drawn->angle_stiffness =
+            (float)(stuff.stiffness * stuff.spacing * stuff.spacing * map_decades(seed, 1e-3, 1));
+    draw_velocities(drawn, map_decades(seed, 0.01, 100), seed);
+    if (one_in(seed, 3))
+        draw_gravity(drawn, seed);
+    if (one_in(seed, 3))
+        draw_pins(drawn, 2, seed);
+    draw_global_damping(drawn, seed);
+}
+
 static const family families[MAP_FAMILIES] = {
     {"blast", 60000, draw_blast}, {"hit", 45000, draw_hit},       {"spin", 20000, draw_spin},
     {"drop", 60000, draw_drop},   {"bounce", 18000, draw_bounce}, {"hang", 30000, draw_hang},
     {"wreck", 20000, draw_wreck}, {"far", 16000, draw_far},       {"substeps", 3000, draw_substeps},
     {"meet", 20000, draw_meet},   {"silt", 10000, draw_silt},     {"press", 12000, draw_press},
+    {"bend", 16000, draw_bend},
 };
 
 const char *map_family_name(map_family of) {
@@ -435,7 +477,7 @@ void map_describe_case(const map_case *what, char *text, size_t size) {
     snprintf(
         text, size,
         "%s%s%s, %u x %.4g s of %u substeps%s, %s of %u particles, %.3g N/m, gravity %g, damping %g, floor %s, "
-        "restitution %g, friction %g",
+        "restitution %g, friction %g%s%s%s%s%s",
         solvers[solver], solver == MSPRING_SOLVER_EXPLICIT ? "" : " ",
         solver == MSPRING_SOLVER_EXPLICIT ? "" : integrators[what->solver.integrator], what->steps, what->dt,
         what->solver.substeps, what->share > 0 ? " (explicit: a share of what is stable)" : "",
@@ -447,5 +489,9 @@ void map_describe_case(const map_case *what, char *text, size_t size) {
         : what->floor.plane_count > 1  ? "box"
         : what->planes[0][2] == 0      ? "level"
                                        : "slope",
-        (double)what->floor.restitution, (double)what->floor.friction);
+        (double)what->floor.restitution, (double)what->floor.friction,
+        (what->laws & MAP_ONE_SIDED) != 0 ? ", one-sided springs" : "",
+        (what->laws & MAP_YIELDS) != 0 ? ", springs that yield" : "",
+        (what->laws & MAP_LIMITS) != 0 ? ", strain limits" : "", (what->laws & MAP_AREAS) != 0 ? ", areas" : "",
+        (what->laws & MAP_ANGLES) != 0 ? ", angles" : "");
 }

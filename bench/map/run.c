@@ -35,8 +35,43 @@ static void push(const mspring_hook_args *args, void *user) {
     }
 }
 
+static mspring_result add_limits(const map_case *what, mspring_builder *builder) {
+    if (!(what->limit_strain > 0) || what->body.spring_count == 0)
+        return MSPRING_OK;
+    return mspring_builder_add_strain_limits(builder, 0, what->body.spring_count, (float)what->limit_strain,
+                                             (float)what->limit_stiffening, NULL);
+}
+
+/// An angle where a spring follows another, with the angle that there is.
+static mspring_result add_angles(const map_case *what, mspring_network *network) {
+    mspring_angle_def def;
+    mspring_result result = mspring_angle_def_init(&def, sizeof def);
+    const mspring_spring_def *springs = what->body.springs;
+    def.stiffness = what->angle_stiffness;
+    for (uint32_t i = 0; result == MSPRING_OK && i + 1 < what->body.spring_count; i++) {
+        const mspring_id three[] = {springs[i].a, springs[i].b, springs[i + 1].b};
+        if (springs[i].b == springs[i + 1].a && three[0] != three[2])
+            result = mspring_network_add_angles(network, &def, three, 1, NULL);
+    }
+    return result;
+}
+
+static mspring_result add_laws(const map_case *what, mspring_network *network) {
+    mspring_result result = MSPRING_OK;
+    if (what->area_stiffness > 0) {
+        mspring_area_def def;
+        result = mspring_area_def_init(&def, sizeof def);
+        def.stiffness = what->area_stiffness;
+        if (result == MSPRING_OK)
+            result = mspring_network_add_cell_areas(network, &def, NULL, NULL);
+    }
+    return result == MSPRING_OK && what->angle_stiffness > 0 ? add_angles(what, network) : result;
+}
+
 static mspring_result set_up(const map_case *what, mspring_network *network) {
-    mspring_result result = mspring_network_set_solver(network, &what->solver);
+    mspring_result result = add_laws(what, network);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_solver(network, &what->solver);
     if (result == MSPRING_OK && what->has_floor) {
         const mspring_floor_def floor = map_case_floor(what);
         result = mspring_network_set_floor(network, &floor);
@@ -59,6 +94,8 @@ mspring_network *map_make_network(const map_case *what, char text[MAP_TEXT]) {
     mspring_result result = mspring_builder_create(NULL, &builder);
     if (result == MSPRING_OK)
         result = map_build_body(&what->body, builder);
+    if (result == MSPRING_OK)
+        result = add_limits(what, builder);
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, &what->network, &network);
     if (result != MSPRING_OK) {

@@ -23,6 +23,7 @@
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/growth.h"
+#include "store/one_way.h"
 #include "store/springs.h"
 #include "store/stages.h"
 #include "tasks/tasks.h"
@@ -120,6 +121,15 @@ static void keep(mspringi_plastic *p, mspringi_place place, float rest_length) {
     p->flows = p->is_bent = true;
 }
 
+// Whether a spring that is expected to act at the end of an implicit substep does not yet.
+static bool is_slack(const mspring_network *network, mspringi_place place, const mspringi_spring_values *spring,
+                     float length) {
+    if (!network->one_way.side)
+        return false;
+    const mspring_id id = mspringi_around_find(network, network->topology.particle_of_slot[spring->base], place);
+    return mspringi_is_slack(mspringi_side_of(network, id), (double)length - (double)spring->rest_length);
+}
+
 // Map one spring back onto its yield surface, as the sweeps of rows do.
 static void map(mspring_network *network, mspringi_place place) {
     const mspringi_plastic *p = &network->plastic;
@@ -131,7 +141,7 @@ static void map(mspring_network *network, mspringi_place place) {
     const double dy = mspringi_y_of(s, spring.tip) - mspringi_y_of(s, spring.base);
     const double square = dx * dx + dy * dy;
     const float length = (float)sqrt(square);
-    if (!(spring.stiffness > 0.0f))
+    if (!(spring.stiffness > 0.0f) || is_slack(network, place, &spring, length))
         return;
     const float to = mspringi_yield_rest(values, bounds, (float)square, length, spring.rest_length);
     if (to == spring.rest_length)

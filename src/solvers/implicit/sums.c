@@ -228,6 +228,7 @@ void mspringi_budget_measure(measuring *all) {
     if (all->knows_elastic)
         return;
     add_springs(all);
+    mspringi_slack_account(all);
     mspringi_areas_account(network);
 }
 

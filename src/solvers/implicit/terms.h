@@ -7,6 +7,7 @@
 ///   bodies.c     contact between bodies
 ///   areas.c      areas
 ///   angles.c     angle springs
+///   slack.c      springs that only pull or only push
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TERMS_H
@@ -60,6 +61,9 @@ void mspringi_angles_add_terms(const mspring_network *network);
 mspringi_hinge *mspringi_next_hinge(const mspring_network *network, size_t *at);
 double mspringi_angles_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
 void mspringi_angles_stiffen(const mspring_network *network);
+
+/// Let components have the energy of springs that only pull or only push as they are, not as they were expected.
+void mspringi_slack_account(const mspringi_measuring *all);
 
 /// Of contact between bodies: whether any may touch in this substep.
 static inline bool mspringi_bodies_are_near(const mspring_network *network) {
