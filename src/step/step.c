@@ -104,6 +104,8 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
         mspringi_stages_forces_known(network, attempt, base);
         if (mspringi_sleep_is_whole(network) || (ops->whole && ops->whole(network, attempt, base, &extrema)))
             return extrema;
+        if (network->plastic.yields) // in substeps that were undone, as they met the floor
+            mspringi_stage_yielding.take_back(network);
     }
     copy_state(network, &network->state, &network->backup);
     if (ops->keep)
