@@ -115,7 +115,7 @@ static void plan_passes(mspringi_shares *shares, uint32_t depth) {
     const uint32_t least = mspringi_shares_least(shares->skew);
     const uint32_t each = shares->strips / shares->workers;
     const uint32_t fits =
-        shares->are_independent ? (each - 1) / (2 * shares->skew) : 1 + (each - least) / shares->skew;
+        shares->are_independent ? (each - 2) / (2 * shares->skew) : 1 + (each - least) / shares->skew;
     const uint32_t most = shares->workers == 1 || depth < fits ? depth : fits;
     const uint32_t passes = (shares->count + most - 1) / most;
     shares->group = (shares->count + passes - 1) / passes;
@@ -147,8 +147,8 @@ mspringi_shares mspringi_shares_count(const mspring_network *network, const mspr
     if (!web && network->plastic.yields && network->plastic.maps)
         shares.workers = 1;
     const uint64_t springs = mspringi_swept_count(t);
-    const uint32_t most =
-        shares.strips / fewest_strips(shares.strips, shares.skew, web ? t->leftover_count : t->lattice_springs);
+    const uint32_t fewest = fewest_strips(shares.strips, shares.skew, web ? t->leftover_count : t->lattice_springs);
+    const uint32_t most = shares.strips / (fewest + shares.are_independent);
     if (shares.workers > most)
         shares.workers = most > 1 ? most : 1;
     if (springs * network->substeps < SMALLEST_SHARED_WORK || network->graft.count > 0)
@@ -168,7 +168,7 @@ mspringi_shares mspringi_shares_count(const mspring_network *network, const mspr
 // pass beside what grows around its borders.
 static void find_tiles(const mspring_network *network, const mspringi_shares *shares) {
     const uint64_t *weights = network->halos.weights;
-    const uint32_t workers = shares->workers, least = 2 * shares->group * shares->skew + 1;
+    const uint32_t workers = shares->workers, least = 2 * shares->group * shares->skew + 2;
     uint32_t *borders = shares->borders;
     borders[0] = 0;
     borders[workers] = shares->strips;

@@ -5,7 +5,8 @@
 
 static void find_strips(mspringi_stint *t, uint32_t substep) {
     const mspringi_shares *shares = t->shares;
-    const uint32_t in = substep * shares->skew, out = in + shares->skew;
+    // Kernels read a slot behind the row above, which may be the first one of the next strip.
+    const uint32_t in = substep * shares->skew, out = in + shares->skew + 1;
     uint32_t *begin = &t->begin[substep], *end = &t->end[substep];
     if (!shares->are_independent) {
         *begin = mspringi_shares_begin(shares, t->share, t->pass, substep);
