@@ -46,10 +46,15 @@ static bool is_quiet(const mspring_network *network, const mspringi_attempt *att
     return !any_acts(network);
 }
 
+// Grips that do nothing part no substeps: particles without springs would round otherwise for them.
+static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    return any_acts(network) ? 1 : attempt->substeps - substep;
+}
+
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
     mspringi_grips *grips = &network->grips;
-    grips->were_asked = true;
+    grips->were_asked |= any_acts(network);
     grips->h = attempt->h;
     grips->share = 1.0 / (double)attempt->substeps;
     grips->begin = (double)substep * grips->share;
@@ -188,7 +193,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     const mspringi_solver *solver = attempt->solver;
     uint32_t slot;
     (void)substep;
-    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; network->grips.were_asked && i < MSPRING_MAX_GRIPS; ++i) {
         if (mspringi_grip_acts(network, &network->grips.list[i], &slot) &&
             !(solver->ops->holds_grips && !solver->ops->is_alone(network, solver->object, slot))) {
             mspringi_hold hold;
@@ -213,6 +218,7 @@ static void after_step(mspring_network *network, double dt) {
 const mspringi_stage mspringi_stage_grips = {.is_used = is_used,
                                              .before_step = before_step,
                                              .is_quiet = is_quiet,
+                                             .free_substeps = free_substeps,
                                              .before_substep = before_substep,
                                              .after_substep = after_substep,
                                              .has_missed = has_missed,
