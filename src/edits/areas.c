@@ -13,6 +13,10 @@
 #define LEAST_AREA 1e-24
 #define MOST_AREA 1e24
 
+/// Least part of the square of its perimeter that an area has: a hundred times what rounding gives corners on a
+/// line.
+#define LEAST_PART 1e-6
+
 /* ------------------------------------------------------------------------------------------------------ checks */
 
 static mspring_result check_numbers(const mspring_area_def *def, mspringi_message *message) {
@@ -49,16 +53,49 @@ static mspring_result check_def(mspring_network *network, const mspring_area_def
     return check_numbers(def, message);
 }
 
+static double perimeter_of(const mspring_network *network, const mspring_id *particles, uint32_t count) {
+    const mspringi_state *s = &network->state;
+    const uint32_t *slots = network->topology.slot_of_particle;
+    double sum = 0.0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t here = slots[particles[i]], next = slots[particles[i + 1 < count ? i + 1 : 0]];
+        const double x = mspringi_x_of(s, next) - mspringi_x_of(s, here),
+                     y = mspringi_y_of(s, next) - mspringi_y_of(s, here);
+        sum += sqrt(x * x + y * y);
+    }
+    return sum;
+}
+
+/// Corners, in the order in which what is within them is size.
+typedef struct polygon {
+    const mspring_id *particles;
+    uint32_t count;
+    double size; ///< m^2
+} polygon;
+
+// Whether a size of its own, or one given for it, is more than rounding: A / rest area is a factor of forces.
+static mspring_result check_size(mspring_network *network, const char *what, const polygon *of, double size) {
+    const double perimeter = perimeter_of(network, of->particles, of->count);
+    const double least = fmax(LEAST_PART * perimeter * perimeter, LEAST_AREA);
+    if (size >= least && size <= MOST_AREA)
+        return MSPRING_OK;
+    return mspringi_fail(
+        &network->message, MSPRING_ERROR_ARGUMENT,
+        "the %s of particles %u, %u, %u ... is %g m^2, it must be %g to 1e24: at least 1e-6 of the "
+        "squared perimeter",
+        what, (unsigned)of->particles[0], (unsigned)of->particles[1], (unsigned)of->particles[2], size, least);
+}
+
 // The rest area of a definition, by what the polygon has now.
-static mspring_result choose_rest_area(mspring_network *network, const mspring_area_def *def, double size,
+static mspring_result choose_rest_area(mspring_network *network, const mspring_area_def *def, const polygon *of,
                                        double *rest_area) {
-    *rest_area = def->rest_area == 0.0 ? size : def->rest_area;
-    if (def->rest_area == 0.0 && size < 0.0)
+    *rest_area = def->rest_area == 0.0 ? of->size : def->rest_area;
+    if (def->rest_area == 0.0 && of->size < 0.0)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the polygon is inside out, with %g m^2: give a rest area", size);
-    if (!(*rest_area >= LEAST_AREA && *rest_area <= MOST_AREA))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the rest area is %g m^2, it must be 1e-24 to 1e24", *rest_area);
+                             "the polygon is inside out, with %g m^2: give a rest area", of->size);
+    const mspring_result result = check_size(network, "rest area", of, *rest_area);
+    if (result != MSPRING_OK)
+        return result;
     return (double)def->stiffness / *rest_area <= (double)STRONGEST
                ? MSPRING_OK
                : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
@@ -136,11 +173,10 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
     if (result != MSPRING_OK)
         return result;
     const double size = mspringi_area_within(network, particles, count);
-    if (!(fabs(size) >= LEAST_AREA))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the particles from %u on are around %g m^2, which is no area", (unsigned)particles[0],
-                             size);
-    result = choose_rest_area(network, def, fabs(size), &rest_area);
+    const polygon of = {particles, count, fabs(size)};
+    result = check_size(network, "area", &of, of.size);
+    if (result == MSPRING_OK)
+        result = choose_rest_area(network, def, &of, &rest_area);
     if (result == MSPRING_OK)
         result = mspringi_areas_check_room(network, 1, count, 0);
     if (result != MSPRING_OK)
@@ -162,8 +198,9 @@ typedef struct cell_areas {
 static mspring_result check_cell(mspring_network *network, const mspring_id corners[4], void *user) {
     cell_areas *all = user;
     double rest_area;
+    const polygon of = {corners, 4, mspringi_area_within(network, corners, 4)};
     all->count++;
-    return choose_rest_area(network, all->def, mspringi_area_within(network, corners, 4), &rest_area);
+    return choose_rest_area(network, all->def, &of, &rest_area);
 }
 
 static mspring_result add_to_cell(mspring_network *network, const mspring_id corners[4], void *user) {
@@ -247,12 +284,17 @@ mspring_result mspring_network_remove_area(mspring_network *network, mspring_id 
 
 mspring_result mspring_network_set_area(mspring_network *network, mspring_id area, const mspring_area_def *def) {
     mspringi_area *found;
+    mspring_id particles[MSPRING_MAX_AREA_PARTICLES];
     double rest_area = 0.0;
     mspring_result result = enter_and_find(network, area, &found);
     if (result == MSPRING_OK)
         result = check_def(network, def);
-    if (result == MSPRING_OK)
-        result = choose_rest_area(network, def, mspringi_area_size(network, found), &rest_area);
+    if (result != MSPRING_OK)
+        return result;
+    for (uint32_t i = 0; i < found->count; ++i)
+        particles[i] = network->areas.corners[found->first + i].particle;
+    const polygon of = {particles, found->count, mspringi_area_size(network, found)};
+    result = choose_rest_area(network, def, &of, &rest_area);
     if (result != MSPRING_OK)
         return result;
     fill(found, def, rest_area);

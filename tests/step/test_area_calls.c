@@ -71,6 +71,83 @@ static void bad_areas_are_refused(void **state) {
     mspring_network_destroy(network);
 }
 
+// Of corners on a line, rounding leaves areas of either sign, which are none.
+static void flat_areas_are_refused(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < 4; i++)
+        (void)support_particle(builder, 0.1 * (i + 1), 0.3 * (i + 1), 1);
+    for (uint32_t i = 0; i < 4; i++)
+        for (uint32_t j = i + 1; j < 4; j++)
+            (void)support_spring(builder, i, j, 100, 0);
+    const mspring_network_def network_def = support_def(0, 12);
+    mspring_network *network = support_network(builder, &network_def);
+    mspring_area_def def = elastic(100);
+    const uint64_t hash = support_hash(network);
+    for (uint32_t i = 0; i < 4; i++) {
+        const mspring_id corners[] = {i, (i + 1) % 4, (i + 2) % 4};
+        def.rest_area = 0;
+        check_error(mspring_network_add_area(network, &def, corners, 3, NULL), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), "1e-6 of the squared perimeter");
+        def.rest_area = 0.01; // which side is positive is not known, either
+        check_error(mspring_network_add_area(network, &def, corners, 3, NULL), MSPRING_ERROR_ARGUMENT);
+    }
+    assert_true(support_hash(network) == hash);
+    mspring_network_destroy(network);
+}
+
+// A = height / 2 of a triangle with a side of 1 and a perimeter of 2: the limit is a height of 8e-6. Its side lies on
+// an axis, so rounding leaves its height.
+static void least_areas_are_by_the_perimeter(void **state) {
+    (void)state;
+    static const mspring_id corners[] = {0, 1, 2};
+    mspring_area_def def = elastic(100);
+    mspring_id area;
+    for (int i = 0; i < 2; i++) {
+        mspring_builder *builder = support_builder();
+        const double height = i == 0 ? 7.9e-6 : 8.1e-6;
+        (void)support_particle(builder, 0, 0, 1);
+        (void)support_particle(builder, 1, 0, 1);
+        (void)support_particle(builder, 0.5, height, 1);
+        const mspring_network_def network_def = support_def(0, 12);
+        mspring_network *network = support_network(builder, &network_def);
+        def.rest_area = 0;
+        if (i == 0) {
+            check_error(mspring_network_add_area(network, &def, corners, 3, NULL), MSPRING_ERROR_ARGUMENT);
+            check_contains(mspring_network_error(network), "the area of particles 0, 1, 2");
+            check_contains(mspring_network_error(network), "4e-06 to 1e24");
+        } else {
+            check_ok(mspring_network_add_area(network, &def, corners, 3, &area));
+            def.rest_area = 3.9e-6;
+            check_error(mspring_network_set_area(network, area, &def), MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_add_area(network, &def, corners, 3, NULL), MSPRING_ERROR_ARGUMENT);
+            check_contains(mspring_network_error(network), "the rest area of particles 0, 1, 2");
+            def.rest_area = 4.1e-6;
+            check_ok(mspring_network_set_area(network, area, &def));
+        }
+        mspring_network_destroy(network);
+    }
+}
+
+// A cell of height 1e-7: order and sign of its corners are right, but it is none.
+static void flat_cells_are_refused(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < 4; i++)
+        (void)support_particle(builder, i % 2, i < 2 ? 0 : 1e-7, 1);
+    for (uint32_t i = 0; i < 4; i++)
+        for (uint32_t j = i + 1; j < 4; j++)
+            (void)support_spring(builder, i, j, 100, 0);
+    const mspring_network_def network_def = support_def(0, 12);
+    mspring_network *network = support_network(builder, &network_def);
+    const mspring_area_def def = elastic(100);
+    const uint64_t hash = support_hash(network);
+    check_error(mspring_network_add_cell_areas(network, &def, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "squared perimeter");
+    assert_true(support_hash(network) == hash);
+    mspring_network_destroy(network);
+}
+
 // A snapshot that is cut, or has a byte changed, is refused or loaded, and nothing else happens.
 static void damaged_snapshots_are_refused(void **state) {
     (void)state;
@@ -101,6 +178,9 @@ static void damaged_snapshots_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_areas_are_refused),
+        cmocka_unit_test(flat_areas_are_refused),
+        cmocka_unit_test(least_areas_are_by_the_perimeter),
+        cmocka_unit_test(flat_cells_are_refused),
         cmocka_unit_test(damaged_snapshots_are_refused),
     };
     return cmocka_run_group_tests_name("area_calls", tests, NULL, NULL);
