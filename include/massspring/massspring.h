@@ -1037,7 +1037,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_co
 /// Compute the energies, J, in double precision. Any of them may be NULL.
 ///   kinetic    sum of m v^2 / 2 over particles that are not pinned
 ///   elastic    sum of stiffness (L - rest_length)^2 / 2 over springs; relative springs with the stiffness of the last
-///              step, before the first 0; with what hardening and areas store (massspring_laws.h)
+///              step, before the first 0; with what hardening, areas and angles store (massspring_laws.h)
 ///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_energy(

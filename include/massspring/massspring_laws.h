@@ -181,10 +181,11 @@ MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *
 /// in the shape that they were added in.
 ///
 /// The implicit and the direct solver have an area in their linear system if a spring was on each side of its outline
-/// when it was added. Forces of others they take from the start of a substep, and reject one that is too long for these
-/// as unstable. mspring_network_settle() rejects areas with a side without a spring. Its is_stable does not see where
-/// pressure alone makes a shape unstable. mspring_network_tune() counts areas; it gives no rest where settling rejects
-/// them.
+/// when it was added. Forces of others they take from the start of a substep. If one is too long for these, they reject
+/// the step as unstable. MSPRING_GUARD_CLAMP, the default, does not: it repeats each such step with clamped strain
+/// rates (MSPRING_STEP_CLAMPED). mspring_network_settle() rejects areas with a side without a spring. Its is_stable
+/// does not see where pressure alone makes a shape unstable. mspring_network_tune() counts areas; it gives no rest
+/// where settling rejects them.
 ///
 /// @param count  3 to MSPRING_MAX_AREA_PARTICLES
 /// @param area   receives its id, which is never given again; may be NULL
@@ -292,9 +293,11 @@ MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def
 /// While there is one, the explicit solver takes substeps one by one, as with a hook. mspring_network_stable_dt()
 /// counts angles: with particles of m and links of d, a straight beam is stable up to d / 2 sqrt(m / k). The implicit
 /// and the direct solver have angles in their linear system, if springs join a and b, and b and c: then any substep is
-/// stable. They take the forces of other angles from the start of a substep, and reject one that is too long for these
-/// as unstable. The direct solver takes fewest iterations if the angles of a beam are added in their order along it.
-/// mspring_network_settle() rejects networks with angles. mspring_network_tune() counts them, without a rest.
+/// stable. They take the forces of other angles from the start of a substep. If one is too long for these, they reject
+/// the step as unstable. MSPRING_GUARD_CLAMP, the default, does not: it repeats each such step with clamped strain
+/// rates (MSPRING_STEP_CLAMPED). The direct solver takes fewest iterations if the angles of a beam are added in their
+/// order along it. mspring_network_settle() rejects networks with angles. mspring_network_tune() counts them, without a
+/// rest.
 ///
 /// @param particles    [3 * count]: a, b, c of each; no two that follow each other are in one place
 /// @param first_angle  receives the first id; the others follow; may be NULL
