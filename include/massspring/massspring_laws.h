@@ -283,6 +283,10 @@ MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def
 /// For small d that is k d^2 / 2. The torque is largest at a quarter turn, and 0 at half a turn. It acts as forces on
 /// a, b and c, which keep momentum and angular momentum. If an arm has length 0, there is none.
 ///
+/// The forces are the torque divided by the length of an arm: they grow without bound as it shrinks. Then any solver
+/// may gain energy, and guards may not see it. Springs that resist pressing keep arms long. If they only pull, add
+/// another beside each that only pushes, of the same stiffness and half the rest length.
+///
 /// If a spring joins a and b, or b and c, at this call, and is broken or removed later, the angle is open: it exerts
 /// no force until both are whole. If one of the particles is removed, the angle is, too.
 ///
