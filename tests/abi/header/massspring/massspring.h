@@ -201,8 +201,9 @@ typedef void(MSPRING_CALL *mspring_task_fn)(void *argument, uint32_t index, uint
 ///   - If count is at most concurrent_count, all calls run at the same time, and the library may let them wait for
 ///     each other. If count is larger, they may run in any order, even one after the other.
 ///
-/// If the host cannot promise the second, set concurrent_count to 1. The library calls run only inside calls with
-/// exclusive access, never from two threads at once and never from inside fn.
+/// If the host cannot promise the second, set concurrent_count to 1. No call waits for another one then: explicit steps
+/// call run twice for some substeps each, implicit and direct ones use one thread. The library calls run only inside
+/// calls with exclusive access, never from two threads at once and never from inside fn.
 typedef struct mspring_tasks {
     uint32_t struct_size;
     uint32_t worker_count;     ///< 1 to MSPRING_MAX_WORKERS; 1, the default: run is not called
@@ -1036,7 +1037,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_co
 /// Compute the energies, J, in double precision. Any of them may be NULL.
 ///   kinetic    sum of m v^2 / 2 over particles that are not pinned
 ///   elastic    sum of stiffness (L - rest_length)^2 / 2 over springs; relative springs with the stiffness of the last
-///              step, before the first 0; with what hardening and areas store (massspring_laws.h)
+///              step, before the first 0; with what hardening, areas and angles store (massspring_laws.h)
 ///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_energy(

@@ -144,7 +144,8 @@ typedef struct mspring_area_def {
     float pressure;         ///< N/m, at most 1e30 in size; of a gas >= 0; default 0
     float fill;             ///< part of the rest area that it is filled to, 0.01 to 100; default 1
     uint32_t reserved;      ///< 0
-    double rest_area;       ///< A0, m^2, 1e-24 to 1e24; default 0: the area that the polygon has at this call
+    double rest_area;       ///< A0, m^2, 1e-24 to 1e24, at least 1e-6 of the square of the polygon's perimeter at this
+                            ///< call; default 0: the area that the polygon has at this call
 } mspring_area_def;
 
 /// An area now. Set struct_size first.
@@ -164,8 +165,9 @@ MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *
 
 /// Add an area: a balloon, a tyre, a muscle.
 /// The particles are the corners of the polygon, in either order around it. No particle may be there twice. At this
-/// call the polygon must have an area. That side is its positive one: turned inside out, the area is negative, and the
-/// pressure turns it back. A gas has at most 20 times its pressure.
+/// call the polygon must have an area, whether a rest area is given or not: at least 1e-6 of the square of its
+/// perimeter. Corners on a line have less. That side is its positive one: turned inside out, the area is negative, and
+/// the pressure turns it back. A gas has at most 20 times its pressure.
 ///
 /// The outline consists of the springs that join one corner to the next at this call. If one of them is broken or
 /// removed, the area is open: it exerts no force and has no energy until all are whole. If a corner is removed, the
@@ -179,10 +181,11 @@ MSPRING_API mspring_result MSPRING_CALL mspring_area_def_init(mspring_area_def *
 /// in the shape that they were added in.
 ///
 /// The implicit and the direct solver have an area in their linear system if a spring was on each side of its outline
-/// when it was added. Forces of others they take from the start of a substep, and reject one that is too long for these
-/// as unstable. mspring_network_settle() rejects areas with a side without a spring. Its is_stable does not see where
-/// pressure alone makes a shape unstable. mspring_network_tune() counts areas; it gives no rest where settling rejects
-/// them.
+/// when it was added. Forces of others they take from the start of a substep. If one is too long for these, they reject
+/// the step as unstable. MSPRING_GUARD_CLAMP, the default, does not: it repeats each such step with clamped strain
+/// rates (MSPRING_STEP_CLAMPED). mspring_network_settle() rejects areas with a side without a spring. Its is_stable
+/// does not see where pressure alone makes a shape unstable. mspring_network_tune() counts areas; it gives no rest
+/// where settling rejects them.
 ///
 /// @param count  3 to MSPRING_MAX_AREA_PARTICLES
 /// @param area   receives its id, which is never given again; may be NULL
@@ -194,9 +197,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_ar
 /// Add an area to each cell.
 /// Where the layout has lattice rows, a cell is four particles with four whole springs around it. Elsewhere, as in
 /// small lattices, it is four particles that whole springs join each to each, two of which cross. The rest area in def
-/// must be 0. Ids are consecutive: by rising id of the corner that begins a cell in the layout's rows, elsewhere of the
-/// lowest corner. mspring_network_get_area_particles() reads which corners an area has. Without cells nothing is added.
-/// A second call adds all of them again.
+/// must be 0. Each cell must have an area, as above. Ids are consecutive: by rising id of the corner that begins a cell
+/// in the layout's rows, elsewhere of the lowest corner. mspring_network_get_area_particles() reads which corners an
+/// area has. Without cells nothing is added. A second call adds all of them again.
 /// @param first_area  receives the first id; may be NULL
 /// @param count       receives the number of areas added; may be NULL
 /// @threads exclusive access to network   @allocates yes   @errors ARGUMENT, STRUCT, LIMIT, MEMORY, BUSY
@@ -209,7 +212,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_remove
     mspring_network *network, mspring_id area);
 
 /// Change an area: inflate it, or let it down.
-/// If rest_area is 0, the polygon must have an area on its positive side.
+/// If rest_area is 0, the polygon must have an area on its positive side: at least 1e-6 of its squared perimeter.
 /// @threads exclusive access to network   @allocates never   @errors ARGUMENT, STRUCT, ID, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_area(
     mspring_network *network, mspring_id area, const mspring_area_def *def);
@@ -280,6 +283,10 @@ MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def
 /// For small d that is k d^2 / 2. The torque is largest at a quarter turn, and 0 at half a turn. It acts as forces on
 /// a, b and c, which keep momentum and angular momentum. If an arm has length 0, there is none.
 ///
+/// The forces are the torque divided by the length of an arm: they grow without bound as it shrinks. Then any solver
+/// may gain energy, and guards may not see it. Springs that resist pressing keep arms long. If they only pull, add
+/// another beside each that only pushes, of the same stiffness and half the rest length.
+///
 /// If a spring joins a and b, or b and c, at this call, and is broken or removed later, the angle is open: it exerts
 /// no force until both are whole. If one of the particles is removed, the angle is, too.
 ///
@@ -289,8 +296,12 @@ MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def
 ///
 /// While there is one, the explicit solver takes substeps one by one, as with a hook. mspring_network_stable_dt()
 /// counts angles: with particles of m and links of d, a straight beam is stable up to d / 2 sqrt(m / k). The implicit
-/// and the direct solver take their forces from the start of a substep, and reject one that is too long for these as
-/// unstable. mspring_network_settle() rejects networks with angles. mspring_network_tune() counts them, without a rest.
+/// and the direct solver have angles in their linear system, if springs join a and b, and b and c: then any substep is
+/// stable. They take the forces of other angles from the start of a substep. If one is too long for these, they reject
+/// the step as unstable. MSPRING_GUARD_CLAMP, the default, does not: it repeats each such step with clamped strain
+/// rates (MSPRING_STEP_CLAMPED). The direct solver takes fewest iterations if the angles of a beam are added in their
+/// order along it. mspring_network_settle() rejects networks with angles. mspring_network_tune() counts them, without a
+/// rest.
 ///
 /// @param particles    [3 * count]: a, b, c of each; no two that follow each other are in one place
 /// @param first_angle  receives the first id; the others follow; may be NULL
