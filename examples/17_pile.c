@@ -2,6 +2,7 @@
 /// Five hundred fragments fall into a pit, pile up and fall asleep.
 ///
 /// SPDX-License-Identifier: MIT
+#include "common/progress.h"
 #include "common/show.h"
 #include "scenes/scene.h"
 
@@ -33,12 +34,20 @@ int main(int count, char **arguments) {
     result = result ? result : mspring_network_set_contact(network, &contact);
     show shown;
     show_begin(&shown, count, arguments, "17_pile", "Fragments pile up.", network, 0.02);
+    progress line;
+    progress_start(&line);
     int step = 0;
     for (; !result && step < STEPS && !mspring_network_is_asleep(network); step++) {
         result = mspring_network_step(network, dt);
         if (step < FILMED)
             show_step(&shown, network);
+        if (progress_due(&line)) {
+            char text[40];
+            snprintf(text, sizeof text, "second %.0f of at most %d", step * dt, STEPS / 64);
+            progress_write(&line, text);
+        }
     }
+    progress_clear(&line);
     printf("%d fragments %s after %.1f s\n", FRAGMENTS, step < STEPS ? "are asleep" : "still move", step * dt);
     const int code = show_end(&shown, result, pile.builder, network);
     pile.builder = NULL; // the show is over for both

@@ -18,8 +18,8 @@
 /// So many times the way of a substep, for rows are made as far as two points can come towards each other in two.
 #define SUBSTEPS_AHEAD 8.0
 
-/// Pairs that may touch within so many substeps are looked at in each of them, and found anew after that. Where bodies
-/// are so fast that these would be all within a share of the thickness and more, it is fewer substeps.
+/// Pairs that may touch within so many substeps are looked at in each of them, and found anew after that. Where
+/// bodies are so fast that these would be all within a share of the thickness and more, it is fewer substeps.
 #define HOT_SUBSTEPS 8.0
 #define LEAST_HOT_SUBSTEPS 4.0
 #define HOT_SHARE 0.5

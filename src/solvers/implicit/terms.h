@@ -1,6 +1,6 @@
 /// @file terms.h
-/// The floor, grips and contact between bodies in the linear system of an implicit substep. Those of the floor that take a const network do
-/// nothing without a floor, and those of grips nothing without grips.
+/// The floor, grips and contact between bodies in the linear system of an implicit substep. Those of the floor that
+/// take a const network do nothing without a floor, and those of grips nothing without grips.
 ///
 ///   terms.c      the floor
 ///   held.c       grips
@@ -49,13 +49,13 @@ void mspringi_grips_pass(mspring_network *network, float h);
 /// Add what they have given to components to the sums after a substep.
 void mspringi_grips_account(const mspringi_measuring *all);
 
-/// Add areas that springs are all around to the system, once the springs are assembled; and their energies to those of
-/// components.
+/// Add areas that springs are all around to the system, once the springs are assembled; and their energies to those
+/// of components.
 void mspringi_areas_add_terms(const mspring_network *network);
 void mspringi_areas_account(const mspring_network *network);
 
-/// The same of angles that have springs along both arms, to a product and to the coarse matrix, too. Their energies are
-/// those of areas.
+/// The same of angles that have springs along both arms, to a product and to the coarse matrix, too. Their energies
+/// are those of areas.
 void mspringi_angles_add_terms(const mspring_network *network);
 /// The next that is, from one on; NULL: there is none.
 mspringi_hinge *mspringi_next_hinge(const mspring_network *network, size_t *at);
