@@ -201,9 +201,9 @@ typedef void(MSPRING_CALL *mspring_task_fn)(void *argument, uint32_t index, uint
 ///   - If count is at most concurrent_count, all calls run at the same time, and the library may let them wait for
 ///     each other. If count is larger, they may run in any order, even one after the other.
 ///
-/// If the host cannot promise the second, set concurrent_count to 1. No call waits for another one then: explicit steps
-/// call run twice for some substeps each, implicit and direct ones use one thread. The library calls run only inside
-/// calls with exclusive access, never from two threads at once and never from inside fn.
+/// If the host cannot promise the second, set concurrent_count to 1. No call waits for another one then. An explicit
+/// step calls run twice for every few substeps; implicit and direct steps use one thread. The library calls run only
+/// inside calls with exclusive access, never from two threads at once and never from inside fn.
 typedef struct mspring_tasks {
     uint32_t struct_size;
     uint32_t worker_count;     ///< 1 to MSPRING_MAX_WORKERS; 1, the default: run is not called
