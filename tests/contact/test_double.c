@@ -185,8 +185,8 @@ static outcome fly(uint64_t trial, const kind *of, bool touches) {
     return o;
 }
 
-/// Trials in all.
-static uint32_t trials = ROUNDS(400);
+/// Trials in all, also with sanitizers: 0.6 of many meet, but only half of the first 40.
+static uint32_t trials = 400;
 
 /// What contact makes worse: the same run without it has rounding and the scheme's own errors.
 static void check_trials(uint32_t first, uint32_t count, kind of, double gain) {
@@ -206,7 +206,7 @@ static void check_trials(uint32_t first, uint32_t count, kind of, double gain) {
             "%u trials to %g m/s, e %g: met %u, worse than without by: momentum %.2g, angular %.2g, energy %.2g\n",
             (unsigned)count, of.fastest, (double)of.restitution, (unsigned)met, worse.momentum, worse.turn,
             worse.gain);
-    assert_true(met > count / 3); // 0.6 of many do; of 40 it may be half
+    assert_true(met > count / 2);
     assert_true(worse.momentum <= 1e-12);
     assert_true(worse.turn <= 1e-12);
     assert_true(worse.gain <= gain);
