@@ -215,6 +215,9 @@ typedef struct mspringi_strain_sweep {
     uint32_t chain_word;                 ///< word of the first chain block's bits
     const float *least;                  ///< [places]
     const uint16_t *live, *stressed;     ///< [places / MSPRINGI_WIDTH] bits
+    const float *break_strain, *stress;  ///< [places] stress is NULL: stressed springs are listed unseen
+    const float *relax;                  ///< [places] < 0: relax_fraction of stress instead; NULL: of all
+    float relax_fraction;
 } mspringi_strain_sweep;
 
 /// Springs of one word of bits that have to be looked at.
@@ -223,8 +226,8 @@ typedef struct mspringi_strain_hit {
 } mspringi_strain_hit;
 
 /// List, of the blocks first ... end - 1 (counted from the first of their kind), the live springs whose stretch,
-/// |length - rest_length|, is over their least strain times rest_length, and those that are stressed. hits has room
-/// for all words of these blocks.
+/// |length - rest_length|, is over their least strain times rest_length. Stressed ones are listed if they are over
+/// their break strain, or may relax. hits has room for all words of these blocks.
 /// @return the number of hits
 typedef uint32_t (*mspringi_strain_fn)(const mspringi_strain_sweep *sweep, uint32_t first, uint32_t end,
                                        mspringi_strain_hit *hits);

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/cpu.h"
 #include "sleep/sleep.h"
 #include "step/breaking.h"
 #include "store/changed.h"
@@ -18,9 +17,6 @@
 
 /// Room for rounding in the least strain of a spring that has flowed.
 #define ROUNDING (1.0f - 1e-5f)
-
-/// Words of places whose thresholds are fetched before they are looked at.
-#define AHEAD 8
 
 /* ---------------------------------------------------------------------------------------------------- the pass */
 
@@ -123,6 +119,11 @@ static void look_at(mspring_network *network, mspringi_place place) {
     mspringi_events_push(network, event);
 }
 
+// Whether strain is all that counts, of all springs, as the kernels have it.
+static bool is_plain(const mspring_network *network) {
+    return !network->plastic.nominal && !network->one_way.side && !network->has_welds;
+}
+
 // Break, stress and relax springs by the strain that they have now.
 static void compare(mspring_network *network, double dt) {
     const mspringi_topology *t = &network->topology;
@@ -142,6 +143,10 @@ static void compare(mspring_network *network, double dt) {
         .least = least_of(strain),
         .live = network->live,
         .stressed = strain->stressed,
+        .break_strain = strain->break_strain,
+        .stress = is_plain(network) ? strain->stress_strain : NULL,
+        .relax = strain->relax_strain,
+        .relax_fraction = network->settings.relax_fraction,
     };
     mspringi_strain_hit *hits = strain->hits;
     uint32_t count = 0;
@@ -152,15 +157,10 @@ static void compare(mspring_network *network, double dt) {
          first = end)
         count += network->kernels->chain_strain(&sweep, first, end, hits + count);
     count += leftover_strain(network, hits + count);
-    for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit) {
-        const size_t ahead = (hit + AHEAD < hits + count ? hit + AHEAD : hit)->word;
-        MSPRINGI_PREFETCH(strain->break_strain + ahead * MSPRINGI_WIDTH);
-        if (strain->stress_strain)
-            MSPRINGI_PREFETCH(strain->stress_strain + ahead * MSPRINGI_WIDTH);
+    for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit)
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
             if (hit->bits >> lane & 1)
                 look_at(network, hit->word * MSPRINGI_WIDTH + lane);
-    }
 }
 
 /* -------------------------------------------------------------------------------------------------- thresholds */

@@ -87,30 +87,49 @@ typedef enum condition { WHOLE, STRESSED, BROKEN } condition;
 static const double close = 1e-5;
 
 static condition next_condition(condition now, double strain, double break_strain, double stress_strain,
-                                double relax, bool *too_close) {
+                                double relax_strain, bool *too_close) {
     const double size = fabs(strain);
     *too_close = fabs(size - break_strain) < close || fabs(size - stress_strain) < close ||
-                 fabs(size - relax * stress_strain) < close;
+                 fabs(size - relax_strain) < close;
     if (now == BROKEN || size > break_strain) {
         return BROKEN;
     }
     if (now == STRESSED) {
-        return size < relax * stress_strain ? WHOLE : STRESSED;
+        return size < relax_strain ? WHOLE : STRESSED;
     }
     return size > stress_strain ? STRESSED : WHOLE;
 }
 
+/// Below which a stressed spring relaxes: some have a relax strain of their own, which counts up to their stress
+/// strain.
+static double relax_strain_of(mspring_id s, double stress_strain) {
+    const double own = 0.02 * (double)(s % 16);
+    return s % 4 > 0 ? 0.6 * stress_strain : own < stress_strain ? own : stress_strain;
+}
+
+static void set_relax_strains(mspring_network *network, uint32_t spring_count) {
+    for (mspring_id s = 0; s < spring_count; s += 4) {
+        const float own = 0.02f * (float)(s % 16);
+        check_ok(mspring_network_set(network, MSPRING_RELAX_STRAIN, s, 1, &own, 1));
+    }
+}
+
+/// At every level; with relax strains that some springs have of their own, or by the fraction alone.
 static void springs_break_and_are_stressed_by_the_rules(void **state) {
     (void)state;
     mspring_simd levels[MSPRING_SIMD_AVX512];
     const uint32_t level_count = support_levels(levels);
-    for (uint32_t i = 0; i < level_count; i++) {
+    for (uint32_t i = 0; i < 2 * level_count; i++) {
+        const bool has_own = i % 2 == 1;
         recipe made = lively_recipe();
         thresholds at = random_thresholds(made.spring_count);
-        mspring_network *network = network_of(&made, levels[i]);
+        mspring_network *network = network_of(&made, levels[i / 2]);
         check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, made.spring_count, at.break_strain, 1));
         check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, made.spring_count, at.stress_strain, 1));
         check_ok(support_set_relax_fraction(network, 0.6f));
+        if (has_own) {
+            set_relax_strains(network, made.spring_count);
+        }
         condition *conditions = calloc(made.spring_count, sizeof *conditions);
         mspring_event *events = malloc(CAPACITY * sizeof *events);
         assert_true(conditions && events);
@@ -120,9 +139,11 @@ static void springs_break_and_are_stressed_by_the_rules(void **state) {
             const uint32_t count = read_all(network, events);
             for (mspring_id s = 0; s < made.spring_count; s++) {
                 const double strain = strain_of(network, &made.springs[s]);
+                const double stress_strain = (double)at.stress_strain[s];
                 bool too_close;
-                condition next = next_condition(conditions[s], strain, (double)at.break_strain[s],
-                                                (double)at.stress_strain[s], 0.6, &too_close);
+                condition next =
+                    next_condition(conditions[s], strain, (double)at.break_strain[s], stress_strain,
+                                   has_own ? relax_strain_of(s, stress_strain) : 0.6 * stress_strain, &too_close);
                 mspring_spring_info info = {.struct_size = sizeof info};
                 check_ok(mspring_network_get_spring(network, s, &info));
                 const condition is = info.flags & MSPRING_SPRING_BROKEN     ? BROKEN
