@@ -2,7 +2,8 @@
 ///
 /// What is given adds up, where a list names a particle twice as well. So the sums are made in the backup, which is
 /// free between steps, and taken from there once all of them are right: those of a list by slot, those of a range,
-/// which names each particle once, by index.
+/// which names each particle once, by index. Most forces are so small that no sum can go wrong: those of a range
+/// are added at once.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -118,13 +119,66 @@ static mspring_result add_rounding_to_nearest(mspring_network *network, const ms
 
 /* ------------------------------------------------------------------------------------------------------- forces */
 
+static bool are_all_modest(const float *forces, size_t count) {
+    uint32_t others = 0;
+    for (size_t i = 0; i < count; ++i)
+        others |= !(fabsf(forces[i]) <= MSPRINGI_MODEST);
+    return others == 0;
+}
+
+// Whether no force is so large that sums of it need a look.
+static bool are_modest(const pushes *given, uint32_t count) {
+    const float *x = given->x, *y = given->y;
+    const size_t stride = given->stride;
+    if (stride == 1)
+        return are_all_modest(x, count) && are_all_modest(y, count);
+    if (stride == 2 && y == x + 1)
+        return are_all_modest(x, 2 * (size_t)count);
+    uint32_t others = 0;
+    for (size_t i = 0; i < count; ++i)
+        others |= !(fabsf(x[i * stride]) <= MSPRINGI_MODEST && fabsf(y[i * stride]) <= MSPRINGI_MODEST);
+    return others == 0;
+}
+
+// Add modest forces to a range, of which all particles are there.
+static MSPRINGI_NOINLINE void add_modest(mspring_network *network, const mspringi_selection *at,
+                                         const pushes *given) {
+    const uint32_t *const slots = network->topology.slot_of_particle + at->first;
+    const mspringi_field sum = network->forces.held;
+    const size_t stride = given->stride;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = slots[i], ahead = mspringi_slot_ahead(network, at, i);
+        MSPRINGI_PREFETCH(&sum.x[ahead]);
+        MSPRINGI_PREFETCH(&sum.y[ahead]);
+        sum.x[slot] += given->x[i * stride];
+        sum.y[slot] += given->y[i * stride];
+    }
+}
+
+static void add_modest_rounding_to_nearest(mspring_network *network, const mspringi_selection *at,
+                                           const pushes *given) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    add_modest(network, at, given);
+    mspringi_fp_leave(before);
+}
+
 static mspring_result apply_forces(mspring_network *network, const mspringi_selection *at, const pushes *given) {
-    mspring_result result = mspringi_field_reserve(network, &network->forces.held);
-    if (result == MSPRING_OK)
-        result = add_rounding_to_nearest(network, at, given, &(target){.sum = network->forces.held});
-    if (result == MSPRING_OK)
-        network->forces.held_any = network->forces.held_any || at->count > 0;
-    return result;
+    mspringi_forces *forces = &network->forces;
+    mspring_result result = mspringi_field_reserve(network, &forces->held);
+    if (result != MSPRING_OK || at->count == 0)
+        return result;
+    const uint32_t calls = forces->held_any ? forces->held_calls : 0;
+    const bool modest =
+        !at->list && !network->growth.particles && calls < MSPRINGI_MODEST_CALLS && are_modest(given, at->count);
+    if (modest)
+        add_modest_rounding_to_nearest(network, at, given);
+    else
+        result = add_rounding_to_nearest(network, at, given, &(target){.sum = forces->held});
+    if (result != MSPRING_OK)
+        return result;
+    forces->held_any = true;
+    forces->held_calls = modest ? calls + 1 : MSPRINGI_MODEST_CALLS;
+    return MSPRING_OK;
 }
 
 mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,

@@ -400,6 +400,7 @@ static void forces_load(mspring_network *network, const uint8_t *from, size_t si
         if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
             held.x[slot] = held.y[slot] = 0.0f;
     network->forces.held_any = size > 0;
+    network->forces.held_calls = MSPRINGI_MODEST_CALLS;
 }
 
 const mspringi_section mspringi_section_forces = {

@@ -73,7 +73,12 @@ typedef struct mspringi_forces {
     mspringi_field base;   ///< held and what hooks before the step added: where each substep starts from
     mspringi_field driven; ///< base, and what hooks before the substep added
     bool held_any;         ///< held is not all zero
+    uint32_t held_calls;   ///< if it is not: calls that gave it, of forces up to MSPRINGI_MODEST
 } mspringi_forces;
+
+/// N, of which so many calls add up to something finite.
+#define MSPRINGI_MODEST 1e30f
+#define MSPRINGI_MODEST_CALLS 1000000u
 
 /// A box that no surface is near.
 typedef struct mspringi_room {

@@ -507,6 +507,44 @@ static void bad_impulses_change_nothing(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Ranges as lists; large forces after small ones and before them; what would overflow is refused, and changes
+/// nothing.
+static void forces_of_ranges_add_up(void **state) {
+    (void)state;
+    const mspring_id list[] = {0, 1, 2};
+    const float small[] = {1e3f, -2e3f, 3e3f, 500, 1, -7e3f, 2e3f, 8e3f, -9e3f},
+                large[] = {3e38f, 1, 3e38f, 2, -3e38f, 0, 1, 1, 1};
+    const float bad[] = {NAN, 2, 1, 1, 1, 1, 1, 1, 1};
+    for (uint32_t stride = 1; stride <= 3; stride++) {
+        const uint32_t to_y = stride == 1 ? 3 : 1;
+        mspring_network *networks[] = {three_particles(), three_particles()};
+        for (int i = 0; i < 2; i++) {
+            for (int call = 0; call < 4; call++) {
+                const float *const given = call == 2 ? large : small;
+                check_ok(i == 0
+                             ? mspring_network_apply_forces(networks[i], 0, 3, given, given + to_y, stride)
+                             : mspring_network_apply_forces_at(networks[i], list, 3, given, given + to_y, stride));
+            }
+            check_error(mspring_network_apply_forces(networks[i], 0, 3, large, large + to_y, stride),
+                        MSPRING_ERROR_ARGUMENT);
+            check_error(mspring_network_apply_forces(networks[i], 0, 3, bad, bad + to_y, stride),
+                        MSPRING_ERROR_ARGUMENT);
+            float back[9];
+            for (int value = 0; value < 9; value++) {
+                back[value] = -large[value];
+            }
+            check_ok(mspring_network_apply_forces(networks[i], 0, 3, back, back + to_y, stride));
+            support_steps(networks[i], 1, 0.01);
+            check_ok(mspring_network_apply_forces(networks[i], 0, 3, small, small + to_y, stride));
+            support_steps(networks[i], 1, 0.01);
+        }
+        assert_int_equal(support_hash(networks[0]), support_hash(networks[1]));
+        assert_true(fabs(support_velocity(networks[0], 0).y) + fabs(support_velocity(networks[0], 1).x) > 0.1);
+        mspring_network_destroy(networks[0]);
+        mspring_network_destroy(networks[1]);
+    }
+}
+
 int main(void) {
 #define STATE_TEST(test) cmocka_unit_test_setup_teardown(test, make_network, free_network)
     const struct CMUnitTest tests[] = {
@@ -519,6 +557,7 @@ int main(void) {
         STATE_TEST(arrays_may_have_strides),
         cmocka_unit_test(impulses_change_velocities_at_once),
         cmocka_unit_test(bad_impulses_change_nothing),
+        cmocka_unit_test(forces_of_ranges_add_up),
         STATE_TEST(ranges_read_and_write_in_id_order),
         STATE_TEST(ranges_that_leave_the_network_are_refused),
         STATE_TEST(null_arrays_are_refused),
