@@ -388,6 +388,7 @@ MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi
         }
         if (alike.of_block[block] != block || alike.readers[block] > 0)
             mspringi_alike_part_block(network, block);
+        alike.is_set[block] = 1;
         *record = force;
         ++changes;
         sum += trace(i, spring, value);

@@ -218,6 +218,7 @@ static mspring_network with_layout_of(const mspring_network *network, const mspr
     to.topology = made->topology;
     mspringi_store_take_layout(&to, made);
     to.alike.changes = made->alike.changes;
+    to.alike.compared = made->alike.compared;
     to.rests = made->rests;
     to.halos = made->halos;
     to.carry_rows = made->carry_rows;

@@ -10,9 +10,9 @@
 #define PROBES 4u
 
 void mspringi_alike_begin(mspringi_alike *alike, uint32_t blocks) {
-    alike->changes = 0;
+    alike->changes = alike->compared = 0;
     for (uint32_t b = 0; b < blocks; ++b)
-        alike->of_block[b] = b;
+        alike->of_block[b] = alike->home[b] = b;
 }
 
 static size_t values_of_record(const mspring_network *network) {
@@ -54,18 +54,44 @@ static uint32_t find_like(const mspringi_alike *alike, const mspring_network *ne
     return block;
 }
 
-void mspringi_alike_renew(mspring_network *network) {
+static void look_at_all(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_alike *alike = &network->alike;
     uint32_t entries[ENTRIES] = {0};
-    if (alike->changes == 0 || alike->changes < t->lattice_springs / 4)
-        return;
-    alike->changes = 0;
     memset(alike->readers, 0, t->lattice_blocks * sizeof *alike->readers);
+    memset(alike->is_set, 0, t->lattice_blocks * sizeof *alike->is_set);
     for (uint32_t b = 0; b < t->lattice_blocks; ++b) {
-        const uint32_t like = alike->of_block[b] = find_like(alike, network, entries, b);
+        const uint32_t like = alike->of_block[b] = alike->home[b] = find_like(alike, network, entries, b);
         alike->readers[like] += like != b;
     }
+}
+
+// Blocks that were set, and have a record of their own since, may be like the others again: a host that changes
+// some springs in each step often changes others back.
+static void look_at_set(const mspring_network *network) {
+    const mspringi_alike *alike = &network->alike;
+    for (uint32_t b = 0; b < network->topology.lattice_blocks; ++b) {
+        if (!alike->is_set[b])
+            continue;
+        alike->is_set[b] = 0;
+        const uint32_t home = alike->of_block[alike->home[b]], like = alike->of_block[alike->home[home]];
+        if (alike->of_block[b] != b || alike->readers[b] > 0 || like == b || !are_alike(network, b, like))
+            continue;
+        alike->of_block[b] = like;
+        alike->readers[like]++;
+    }
+}
+
+void mspringi_alike_renew(mspring_network *network) {
+    mspringi_alike *alike = &network->alike;
+    if (alike->changes == alike->compared)
+        return;
+    const bool all = alike->changes >= network->topology.lattice_springs / 4;
+    if (all)
+        look_at_all(network);
+    else
+        look_at_set(network);
+    alike->compared = alike->changes = all ? 0 : alike->changes;
 }
 
 void mspringi_alike_part_block(mspring_network *network, uint32_t block) {
@@ -83,8 +109,9 @@ void mspringi_alike_part_block(mspring_network *network, uint32_t block) {
         if (alike->of_block[--b] != block || b == block)
             continue;
         heir = heir == block ? b : heir;
-        alike->of_block[b] = heir;
+        alike->of_block[b] = alike->home[b] = heir;
         alike->readers[heir] += b != heir;
         left--;
     }
+    alike->home[block] = heir;
 }

@@ -23,10 +23,12 @@ static inline void mspringi_alike_part(mspring_network *network, mspringi_place 
         return;
     if (network->alike.of_block[block] != block || network->alike.readers[block] > 0)
         mspringi_alike_part_block(network, block);
+    network->alike.is_set[block] = 1;
     network->alike.changes++;
 }
 
-/// Look for blocks that are alike, if a quarter of the springs has been set since the last time.
+/// Look for blocks that are alike: those whose springs were set may be again what they were, and if a quarter of all
+/// springs has been set, all are looked at.
 void mspringi_alike_renew(mspring_network *network);
 
 #endif

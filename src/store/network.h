@@ -339,7 +339,10 @@ typedef struct mspringi_rests {
 typedef struct mspringi_alike {
     uint32_t *of_block; ///< [lattice blocks] the block whose record is read for each
     uint32_t *readers;  ///< [lattice blocks] other blocks that each block's record is read for
-    uint64_t changes;   ///< springs that were set since these were looked for
+    uint32_t *home;     ///< [lattice blocks] a block that each was like before its springs were set
+    uint8_t *is_set;    ///< [lattice blocks] whether springs of it were, since it was compared with that
+    uint64_t changes;   ///< springs that were set since all were looked at
+    uint64_t compared;  ///< of these, those of before the last comparison
 } mspringi_alike;
 
 /// What workers leave to each other where they share strips, see solvers/explicit/halo.h and shares.h; no arrays
