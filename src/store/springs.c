@@ -182,10 +182,12 @@ void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, ms
     mspringi_place_set(network, place, nominal.stiffness, nominal.damping);
 }
 
+// While a snapshot is loaded, springs that are not there any more are live until its section of broken ones.
 void mspringi_renew_relative(mspring_network *network) {
     for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
         const mspringi_place place = network->topology.place_of_spring[s];
-        if (mspringi_spring_is_relative(network, s) && mspringi_place_is_live(network, place))
+        if (mspringi_spring_exists(network, s) && mspringi_spring_is_relative(network, s) &&
+            mspringi_place_is_live(network, place))
             mspringi_spring_set_nominal(network, s, place, mspringi_fractions_of(&network->fractions, s));
     }
 }

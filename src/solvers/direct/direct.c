@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/mix.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/terms.h"
 
@@ -79,7 +80,7 @@ static mspring_result begin_places(making *m) {
     mspringi_memory *memory = &m->network->memory;
     mspringi_direct *d = m->direct;
     const size_t nodes = mspringi_slot_count(m->network) + 1;
-    *d = (mspringi_direct){.place_count = t->chain_places + t->leftover_count};
+    *d = (mspringi_direct){.place_count = t->chain_places + t->leftover_count, .fingerprint = MSPRINGI_MIX_START};
     d->end_a = mspringi_alloc(memory, d->place_count, sizeof *d->end_a);
     d->end_b = mspringi_alloc(memory, d->place_count, sizeof *d->end_b);
     d->edge_blocks = mspringi_alloc(memory, block_count(d), sizeof *d->edge_blocks);
@@ -97,8 +98,11 @@ static mspring_result list_ends(making *m, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &m->network->topology;
     for (mspring_id spring = first; spring < end; ++spring) {
         const mspringi_place place = t->place_of_spring[spring];
-        if (!mspringi_place_is_inactive(t, place) && mspringi_spring_exists(m->network, spring))
-            mspringi_topology_ends(t, place, &m->direct->end_a[place], &m->direct->end_b[place]);
+        if (mspringi_place_is_inactive(t, place) || !mspringi_spring_exists(m->network, spring))
+            continue;
+        uint32_t *a = &m->direct->end_a[place], *b = &m->direct->end_b[place];
+        mspringi_topology_ends(t, place, a, b);
+        m->direct->fingerprint = mspringi_mix(m->direct->fingerprint, (uint64_t)*a << 32 | *b);
     }
     return MSPRING_OK;
 }

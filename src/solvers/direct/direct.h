@@ -24,6 +24,7 @@ typedef struct mspringi_blocks_float {
 
 typedef struct mspringi_direct {
     uint32_t place_count;             ///< edges
+    uint64_t fingerprint;             ///< of the springs that there were; the order of elimination follows from it
     uint32_t *end_a, *end_b;          ///< [place_count] slots; of places without spring both the slot count
     mspringi_edge_block *edge_blocks; ///< [place_count / MSPRINGI_WIDTH, rounded up]; tip = base: springs have to
                                       ///< be taken one by one

@@ -1,5 +1,5 @@
 /// What the implicit solver carries from step to step, in a snapshot: the history and, unless it is to be factored
-/// anew, the coarse matrix. The direct solver has no tiles, so that the hash of them is 0.
+/// anew, the coarse matrix. The direct solver has no tiles, but an order of elimination.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -9,12 +9,17 @@
 #include "store/sections.h"
 
 typedef struct implicit_head {
-    uint64_t tiles_fingerprint;
+    uint64_t fingerprint;
     double scale;
     float h;
     uint32_t restarts, integrator, iterations, coarse_period, age;
 } implicit_head;
 #define HEAD_BYTES ((size_t)40)
+
+// Of what it was made for: other tiles, or another order, would give other bits.
+static uint64_t fingerprint_of(const mspringi_implicit *n) {
+    return n->is_direct ? n->direct.fingerprint : n->tiles.fingerprint;
+}
 
 static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values) {
     return HEAD_BYTES + n->history_size * sizeof(float) + coarse_values * sizeof(double);
@@ -40,7 +45,8 @@ void mspringi_implicit_save(const mspring_network *network, const mspringi_impli
     const bool ended = n->seen.motion != network->edits.motion;
     const uint32_t words[] = {ended ? 1 : n->history.restarts, (uint32_t)n->integrator, n->iterations,
                               n->coarse_period, age_of(network, n)};
-    mspringi_put(to, &n->tiles.fingerprint, 1, sizeof n->tiles.fingerprint);
+    const uint64_t fingerprint = fingerprint_of(n);
+    mspringi_put(to, &fingerprint, 1, sizeof fingerprint);
     mspringi_put(to, &n->scale, 1, sizeof n->scale);
     mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
     mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
@@ -52,7 +58,7 @@ void mspringi_implicit_save(const mspring_network *network, const mspringi_impli
 }
 
 static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
-    from = mspringi_get(from, &head->tiles_fingerprint, 1, sizeof head->tiles_fingerprint);
+    from = mspringi_get(from, &head->fingerprint, 1, sizeof head->fingerprint);
     from = mspringi_get(from, &head->scale, 1, sizeof head->scale);
     from = mspringi_get(from, &head->h, 1, sizeof head->h);
     from = mspringi_get(from, &head->restarts, 1, sizeof head->restarts);
@@ -64,9 +70,10 @@ static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
 
 static mspring_result check_head(mspring_network *network, const mspringi_implicit *n, const implicit_head *head) {
     const mspringi_section *section = &mspringi_section_implicit;
-    if (head->integrator != (uint32_t)n->integrator || head->tiles_fingerprint != n->tiles.fingerprint)
+    if (head->integrator != (uint32_t)n->integrator || head->fingerprint != fingerprint_of(n))
         return mspringi_section_fail(network, section,
-                                     "the network has another solver or integrator, or other tiles");
+                                     "the network has another solver or integrator, other tiles, or had other "
+                                     "springs when the direct solver was chosen");
     if (!(head->scale >= DBL_MIN && head->scale <= DBL_MAX && head->h >= 0.0f && head->h <= FLT_MAX) ||
         head->restarts > MSPRINGI_CALM_SUBSTEPS)
         return mspringi_section_fail(network, section, "its scale is %g, its substep %g s", head->scale,
