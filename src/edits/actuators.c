@@ -47,6 +47,7 @@ static void free_all(mspring_network *network, mspringi_actuators *a) {
     mspringi_free(memory, a->nominal);
     mspringi_free(memory, a->to);
     mspringi_free(memory, a->from);
+    mspringi_free(memory, a->unbent_from);
 }
 
 static mspring_result allocate(mspring_network *network, mspringi_actuators *a) {
@@ -60,7 +61,8 @@ static mspring_result allocate(mspring_network *network, mspringi_actuators *a) 
     a->nominal = mspringi_alloc(memory, a->count, sizeof *a->nominal);
     a->to = mspringi_alloc(memory, a->count, sizeof *a->to);
     a->from = mspringi_alloc(memory, a->count, sizeof *a->from);
-    if (a->spring && a->of_spring && a->nominal && a->to && a->from)
+    a->unbent_from = mspringi_alloc(memory, a->count, sizeof *a->unbent_from);
+    if (a->spring && a->of_spring && a->nominal && a->to && a->from && a->unbent_from)
         return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u actuators", (unsigned)a->count);
 }

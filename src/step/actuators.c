@@ -35,6 +35,8 @@ static void keep_lengths(mspring_network *network) {
     const float *lengths = network->rests.lengths;
     for (uint32_t i = 0; i < a.count; ++i)
         a.from[i] = places[a.spring[i]] < end ? lengths[places[a.spring[i]]] : mspringi_actuator_length(network, i);
+    for (uint32_t i = 0; network->plastic.nominal && i < a.count; ++i)
+        a.unbent_from[i] = network->plastic.nominal[places[a.spring[i]]];
 }
 
 static void set_lengths(mspring_network *network, const float *to) {
@@ -60,6 +62,20 @@ static void set_between(mspring_network *network, float share) {
             lengths[places[a.spring[i]]] = length;
         else
             mspringi_actuator_set_length(network, i, length);
+    }
+}
+
+// Back to what the step began with. What has flowed in it is straight again, as yielding comes later in a step.
+static void go_back(mspring_network *network) {
+    const mspringi_actuators a = network->actuators;
+    float *nominal = network->plastic.nominal;
+    set_lengths(network, a.from);
+    for (uint32_t i = 0; nominal && i < a.count; ++i) {
+        const mspringi_place place = mspringi_place_of(&network->topology, a.spring[i]);
+        if (nominal[place] == a.unbent_from[i])
+            continue;
+        nominal[place] = a.unbent_from[i];
+        mspringi_plastic_renew(network, place);
     }
 }
 
@@ -116,7 +132,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 
 static void take_back(mspring_network *network) {
     if (are_gradual(network))
-        set_lengths(network, network->actuators.from);
+        go_back(network);
 }
 
 static void after_step(mspring_network *network, double dt) {
@@ -126,7 +142,7 @@ static void after_step(mspring_network *network, double dt) {
 
 static void undo(mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    set_lengths(network, network->actuators.from);
+    go_back(network);
 }
 
 const mspringi_stage mspringi_stage_actuators = {.is_used = is_used,

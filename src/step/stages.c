@@ -144,7 +144,7 @@ void mspringi_stages_after_step(mspring_network *network, const mspringi_stages 
 
 void mspringi_stages_take_back(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_stages *stages = attempt->stages;
-    for (size_t i = 0; i < stages->count; ++i)
+    for (size_t i = stages->count; i-- > 0;)
         if (stages->used[i]->take_back)
             stages->used[i]->take_back(network);
 }

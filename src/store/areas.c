@@ -257,6 +257,15 @@ void mspringi_areas_append(mspring_network *network, const mspringi_area *area, 
     a->changes++;
 }
 
+// A step goes through the list only while something is in it: what steps have of the last must not stay.
+static void note_change(mspringi_areas *a) {
+    a->changes++;
+    if (a->count > 0)
+        return;
+    a->swept = a->unswept = a->unringed = 0;
+    a->hinge_count = 0;
+}
+
 void mspringi_areas_drop(mspring_network *network, mspringi_area *area) {
     mspringi_areas *a = &network->areas;
     const uint32_t first = area->first, count = area->count;
@@ -267,7 +276,7 @@ void mspringi_areas_drop(mspring_network *network, mspringi_area *area) {
     memmove(area, area + 1, behind * sizeof *area);
     for (size_t i = 0; i < behind; ++i)
         area[i].first -= count;
-    a->changes++;
+    note_change(a);
 }
 
 void mspringi_areas_forget(mspring_network *network, mspring_id particle) {
@@ -285,7 +294,7 @@ void mspringi_areas_forget(mspring_network *network, mspring_id particle) {
 
 void mspringi_areas_clear(mspring_network *network) {
     network->areas.count = network->areas.corner_count = network->areas.angle_count = 0;
-    network->areas.changes++;
+    note_change(&network->areas);
 }
 
 /* ---------------------------------------------------------------------------------------- what follows of them */

@@ -13,7 +13,7 @@
 ///   judge            after the substeps, or what stands for them: whether it could do what it is for (only
 ///                    if some stage can be quiet or can miss something)
 ///   after_step       once the step is taken, and will not be undone
-///   take_back        the substeps were undone, and the state is that of before: in the order of the stages
+///   take_back        the substeps were undone, and the state is that of before: in reverse order
 ///   undo             what before_step did is to be undone: in reverse order
 ///
 /// SPDX-License-Identifier: MIT
