@@ -10,11 +10,14 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include <massspring/massspring_laws.h>
+
 #include "recipe.h"
 #include "store/format.h"
 #include "support.h"
 
-enum { KINDS = 4, MOST_PARTICLES = 64, MOST_CHANGES = 8 };
+/// Of subjects; those from PLAIN on have material laws, too.
+enum { PLAIN = 4, KINDS = 8, MOST_PARTICLES = 64, MOST_CHANGES = 8 };
 
 /// A network with a bit of everything in its snapshot, made once.
 typedef struct subject {
@@ -41,8 +44,9 @@ static uint8_t *save(const mspring_network *network, mspring_snapshot_contents c
 }
 
 static recipe make_recipe(int kind) {
-    uint64_t seed = 40 + (uint64_t)kind;
+    uint64_t seed = 40 + (uint64_t)(kind % PLAIN);
     const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, kind & 1 ? 1 : 0}};
+    recipe_stuff cable = stuff;
     const recipe_stuff relative = {.mass = {1, 2},
                                    .stiffness = {0.1, 0.2},
                                    .spring_flags = MSPRING_SPRING_RELATIVE,
@@ -51,7 +55,8 @@ static recipe make_recipe(int kind) {
     recipe made = {0};
     recipe_lattice(&made, 5, 3, 0, 0, 1, kind & 1 ? &relative : &stuff, &seed);
     recipe_particle(&made, 8, 1, 1, MSPRING_PARTICLE_PINNED);
-    recipe_rope(&made, 0, made.particle_count - 1, 6, &stuff, &seed);
+    cable.spring_flags = kind < PLAIN ? 0 : MSPRING_SPRING_PULL_ONLY;
+    recipe_rope(&made, 0, made.particle_count - 1, 6, &cable, &seed);
     recipe_random_springs(&made, 5, &stuff, &seed);
     recipe_particle(&made, 0, 9, 1, 0);
     recipe_particle(&made, 4, 9, 1, MSPRING_PARTICLE_PINNED); // sleeps where that may be
@@ -79,6 +84,31 @@ static void add_and_remove(mspring_network *network) {
     FUZZ_CHECK(mspring_network_step(network, 0.01) == MSPRING_OK);
 }
 
+// Springs that yield and some that have, areas around cells and one at an edge, angle springs.
+static void add_laws(mspring_network *network) {
+    const float yield = 0.01f, bend[2] = {0.05f, -0.03f};
+    const mspring_id corners[3] = {0, 2, 6}, arms[6] = {0, 1, 2, 1, 2, 3}, gone = 2;
+    const double rest = 0.25;
+    mspring_area_def area;
+    mspring_angle_def angle;
+    FUZZ_CHECK(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, 40, &yield, 0) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_set(network, MSPRING_PLASTIC_STRAIN, 5, 2, bend, 1) == MSPRING_OK);
+    FUZZ_CHECK(mspring_area_def_init(&area, sizeof area) == MSPRING_OK);
+    area.stiffness = 20;
+    FUZZ_CHECK(mspring_network_add_cell_areas(network, &area, NULL, NULL) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_remove_area(network, gone) == MSPRING_OK);
+    area = (mspring_area_def){.struct_size = sizeof area, .kind = MSPRING_AREA_GAS, .pressure = 1, .fill = 1};
+    FUZZ_CHECK(mspring_network_add_area(network, &area, corners, 3, NULL) == MSPRING_OK);
+    FUZZ_CHECK(mspring_angle_def_init(&angle, sizeof angle) == MSPRING_OK);
+    angle.stiffness = 3;
+    FUZZ_CHECK(mspring_network_add_angles(network, &angle, arms, 2, NULL) == MSPRING_OK);
+    uint32_t count = 0;
+    mspring_id angles[2];
+    FUZZ_CHECK(mspring_network_get_angles(network, angles, NULL, NULL, 2, &count) == MSPRING_OK && count == 2);
+    FUZZ_CHECK(mspring_network_set_rest_angles(network, angles[0], 1, &rest, 1) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_step(network, 0.01) == MSPRING_OK);
+}
+
 static void edit(mspring_network *network, int kind) {
     const bool implicit = kind & 2;
     const float strains[2] = {0.5f, 0.7f}, lower[2] = {0.2f, 0.3f}, mass = 3, scale = 0.5f;
@@ -91,6 +121,8 @@ static void edit(mspring_network *network, int kind) {
     FUZZ_CHECK(mspring_network_set(network, MSPRING_MASS, 3, 1, &mass, 1) == MSPRING_OK);
     if (!implicit)
         FUZZ_CHECK(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 5, 1, &scale, 1) == MSPRING_OK);
+    if (kind >= PLAIN)
+        add_laws(network);
     if (kind % 3 == 0)
         add_and_remove(network);
     FUZZ_CHECK(mspring_network_apply_force(network, 6, 3, -2) == MSPRING_OK);
@@ -100,9 +132,9 @@ static subject make_subject(int kind) {
     subject made = {.network = NULL};
     recipe from = make_recipe(kind);
     mspring_network_def def = support_def(-9.8f, 2);
-    static const mspring_guard guards[KINDS] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_GROWTH,
+    static const mspring_guard guards[PLAIN] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_GROWTH,
                                                 MSPRING_GUARD_GROWTH};
-    def.guard = guards[kind];
+    def.guard = guards[kind % PLAIN];
     def.spare_particles = def.spare_springs = kind % 3 == 0 ? 3 : 0;
     def.sleep_speed = kind % 2 == 0 ? 1e-3f : 0;
     def.sleep_time = 0;
