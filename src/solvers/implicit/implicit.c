@@ -422,6 +422,7 @@ void mspringi_implicit_keep(mspringi_implicit *n) {
     n->is_kept = true;
     n->has_changed = false;
     n->kept_age = n->age;
+    n->kept_restarts = n->history.restarts;
     if (n->age > 0)
         mspringi_coarse_keep(&n->coarse);
 }
@@ -432,6 +433,7 @@ void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit
         n->history = n->backup;
         n->backup = failed;
     }
+    n->history.restarts = n->kept_restarts; // a first substep that is taken again begins anew: that changes them
     n->has_changed = n->is_kept = false;
     n->budget.knows_elastic = false;
     n->age = n->kept_age;

@@ -46,10 +46,11 @@ typedef enum mspringi_holding { MSPRINGI_HOLD_ALL, MSPRINGI_HOLD_ACROSS, MSPRING
 typedef struct mspringi_implicit {
     mspring_integrator integrator;
     uint32_t iterations, coarse_period;
-    uint32_t tile_size; ///< as asked for: 0 is by plan
-    uint32_t age;       ///< substeps since the coarse matrix was factored; 0: it is to be
-    uint32_t kept_age;  ///< before the step; 0: there is none to go back to
-    double scale;       ///< power of two that brings masses near 1
+    uint32_t tile_size;     ///< as asked for: 0 is by plan
+    uint32_t age;           ///< substeps since the coarse matrix was factored; 0: it is to be
+    uint32_t kept_age;      ///< before the step; 0: there is none to go back to
+    uint32_t kept_restarts; ///< those of the history before the step
+    double scale;           ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup is that of before the step once that has written one
     mspringi_history previous;        ///< what the next substep is written to; that of before the last substep
