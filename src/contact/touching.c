@@ -119,18 +119,25 @@ static void share_stillness(mspring_network *network, const mspringi_pairs *pair
 
 /* ------------------------------------------------------------------------------------------------------ stage */
 
+// Before substeps are taken, or taken once more. Returns whether all pairs have room.
+static bool begin_substeps(mspring_network *network, uint32_t substeps) {
+    mspringi_pairs *pairs = network->pairs;
+    pairs->is_missed = pairs->is_full = pairs->is_crowded = false;
+    pairs->taken = pairs->touching = 0;
+    pairs->since_look = 0;
+    pairs->deepest = pairs->thrown = 0.0;
+    mspringi_colliders_begin(network, pairs, substeps);
+    return mspringi_near_look(network, pairs);
+}
+
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_pairs *pairs = network->pairs;
     mspringi_outline_follow(network, pairs);
     pairs->h = attempt->h;
     pairs->dt = attempt->dt;
-    pairs->is_missed = pairs->is_strict = pairs->is_full = pairs->is_crowded = false;
-    pairs->taken = pairs->touching = 0;
-    pairs->since_look = 0;
-    pairs->deepest = pairs->thrown = 0.0;
+    pairs->is_strict = false;
     pairs->has_sleepers = network->sleep.sleeping > 0;
-    mspringi_colliders_begin(network, pairs, attempt->substeps);
-    if (mspringi_near_look(network, pairs))
+    if (begin_substeps(network, attempt->substeps))
         wake_touched(network, pairs);
     mspringi_meetings_begin(network, pairs);
 }
@@ -215,15 +222,12 @@ static mspring_result judge(mspring_network *network) {
                          pairs->is_full ? "are near" : "may touch");
 }
 
-// The state is that of before the step. If the step is repeated, it begins with a look.
+// The state is that of before the step. If the step is repeated, perhaps for another stage, it begins with a look.
 static void take_back(mspring_network *network) {
     mspringi_pairs *pairs = network->pairs;
     pairs->is_fresh = false;
-    pairs->taken = pairs->since_look = 0;
-    mspringi_colliders_forget(pairs);
     mspringi_meetings_forget_step(pairs);
-    if (pairs->is_strict)
-        (void)mspringi_near_look(network, pairs);
+    (void)begin_substeps(network, pairs->colliders.substeps);
 }
 
 static void after_step(mspring_network *network, double dt) {

@@ -42,8 +42,8 @@ static stretch stretch_of(const mspring_network *network, const mspringi_one_way
     return (stretch){length - (double)spring->rest_length, length > 0.0 ? (dvx * dx + dvy * dy) / length : 0.0};
 }
 
-// What a root would tell, for most of those that are slack: a limit beside another spring nearly always is. (Without,
-// a cloth of 60x60 with limits both ways took 2.9 times as long.)
+// What a root would tell, for most of those that are slack: a limit beside another spring nearly always is.
+// (Without, a cloth of 60x60 with limits both ways took 2.9 times as long.)
 static bool is_slack_by_far(const mspring_network *network, const mspringi_one_way_spring *spring) {
     const mspringi_state *s = &network->state;
     const double dx = mspringi_x_of(s, spring->tip) - mspringi_x_of(s, spring->base);
@@ -70,7 +70,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     const mspringi_topology *t = &network->topology;
     (void)attempt;
     one_way->listed = 0;
-    one_way->has_missed = false;
+    one_way->has_missed = one_way->is_repeated = false;
     for (mspring_id s = 0; s < t->reserve.first_spring; ++s) {
         if (one_way->side[s] == 0 || !mspringi_spring_exists(network, s))
             continue;
@@ -135,9 +135,14 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     }
 }
 
+// Once: those that tighten in the second run are let be.
 static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_one_way *one_way = &network->one_way;
     (void)attempt;
-    return network->one_way.has_missed;
+    if (!one_way->has_missed || one_way->is_repeated)
+        return false;
+    one_way->is_repeated = true;
+    return true;
 }
 
 // Before the guard looks at them.

@@ -207,15 +207,16 @@ static bool is_idle(const mspring_network *network, const mspringi_stages *stage
     return mspringi_sleep_is_idle(network) && !stages->give_forces && !stages->cut_substeps && !stages->move;
 }
 
-// Run all substeps, and once more if a stage counted on what did not hold.
+// Run all substeps, and once more for each stage that counted on what did not hold.
 static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
-    const mspringi_extrema extrema = run_once(network, attempt);
-    if (network->hook_count > 0)
-        network->seen = mspringi_guard_bound(network, attempt->h, extrema);
-    if (!mspringi_stages_have_missed(network, attempt))
-        return extrema;
-    go_back(network, attempt);
-    return run_once(network, attempt);
+    for (size_t repeats = 0;; ++repeats) {
+        const mspringi_extrema extrema = run_once(network, attempt);
+        if (network->hook_count > 0)
+            network->seen = mspringi_guard_bound(network, attempt->h, extrema);
+        if (!mspringi_stages_have_missed(network, attempt) || repeats == attempt->stages->count)
+            return extrema;
+        go_back(network, attempt);
+    }
 }
 
 // Put back what an attempt that led to this has done. guard is that of before.

@@ -221,7 +221,8 @@ typedef struct mspringi_one_way {
     int8_t *side;                  ///< [reserve.first_spring] see mspringi_side_of()
     mspringi_one_way_spring *list; ///< [count] those of the step that are live
     uint32_t count, listed;
-    bool has_missed; ///< one did not act in a substep in which it should have
+    bool has_missed;  ///< one did not act in a substep in which it should have
+    bool is_repeated; ///< for that reason, the step is taken once more
 } mspringi_one_way;
 
 /// What springs yield at, and what has become of them, by place; NULL as long as none yields. See step/yielding.c.

@@ -9,7 +9,8 @@
 ///   before_substep   each substep, or each free group of them; returns the forces that act in them
 ///   shares           before each piece of a substep that follows no other: how long it may be
 ///   after_substep    as before_substep
-///   has_missed       after the substeps: it counted on what did not hold, so they are undone and repeated
+///   has_missed       after the substeps: it counted on what did not hold, so they are undone and repeated. In the
+///                    next run it does not count on that, so it says so once a step
 ///   judge            after the substeps, or what stands for them: whether it could do what it is for (only
 ///                    if some stage can be quiet or can miss something)
 ///   after_step       once the step is taken, and will not be undone
