@@ -71,7 +71,7 @@ static void add_ground(mspring_network *network, const kind *k, ground *to, uint
 /* -------------------------------------------------------------------------------------------------------- scenes
  */
 
-/// Rows of every kind, no loose particles (which fly in another way from substep to substep), y above the ground.
+/// Rows of every kind, y above the ground.
 static mspring_network *falling(double x, double y, float vy, mspring_solver solver, uint32_t workers) {
     uint64_t seed = 8;
     const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {300, 400}, .damping = {1, 2}};
@@ -80,6 +80,9 @@ static mspring_network *falling(double x, double y, float vy, mspring_solver sol
     const mspring_id end = recipe_particle(&made, x + 45, y + 9, 1, 0);
     recipe_rope(&made, 2, end, 9, &stuff, &seed);
     recipe_random_springs(&made, 8, &stuff, &seed);
+    for (uint32_t i = 0; i < 40; i++) {
+        recipe_particle(&made, x - 3 + i, y + 5 + i % 3, 1, 0);
+    }
     recipe_disturb(&made, 0.05, 0.5, &seed);
     for (uint32_t p = 0; p < made.particle_count; p++) {
         made.particles[p].vy += vy;
@@ -205,6 +208,60 @@ static void what_springs_throw_is_found(void **state) {
     }
 }
 
+/// A body that flies off a ball which it touches, and far away two particles at rest that a spring throws apart,
+/// one of them into the ground.
+static mspring_network *flying_off(double overlap, float speed) {
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {2000, 2000}, .damping = {1, 1}};
+    uint64_t seed = 1;
+    recipe made = {0};
+    recipe_lattice(&made, 3, 3, 0, 20, 1, &stuff, &seed);
+    for (uint32_t p = 0; p < made.particle_count; p++) {
+        made.particles[p].vy = speed;
+    }
+    mspring_builder *builder = recipe_builder(&made, NULL);
+    recipe_free(&made);
+    const mspring_id a = support_particle(builder, 100, 1, 1), b = support_particle(builder, 100, 1.1, 1);
+    mspring_spring_def spring;
+    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    spring.a = a;
+    spring.b = b;
+    spring.stiffness = 2e4f;
+    spring.rest_length = 20;
+    check_ok(mspring_builder_add_spring(builder, &spring, NULL));
+    const mspring_network_def def = support_def(-9.8f, 100);
+    mspring_network *network = support_network(builder, &def);
+    mspring_contact_def contact;
+    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    contact.thickness = 0.2;
+    check_ok(mspring_network_set_contact(network, &contact));
+    mspring_collider_def ball;
+    check_ok(mspring_collider_def_init(&ball, sizeof ball));
+    ball.kind = MSPRING_COLLIDER_CIRCLE;
+    ball.radius = 0.5;
+    ball.x = 1;
+    ball.y = 20 - 0.5 - 0.2 + overlap;
+    check_ok(mspring_network_add_collider(network, &ball, NULL));
+    return network;
+}
+
+/// Contact begins a step anew that is repeated as a hook was thought to be out of reach. At the end of the first
+/// run nothing was near any more.
+static void contact_begins_anew(void **state) {
+    (void)state;
+    for (int round = 0; round < 10; round++) {
+        mspring_network *networks[2];
+        ground grounds[2] = {{.y = 0}, {.y = 0}};
+        for (int n = 0; n < 2; n++) {
+            networks[n] = flying_off(0.01 * (1 + round), 10.0f * (float)(1 + round));
+            add_ground(networks[n], &kinds[2 * (round % 2)], &grounds[n], n == 0 ? 0 : MSPRING_HOOK_BELOW);
+        }
+        check_alike(networks[0], networks[1], 3);
+        assert_true(grounds[0].below == grounds[1].below && grounds[1].below > 0);
+        mspring_network_destroy(networks[0]);
+        mspring_network_destroy(networks[1]);
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------------- looking
  */
 
@@ -324,13 +381,12 @@ static void sleepers_below_are_seen(void **state) {
 /* ---------------------------------------------------------------------------------------------------------- away
  */
 
-/// High above, the hook is not called and the bits are those without it, which are others for loose particles with
-/// a hook that is called.
+/// High above, the hook is not called and the bits are those of one that is called and does nothing.
 static void far_above_there_is_no_hook(void **state) {
     (void)state;
     for (size_t k = 0; k < COUNT_OF(kinds); k++) {
         mspring_network *networks[2];
-        ground to = {.y = -1000};
+        ground to = {.y = -1000}, called = to;
         for (int n = 0; n < 2; n++) {
             mspring_builder *builder = support_builder();
             for (uint32_t i = 0; i < 100; i++) {
@@ -340,6 +396,7 @@ static void far_above_there_is_no_hook(void **state) {
             const mspring_network_def def = support_def(-9.8f, 40);
             networks[n] = support_network(builder, &def);
         }
+        add_ground(networks[0], &kinds[k], &called, 0);
         add_ground(networks[1], &kinds[k], &to, MSPRING_HOOK_BELOW);
         check_alike(networks[0], networks[1], 30);
         assert_int_equal(to.calls, 0);
@@ -388,9 +445,9 @@ static void heights_have_their_range(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_as_if_called_for_all),  cmocka_unit_test(others_make_no_difference),
-        cmocka_unit_test(what_springs_throw_is_found), cmocka_unit_test(nobody_below_is_missed),
-        cmocka_unit_test(sleepers_below_are_seen),     cmocka_unit_test(far_above_there_is_no_hook),
-        cmocka_unit_test(heights_have_their_range),
+        cmocka_unit_test(what_springs_throw_is_found), cmocka_unit_test(contact_begins_anew),
+        cmocka_unit_test(nobody_below_is_missed),      cmocka_unit_test(sleepers_below_are_seen),
+        cmocka_unit_test(far_above_there_is_no_hook),  cmocka_unit_test(heights_have_their_range),
     };
     return cmocka_run_group_tests_name("hook_reach", tests, NULL, NULL);
 }

@@ -350,36 +350,49 @@ static mspringi_glide plan_glide(const mspringi_sweep *sweep, uint32_t substeps)
 /// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.
 #define LOOSE_CHUNK 16
 
-// The end of the blocks from that one on that are all near the floor, or all far.
+// The end of the blocks from that one on that are all near the floor, or all far. strip: NULL if no floor is near.
 static uint32_t end_of_chunk(const mspring_network *network, const mspringi_strip *strip, uint32_t block,
                              uint32_t end, bool *is_near) {
-    *is_near = mspringi_floor_is_near_block(network, strip, block);
+    *is_near = strip && mspringi_floor_is_near_block(network, strip, block);
     const uint32_t most = end - block < LOOSE_CHUNK ? end : block + LOOSE_CHUNK;
     uint32_t next = block + 1;
-    while (next < most && mspringi_floor_is_near_block(network, strip, next) == *is_near)
+    while (next < most && (strip && mspringi_floor_is_near_block(network, strip, next)) == *is_near)
         ++next;
     return next;
 }
 
+// Whether some hook acts in substeps, if it is within reach.
+static bool may_be_cut(const mspring_network *network) {
+    for (size_t i = 0; i < network->hook_count; ++i)
+        if (network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
+            return true;
+    return false;
+}
+
 // Take so many substeps of loose particles: at once, but one after the other where a floor is near. (16,384 of them
-// of which one is near: 43 instead of 345 us for 40 substeps at AVX-512 on a Zen 4.)
+// of which one is near: 43 instead of 345 us for 40 substeps at AVX-512 on a Zen 4.) Both differ in rounding. So
+// they are taken one after the other beside hooks that may cut a step: bits must not depend on what was thought to
+// be within reach.
 static void take_loose(const job *rest, const mspringi_substep *substep, const mspringi_strip *strip,
                        const mspringi_span *span, uint32_t count) {
     const mspring_network *network = rest->network;
     const mspringi_loose_fn loose = network->kernels->loose[substep->base.x != NULL];
     const mspringi_glide all = plan_glide(&substep->sweep, count), one = plan_glide(&substep->sweep, 1);
-    if (!mspringi_floor_is_near(network, strip)) {
+    const bool is_floor_near = mspringi_floor_is_near(network, strip), glides = !may_be_cut(network);
+    if (!is_floor_near && glides) {
         loose(&substep->sweep, span, &all);
         return;
     }
     const uint32_t end = span->end_slot / MSPRINGI_WIDTH;
     for (uint32_t block = span->first_slot / MSPRINGI_WIDTH, next; block < end; block = next) {
         bool is_near;
-        next = end_of_chunk(network, strip, block, end, &is_near);
+        next = end_of_chunk(network, is_floor_near ? strip : NULL, block, end, &is_near);
         mspringi_span chunk = *span;
         chunk.first_slot = block * MSPRINGI_WIDTH;
         chunk.end_slot = next * MSPRINGI_WIDTH;
-        if (!is_near)
+        for (uint32_t i = 0; !is_near && !glides && i < count; ++i)
+            loose(&substep->sweep, &chunk, &one);
+        if (!is_near && glides)
             loose(&substep->sweep, &chunk, &all);
         for (uint32_t i = 0; is_near && i < count; ++i) {
             mspringi_floor_note(network, strip, &chunk, 1);
