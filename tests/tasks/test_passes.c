@@ -167,10 +167,73 @@ static void any_number_of_workers_gives_the_same_bits(void **state) {
     }
 }
 
+/// A lattice, ropes, or an irregular network, of 2 to some 300 particles.
+static recipe small_recipe(uint32_t variant, uint64_t *seed) {
+    const recipe_stuff plain = {.mass = {0.5, 2}, .stiffness = {500, 3000}, .damping = {0, variant % 2 ? 10 : 0}};
+    const uint32_t columns = 1 + (uint32_t)(support_random(seed) % 40),
+                   rows = 1 + (uint32_t)(support_random(seed) % 8);
+    recipe made = {0};
+    if (variant % 3 == 0) {
+        recipe_lattice(&made, columns + 1, rows, 0, 0, 1, &plain, seed);
+    }
+    if (variant % 9 == 0) {
+        recipe_lattice(&made, rows + 1, rows + 1, 0, 20, 1, &plain, seed);
+    }
+    if (variant % 3 == 1 || variant % 9 == 3) {
+        const mspring_id first = recipe_particle(&made, 0, 0, 1, MSPRING_PARTICLE_PINNED);
+        const mspring_id last = recipe_particle(&made, 30, 1, 2, 0);
+        recipe_rope(&made, first, last, columns, &plain, seed);
+    }
+    if (variant % 3 == 2) {
+        for (uint32_t i = 0; i < columns + 6; i++) {
+            recipe_particle(&made, support_random_between(seed, 0, 9), support_random_between(seed, 0, 9), 1, 0);
+            if (i > 0) {
+                recipe_spring(&made, i, i / 2, 900, 5, 0);
+            }
+            if (i > 8) {
+                recipe_spring(&made, i, i - 4, 900, 5, 0);
+            }
+        }
+    }
+    recipe_disturb(&made, 0.1, 3, seed);
+    return made;
+}
+
+/// A network that has nothing but a few rows is swept by fewer calls than one with a loose particle as well.
+static void small_networks_have_the_bits_of_others(void **state) {
+    (void)state;
+    for (uint32_t variant = 0; variant < 90; variant++) {
+        uint64_t seed = 400 + variant;
+        recipe made = small_recipe(variant, &seed);
+        mspring_network_def def = support_def(-9.8f, SUBSTEPS);
+        mspring_network *alone = recipe_network(&made, &def);
+        // Where another one is, so that the local origin is the same.
+        const mspring_id loose = recipe_particle(&made, made.particles->x, made.particles->y, 1, 0);
+        mspring_network *other = recipe_network(&made, &def);
+        for (uint32_t step = 0; step < 3; step++) {
+            if (variant % 4 == 3) {
+                check_ok(mspring_network_apply_force(alone, 1, 30, -20));
+                check_ok(mspring_network_apply_force(other, 1, 30, -20));
+            }
+            support_steps(alone, 1, 1.0 / 64);
+            support_steps(other, 1, 1.0 / 64);
+        }
+        for (mspring_id p = 0; p < loose; p++) {
+            const support_point at = support_position(alone, p), there = support_position(other, p);
+            const support_point speed = support_velocity(alone, p), its_speed = support_velocity(other, p);
+            assert_true(at.x == there.x && at.y == there.y && speed.x == its_speed.x && speed.y == its_speed.y);
+        }
+        mspring_network_destroy(alone);
+        mspring_network_destroy(other);
+        recipe_free(&made);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(passes_give_the_bits_of_single_substeps),
         cmocka_unit_test(ropes_do_not_prevent_passes),
+        cmocka_unit_test(small_networks_have_the_bits_of_others),
         cmocka_unit_test(any_number_of_workers_gives_the_same_bits),
         cmocka_unit_test(what_cannot_share_a_pass_does_not_prevent_those_of_others),
     };

@@ -121,6 +121,9 @@ static bool append_chain_row(mspringi_assembly *a) {
         mspringi_span span =
             span_of_blocks(block, left < LONGEST_CHAIN_SPAN ? left : LONGEST_CHAIN_SPAN, i, MSPRINGI_WIDTH);
         span.carry = offset_between(block, 0);
+        if (left <= LONGEST_CHAIN_SPAN) // what is behind the last particle holds nothing
+            span.end_slot = t->chain_first * MSPRINGI_WIDTH +
+                            (a->strands.count + MSPRINGI_QUARTER - 1) / MSPRINGI_QUARTER * MSPRINGI_QUARTER;
         ok = append_span(a, &span);
     }
     return ok;

@@ -10,6 +10,7 @@
 #include "solvers/explicit/herds.h"
 #include "solvers/explicit/shares.h"
 #include "solvers/explicit/stint.h"
+#include "solvers/explicit/straight.h"
 #include "solvers/explicit/strip.h"
 #include "store/alike.h"
 #include "tasks/team.h"
@@ -559,6 +560,8 @@ static void sweep_all(mspring_network *network, float h, mspringi_field base, ui
         sweep_grafted(network, h, base, count);
         return;
     }
+    if (mspringi_straight_sweep(network, h, base, count, all_extrema))
+        return;
     sweep_wavefront(network, h, base, count, all_extrema);
     sweep_rest(network, h, base, count, all_extrema);
     if (mspringi_herds_are_apart(network))

@@ -73,11 +73,13 @@ static void pack_attached(const mspring_network *network, const mspringi_strip *
 // Pack groups that lie behind one another.
 static void pack_blocks(const mspring_network *network, const mspringi_sweep *sweep, size_t first_block,
                         size_t count, float *gathered) {
-    mspringi_sweep from = *sweep;
-    if (network->is_precise) {
-        from.vx = from.low_x;
-        from.vy = from.low_y;
+    if (!network->is_precise) {
+        network->kernels->pack(sweep, first_block, count, gathered);
+        return;
     }
+    mspringi_sweep from = *sweep;
+    from.vx = from.low_x;
+    from.vy = from.low_y;
     network->kernels->pack(&from, first_block, count, gathered);
     if (!mspringi_packs_halves(network))
         return;

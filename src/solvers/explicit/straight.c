@@ -1,0 +1,122 @@
+/// Small networks. What passes, shares and strips cost in each substep is up to half of what their springs do; here
+/// a substep is a kernel's call or a few. Kernels, their spans and their order within a substep are those of
+/// strip.c, and so are the bits.
+#include "solvers/explicit/straight.h"
+
+#include "contact/floor.h"
+#include "solvers/explicit/explicit.h"
+#include "solvers/explicit/strip.h"
+#include "store/precise.h"
+
+/// Blocks of slots of a small network: its state and springs stay in the first-level cache, or nearly so. In larger
+/// ones a strip's substep costs ten times what it is called by.
+#define MOST_BLOCKS 64u
+
+/// Rows of one kind, swept by one call.
+typedef struct run {
+    mspringi_row_fn sweep;
+    const mspringi_span *spans;
+    uint32_t span_count;
+} run;
+
+/// Most of these: a lattice is one, and its top row another.
+#define MOST_RUNS 8u
+
+// A web of its own, or rows with nothing that hangs on them.
+static bool has_plain_rows(const mspringi_topology *t) {
+    if (t->row_count == 0 || t->rows[t->row_count - 1].kind == MSPRINGI_ROW_LOOSE)
+        return false;
+    return t->web.group_count == 0 || (t->row_count == 1 && t->herd_strip == MSPRING_NONE && t->layer_count == 0 &&
+                                       t->web.attached_count == 0);
+}
+
+// A small web is not shared either, but that depends on its substeps.
+static bool is_of_one_worker(const mspring_network *network) {
+    return !network->tasks || (network->topology.wavefront_strips > 0 && mspringi_explicit_workers(network) == 1);
+}
+
+static bool is_straight(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    if (t->block_count > MOST_BLOCKS || !has_plain_rows(t) || network->graft.count > 0 ||
+        network->sleep.sleeping > 0 || (network->plastic.yields && network->plastic.is_swept) ||
+        !is_of_one_worker(network))
+        return false;
+    for (uint32_t s = 0; network->floor && s < t->strip_count; ++s)
+        if (mspringi_floor_is_near(network, &t->strips[s]))
+            return false;
+    return true;
+}
+
+// Whether a row has spans of its own without registers that need not be swept.
+static bool is_tight(const mspringi_topology *t, const mspringi_row *row) {
+    return t->tight_spans && row->first_span < t->tightened_count;
+}
+
+static uint32_t list_runs(const mspring_network *network, bool is_forced, run runs[MOST_RUNS]) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_row *row = t->rows, *const end = row + t->row_count;
+    uint32_t count = 0;
+    for (const mspringi_row *next; row < end; row = next, ++count) {
+        for (next = row + 1; next < end && next->kind == row->kind && is_tight(t, next) == is_tight(t, row);)
+            ++next;
+        if (count == MOST_RUNS)
+            return 0;
+        const mspringi_span *spans = is_tight(t, row) ? t->tight_spans : t->spans;
+        uint32_t first = row->first_span, last = next[-1].first_span + next[-1].span_count;
+        if (is_tight(t, row)) {
+            first = t->first_tight[first];
+            last = t->first_tight[last];
+        }
+        runs[count] = (run){mspringi_row_kernel(network, row->kind, is_forced, false), spans + first, last - first};
+    }
+    return count;
+}
+
+// The web looks at the state before and after a step; kernels of other rows do so themselves.
+static void sweep_web(const mspring_network *network, mspringi_substep *substep, const run *web, uint32_t count,
+                      mspringi_extrema *extrema) {
+    if (extrema)
+        mspringi_span_keep(network, web->spans);
+    for (uint32_t i = 0; i < count; ++i) {
+        mspringi_web_pack(network, substep, web->spans);
+        web->sweep(&substep->sweep, web->spans, 1);
+    }
+    if (extrema)
+        *extrema = mspringi_extrema_join(*extrema, mspringi_span_look(network, web->spans));
+}
+
+static void sweep_rows(const mspring_network *network, mspringi_substep *substep, const run *runs,
+                       uint32_t run_count, uint32_t count, mspringi_extrema *extrema) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t carries = mspringi_explicit_carries(network);
+    mspringi_watch_room room = {{0.0f}};
+    mspringi_watch *const watch = mspringi_watch_in(&room);
+    if (extrema)
+        mspringi_substep_keep(network, substep);
+    for (uint32_t i = 0; i < count; ++i) {
+        mspringi_substep_turn(network, substep, i, count, i % carries);
+        if (extrema && i + 1 == count)
+            mspringi_substep_watch(network, substep, watch);
+        for (const run *r = runs; r < runs + run_count; ++r)
+            r->sweep(&substep->sweep, r->spans, r->span_count);
+        substep->sweep.keep = NULL;
+    }
+    for (uint32_t s = 0; extrema && s < t->strip_count; ++s)
+        (void)mspringi_strip_end(network, &t->strips[s]);
+    if (extrema)
+        *extrema = mspringi_extrema_join(*extrema, network->kernels->extrema_of(watch));
+}
+
+bool mspringi_straight_sweep(const mspring_network *network, float h, mspringi_field base, uint32_t count,
+                             mspringi_extrema *extrema) {
+    run runs[MOST_RUNS];
+    const uint32_t run_count = is_straight(network) ? list_runs(network, base.x != NULL, runs) : 0;
+    if (run_count == 0)
+        return false;
+    mspringi_substep substep = mspringi_substep_prepare(network, h, base, 0, count, 0);
+    if (network->topology.web.group_count > 0)
+        sweep_web(network, &substep, runs, count, extrema);
+    else
+        sweep_rows(network, &substep, runs, run_count, count, extrema);
+    return true;
+}
