@@ -18,8 +18,12 @@
 /// In front of every block, so that the size that was asked for is known when it is freed.
 typedef struct mspringi_block {
     struct mspringi_block *previous, *next;
-    size_t size; ///< with this header, which takes one alignment unit
+    size_t size; ///< with this header, which takes one alignment unit, or half of the only one
 } block;
+
+/// Half of an alignment unit: room for a header, or for contents that no vector is loaded from.
+#define HALF (MSPRINGI_ALIGNMENT / 2)
+_Static_assert(sizeof(block) <= HALF, "a header takes half of a unit");
 
 /// Elements of the smallest array that grows: a network of a few particles has a few rows.
 #define FEWEST_ELEMENTS 8
@@ -110,15 +114,31 @@ static void give_back(mspringi_memory *memory, block *taken) {
         memory->allocator.free(taken, taken->size, memory->allocator.user);
 }
 
+// A small network has a dozen arrays of a few bytes: they share a unit with their header.
+static size_t header_of(size_t size) {
+    return size > MSPRINGI_ALIGNMENT ? MSPRINGI_ALIGNMENT : HALF;
+}
+
 static char *contents_of(const block *of) {
-    return (char *)of + MSPRINGI_ALIGNMENT;
+    return (char *)of + header_of(of->size);
+}
+
+static size_t room_of(const block *of) {
+    return of->size - header_of(of->size);
+}
+
+static block *block_of(const void *contents) {
+    const size_t header = (uintptr_t)contents % MSPRINGI_ALIGNMENT == 0 ? MSPRINGI_ALIGNMENT : HALF;
+    return (block *)(void *)((char *)(uintptr_t)contents - header);
 }
 
 // Whole units, so that every block ends where the next may begin. 0: too many.
 static size_t size_of(size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - 2 * MSPRINGI_ALIGNMENT) / size)
         return 0;
-    return (count * size + 2 * MSPRINGI_ALIGNMENT - 1) / MSPRINGI_ALIGNMENT * MSPRINGI_ALIGNMENT;
+    return count * size <= HALF
+               ? MSPRINGI_ALIGNMENT
+               : (count * size + 2 * MSPRINGI_ALIGNMENT - 1) / MSPRINGI_ALIGNMENT * MSPRINGI_ALIGNMENT;
 }
 
 void *mspringi_alloc_unset(mspringi_memory *memory, size_t count, size_t size) {
@@ -129,20 +149,19 @@ void *mspringi_alloc_unset(mspringi_memory *memory, size_t count, size_t size) {
 
 void *mspringi_alloc(mspringi_memory *memory, size_t count, size_t size) {
     void *taken = mspringi_alloc_unset(memory, count, size);
-    return taken ? memset(taken, 0, size_of(count, size) - MSPRINGI_ALIGNMENT) : NULL;
+    return taken ? memset(taken, 0, room_of(block_of(taken))) : NULL;
 }
 
 void *mspringi_memory_duplicate(mspringi_memory *memory, const void *contents) {
     if (!contents)
         return NULL;
-    const size_t size = ((const block *)(const void *)((const char *)contents - MSPRINGI_ALIGNMENT))->size;
-    const block *taken = take(memory, size);
-    return taken ? memcpy(contents_of(taken), contents, size - MSPRINGI_ALIGNMENT) : NULL;
+    const block *of = block_of(contents), *taken = take(memory, of->size);
+    return taken ? memcpy(contents_of(taken), contents, room_of(of)) : NULL;
 }
 
 void mspringi_free(mspringi_memory *memory, void *contents) {
     if (contents)
-        give_back(memory, (block *)(void *)((char *)contents - MSPRINGI_ALIGNMENT));
+        give_back(memory, block_of(contents));
 }
 
 void mspringi_free_all(mspringi_memory *memory) {
@@ -171,7 +190,7 @@ bool mspringi_memory_copy(const mspringi_memory *from, mspringi_memory *to) {
         const block *copy = take(to, of->size);
         if (!copy)
             return false;
-        memcpy(contents_of(copy), contents_of(of), of->size - MSPRINGI_ALIGNMENT);
+        memcpy(contents_of(copy), contents_of(of), room_of(of));
     }
     return true;
 }

@@ -11,7 +11,7 @@
 
 #include "base/message.h"
 
-/// Alignment of every block: a cache line, and the widest vector register.
+/// Alignment of every block of more than half of it: a cache line, and the widest vector register.
 #define MSPRINGI_ALIGNMENT 64
 
 /// An allocator and what has been taken from it: all blocks that have not been freed, in the order in which they

@@ -6,6 +6,7 @@
 #include "base/cpu.h"
 #include "sleep/sleep.h"
 #include "store/changed.h"
+#include "store/store.h"
 
 #define STRONGEST 1e30f
 
@@ -28,17 +29,13 @@ bool mspringi_grip_bound(const mspringi_grip *grip, double *force_x, double *for
 }
 
 bool mspringi_grip_acts(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot) {
-    if (grip->particle == MSPRING_NONE)
-        return false;
     *slot = network->topology.slot_of_particle[grip->particle];
     return mspringi_free_mass(network)[*slot] > 0.0f;
 }
 
 void mspringi_grips_arrive(mspring_network *network) {
-    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         mspringi_grip *grip = &network->grips.list[i];
-        if (grip->particle == MSPRING_NONE)
-            continue;
         grip->from_x = grip->x;
         grip->from_y = grip->y;
         if (mspringi_slot_is_asleep(network, network->topology.slot_of_particle[grip->particle]))
@@ -62,13 +59,17 @@ static void drop(mspringi_grips *grips, mspringi_grip *grip) {
     mspringi_grip *last = &grips->list[--grips->count];
     for (; grip < last; ++grip)
         *grip = grip[1];
-    *last = (mspringi_grip){.id = MSPRING_NONE, .particle = MSPRING_NONE};
 }
 
 void mspringi_grips_clear(mspringi_grips *grips) {
-    *grips = (mspringi_grips){.count = 0};
-    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i)
-        grips->list[i].id = grips->list[i].particle = MSPRING_NONE;
+    *grips = (mspringi_grips){.list = grips->list};
+}
+
+mspring_result mspringi_grips_reserve(mspring_network *network) {
+    return mspringi_store_reserve(network, MSPRINGI_STORE_GRIPS)
+               ? MSPRING_OK
+               : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u grips",
+                               (unsigned)MSPRING_MAX_GRIPS);
 }
 
 void mspringi_grips_forget(mspring_network *network, mspring_id particle) {
@@ -155,6 +156,9 @@ mspring_result mspring_network_add_grip(mspring_network *network, const mspring_
             (unsigned)grips->count);
     if (grips->next_id == MSPRING_NONE)
         return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "all ids of grips have been given away");
+    result = mspringi_grips_reserve(network);
+    if (result != MSPRING_OK)
+        return result;
     grips->list[grips->count] = made_of(def, grips->next_id++);
     if (grip)
         *grip = grips->list[grips->count].id;

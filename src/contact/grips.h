@@ -27,6 +27,8 @@ bool mspringi_grip_bound(const mspringi_grip *grip, double *force_x, double *for
 /// Whether a grip holds a particle that can be moved now. If so, *slot is where it is.
 bool mspringi_grip_acts(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot);
 
+/// Make room for all grips that there may be, unless it is there.
+mspring_result mspringi_grips_reserve(mspring_network *network);
 /// There is no grip, and none has been.
 void mspringi_grips_clear(mspringi_grips *grips);
 /// Remove the grips of a particle that is removed.

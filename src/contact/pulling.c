@@ -24,14 +24,14 @@ static bool is_used(const mspring_network *network) {
 static bool any_acts(const mspring_network *network) {
     uint32_t slot;
     bool any = false;
-    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i)
+    for (uint32_t i = 0; i < network->grips.count; ++i)
         any |= mspringi_grip_acts(network, &network->grips.list[i], &slot);
     return any;
 }
 
 static void forget_sums(mspring_network *network) {
     network->grips.were_asked = false;
-    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i)
+    for (uint32_t i = 0; i < network->grips.count; ++i)
         network->grips.list[i].sum_x = network->grips.list[i].sum_y = 0.0;
 }
 
@@ -177,7 +177,7 @@ static void pull(mspring_network *network, mspringi_hold *hold, uint32_t slot) {
 static void gather(mspring_network *network, uint32_t first, mspringi_hold *hold) {
     mspringi_grips *grips = &network->grips;
     hold->count = 0;
-    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < grips->count; ++i) {
         mspringi_grip *grip = &grips->list[i];
         if (grip->particle != grips->list[first].particle)
             continue;
@@ -193,7 +193,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     const mspringi_solver *solver = attempt->solver;
     uint32_t slot;
     (void)substep;
-    for (uint32_t i = 0; network->grips.were_asked && i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; network->grips.were_asked && i < network->grips.count; ++i) {
         if (mspringi_grip_acts(network, &network->grips.list[i], &slot) &&
             !(solver->ops->holds_grips && !solver->ops->is_alone(network, solver->object, slot))) {
             mspringi_hold hold;

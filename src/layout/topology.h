@@ -86,7 +86,7 @@ typedef struct mspringi_reserve {
 typedef struct mspringi_topology {
     uint32_t particle_count, spring_count; ///< ids so far
     mspringi_reserve reserve;
-    uint32_t block_count; ///< with one of padding in front, one before the web and one behind: lane + 1 can be read
+    uint32_t block_count; ///< with padding in front, behind, and between rows and what follows: lane + 1 can be read
     uint32_t lattice_first, lattice_blocks; ///< blocks: first, number
     uint32_t chain_first, chain_blocks;
     uint32_t web_first, web_blocks;

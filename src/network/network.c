@@ -6,7 +6,6 @@
 #include "base/cpu.h"
 #include "base/definitions.h"
 #include "base/mix.h"
-#include "contact/grips.h"
 #include "network/job.h"
 #include "network/level.h"
 #include "sleep/sleep.h"
@@ -297,7 +296,6 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         return result;
     network->guard.speed = network->guard.place = INFINITY; // are not known
     network->steps.outcome = mspringi_outcome_none();
-    mspringi_grips_clear(&network->grips);
     fill_particles(network, builder);
     fill_springs(network, builder);
     for (mspring_id p = network->topology.particle_count; p < network->topology.reserve.particle_end; ++p)

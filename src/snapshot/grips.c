@@ -111,7 +111,7 @@ static mspring_result grips_check(mspring_network *network, const uint8_t *from,
         result = check_grip(network, &record);
         least = (size_t)record.grip.id + 1;
     }
-    return result;
+    return result == MSPRING_OK && count > 0 ? mspringi_grips_reserve(network) : result;
 }
 
 // After the section of growth: a grip on what is not there is left out.

@@ -176,7 +176,7 @@ typedef struct mspringi_grip {
 } mspringi_grip;
 
 typedef struct mspringi_grips {
-    mspringi_grip list[MSPRING_MAX_GRIPS]; ///< in the order of ids; both are MSPRING_NONE of those behind the last
+    mspringi_grip *list; ///< [MSPRING_MAX_GRIPS] in the order of ids; NULL before the first
     uint32_t count;
     mspring_id next_id;
 

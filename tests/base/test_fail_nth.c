@@ -362,6 +362,15 @@ static mspring_result add_colliders(life *l) {
     return result;
 }
 
+static mspring_result add_grip(life *l) {
+    mspring_grip_def def;
+    check_ok(mspring_grip_def_init(&def, sizeof def));
+    def.particle = 1;
+    def.x = l->made.particles[1].x;
+    def.y = l->made.particles[1].y;
+    return mspring_network_add_grip(l->network, &def, NULL);
+}
+
 static mspring_result reserve_contact_events(life *l) {
     return mspring_network_reserve_contact_events(l->network, 50);
 }
@@ -468,6 +477,7 @@ static const struct {
     {"contact events", reserve_contact_events},
     {"surface", set_surface},
     {"colliders", add_colliders},
+    {"grip", add_grip},
     {"step", step},
     {"other contact", change_contact},
     {"step", step},

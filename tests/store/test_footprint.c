@@ -40,6 +40,24 @@ static void full_lattices_are_small(void **state) {
     check_full_lattices(&stuff, "absolute");
 }
 
+/// The struct itself takes 3.5 kB, and each of some 30 arrays 64 bytes or more.
+static void small_networks_are_small(void **state) {
+    (void)state;
+    const struct {
+        uint32_t width, height;
+        double most;
+    } cases[] = {{2, 1, 10400}, {4, 4, 15200}, {7, 5, 19000}};
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        uint64_t seed = 5;
+        recipe made = {0};
+        recipe_lattice(&made, cases[i].width, cases[i].height, 0, 0, 1, &stuff, &seed);
+        const double bytes = bytes_per_particle(&made) * made.particle_count;
+        print_message("%u x %u: %.0f bytes\n", (unsigned)cases[i].width, (unsigned)cases[i].height, bytes);
+        assert_true(bytes <= cases[i].most);
+        recipe_free(&made);
+    }
+}
+
 static void relative_springs_take_little_more(void **state) {
     (void)state;
     check_full_lattices(&relative, "relative");
@@ -113,8 +131,11 @@ static void frames_are_smaller(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(full_lattices_are_small), cmocka_unit_test(relative_springs_take_little_more),
-        cmocka_unit_test(order_is_not_needed),     cmocka_unit_test(spare_room_is_small),
+        cmocka_unit_test(full_lattices_are_small),
+        cmocka_unit_test(small_networks_are_small),
+        cmocka_unit_test(relative_springs_take_little_more),
+        cmocka_unit_test(order_is_not_needed),
+        cmocka_unit_test(spare_room_is_small),
         cmocka_unit_test(frames_are_smaller),
     };
     return cmocka_run_group_tests_name("footprint", tests, NULL, NULL);

@@ -124,14 +124,14 @@ mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a) {
     t->lattice_blocks = (uint32_t)a->block_count;
     t->chain_first = t->lattice_first + t->lattice_blocks;
     t->chain_blocks = (a->strands.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    // One of padding: vectors at the end of the rows before reach into it, while other threads move the web.
-    t->web_first = t->chain_first + t->chain_blocks + 1;
     t->web_blocks = a->web.count > 0 ? a->web_place / MSPRINGI_WIDTH + 1 : 0;
-    t->loose_first = t->web_first + t->web_blocks;
     t->loose_particles = loose;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    t->spare_first = t->loose_first + t->loose_blocks;
     t->spare_blocks = (mspringi_spare_particles(t) + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    // One of padding: vectors at the end of the rows before reach into it, while other threads move what is behind.
+    t->web_first = t->chain_first + t->chain_blocks + (t->web_blocks + t->loose_blocks + t->spare_blocks > 0);
+    t->loose_first = t->web_first + t->web_blocks;
+    t->spare_first = t->loose_first + t->loose_blocks;
     t->block_count = t->spare_first + t->spare_blocks + 1;
     if ((uint64_t)t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + a->strands.count + MSPRINGI_WIDTH +
             t->reserve.spring_end >=

@@ -48,7 +48,7 @@ static void predict_force(const mspring_network *network, mspringi_grip *grip, u
 void mspringi_grips_add_terms(mspring_network *network, float h, uint32_t pass) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     uint32_t slot;
-    for (uint32_t i = 0; network->grips.count > 0 && i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         mspringi_grip *grip = &network->grips.list[i];
         if (!is_held(network, grip, &slot))
             continue;
@@ -67,7 +67,7 @@ void mspringi_grips_add_terms(mspring_network *network, float h, uint32_t pass) 
 double mspringi_grips_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
     double sum = 0.0;
     uint32_t slot;
-    for (uint32_t i = 0; network->grips.count > 0 && i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         if (!is_held(network, &network->grips.list[i], &slot))
             continue;
         const double weight = weight_of(network, &network->grips.list[i]);
@@ -82,7 +82,7 @@ double mspringi_grips_multiply(const mspring_network *network, mspringi_field fr
 void mspringi_grips_stiffen(const mspring_network *network) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     uint32_t slot;
-    for (uint32_t i = 0; network->grips.count > 0 && i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         if (!is_held(network, &network->grips.list[i], &slot) || n->tiles.of_slot[slot] == MSPRING_NONE)
             continue;
         const double weight = weight_of(network, &network->grips.list[i]);
@@ -93,7 +93,7 @@ void mspringi_grips_stiffen(const mspring_network *network) {
 
 void mspringi_grips_add_nodes(const mspring_network *network, double *xx, double *yy) {
     uint32_t slot;
-    for (uint32_t i = 0; network->grips.count > 0 && i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         if (!is_held(network, &network->grips.list[i], &slot))
             continue;
         xx[slot] += weight_of(network, &network->grips.list[i]);
@@ -105,7 +105,7 @@ bool mspringi_grips_review(mspring_network *network, float alpha) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     uint32_t slot;
     bool again = false;
-    for (uint32_t i = 0; network->grips.count > 0 && i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         mspringi_grip *grip = &network->grips.list[i];
         if (!is_held(network, grip, &slot) || grip->is_bounded)
             continue;
@@ -124,7 +124,7 @@ void mspringi_grips_pass(mspring_network *network, float h) {
     uint32_t slot;
     if (network->grips.count == 0)
         return;
-    for (uint32_t i = 0; i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         mspringi_grip *grip = &network->grips.list[i];
         if (!is_held(network, grip, &slot))
             continue;
@@ -172,7 +172,7 @@ void mspringi_grips_account(const mspringi_measuring *all) {
     const mspring_network *network = all->network;
     mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     uint32_t slot;
-    for (uint32_t i = 0; network->grips.count > 0 && i < MSPRING_MAX_GRIPS; ++i) {
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
         const mspringi_grip *grip = &network->grips.list[i];
         if (!is_held(network, grip, &slot) || budget->of_slot[slot] == MSPRINGI_NO_ACCOUNT)
             continue;
