@@ -7,7 +7,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from concurrent.futures import ProcessPoolExecutor
 from itertools import product
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, Union
@@ -95,6 +94,8 @@ def _submit(engine: Any, calls: List[Tuple[Any, ...]]) -> List[Any]:
         return [_run(*call) for call in calls]
     if not isinstance(engine, int) and engine is not None:  # a client of Dask
         return engine.gather([engine.submit(_run, *call, pure=False) for call in calls])
+    from concurrent.futures import ProcessPoolExecutor  # a third of what all of massspring's own import takes
+
     with ProcessPoolExecutor(engine) as pool:
         return [future.result() for future in [pool.submit(_run, *call) for call in calls]]
 
