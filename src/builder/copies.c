@@ -41,6 +41,12 @@ static mspring_result check(mspring_builder *builder, const mspring_builder *fro
                                         : "one of the arrays of offsets is NULL");
     if (from->particle_count == 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the builder to copy has no particle");
+    const uint64_t particles = (uint64_t)from->particle_count * count,
+                   springs = (uint64_t)from->spring_count * count;
+    if (particles > MSPRING_MAX_PARTICLES || springs > MSPRING_MAX_SPRINGS) // before each copy is looked at
+        return mspringi_fail(message, MSPRING_ERROR_LIMIT,
+                             "%u copies of %zu particles and %zu springs are over the limits", (unsigned)count,
+                             from->particle_count, from->spring_count);
     find_bounds(from, low, high);
     for (uint32_t i = 0; i < count; ++i)
         if (!mspringi_is_coordinate(low[0] + x_of(by, i)) || !mspringi_is_coordinate(low[1] + y_of(by, i)) ||
@@ -52,17 +58,12 @@ static mspring_result check(mspring_builder *builder, const mspring_builder *fro
 }
 
 static mspring_result reserve(mspring_builder *builder, const mspring_builder *from, uint32_t count) {
-    const uint64_t particles = (uint64_t)from->particle_count * count,
-                   springs = (uint64_t)from->spring_count * count;
-    if (particles > MSPRING_MAX_PARTICLES || springs > MSPRING_MAX_SPRINGS)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT,
-                             "%u copies of %zu particles and %zu springs are over the limits", (unsigned)count,
-                             from->particle_count, from->spring_count);
-    mspring_result result = mspringi_builder_reserve_particles(builder, (size_t)particles);
+    const size_t particles = from->particle_count * count, springs = from->spring_count * count;
+    mspring_result result = mspringi_builder_reserve_particles(builder, particles);
     if (result == MSPRING_OK)
-        result = mspringi_builder_reserve_springs(builder, (size_t)springs);
+        result = mspringi_builder_reserve_springs(builder, springs);
     for (size_t i = 0; result == MSPRING_OK && i < from->limit_count; ++i)
-        result = mspringi_builder_reserve_limits(builder, (size_t)springs, from->limits[i]);
+        result = mspringi_builder_reserve_limits(builder, springs, from->limits[i]);
     if (result == MSPRING_OK && from->corner_count > MSPRING_NONE / count)
         result = mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT, "%u copies of %zu areas are too many",
                                (unsigned)count, from->area_count);
