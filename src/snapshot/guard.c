@@ -134,7 +134,8 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
     mspringi_any_shape *any_shape = &network->any_shape;
     *any_shape = (mspringi_any_shape){
         .masses = network->edits.masses, .values = network->edits.values - 1, .growth = network->edits.growth};
-    if (head.state == UNKNOWN || head.spring >= network->topology.reserve.spring_end)
+    const bool has_spring = head.spring < network->topology.reserve.spring_end;
+    if (head.state == UNKNOWN || (!has_spring && head.spring != MSPRING_NONE))
         return;
     any_shape->is_known = true;
     any_shape->dt = head.dt;

@@ -557,6 +557,27 @@ static void loading_survives_every_failure(void **state) {
     recipe_free(&made);
 }
 
+/// Of a network without springs, too, whose border of stability is that there is none.
+static void what_was_loaded_is_saved_alike(void **state) {
+    (void)state;
+    mspring_network *networks[2];
+    for (int n = 0; n < 2; n++) {
+        mspring_builder *builder = support_builder();
+        support_particle(builder, 0, 0, 1);
+        const mspring_network_def def = support_def(-9.8f, 4);
+        networks[n] = support_network(builder, &def);
+    }
+    support_steps(networks[0], 3, 0.01);
+    saved first = snapshots_save(networks[0], MSPRING_SNAPSHOT_ALL);
+    snapshots_load(networks[1], &first);
+    saved second = snapshots_save(networks[1], MSPRING_SNAPSHOT_ALL);
+    assert_true(first.size == second.size && memcmp(first.bytes, second.bytes, first.size) == 0);
+    free(first.bytes);
+    free(second.bytes);
+    mspring_network_destroy(networks[0]);
+    mspring_network_destroy(networks[1]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rollback_gives_the_same_bits),
@@ -573,6 +594,7 @@ int main(void) {
         cmocka_unit_test(bad_arguments_are_refused),
         cmocka_unit_test(hooks_can_neither_save_nor_load),
         cmocka_unit_test(loading_survives_every_failure),
+        cmocka_unit_test(what_was_loaded_is_saved_alike),
     };
     return cmocka_run_group_tests_name("snapshot", tests, NULL, NULL);
 }
