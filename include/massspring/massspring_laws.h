@@ -300,8 +300,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_angle_def_init(mspring_angle_def
 /// stable. They take the forces of other angles from the start of a substep. If one is too long for these, they reject
 /// the step as unstable. MSPRING_GUARD_CLAMP, the default, does not: it repeats each such step with clamped strain
 /// rates (MSPRING_STEP_CLAMPED). The direct solver takes fewest iterations if the angles of a beam are added in their
-/// order along it. mspring_network_settle() rejects networks with angles. mspring_network_tune() counts them, without a
-/// rest.
+/// order along it. mspring_network_settle() has all angles, and mspring_network_tune() counts them.
 ///
 /// @param particles    [3 * count]: a, b, c of each; no two that follow each other are in one place
 /// @param first_angle  receives the first id; the others follow; may be NULL

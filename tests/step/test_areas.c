@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "areas.h"
+#include "same.h"
 
 /* ------------------------------------------------------------------------------------------------------- jelly */
 
@@ -375,54 +376,19 @@ static void go_on(mspring_network *network) {
     }
 }
 
+static const same_scene scene = {mixture, go_on};
+
 static void all_levels_have_the_same_bits(void **state) {
     (void)state;
-    mspring_simd levels[MSPRING_SIMD_AVX512];
-    const uint32_t count = support_levels(levels);
-    for (int is_precise = 0; is_precise < 2; is_precise++) {
-        uint64_t hash = 0;
-        for (uint32_t i = 0; i < 2 * count; i++) {
-            mspring_network_def def = support_def(-9.8f, 12);
-            def.simd_level = levels[i / 2];
-            def.worker_count = 1 + 2 * (i % 2);
-            def.flags = is_precise ? MSPRING_NETWORK_PRECISE : 0;
-            mspring_network *network = mixture(def);
-            go_on(network);
-            assert_true(i == 0 || support_hash(network) == hash);
-            hash = support_hash(network);
-            mspring_network_destroy(network);
-        }
-    }
+    mspring_network_def def = support_def(-9.8f, 12);
+    same_at_all_levels(&scene, def);
+    def.flags = MSPRING_NETWORK_PRECISE;
+    same_at_all_levels(&scene, def);
 }
 
 static void clones_snapshots_and_layouts_go_on(void **state) {
     (void)state;
-    mspring_network_def def = support_def(-9.8f, 12);
-    mspring_network *network = mixture(def), *other = mixture(def), *clone;
-    mspring_job *job = NULL;
-    go_on(network);
-    support_bring(network, other, MSPRING_SNAPSHOT_ALL);
-    check_ok(mspring_network_clone(network, NULL, &clone));
-    support_steps(network, 20, 1.0 / 64);
-    support_steps(other, 20, 1.0 / 64);
-    support_steps(clone, 20, 1.0 / 64);
-    assert_true(support_hash(network) == support_hash(other));
-    assert_true(support_hash(network) == support_hash(clone));
-    // A frame goes back; without areas it does not fit.
-    support_bring(network, clone, MSPRING_SNAPSHOT_FRAME);
-    support_steps(network, 5, 1.0 / 64);
-    support_steps(clone, 5, 1.0 / 64);
-    assert_true(support_hash(network) == support_hash(clone));
-    // A layout of what is left computes other bits, but the same motion.
-    support_compact(clone, 0, &job);
-    assert_null(job);
-    support_steps(network, 5, 1.0 / 64);
-    support_steps(clone, 5, 1.0 / 64);
-    for (mspring_id p = 0; p < 2800; p += 7)
-        check_near(support_position(network, p).y, support_position(clone, p).y, 1e-3);
-    mspring_network_destroy(network);
-    mspring_network_destroy(other);
-    mspring_network_destroy(clone);
+    mspring_network_destroy(same_in_copies(&scene, support_def(-9.8f, 12), 1e-3));
 }
 
 // A network that had areas has the bits of one that never had any.

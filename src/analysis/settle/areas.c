@@ -21,10 +21,10 @@ static mspring_result find_sides(mspringi_statics *statics, mspring_network *net
     const mspringi_areas *a = &network->areas;
     for (size_t i = 0; i < a->count; ++i)
         if (a->list[i].is_angle && !a->list[i].is_open)
-            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "angle %u: settling takes no angle springs", (unsigned)a->list[i].id);
+            mspringi_statics_add_angle(statics, a, &a->list[i]);
     for (size_t i = 0; i < a->count; ++i)
-        for (size_t c = a->list[i].first; !a->list[i].is_open && c < a->list[i].first + a->list[i].count; ++c) {
+        for (size_t c = a->list[i].first;
+             !a->list[i].is_open && !a->list[i].is_angle && c < a->list[i].first + a->list[i].count; ++c) {
             const mspring_id spring = a->corners[c].spring;
             statics->areas.sides[c] = spring == MSPRING_NONE ? MSPRING_NONE : numbers[spring];
             if (statics->areas.sides[c] == MSPRING_NONE)
@@ -119,6 +119,10 @@ double mspringi_statics_area_forces(mspringi_statics *statics) {
     double largest = 0.0;
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
+        if (area->is_angle) {
+            largest = fmax(largest, mspringi_statics_angle_forces(statics, area));
+            continue;
+        }
         const double half = 0.5 * mspringi_area_pressure(area, size_of(statics, area));
         for (uint32_t i = 0; i < area->count; ++i) {
             const place before = place_of(statics, area, i + area->count - 1),
@@ -137,6 +141,10 @@ double mspringi_statics_area_change(const mspringi_statics *statics, double t, d
     double change = 0.0;
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
+        if (area->is_angle) {
+            change += mspringi_statics_angle_change(statics, area, t, size);
+            continue;
+        }
         const double energy =
             mspringi_area_energy_change(area, size_of(statics, area), growth_of(statics, area, t));
         change += energy;
@@ -170,9 +178,13 @@ static void stiffen(mspringi_statics *statics, const mspringi_area *area, uint32
     statics->springs.yy[spring] -= yy;
 }
 
-void mspringi_statics_area_stiffness(mspringi_statics *statics) {
+void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
+        if (area->is_angle) {
+            mspringi_statics_angle_stiffness(statics, area, clamped);
+            continue;
+        }
         const double c = mspringi_area_stiffness(area, size_of(statics, area));
         place middle = {0.0, 0.0};
         double all = 0.0;

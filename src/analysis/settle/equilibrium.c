@@ -14,9 +14,9 @@ static mspringi_vectors vectors_at(double *block, size_t count, size_t *used) {
     return vectors;
 }
 
-bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count, uint32_t spring_count,
+bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count, uint32_t edge_count,
                              mspringi_memory *memory) {
-    const size_t particles = particle_count, springs = spring_count;
+    const size_t particles = particle_count, springs = edge_count;
     enum { PER_PARTICLE = 18, PER_SPRING = 8 };
     *statics = (mspringi_statics){.particle_count = particle_count};
     statics->fixed = mspringi_alloc(memory, particles, sizeof *statics->fixed);
@@ -60,7 +60,7 @@ mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd 
                                         mspringi_message *message) {
     const mspringi_cholesky_graph graph = {
         .node_count = statics->particle_count,
-        .edge_count = statics->springs.count,
+        .edge_count = statics->springs.edge_count,
         .edge_a = statics->springs.a,
         .edge_b = statics->springs.b,
         .absent = statics->fixed,
@@ -216,7 +216,9 @@ bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shi
     memset(statics->xx, 0, 4 * (size_t)count * sizeof *statics->xx); // and xy, yy, scale, which lie behind it
     for (uint32_t i = 0; i < s->count; ++i)
         add_spring(statics, i, clamped);
-    mspringi_statics_area_stiffness(statics);
+    for (uint32_t i = s->count; i < s->edge_count; ++i)
+        s->xx[i] = s->xy[i] = s->yy[i] = 0.0;
+    mspringi_statics_area_stiffness(statics, clamped);
     double stiffest = 0.0;
     for (uint32_t p = 0; p < count; ++p)
         stiffest = statics->fixed[p] ? stiffest : fmax(stiffest, statics->scale[p]);

@@ -17,19 +17,19 @@ typedef struct mspringi_vectors {
 
 /// The springs that exert a force.
 typedef struct mspringi_statics_springs {
-    uint32_t count;
-    uint32_t *a, *b;                 ///< [count] particles
+    uint32_t count, edge_count;      ///< springs; and with the pairs of angles behind them
+    uint32_t *a, *b;                 ///< [edge_count] particles
     double *stiffness, *rest_length; ///< [count]
     double *side;                    ///< [count] 1: it only pulls; -1: it only pushes; 0: it does both
     double *x, *y;        ///< [count] from a to b at the start. Kept apart from the displacements, these and
                           ///< their small differences are exact to more digits than positions would be.
-    double *xx, *xy, *yy; ///< [count] blocks of the stiffness matrix
+    double *xx, *xy, *yy; ///< [edge_count] blocks of the stiffness matrix
 } mspringi_statics_springs;
 
-/// The areas that have a pressure (areas.c).
+/// The areas that have a pressure, and the angles that have a torque (areas.c, angles.c).
 typedef struct mspringi_statics_areas {
     const mspringi_areas *of; ///< NULL: there are none
-    uint32_t *sides;          ///< [corners] the spring of each side
+    uint32_t *sides;          ///< [corners] the spring of each side; of an angle the edges a b, b c, c a
 } mspringi_statics_areas;
 
 typedef struct mspringi_statics {
@@ -54,8 +54,8 @@ typedef struct mspringi_statics {
     mspringi_cholesky_double factor;
 } mspringi_statics;
 
-/// Reserve memory for particles and springs.
-bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count, uint32_t spring_count,
+/// Reserve memory for particles, springs and pairs of angles.
+bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count, uint32_t edge_count,
                              mspringi_memory *memory);
 void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory);
 
@@ -64,7 +64,15 @@ mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_net
 /// What they add: to forces, returning the largest; to a change of energy and the sum of such; to the stiffness.
 double mspringi_statics_area_forces(mspringi_statics *statics);
 double mspringi_statics_area_change(const mspringi_statics *statics, double t, double *size);
-void mspringi_statics_area_stiffness(mspringi_statics *statics);
+void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped);
+
+/// Have an angle: its pairs are edges from now on.
+void mspringi_statics_add_angle(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle);
+/// What it adds, as above.
+double mspringi_statics_angle_forces(mspringi_statics *statics, const mspringi_area *angle);
+double mspringi_statics_angle_change(const mspringi_statics *statics, const mspringi_area *angle, double t,
+                                     double *size);
+void mspringi_statics_angle_stiffness(mspringi_statics *statics, const mspringi_area *angle, bool clamped);
 
 /// Analyse the stiffness matrix, once particles and springs are filled in.
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,

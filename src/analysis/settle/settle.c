@@ -47,6 +47,7 @@ static void fill_springs(mspringi_statics *statics, const mspring_network *netwo
         if (!(values.stiffness > 0.0f))
             continue;
         const uint32_t i = s->count++;
+        s->edge_count = s->count;
         const uint32_t a = s->a[i] = network->topology.particle_of_slot[values.base];
         const uint32_t b = s->b[i] = network->topology.particle_of_slot[values.tip];
         s->stiffness[i] = (double)values.stiffness;
@@ -69,7 +70,7 @@ typedef struct part {
 static void join_parts(const mspringi_statics *statics, uint32_t *up) {
     for (uint32_t p = 0; p < statics->particle_count; ++p)
         up[p] = p;
-    for (uint32_t i = 0; i < statics->springs.count; ++i)
+    for (uint32_t i = 0; i < statics->springs.edge_count; ++i)
         mspringi_forest_join(up, statics->springs.a[i], statics->springs.b[i]);
 }
 
@@ -200,8 +201,8 @@ static double put_back(const mspringi_statics *statics, mspring_network *network
 static mspring_result solve(mspringi_statics *statics, mspring_network *network, const mspring_settle_def *def,
                             mspring_settle_result *out, mspringi_watcher watcher) {
     uint32_t left_alone = 0;
-    if (!mspringi_statics_create(statics, network->topology.particle_count, count_springs(network),
-                                 &network->memory))
+    const uint32_t edges = count_springs(network) + 3 * (uint32_t)network->areas.angle_count;
+    if (!mspringi_statics_create(statics, network->topology.particle_count, edges, &network->memory))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to settle %u particles",
                              (unsigned)network->topology.particle_count);
     statics->watcher = watcher;

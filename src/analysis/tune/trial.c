@@ -387,8 +387,7 @@ static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) 
     hold_still(settled);
     const mspringi_watcher watcher = {search_goes_on, tuning};
     result = mspringi_settle_watched(settled, &def, &rest, watcher);
-    const bool is_unknown =
-        result == MSPRING_ERROR_ARGUMENT && (settled->areas.unringed > 0 || settled->areas.hinge_count > 0);
+    const bool is_unknown = result == MSPRING_ERROR_ARGUMENT && settled->areas.unringed > 0;
     if (result == MSPRING_ERROR_EQUILIBRIUM || result == MSPRING_ERROR_LIMIT || is_unknown) {
         result = MSPRING_OK; // there is none, or it has areas that settling does not take
     } else if (result != MSPRING_OK) {
