@@ -150,7 +150,7 @@ static double tip_of(const mspring_network *network, const bar *b) {
 
 // Gravity comes and goes over 20 s each, as a cosine, and stays for 4 s: past yield nothing must swing over, and
 // flow of a long substep at a time takes some of them to come to its end.
-static void bends_as_the_oracle(mspring_solver solver, uint32_t substeps) {
+static void bends_as_the_oracle(mspring_solver solver, uint32_t substeps, double tolerance) {
     const bar b = {.width = 20,
                    .height = 5,
                    .yield_strain = 0.0005f,
@@ -172,23 +172,26 @@ static void bends_as_the_oracle(mspring_solver solver, uint32_t substeps) {
         support_steps(network, 256, 1.0 / 64);
         loaded = way == 1 ? -tip_of(network, &b) : loaded;
     }
-    // Found: 0.11 % too much at most. Positions in single precision tremble, and past yield each overshoot stays.
-    check_near(loaded, ORACLE_LOADED, 0.0015 * ORACLE_LOADED);
-    check_near(-tip_of(network, &b), ORACLE_LEFT, 0.0025 * ORACLE_LEFT);
+    check_near(loaded, ORACLE_LOADED, tolerance * ORACLE_LOADED);
+    check_near(-tip_of(network, &b), ORACLE_LEFT, tolerance * ORACLE_LEFT);
     mspring_network_destroy(network);
 }
 
+// Found, loaded and left: 0.10 and 0.13 % too much with 24 substeps, 0.06 and 0.08 % with 40, 0.05 and 0.06 % with 160.
+// Three times as long a ramp gives the same. Motion in single precision trembles, the more the longer a substep is, and
+// past yield each overshoot stays.
 static void explicit_bends_as_the_oracle(void **state) {
     (void)state;
-    bends_as_the_oracle(MSPRING_SOLVER_EXPLICIT, 24);
-    bends_as_the_oracle(MSPRING_SOLVER_EXPLICIT, 40);
+    bends_as_the_oracle(MSPRING_SOLVER_EXPLICIT, 24, 0.0015);
+    bends_as_the_oracle(MSPRING_SOLVER_EXPLICIT, 40, 0.001);
 }
 
+// Found: -0.02 to 0.03 % with 1 to 16 substeps, alike with both solvers.
 static void implicit_bends_as_the_oracle(void **state) {
     (void)state;
-    bends_as_the_oracle(MSPRING_SOLVER_DIRECT, 1);
-    bends_as_the_oracle(MSPRING_SOLVER_DIRECT, 4);
-    bends_as_the_oracle(MSPRING_SOLVER_IMPLICIT, 4);
+    bends_as_the_oracle(MSPRING_SOLVER_DIRECT, 1, 0.001);
+    bends_as_the_oracle(MSPRING_SOLVER_DIRECT, 4, 0.001);
+    bends_as_the_oracle(MSPRING_SOLVER_IMPLICIT, 4, 0.001);
 }
 
 /* --------------------------------------------------------------------------------------------------- a blow */
