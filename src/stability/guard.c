@@ -239,6 +239,33 @@ mspringi_extrema mspringi_guard_look(const mspring_network *network, size_t firs
         larger(vx.value, vy.value), larger(vx.change, vy.change)};
 }
 
+/// Fewest slots that workers look at together.
+#define SMALLEST_SHARED_LOOK 32768
+
+typedef struct look {
+    const mspring_network *network;
+    uint32_t workers;
+    mspringi_extrema seen[MSPRING_MAX_WORKERS];
+} look;
+
+static void look_at_share(void *argument, uint32_t index, uint32_t worker) {
+    look *all = argument;
+    const size_t blocks = mspringi_used_slots(all->network) / MSPRINGI_WIDTH;
+    (void)worker;
+    all->seen[index] = mspringi_guard_look(all->network, blocks * index / all->workers * MSPRINGI_WIDTH,
+                                           blocks * (index + 1) / all->workers * MSPRINGI_WIDTH);
+}
+
+mspringi_extrema mspringi_guard_look_at_all(const mspring_network *network) {
+    look all = {.network = network, .workers = mspringi_tasks_workers(network->tasks)};
+    if (mspringi_used_slots(network) < SMALLEST_SHARED_LOOK)
+        return mspringi_guard_look(network, 0, mspringi_used_slots(network));
+    mspringi_tasks_run(network->tasks, all.workers, look_at_share, &all);
+    for (uint32_t i = 1; i < all.workers; ++i)
+        all.seen[0] = mspringi_extrema_join(all.seen[0], all.seen[i]);
+    return all.seen[0];
+}
+
 // Change that is as good as none, m/s.
 static float calm_change(const mspring_network *network, float h) {
     const double harmless = HARMLESS * network->shortest / (double)h;

@@ -24,6 +24,8 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
 /// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH, whose state before the step is in the backup.
 /// May be called by several threads at once.
 mspringi_extrema mspringi_guard_look(const mspring_network *network, size_t first, size_t end);
+/// The same of all slots, by all workers: each is to keep what it has written in its own core's cache.
+mspringi_extrema mspringi_guard_look_at_all(const mspring_network *network);
 
 /// After substeps of h from what mspringi_guard_begin() saw: the same, with bounds for what was not watched.
 mspringi_extrema mspringi_guard_bound(const mspring_network *network, float h, mspringi_extrema extrema);

@@ -119,7 +119,7 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
         ops->end(network);
     if (!ops->has_border) // the explicit solver sweeps rows, others all slots
         mspringi_clear_unused_slots(network);
-    return mspringi_guard_look(network, 0, mspringi_used_slots(network));
+    return mspringi_guard_look_at_all(network);
 }
 
 /* ------------------------------------------------------------------------------------------------- the step */

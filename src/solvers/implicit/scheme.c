@@ -195,9 +195,10 @@ void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate) {
     for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);)
         kernels->weigh(mspringi_free_mass(network), substep->mass_scale, n->mass, run.first, run.end);
     mspringi_meet(mate);
-    for (size_t t = mspringi_share_of(mate, tiles->count); t < mspringi_share_end(mate, tiles->count); ++t)
-        kernels->aim_tile(&substep->flight, tiles->parts + tiles->first_part[t],
-                          tiles->first_part[t + 1] - tiles->first_part[t], &n->flights[t]);
+    for (size_t t = 0; t < tiles->count; ++t)
+        if (mspringi_tile_is_of(network, mate, t))
+            kernels->aim_tile(&substep->flight, tiles->parts + tiles->first_part[t],
+                              tiles->first_part[t + 1] - tiles->first_part[t], &n->flights[t]);
     mspringi_meet(mate);
     const mspringi_part_range parts = mspringi_tiles_parts(tiles, slots.first, slots.end);
     kernels->fly(&substep->flight, parts.parts, parts.count, n->flights);

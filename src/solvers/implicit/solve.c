@@ -51,13 +51,22 @@ static void invert(const mspring_network *network, mspringi_slots slots) {
             blocks[0][slot] = blocks[1][slot] = blocks[2][slot] = 0.0f;
 }
 
+// Whether a cell is a mate's: those without tiles are nobody's.
+static bool is_of(const mspring_network *network, const mspringi_mate *mate, uint32_t cell) {
+    const uint32_t *first = &mspringi_implicit_of(network)->tiles.first_of_cell[cell];
+    return first[0] < first[1] && mspringi_tile_is_of(network, mate, (first[0] + first[1]) / 2);
+}
+
 static void assemble_coarse(const mspring_network *network, const mspringi_mate *mate) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_coarse_parts parts = coarse_parts(network);
-    const size_t cells = n->tiles.cells.count;
-    if (n->age == 0)
-        mspringi_coarse_assemble(&n->coarse, &n->tiles, &parts, (uint32_t)mspringi_share_of(mate, cells),
-                                 (uint32_t)mspringi_share_end(mate, cells));
+    const uint32_t cells = n->tiles.cells.count;
+    for (uint32_t cell = 0, end; n->age == 0 && cell < cells; cell = end + (end == cell)) {
+        for (end = cell; end < cells && is_of(network, mate, end);)
+            ++end;
+        if (end > cell)
+            mspringi_coarse_assemble(&n->coarse, &n->tiles, &parts, cell, end);
+    }
 }
 
 static void factor_coarse(const mspring_network *network) {
@@ -86,10 +95,11 @@ static double correct(const substep_of *substep, mspringi_mate *mate, bool is_fi
     const mspringi_tiles *tiles = &n->tiles;
     if (is_first && mate->index == 0)
         factor_coarse(network);
-    for (size_t t = mspringi_share_of(mate, tiles->count); t < mspringi_share_end(mate, tiles->count); ++t)
-        network->kernels->system.restrict_to_tile(&n->iterate, tiles->parts + tiles->first_part[t],
-                                                  tiles->first_part[t + 1] - tiles->first_part[t],
-                                                  n->coarse.restricted[t]);
+    for (size_t t = 0; t < tiles->count; ++t)
+        if (mspringi_tile_is_of(network, mate, t))
+            network->kernels->system.restrict_to_tile(&n->iterate, tiles->parts + tiles->first_part[t],
+                                                      tiles->first_part[t + 1] - tiles->first_part[t],
+                                                      n->coarse.restricted[t]);
     mspringi_meet(mate);
     return mspringi_coarse_solve(&n->coarse, unknowns_of(n, mate));
 }
