@@ -19,6 +19,8 @@ typedef struct place_table {
 static const double least_rest = 0.1;
 static const double most_rest = 10;
 
+static const uint32_t one_sided = MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY;
+
 static size_t bucket_of(const place_table *table, int64_t column, int64_t row) {
     uint64_t state = (uint64_t)column * UINT64_C(0x9e3779b97f4a7c15) + (uint64_t)row;
     return (size_t)random_next(&state) & table->mask;
@@ -120,8 +122,8 @@ static void merge_springs(mspring_spring_def *into, float *break_strain, const m
         into->yield_strain = (float)((k * into->yield_strain + more * other->yield_strain) / (k + more));
     else
         into->yield_strain = MSPRING_NEVER;
-    if ((into->flags ^ other->flags) & (MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY))
-        into->flags &= ~(uint32_t)(MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY);
+    if ((into->flags ^ other->flags) & one_sided)
+        into->flags &= ~one_sided;
     into->stiffness = (float)(k + more);
     into->damping += other->damping;
 }
@@ -145,6 +147,9 @@ static bool add_springs(const model *from, const uint32_t *particle_of, pair_set
             made->springs[made->spring_count++] = def;
             break;
         case PAIR_PRESENT:
+            if ((made->springs[twin].flags ^ def.flags) & one_sided)
+                tally_add_text(&made->report.notes, "springs that only pull or push, taken as plain beside others",
+                               1);
             merge_springs(&made->springs[twin], &made->break_strain[twin], &def, break_strain);
             made->report.merged_springs++;
             break;

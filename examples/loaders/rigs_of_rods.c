@@ -15,6 +15,8 @@ static const double default_damping = 12000;
 static const double default_deform = 4e5;
 static const double default_strength = 1e6;
 static const double default_minimum_mass = 50;
+// What a shock breaks at, over the strength that beams have: Rigs of Rods multiplies by that.
+static const double strength_of_shocks = 4;
 static const double camera_mass = 20;
 static const double camera_stiffness = 8000;
 static const double camera_damping = 800;
@@ -243,7 +245,8 @@ static bool read_spring(ror_file *file, const spring_section *kind, scene_error 
         beam.side = MSPRING_SPRING_PULL_ONLY;
     else if (has_options && has_letter(reader->words[2], 's'))
         beam.side = MSPRING_SPRING_PUSH_ONLY;
-    beam.break_strain = model_strain_at(file->made, &beam, file->strength * file->strength_scale);
+    const double strength = file->strength * file->strength_scale * (kind->stiffness ? strength_of_shocks : 1);
+    beam.break_strain = model_strain_at(file->made, &beam, strength);
     if (kind->has_options) // beams bend, shocks and the like do not
         beam.yield_strain = model_strain_at(file->made, &beam, file->deform * file->deform_scale);
     return model_add_beam(file->made, &beam, error);

@@ -133,6 +133,7 @@ static void defaults_hold_until_they_change(void **state) {
     check_near(spring_between(&made, 1, 2)->stiffness, 1000, 0);
     check_near(spring_between(&made, 1, 2)->damping, 20, 0);
     check_near(made.break_strain[1], 0.5, 1e-6);
+    check_near(made.break_strain[4], 4 * 4e6 / 700, 0.1); // scaled by 4, and of a shock four times as much
     check_near(spring_between(&made, 2, 3)->stiffness, 2000, 0);
     check_near(spring_between(&made, 2, 3)->damping, 60, 0);
     check_near(made.break_strain[2], 1, 1e-6);
@@ -206,6 +207,15 @@ static void beams_bend_pull_and_push(void **state) {
     // Twice 5e4 N is half of what breaks it.
     for (int i = 0; i < 3; i++)
         check_near((double)made.springs[i].yield_strain, 0.5 * (double)made.break_strain[i], 1e-6);
+    structure_free(&made);
+    // Beside another beam a rope becomes plain, and yields as both do; two ropes stay one.
+    made = loaded(STRUCTURE_RIGS_OF_RODS, CART_NODES "set_beam_defaults 1e6, 100, 5e4, 2e5\n"
+                                                     "beams\n0, 1, r\n0, 1\n0, 4, r\n0, 4, r\n");
+    assert_int_equal(made.springs[0].flags, 0);
+    assert_int_equal(made.springs[1].flags, MSPRING_SPRING_PULL_ONLY);
+    assert_true(made.springs[0].yield_strain < MSPRING_NEVER);
+    assert_int_equal(tally_of(&made.report.notes, "springs that only pull or push, taken as plain beside others"),
+                     1);
     structure_free(&made);
     made =
         loaded(STRUCTURE_JBEAM, "{\"p\":{\"nodes\":[[\"id\",\"posX\",\"posY\",\"posZ\"],[\"a\",0,0,0],"
