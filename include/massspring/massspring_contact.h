@@ -309,7 +309,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_grip_def_init(mspring_grip_def *
 /// @param def   copied
 /// @param grip  receives its id; may be NULL
 /// @threads exclusive   @allocates at the first call; 2 kB   @errors ARGUMENT (the message names the field), ID, STRUCT,
-///          BUSY, LIMIT for more than MSPRING_MAX_GRIPS
+///          BUSY, MEMORY, LIMIT for more than MSPRING_MAX_GRIPS
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_grip(
     mspring_network *network, const mspring_grip_def *def, mspring_id *grip);
 
