@@ -43,6 +43,7 @@ static const entry entries[] = {
     {"ship_ropes_40", "the ship with 40 ropes"},
     {"ship_ropes_400", "the ship with 400 ropes"},
     {"wheel_1000x40", "ring of 1000 around by 40 deep: a lattice that is bent"},
+    {"noise_400x400", "400 by 400 of which six cells of ten, at random, are filled"},
     {"rope_1000", "rope of 1000 particles between two pins"},
     {"graph_100000", "100,000 particles at random places, each joined to about 8 near ones"},
     {"robots_256", "256 equal robots of 20 particles that are no lattice"},
@@ -69,7 +70,7 @@ void bench_catalogue_print(void) {
     for (size_t i = 0; i < sizeof entries / sizeof *entries; i++) {
         printf("%-16s %s\n", entries[i].name, entries[i].description);
     }
-    puts("\nOther sizes go by the same names: bar_CxR, grid_CxR, wheel_CxR, rope_N, graph_N, robots_N, "
+    puts("\nOther sizes go by the same names: bar_CxR, grid_CxR, wheel_CxR, noise_CxR, rope_N, graph_N, robots_N, "
          "blocks_SxN,\nbraced_SxN.\n"
          "Any scene's name may end in " ROPES "N: with N ropes; and after that in " UNDAMPED
          ": springs without dampers.");
@@ -149,6 +150,9 @@ static bool make_named(const char *name, const bench_scene_settings *settings, s
     }
     if (is_pair(name, "wheel_", &columns, &rows)) {
         return scene_wheel(columns, rows, &options, out, error);
+    }
+    if (is_pair(name, "noise_", &columns, &rows)) {
+        return bench_scene_noise(columns, rows, &options, out, error);
     }
     if (is_single(name, "rope_", &number)) {
         return scene_rope(number, &options, out, error);

@@ -37,6 +37,10 @@ typedef enum bench_copies { BENCH_COPIES_ROBOTS, BENCH_COPIES_BLOCKS, BENCH_COPI
 bool bench_scene_copies(bench_copies kind, uint32_t side, uint32_t count, const scene_options *options, scene *out,
                         scene_error *error);
 
+/// A lattice of which six cells of ten, chosen at random, are filled (noise.c).
+bool bench_scene_noise(uint32_t columns, uint32_t rows, const scene_options *options, scene *out,
+                       scene_error *error);
+
 bool bench_scene_make(const bench_source *source, const bench_scene_settings *settings, bench_scene *out,
                       scene_error *error);
 
