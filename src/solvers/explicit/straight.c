@@ -72,29 +72,42 @@ static uint32_t list_runs(const mspring_network *network, bool is_forced, run ru
     return count;
 }
 
+// The web's span without the quarters behind its last particle, which hold nothing.
+static mspringi_span trimmed(const mspringi_topology *t, const mspringi_span *web) {
+    mspringi_span span = *web;
+    if (!t->web.is_upright)
+        span.end_slot =
+            span.first_slot + (t->irregular_particles + MSPRINGI_QUARTER - 1) / MSPRINGI_QUARTER * MSPRINGI_QUARTER;
+    MSPRINGI_ASSERT(span.end_slot > span.first_slot && span.end_slot <= web->end_slot);
+    return span;
+}
+
 // The web looks at the state before and after a step; kernels of other rows do so themselves.
 static void sweep_web(const mspring_network *network, mspringi_substep *substep, const run *web, uint32_t count,
                       mspringi_extrema *extrema) {
+    const mspringi_span span = trimmed(&network->topology, web->spans);
     if (extrema)
-        mspringi_span_keep(network, web->spans);
+        mspringi_span_keep(network, &span);
     for (uint32_t i = 0; i < count; ++i) {
-        mspringi_web_pack(network, substep, web->spans);
-        web->sweep(&substep->sweep, web->spans, 1);
+        mspringi_web_pack(network, substep, &span);
+        web->sweep(&substep->sweep, &span, 1);
     }
     if (extrema)
-        *extrema = mspringi_extrema_join(*extrema, mspringi_span_look(network, web->spans));
+        *extrema = mspringi_extrema_join(*extrema, mspringi_span_look(network, &span));
 }
 
 static void sweep_rows(const mspring_network *network, mspringi_substep *substep, const run *runs,
                        uint32_t run_count, uint32_t count, mspringi_extrema *extrema) {
     const mspringi_topology *t = &network->topology;
+    const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
     const uint32_t carries = mspringi_explicit_carries(network);
     mspringi_watch_room room = {{0.0f}};
     mspringi_watch *const watch = mspringi_watch_in(&room);
     if (extrema)
         mspringi_substep_keep(network, substep);
-    for (uint32_t i = 0; i < count; ++i) {
-        mspringi_substep_turn(network, substep, i, count, i % carries);
+    for (uint32_t i = 0, carry = 0; i < count; ++i, carry = carry + 1 < carries ? carry + 1 : 0) {
+        substep->sweep.carry_x = network->carry + 2 * carry * carry_slots;
+        substep->sweep.carry_y = substep->sweep.carry_x + carry_slots;
         if (extrema && i + 1 == count)
             mspringi_substep_watch(network, substep, watch);
         for (const run *r = runs; r < runs + run_count; ++r)
