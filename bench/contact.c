@@ -17,9 +17,10 @@
 
 typedef struct subject {
     const char *name;
-    uint32_t columns, rows, bodies; ///< bars, one above the other; rows 0: columns loose particles in a box
-    double gap;                     ///< between them, m
-    double aside;                   ///< share of its length that each lies aside of the one below
+    uint32_t columns, rows; ///< rows 0: loose particles in a box
+    uint32_t bodies;        ///< bars, one above the other; 0: one that is folded
+    double gap;             ///< between them, m
+    double aside;           ///< share of its length that each lies aside of the one below
     bool touches_itself, on_collider;
     uint32_t settling;     ///< steps before what is measured
     uint32_t steps;        ///< that are measured
@@ -29,6 +30,7 @@ typedef struct subject {
 
 static const subject subjects[] = {
     {"544x68, itself, nothing near", 544, 68, 1, 0, 0, true, false, 2, 10, MSPRING_SOLVER_EXPLICIT, 0},
+    {"544x68, folded onto itself", 544, 68, 0, THICKNESS + 0.06, 0, true, false, 64, 4, MSPRING_SOLVER_EXPLICIT, 0},
     {"two 544x68, far apart", 544, 68, 2, 50, 0, false, false, 2, 8, MSPRING_SOLVER_EXPLICIT, 0},
     {"two 544x68, a tenth touches", 544, 68, 2, THICKNESS, 0.8, false, false, 32, 8, MSPRING_SOLVER_EXPLICIT, 0},
     {"two 544x68, one on the other", 544, 68, 2, THICKNESS, 0, false, false, 32, 4, MSPRING_SOLVER_EXPLICIT, 0},
@@ -110,6 +112,37 @@ static mspring_result add_bars(mspring_builder *builder, const subject *s) {
     return result;
 }
 
+/// Two arms, half of the bar each, are joined at one end. The upper one comes to lie on the other.
+static mspring_result add_folded_bar(mspring_builder *builder, const subject *s) {
+    static const int32_t steps[4][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
+    const uint32_t width = s->columns / 2, height = 2 * s->rows;
+    mspring_particle_def particle;
+    mspring_spring_def spring;
+    mspring_result result = mspring_particle_def_init(&particle, sizeof particle);
+    if (result == MSPRING_OK)
+        result = mspring_spring_def_init(&spring, sizeof spring);
+    particle.mass = SCENE_IRON_MASS;
+    spring.stiffness = SCENE_IRON_STIFFNESS;
+    spring.damping = 2000.0f;
+    for (uint32_t i = 0; i < width * height && result == MSPRING_OK; i++) {
+        particle.x = i % width;
+        particle.y = i / width - (i / width < s->rows ? 0 : 1 - s->gap);
+        particle.flags = i < width ? MSPRING_PARTICLE_PINNED : 0;
+        result = mspring_builder_add_particle(builder, &particle, NULL);
+    }
+    for (uint32_t i = 0; i < width * height; i++)
+        for (int k = 0; k < 4 && result == MSPRING_OK; k++) {
+            const uint32_t row = i / width, column = i % width + (uint32_t)steps[k][0],
+                           to = row + (uint32_t)steps[k][1];
+            const bool is_cut = row + 1 == s->rows && to == s->rows && width - 1 - i % width >= s->rows;
+            spring.a = i;
+            spring.b = to * width + column;
+            if (column < width && to < height && !is_cut)
+                result = mspring_builder_add_spring(builder, &spring, NULL);
+        }
+    return result;
+}
+
 static mspring_result add_loose(mspring_builder *builder, uint32_t count) {
     mspring_particle_def def;
     mspring_result result = mspring_particle_def_init(&def, sizeof def);
@@ -159,7 +192,9 @@ static mspring_result make_players(const subject *s, mspring_simd level, player 
     mspring_network_def def;
     mspring_result result = mspring_builder_create(NULL, &builder);
     if (result == MSPRING_OK)
-        result = s->rows > 0 ? add_bars(builder, s) : add_loose(builder, s->columns);
+        result = s->rows == 0     ? add_loose(builder, s->columns)
+                 : s->bodies == 0 ? add_folded_bar(builder, s)
+                                  : add_bars(builder, s);
     if (result == MSPRING_OK)
         result = mspring_network_def_init(&def, sizeof def);
     def.simd_level = level;

@@ -32,6 +32,7 @@ typedef struct stepper {
     double from_vx[BODIES_MOST_PARTICLES], from_vy[BODIES_MOST_PARTICLES]; ///< before the substep's forces
     double way_x[BODIES_MOST_PARTICLES], way_y[BODIES_MOST_PARTICLES];
     double elastic;
+    double work; ///< of contact so far, J
     bool met;
 } stepper;
 
@@ -113,6 +114,19 @@ static void touch(stepper *s) {
     s->met |= pairs->touching > 0;
 }
 
+/// The scheme's energy amid a substep, when velocities have changed and positions have not, but for what is
+/// elastic. It is what measured() has before the substep, and would have after it, were forces as straight as way
+/// is.
+static double between(const stepper *s) {
+    double energy = 0;
+    for (uint32_t p = 0; p < s->b->count; p++) {
+        const double vx = s->vx[p], vy = s->vy[p];
+        energy += 0.5 * (vx * vx + vy * vy) / s->weight[p] + 0.5 * s->h * (vx * s->fx[p] + vy * s->fy[p]);
+        energy -= s->way_x[p] * s->fx[p] + s->way_y[p] * s->fy[p];
+    }
+    return energy;
+}
+
 /// Symplectic Euler, without damping.
 static void substep(stepper *s, bool touches) {
     bodies *b = s->b;
@@ -124,8 +138,11 @@ static void substep(stepper *s, bool touches) {
         s->way_x[p] = s->h * s->vx[p];
         s->way_y[p] = s->h * s->vy[p];
     }
-    if (touches)
+    if (touches) {
+        const double before = between(s);
         touch(s);
+        s->work += between(s) - before;
+    }
     for (uint32_t p = 0; p < b->count; p++) {
         b->x[p] += s->way_x[p];
         b->y[p] += s->way_y[p];
@@ -136,6 +153,7 @@ static void substep(stepper *s, bool touches) {
 /// What is worst in a trial, in parts of what there was at first.
 typedef struct outcome {
     double momentum, turn, gain;
+    double work; ///< that contact had done at most
     bool met;
 } outcome;
 
@@ -177,6 +195,7 @@ static outcome fly(uint64_t trial, const kind *of, bool touches) {
         o.momentum = fmax(o.momentum, hypot(now.x - first.x, now.y - first.y) / first.momentum_scale);
         o.turn = fmax(o.turn, fabs(now.turn - first.turn) / first.turn_scale);
         o.gain = fmax(o.gain, now.energy / first.energy - 1);
+        o.work = fmax(o.work, s->work / first.energy);
     }
     o.met = s->met;
     mspring_network_destroy(s->network);
@@ -190,7 +209,7 @@ static uint32_t trials = 400;
 
 /// What contact makes worse: the same run without it has rounding and the scheme's own errors.
 static void check_trials(uint32_t first, uint32_t count, kind of, double gain) {
-    outcome worse = {-INFINITY, -INFINITY, -INFINITY, false};
+    outcome worse = {-INFINITY, -INFINITY, -INFINITY, 0, false};
     uint32_t met = 0;
     for (uint32_t trial = first; trial < first + count; trial++) {
         const outcome o = fly(trial, &of, true);
@@ -200,16 +219,18 @@ static void check_trials(uint32_t first, uint32_t count, kind of, double gain) {
         worse.momentum = fmax(worse.momentum, o.momentum - free.momentum);
         worse.turn = fmax(worse.turn, o.turn - free.turn);
         worse.gain = fmax(worse.gain, o.gain - free.gain);
+        worse.work = fmax(worse.work, o.work);
     }
     if (getenv("CONTACT_REPORT"))
-        printf(
-            "%u trials to %g m/s, e %g: met %u, worse than without by: momentum %.2g, angular %.2g, energy %.2g\n",
-            (unsigned)count, of.fastest, (double)of.restitution, (unsigned)met, worse.momentum, worse.turn,
-            worse.gain);
+        printf("%u trials to %g m/s, e %g: met %u, worse than without by: momentum %.2g, angular %.2g, energy "
+               "%.2g; work %.2g\n",
+               (unsigned)count, of.fastest, (double)of.restitution, (unsigned)met, worse.momentum, worse.turn,
+               worse.gain, worse.work);
     assert_true(met > count / 2);
     assert_true(worse.momentum <= 1e-12);
     assert_true(worse.turn <= 1e-12);
     assert_true(worse.gain <= gain);
+    assert_true(worse.work <= 1e-12);
 }
 
 static void contact_keeps_momenta_and_gives_no_energy(void **state) {
@@ -223,10 +244,11 @@ static void bounces_do_so_too(void **state) {
     check_trials(100000, trials / 5, (kind){100, 0.5f}, 1e-12);
 }
 
-/// Energy that bodies keep when they bounce shows what the scheme's energy is not right about.
-static void full_bounces_give_little(void **state) {
+/// Contact does no work here, either. What rises by 0.065 % at most in 800 trials is the scheme's own measure:
+/// forces of bodies that come back strained are not straight in a substep.
+static void full_bounces_give_none(void **state) {
     (void)state;
-    check_trials(300000, trials / 5, (kind){100, 1}, 1e-2);
+    check_trials(300000, trials / 5, (kind){100, 1}, 2e-3);
 }
 
 int main(int argc, char **argv) {
@@ -235,7 +257,7 @@ int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contact_keeps_momenta_and_gives_no_energy),
         cmocka_unit_test(bounces_do_so_too),
-        cmocka_unit_test(full_bounces_give_little),
+        cmocka_unit_test(full_bounces_give_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
