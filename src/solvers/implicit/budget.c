@@ -239,6 +239,7 @@ static void judge_free(const mspring_network *network, account *a, const centre 
                         .motion = rest,
                         .had = had,
                         .has = a->elastic + c->kinetic,
+                        .fall = mspringi_fall_onto_bodies(network, a, mass),
                         .rounding = mspringi_account_rounding(a, a->internal)});
     a->turned = c->inertia > 0.0 ? 0.25 * o->h * (a->spin + spin) / c->inertia : 0.0;
     a->is_free = true;

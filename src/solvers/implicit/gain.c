@@ -44,6 +44,12 @@ static void add_loose(const mspring_network *network, double h, mspringi_field b
     }
 }
 
+double mspringi_fall_onto_bodies(const mspring_network *network, const mspringi_account *a, double mass) {
+    const double gx = (double)network->settings.gravity_x, gy = (double)network->settings.gravity_y;
+    const double h = a->is_touched ? (double)network->pairs->h : 0.0;
+    return 0.5 * mass * (gx * gx + gy * gy) * (h * h);
+}
+
 // Whether all that touches has more energy together than before, but for work from outside. In stiff networks
 // forces of rows show in how little springs give way, which rounding may hide, and momenta would follow them.
 bool mspringi_bodies_gain(const mspring_network *network, double h, mspringi_field base) {
