@@ -387,7 +387,7 @@ MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi
             continue;
         }
         if (alike.of_block[block] != block || alike.readers[block] > 0)
-            mspringi_alike_part_block(network, block);
+            mspringi_alike_part_block(&network->alike, block, network->topology.lattice_blocks);
         alike.is_set[block] = 1;
         *record = force;
         ++changes;

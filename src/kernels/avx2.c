@@ -7,6 +7,7 @@
 
 #define LANES 8
 typedef __m256 vec;
+typedef __m256 mask; ///< of lanes
 
 static inline vec zero(void) {
     return _mm256_setzero_ps();
@@ -48,10 +49,16 @@ static inline vec choose_positive(vec selector, vec a, vec b) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_GT_OQ));
 }
-// Not 0 if any lane of a is outside of least to most.
-static inline uint32_t any_outside(vec a, vec least, vec most) {
-    return (uint32_t)_mm256_movemask_ps(
-        _mm256_or_ps(_mm256_cmp_ps(least, a, _CMP_GT_OQ), _mm256_cmp_ps(a, most, _CMP_GT_OQ)));
+// Which lanes of a are outside of least to most.
+static inline mask outside(vec a, vec least, vec most) {
+    return _mm256_or_ps(_mm256_cmp_ps(a, least, _CMP_LT_OQ), _mm256_cmp_ps(a, most, _CMP_GT_OQ));
+}
+static inline mask either(mask a, mask b) {
+    return _mm256_or_ps(a, b);
+}
+// Not 0 if any lane is.
+static inline uint32_t any_lane(mask a) {
+    return (uint32_t)_mm256_movemask_ps(a);
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {

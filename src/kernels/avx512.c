@@ -7,6 +7,7 @@
 
 #define LANES 16
 typedef __m512 vec;
+typedef __mmask16 mask; ///< of lanes
 
 static inline vec zero(void) {
     return _mm512_setzero_ps();
@@ -48,9 +49,16 @@ static inline vec choose_positive(vec selector, vec a, vec b) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ);
 }
-// Not 0 if any lane of a is outside of least to most.
-static inline uint32_t any_outside(vec a, vec least, vec most) {
-    return (uint32_t)_mm512_cmp_ps_mask(least, a, _CMP_GT_OQ) | (uint32_t)_mm512_cmp_ps_mask(a, most, _CMP_GT_OQ);
+// Which lanes of a are outside of least to most.
+static inline mask outside(vec a, vec least, vec most) {
+    return (mask)(_mm512_cmp_ps_mask(a, least, _CMP_LT_OQ) | _mm512_cmp_ps_mask(a, most, _CMP_GT_OQ));
+}
+static inline mask either(mask a, mask b) {
+    return (mask)(a | b);
+}
+// Not 0 if any lane is.
+static inline uint32_t any_lane(mask a) {
+    return a;
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {

@@ -11,7 +11,7 @@ static size_t beyond(const float *x, const float *y, size_t first, size_t end, c
     for (size_t block = first; block < end; block += MSPRINGI_WIDTH) {
         uint32_t any = 0;
         for (size_t i = block; i < block + MSPRINGI_WIDTH; i += LANES) {
-            any |= any_outside(load(x + i), min_x, max_x) | any_outside(load(y + i), min_y, max_y);
+            any |= any_lane(either(outside(load(x + i), min_x, max_x), outside(load(y + i), min_y, max_y)));
         }
         if (any)
             return block;

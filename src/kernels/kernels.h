@@ -9,6 +9,7 @@
 #define MSPRINGI_KERNELS_H
 
 #include "base/target.h"
+#include "kernels/alike.h"
 #include "kernels/system.h"
 #include "kernels/yield_law.h"
 #include "layout/topology.h"
@@ -58,6 +59,8 @@ typedef struct mspringi_yield_test {
     float *chain_springs;                                                   ///< records: [block][part][lane]
     const uint16_t *live;                                                   ///< [places / MSPRINGI_WIDTH] bits
     size_t chain_place;                                                     ///< first place of a chain
+    mspringi_alike alike; ///< blocks with the same rest lengths and bounds
+    uint32_t block_count;
     float *heat;          ///< what flow has dissipated in the step, J
     float *before;        ///< rest lengths before the step of those that have flowed in it
     uint16_t *has_flowed; ///< [places / MSPRINGI_WIDTH] bits
@@ -70,9 +73,18 @@ static inline void mspringi_yield_note(const mspringi_yield_test *test, size_t w
         *test->warmth |= MSPRINGI_WARM | MSPRINGI_WAS_WARM;
 }
 
+// Rest lengths and bounds of a word are about to change.
+static inline void mspringi_yield_part(const mspringi_yield_test *test, size_t word) {
+    const uint32_t block = (uint32_t)(word / MSPRINGI_DIRECTIONS);
+    mspringi_alike alike = test->alike;
+    if (word * MSPRINGI_WIDTH < test->chain_place && (alike.of_block[block] != block || alike.readers[block] > 0))
+        mspringi_alike_part_block(&alike, block, test->block_count);
+}
+
 /// Keep the rest lengths of springs of a word that flow, if they have not in this step.
 static inline void mspringi_yield_keep(const mspringi_yield_test *test, size_t word, uint32_t flow,
                                        const float *rests) {
+    mspringi_yield_part(test, word);
     uint32_t left = flow & ~(uint32_t)test->has_flowed[word];
     test->has_flowed[word] |= (uint16_t)flow;
     *test->warmth |= MSPRINGI_HAS_FLOWED;

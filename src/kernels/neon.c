@@ -7,6 +7,7 @@
 
 #define LANES 4
 typedef float32x4_t vec;
+typedef uint32x4_t mask; ///< of lanes
 
 static inline vec zero(void) {
     return vdupq_n_f32(0.0f);
@@ -49,9 +50,16 @@ static inline uint32_t bits_greater(vec a, vec b) {
     static const uint32_t bits[LANES] = {1, 2, 4, 8};
     return vaddvq_u32(vandq_u32(vcgtq_f32(a, b), vld1q_u32(bits)));
 }
-// Not 0 if any lane of a is outside of least to most.
-static inline uint32_t any_outside(vec a, vec least, vec most) {
-    return vmaxvq_u32(vorrq_u32(vcgtq_f32(least, a), vcgtq_f32(a, most)));
+// Which lanes of a are outside of least to most.
+static inline mask outside(vec a, vec least, vec most) {
+    return vorrq_u32(vcgtq_f32(least, a), vcgtq_f32(a, most));
+}
+static inline mask either(mask a, mask b) {
+    return vorrq_u32(a, b);
+}
+// Not 0 if any lane is.
+static inline uint32_t any_lane(mask a) {
+    return vmaxvq_u32(a);
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {

@@ -224,7 +224,6 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
             const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
-            const lattice_springs springs = springs_of(s, span, slot);
             const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
             if (of & MSPRINGI_TESTED) {
                 test_in_lattice(s, span, slot, MSPRINGI_EAST, here, next, of);
@@ -232,6 +231,7 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
                 test_in_lattice(s, span, slot, MSPRINGI_NORTH_EAST, here, above_next, of);
                 test_in_lattice(s, span, slot, MSPRINGI_SOUTH_EAST, next, above, of);
             }
+            const lattice_springs springs = springs_of(s, span, slot); // which may be others when one has flowed
             const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, of);
             const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, of);
             vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, of);

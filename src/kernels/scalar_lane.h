@@ -9,6 +9,7 @@
 
 #define LANES 1
 typedef float vec;
+typedef uint32_t mask; ///< of lanes
 
 static inline vec zero(void) {
     return 0.0f;
@@ -52,9 +53,16 @@ static inline float largest_lane(vec a) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return a > b;
 }
-// Not 0 if any lane of a is outside of least to most.
-static inline uint32_t any_outside(vec a, vec least, vec most) {
+// Which lanes of a are outside of least to most.
+static inline mask outside(vec a, vec least, vec most) {
     return (uint32_t)(least > a) | (uint32_t)(a > most);
+}
+static inline mask either(mask a, mask b) {
+    return a | b;
+}
+// Not 0 if any lane is.
+static inline uint32_t any_lane(mask a) {
+    return a;
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {

@@ -7,6 +7,7 @@
 
 #define LANES 4
 typedef __m128 vec;
+typedef __m128 mask; ///< of lanes
 
 static inline vec zero(void) {
     return _mm_setzero_ps();
@@ -42,16 +43,23 @@ static inline vec inverse_or_zero(vec square) {
 }
 // a where selector > 0, b elsewhere.
 static inline vec choose_positive(vec selector, vec a, vec b) {
-    const vec mask = _mm_cmpgt_ps(selector, _mm_setzero_ps());
-    return _mm_or_ps(_mm_and_ps(mask, a), _mm_andnot_ps(mask, b));
+    const mask is_positive = _mm_cmpgt_ps(selector, _mm_setzero_ps());
+    return _mm_or_ps(_mm_and_ps(is_positive, a), _mm_andnot_ps(is_positive, b));
 }
 // A bit for each lane: 1 where a > b.
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)_mm_movemask_ps(_mm_cmpgt_ps(a, b));
 }
-// Not 0 if any lane of a is outside of least to most.
-static inline uint32_t any_outside(vec a, vec least, vec most) {
-    return (uint32_t)_mm_movemask_ps(_mm_or_ps(_mm_cmpgt_ps(least, a), _mm_cmpgt_ps(a, most)));
+// Which lanes of a are outside of least to most.
+static inline mask outside(vec a, vec least, vec most) {
+    return _mm_or_ps(_mm_cmplt_ps(a, least), _mm_cmpgt_ps(a, most));
+}
+static inline mask either(mask a, mask b) {
+    return _mm_or_ps(a, b);
+}
+// Not 0 if any lane is.
+static inline uint32_t any_lane(mask a) {
+    return (uint32_t)_mm_movemask_ps(a);
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {

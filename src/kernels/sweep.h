@@ -211,6 +211,13 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
             const float *rests = s->rest_lengths +
                                  (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH +
                                  slot % MSPRINGI_WIDTH;
+            const float *low = NULL, *high = NULL;
+            if (of & MSPRINGI_TESTED) {
+                const size_t place =
+                    (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+                low = s->test->test_low + place;
+                high = s->test->test_high + place;
+            }
             vector forces[MSPRINGI_WIDTH / LANES];
             do {
                 const size_t up = (size_t)((int64_t)slot + span->up);
@@ -226,10 +233,17 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                 const vec per_south_east = inverse_or_zero(to_south_east.square);
                 const vec per_north = inverse_or_zero(to_north.square);
                 const extent to_north_east = spring_extent(here, above_next, of);
-                if (of & MSPRINGI_TESTED)
-                    test_lattice(s->test, block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH,
-                                 to_east.square, to_north.square, to_north_east.square, to_south_east.square,
-                                 springs, part);
+                if (of & MSPRINGI_TESTED && any_in_lattice(low, high, to_east.square, to_north.square,
+                                                           to_north_east.square, to_south_east.square)) {
+                    const vec squares[] = {to_east.square, to_north.square, to_north_east.square,
+                                           to_south_east.square};
+                    const size_t place = block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+                    let_yield(s->test, place, MSPRINGI_DIRECTIONS, squares, s->test->lattice_rests + place, springs,
+                              part);
+                    rests = s->rest_lengths +
+                            (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH +
+                            slot % MSPRINGI_WIDTH;
+                }
                 const vector east =
                     spring_force(to_east, per_east, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
                                  springs + MSPRINGI_EAST * part, of);
@@ -265,6 +279,10 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                 slot += LANES;
                 springs += LANES;
                 rests += LANES;
+                if (of & MSPRINGI_TESTED) {
+                    low += LANES;
+                    high += LANES;
+                }
             } while (LANES < MSPRINGI_WIDTH && slot < end);
             for (size_t moved = first; LANES < MSPRINGI_WIDTH && moved < slot; moved += LANES)
                 move(s, moved, load_motion(s, moved, of), forces[(moved - first) / LANES], of);
@@ -316,8 +334,10 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
                                               : block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + lane;
                 float *own = is_chain ? t->chain_springs + (rests - s->chain_springs) : t->lattice_rests + place;
                 const vec square = to_east.square;
-                if (bits_outside(square, t->test_low + place, t->test_high + place))
+                if (bits_outside(square, t->test_low + place, t->test_high + place)) {
                     let_yield(t, place, 1, &square, own, record, 0);
+                    rests = own;
+                }
             }
             const vector east =
                 spring_force(to_east, inverse_or_zero(to_east.square), here, next, rests, record, of);

@@ -7,6 +7,7 @@
 
 #define LANES 4
 typedef v128_t vec;
+typedef v128_t mask; ///< of lanes
 
 static inline vec zero(void) {
     return wasm_f32x4_splat(0.0f);
@@ -48,9 +49,16 @@ static inline vec choose_positive(vec selector, vec a, vec b) {
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)wasm_i32x4_bitmask(wasm_f32x4_gt(a, b));
 }
-// Not 0 if any lane of a is outside of least to most.
-static inline uint32_t any_outside(vec a, vec least, vec most) {
-    return (uint32_t)wasm_i32x4_bitmask(wasm_v128_or(wasm_f32x4_gt(least, a), wasm_f32x4_gt(a, most)));
+// Which lanes of a are outside of least to most.
+static inline mask outside(vec a, vec least, vec most) {
+    return wasm_v128_or(wasm_f32x4_gt(least, a), wasm_f32x4_gt(a, most));
+}
+static inline mask either(mask a, mask b) {
+    return wasm_v128_or(a, b);
+}
+// Not 0 if any lane is.
+static inline uint32_t any_lane(mask a) {
+    return wasm_v128_any_true(a);
 }
 // The last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {

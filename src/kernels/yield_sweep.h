@@ -67,28 +67,26 @@ static inline void flow(const mspringi_yield_test *t, size_t place, vec square, 
 static MSPRINGI_NOINLINE void let_yield(const mspringi_yield_test *t, size_t place, uint32_t directions,
                                         const vec *squares, float *rests, const float *stiffnesses, size_t part) {
     for (uint32_t d = 0; d < directions; ++d, place += MSPRINGI_WIDTH) {
-        const uint32_t warm = bits_outside(squares[d], t->low + place, t->high + place);
-        mspringi_yield_note(t, place / MSPRINGI_WIDTH, warm << place % MSPRINGI_WIDTH);
+        if (t->looks) {
+            const uint32_t warm = bits_outside(squares[d], t->low + place, t->high + place);
+            mspringi_yield_note(t, place / MSPRINGI_WIDTH, warm << place % MSPRINGI_WIDTH);
+        }
         if (t->maps && bits_outside(squares[d], t->flow_low + place, t->flow_high + place))
             flow(t, place, squares[d], rests + d * MSPRINGI_WIDTH, stiffnesses + d * part);
     }
 }
 
-// Look whether any of the springs of LANES slots of a lattice has to be looked at closer: squares of lengths are
-// put into memory only if so.
-MSPRINGI_INLINE void test_lattice(const mspringi_yield_test *t, size_t place, vec east, vec north, vec north_east,
-                                  vec south_east, const float *stiffnesses, size_t part) {
-    const float *low = t->test_low + place, *high = t->test_high + place;
-    uint32_t out = bits_outside(east, low, high);
-    out |= bits_outside(north, low + MSPRINGI_NORTH * MSPRINGI_WIDTH, high + MSPRINGI_NORTH * MSPRINGI_WIDTH);
-    out |= bits_outside(north_east, low + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
-                        high + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH);
-    out |= bits_outside(south_east, low + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                        high + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH);
-    if (out) {
-        const vec squares[] = {east, north, north_east, south_east};
-        let_yield(t, place, MSPRINGI_DIRECTIONS, squares, t->lattice_rests + place, stiffnesses, part);
-    }
+// Whether any of the springs of LANES slots of a lattice is outside of what low and high have from their place on.
+MSPRINGI_INLINE uint32_t any_in_lattice(const float *low, const float *high, vec east, vec north, vec north_east,
+                                        vec south_east) {
+    const size_t width = MSPRINGI_WIDTH;
+    const mask level =
+        either(outside(east, load(low), load(high)),
+               outside(north, load(low + MSPRINGI_NORTH * width), load(high + MSPRINGI_NORTH * width)));
+    const mask across = either(
+        outside(north_east, load(low + MSPRINGI_NORTH_EAST * width), load(high + MSPRINGI_NORTH_EAST * width)),
+        outside(south_east, load(low + MSPRINGI_SOUTH_EAST * width), load(high + MSPRINGI_SOUTH_EAST * width)));
+    return any_lane(either(level, across));
 }
 
 #endif

@@ -219,6 +219,8 @@ static mspring_network with_layout_of(const mspring_network *network, const mspr
     mspringi_store_take_layout(&to, made);
     to.alike.changes = made->alike.changes;
     to.alike.compared = made->alike.compared;
+    to.plastic.alike.changes = made->plastic.alike.changes;
+    to.plastic.alike.compared = made->plastic.alike.compared;
     to.rests = made->rests;
     to.halos = made->halos;
     to.carry_rows = made->carry_rows;

@@ -5,6 +5,7 @@
 
 #include "step/breaking.h"
 #include "step/strain.h"
+#include "store/alike.h"
 #include "store/changed.h"
 #include "store/growth.h"
 #include "store/properties.h"
@@ -31,6 +32,8 @@ static bool reserve_layout(mspring_network *network) {
         p->plastic_limit[place] = MSPRING_PLASTIC_LIMIT_DEFAULT;
         p->nominal[place] = p->gain[place] = 1.0f;
     }
+    mspringi_alike_begin(&p->alike, network->topology.lattice_blocks);
+    p->alike.changes = network->topology.lattice_springs;
     return true;
 }
 
@@ -81,6 +84,7 @@ void mspringi_plastic_renew(mspring_network *network, mspringi_place place) {
     if (rest == MSPRINGI_WELD || mspringi_place_ramp(network, place))
         values.yield_strain = INFINITY;
     const mspringi_yield_bounds bounds = mspringi_yield_bounds_of(values, rest);
+    mspringi_alike_part_yielding(network, place);
     p->low[place] = bounds.low;
     p->high[place] = bounds.high;
     p->flow_low[place] = bounds.flow_low;

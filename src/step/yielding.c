@@ -20,6 +20,7 @@
 #include "sleep/sleep.h"
 #include "step/plastic.h"
 #include "step/strain.h"
+#include "store/alike.h"
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/growth.h"
@@ -224,6 +225,8 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     p->is_swept = attempt->solver->ops->has_border;
     p->maps = p->is_swept && (p->was_warm || mspringi_tasks_shares(network->tasks) == 1);
     p->web_yields = p->is_swept && does_web_yield(network);
+    if (p->is_swept)
+        mspringi_alike_renew_yielding(network);
     memset(p->warmth, 0, network->topology.strip_count);
 }
 

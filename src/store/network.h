@@ -234,6 +234,7 @@ typedef struct mspringi_plastic {
     float *before;               ///< rest length before the step, where it has changed in it
     float *gain;                 ///< 1 / (1 + hardening)
     float *heat;                 ///< what flow has dissipated in the step, J
+    mspringi_alike alike;        ///< lattice blocks with the same rest lengths and bounds
     uint16_t
         *has_flowed; ///< [places / MSPRINGI_WIDTH] a bit for each place: its rest length has changed in the step
     mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] springs that were warm at the last look
@@ -335,16 +336,6 @@ typedef struct mspringi_rests {
     uint32_t *of_block; ///< [lattice blocks] which of them is whose
     uint32_t count, shared_count;
 } mspringi_rests;
-
-/// Lattice blocks whose springs are alike in stiffness and damping.
-typedef struct mspringi_alike {
-    uint32_t *of_block; ///< [lattice blocks] the block whose record is read for each
-    uint32_t *readers;  ///< [lattice blocks] other blocks that each block's record is read for
-    uint32_t *home;     ///< [lattice blocks] a block that each was like before its springs were set
-    uint8_t *is_set;    ///< [lattice blocks] whether springs of it were, since it was compared with that
-    uint64_t changes;   ///< springs that were set since all were looked at
-    uint64_t compared;  ///< of these, those of before the last comparison
-} mspringi_alike;
 
 /// What workers leave to each other where they share strips, see solvers/explicit/halo.h and shares.h; no arrays
 /// for one.
@@ -458,7 +449,7 @@ struct mspring_network {
     bool is_precise;              ///< low words count in the lengths of springs
     mspringi_rests rests;         ///< of lattice_springs, whose records have stiffness and damping only
     float *lattice_springs, *chain_springs;
-    mspringi_alike alike;
+    mspringi_alike alike; ///< in stiffness and damping
     float *web_springs;
     float *gathered; ///< [2][nodes of the web][4] at the start of every other substep; see store/precise.h
     float *attached; ///< forces on the attached nodes, all x and then all y

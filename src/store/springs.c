@@ -118,6 +118,7 @@ void mspringi_place_set_rest_length(mspring_network *network, mspringi_place pla
     MSPRINGI_ASSERT(place >= network->topology.lattice_places ||
                     !mspringi_rests_are_shared(&network->rests, place) ||
                     *records.ends[0].rest_length == rest_length);
+    mspringi_alike_part_yielding(network, place);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
     network->has_welds |= rest_length == MSPRINGI_WELD;

@@ -2,6 +2,8 @@
 /// Lattice blocks whose springs are alike are read from one record: what is edited afterwards is not.
 ///
 /// SPDX-License-Identifier: MIT
+#include <massspring/massspring_laws.h>
+
 #include "recipe.h"
 #include "store/network.h"
 #include "support.h"
@@ -32,8 +34,7 @@ static void edit(mspring_network *network, const edits *which) {
 }
 
 /// Blocks that read a record which is not their own; whose it is knows how many do.
-static uint32_t shared_blocks(const mspring_network *network) {
-    const mspringi_alike *alike = &network->alike;
+static uint32_t blocks_that_share(const mspring_network *network, const mspringi_alike *alike) {
     uint32_t shared = 0, readers = 0;
     for (uint32_t b = 0; b < network->topology.lattice_blocks; b++) {
         shared += alike->of_block[b] != b;
@@ -43,6 +44,10 @@ static uint32_t shared_blocks(const mspring_network *network) {
     }
     assert_int_equal(readers, shared);
     return shared;
+}
+
+static uint32_t shared_blocks(const mspring_network *network) {
+    return blocks_that_share(network, &network->alike);
 }
 
 /// The state after some steps of a network that is edited before or after its first step, which does not count.
@@ -157,11 +162,69 @@ static void a_copy_shares_too(void **state) {
     recipe_free(&made);
 }
 
+/// The same of what springs yield at. What a block reads is what it has.
+static uint32_t yielding_blocks_that_share(const mspring_network *network) {
+    enum { PLACES = MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH };
+    const mspringi_plastic *p = &network->plastic;
+    const float *const arrays[] = {network->rests.lengths, p->low, p->high, p->flow_low, p->flow_high};
+    for (size_t b = 0; b < network->topology.lattice_blocks; b++) {
+        for (size_t i = 0; i < COUNT_OF(arrays); i++) {
+            assert_memory_equal(arrays[i] + b * PLACES, arrays[i] + p->alike.of_block[b] * (size_t)PLACES,
+                                PLACES * sizeof(float));
+        }
+    }
+    return blocks_that_share(network, &p->alike);
+}
+
+/// Strike a particle so hard that its springs flow. Returns how many were bent.
+static uint32_t strike(mspring_network *network, mspring_id particle) {
+    const float vx = 40, vy = 30;
+    mspring_plasticity report = {.struct_size = sizeof report};
+    check_ok(mspring_network_set_velocities(network, particle, 1, &vx, &vy, 1));
+    check_ok(mspring_network_step(network, 1.0 / 64));
+    check_ok(mspring_network_get_plasticity(network, &report));
+    return report.bent_springs;
+}
+
+/// Springs that yield share their rest lengths until they flow, and again when they are straightened.
+static void what_flows_has_a_record_of_its_own(void **state) {
+    (void)state;
+    uint64_t seed = 11;
+    recipe made = {0};
+    recipe_lattice(&made, WIDTH, HEIGHT, 0, 0, 1, &absolute, &seed);
+    mspring_network_def def = support_def(0, 8);
+    mspring_network *network = recipe_network(&made, &def), *clone = NULL;
+    const float yield_strain = 0.02f, straight = 0;
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, made.spring_count, &yield_strain, 0));
+    check_ok(mspring_network_step(network, 1.0 / 64));
+    const uint32_t shared = yielding_blocks_that_share(network);
+    assert_true(shared >= network->topology.lattice_blocks / 2);
+    uint32_t left = shared;
+    for (mspring_id particle = 0; particle < made.particle_count;
+         particle += 411) { // the first has what others read
+        assert_true(strike(network, particle) > 0);
+        assert_true(yielding_blocks_that_share(network) <= left);
+        left = yielding_blocks_that_share(network);
+    }
+    assert_true(left > 0 && left < shared);
+    check_ok(mspring_network_clone(network, NULL, &clone));
+    assert_int_equal(yielding_blocks_that_share(clone), left);
+    assert_true(strike(clone, WIDTH) > 0 && yielding_blocks_that_share(clone) <= left);
+    mspring_network_destroy(clone);
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, made.spring_count, &(float){10}, 0));
+    check_ok(mspring_network_set(network, MSPRING_PLASTIC_STRAIN, 0, made.spring_count, &straight, 0));
+    check_ok(mspring_network_step(network, 1.0 / 64));
+    assert_int_equal(yielding_blocks_that_share(network), shared);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(edits_count_at_once),
         cmocka_unit_test(a_copy_shares_too),
         cmocka_unit_test(blocks_join_again),
+        cmocka_unit_test(what_flows_has_a_record_of_its_own),
     };
     return cmocka_run_group_tests_name("alike", tests, NULL, NULL);
 }

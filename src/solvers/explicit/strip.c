@@ -31,7 +31,8 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .springs_of_block = network->alike.of_block,
                 .cells = network->areas.swept > 0 ? network->areas.cells : NULL,
                 .rest_lengths = network->rests.lengths,
-                .rests_of_block = network->rests.of_block,
+                .rests_of_block =
+                    network->plastic.nominal ? network->plastic.alike.of_block : network->rests.of_block,
                 .chain_springs = network->chain_springs,
                 .web = &network->topology.web,
                 .web_springs = network->web_springs,
@@ -205,6 +206,8 @@ static bool begin_test(const mspring_network *network, const mspringi_substep *s
                                   .chain_springs = network->chain_springs,
                                   .live = network->live,
                                   .chain_place = network->topology.lattice_places,
+                                  .alike = p->alike,
+                                  .block_count = network->topology.lattice_blocks,
                                   .heat = p->heat,
                                   .before = p->before,
                                   .has_flowed = p->has_flowed,
