@@ -38,8 +38,7 @@ static bool is_of_one_worker(const mspring_network *network) {
 static bool is_straight(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     if (t->block_count > MOST_BLOCKS || !has_plain_rows(t) || network->graft.count > 0 ||
-        network->sleep.sleeping > 0 || (network->plastic.yields && network->plastic.is_swept) ||
-        !is_of_one_worker(network))
+        network->sleep.sleeping > 0 || !is_of_one_worker(network))
         return false;
     for (uint32_t s = 0; network->floor && s < t->strip_count; ++s)
         if (mspringi_floor_is_near(network, &t->strips[s]))
@@ -96,6 +95,25 @@ static void sweep_web(const mspring_network *network, mspringi_substep *substep,
         *extrema = mspringi_extrema_join(*extrema, mspringi_span_look(network, &span));
 }
 
+// Strips tell what they test. Only where none does so are rows swept by runs.
+static bool tests(const mspring_network *network, const mspringi_substep *substep) {
+    const mspringi_plastic *p = &network->plastic;
+    uint32_t warmth = 0;
+    for (uint32_t s = 0; substep->tests && p->maps && s < network->topology.strip_count; ++s)
+        warmth |= p->warmth[s];
+    return substep->looks || (warmth & MSPRINGI_WARM);
+}
+
+static void sweep_once(const mspring_network *network, const mspringi_substep *substep, const run *runs,
+                       uint32_t run_count) {
+    const mspringi_topology *t = &network->topology;
+    const bool by_strips = tests(network, substep);
+    for (uint32_t s = 0; by_strips && s < t->strip_count; ++s)
+        mspringi_strip_sweep(network, substep, &t->strips[s], NULL);
+    for (const run *r = runs; !by_strips && r < runs + run_count; ++r)
+        r->sweep(&substep->sweep, r->spans, r->span_count);
+}
+
 static void sweep_rows(const mspring_network *network, mspringi_substep *substep, const run *runs,
                        uint32_t run_count, uint32_t count, mspringi_extrema *extrema) {
     const mspringi_topology *t = &network->topology;
@@ -108,10 +126,11 @@ static void sweep_rows(const mspring_network *network, mspringi_substep *substep
     for (uint32_t i = 0, carry = 0; i < count; ++i, carry = carry + 1 < carries ? carry + 1 : 0) {
         substep->sweep.carry_x = network->carry + 2 * carry * carry_slots;
         substep->sweep.carry_y = substep->sweep.carry_x + carry_slots;
+        if (substep->tests) // which substeps are looks
+            mspringi_substep_turn(network, substep, i, count, carry);
         if (extrema && i + 1 == count)
             mspringi_substep_watch(network, substep, watch);
-        for (const run *r = runs; r < runs + run_count; ++r)
-            r->sweep(&substep->sweep, r->spans, r->span_count);
+        sweep_once(network, substep, runs, run_count);
         substep->sweep.keep = NULL;
     }
     for (uint32_t s = 0; extrema && s < t->strip_count; ++s)
