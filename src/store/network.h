@@ -8,6 +8,8 @@
 #include <massspring/massspring_contact.h>
 #include <massspring/massspring_laws.h>
 
+#include <math.h>
+
 #include "base/assert.h"
 #include "builder/areas.h"
 #include "kernels/kernels.h"
@@ -32,9 +34,7 @@ enum { MSPRINGI_STATE_ARRAYS = 6 };
 #define MSPRINGI_LARGEST_LOW 0x1p-21f
 
 static inline float mspringi_low_of(float coordinate, float low) {
-    const float size = coordinate < 0.0f ? -coordinate : coordinate;
-    const float limit = size * MSPRINGI_LARGEST_LOW;
-    return low <= limit && -low <= limit ? low : 0.0f;
+    return fabsf(low) <= fabsf(coordinate) * MSPRINGI_LARGEST_LOW ? low : 0.0f;
 }
 
 /// Local coordinates in full.
