@@ -2,6 +2,7 @@
 /// Pay for what the scene has: each feature against the plain scene, measured in turn.
 ///
 /// SPDX-License-Identifier: MIT
+#include <math.h>
 #include <stdio.h>
 
 #include <massspring/massspring_laws.h>
@@ -23,6 +24,7 @@ typedef struct variant {
     mspring_phase hook;
     uint32_t period;    ///< of the hook; 0: 1
     float yield_strain; ///< of all springs; 0: none yields
+    float blow;         ///< m/s, that the middle of the scene is struck with at the start of each sample
     uint32_t areas;     ///< of each lattice cell; sweeps have one of them, others are forces
 } variant;
 
@@ -37,6 +39,7 @@ static const variant variants[] = {
     {.name = "empty hook before every 8", .hooked = true, .hook = MSPRING_PHASE_BEFORE_SUBSTEP, .period = 8},
     {.name = "empty hook after every 8", .hooked = true, .hook = MSPRING_PHASE_AFTER_SUBSTEP, .period = 8},
     {.name = "springs that could yield", .yield_strain = 10},
+    {.name = "struck, and yields", .yield_strain = 0.006f, .blow = 30},
     {.name = "every spring always flows", .yield_strain = 1e-9f},
     {.name = "strain limits", .limits = true},
     {.name = "areas of cells", .areas = 1},
@@ -103,6 +106,22 @@ static bool add_areas(bench_network *out, scene_error *error) {
     return result == MSPRING_OK;
 }
 
+/// Strike an eighth of the scene's width, in its middle.
+static void strike(bench_network *network, float speed) {
+    double first = network->start_x[0], last = first;
+    for (uint32_t i = 0; i < network->particle_count; i++) {
+        first = fmin(first, network->start_x[i]);
+        last = fmax(last, network->start_x[i]);
+    }
+    for (uint32_t i = 0; i < network->particle_count; i++) {
+        const double away = (network->start_x[i] - 0.5 * (first + last)) / (0.125 * (last - first));
+        if (network->start_vx[i] != 0.0f || network->start_vy[i] != 0.0f) { /* it is not pinned */
+            network->start_vy[i] += speed * (float)exp(-away * away);
+        }
+    }
+    network->straightens = true;
+}
+
 /// Make the network of a variant of the plain scene.
 static bool create_variant(const variant *kind, const bench_scene *subject, const bench_options *options,
                            const bench_network *plain, mspring_simd level, bench_network *out, scene_error *error) {
@@ -140,6 +159,9 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
             bench_network_free(out);
             return false;
         }
+    }
+    if (kind->blow > 0) {
+        strike(out, kind->blow);
     }
     for (uint32_t i = 0; i < kind->areas; i++) {
         if (!add_areas(out, error)) {

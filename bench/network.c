@@ -69,6 +69,11 @@ static bool reset(void *self, scene_error *error) {
         result =
             mspring_network_set_velocities(network->network, 0, count, network->start_vx, network->start_vy, 1);
     }
+    if (result == MSPRING_OK && network->straightens) {
+        const float straight = 0;
+        result =
+            mspring_network_set(network->network, MSPRING_PLASTIC_STRAIN, 0, network->spring_count, &straight, 0);
+    }
     if (result != MSPRING_OK) {
         bench_library_error(error, "setting the state", result, mspring_network_error(network->network));
         return false;

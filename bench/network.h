@@ -26,6 +26,7 @@ typedef struct bench_network {
     float *start_vx, *start_vy;
     float *held_x, *held_y; ///< [particle_count] forces given before every step, or NULL
     bool saves_frames;      ///< before every step
+    bool straightens;       ///< what has yielded, where it goes back to its start
     void *snapshot;         ///< [snapshot_size] where to
     size_t snapshot_size;
 } bench_network;
