@@ -41,7 +41,7 @@ static arm arm_of(const mspringi_statics *s, const mspringi_area *angle, uint32_
     return (arm){{x, y}, -y * inverse, x * inverse, a, b};
 }
 
-static double push(mspringi_statics *statics, uint32_t p, double x, double y) {
+static double push_particle(mspringi_statics *statics, uint32_t p, double x, double y) {
     statics->force.x[p] += x;
     statics->force.y[p] += y;
     return fmax(fabs(x), fabs(y));
@@ -50,9 +50,9 @@ static double push(mspringi_statics *statics, uint32_t p, double x, double y) {
 double mspringi_statics_angle_forces(mspringi_statics *statics, const mspringi_area *angle) {
     const arm u = arm_of(statics, angle, 0), w = arm_of(statics, angle, 1);
     const double torque = mspringi_angle_torque(angle, mspringi_angle_size_by(angle, u.along, w.along));
-    const double at_a = push(statics, u.from, torque * u.x, torque * u.y);
-    const double at_b = push(statics, u.to, -torque * (u.x + w.x), -torque * (u.y + w.y));
-    return fmax(fmax(at_a, at_b), push(statics, w.to, torque * w.x, torque * w.y));
+    const double at_a = push_particle(statics, u.from, torque * u.x, torque * u.y);
+    const double at_b = push_particle(statics, u.to, -torque * (u.x + w.x), -torque * (u.y + w.y));
+    return fmax(fmax(at_a, at_b), push_particle(statics, w.to, torque * w.x, torque * w.y));
 }
 
 /* ---------------------------------------------------------------------------------------------- change of energy
