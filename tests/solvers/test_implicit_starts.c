@@ -110,6 +110,7 @@ static mspring_network *begin(const start *s, const recipe *made, mspring_integr
     solver.solver = tested;
     solver.integrator = integrator;
     solver.substeps = substeps;
+    solver.max_substeps = 8;
     check_ok(mspring_network_set_solver(network, &solver));
     return network;
 }
