@@ -50,6 +50,7 @@ typedef struct mspringi_implicit {
     uint32_t age;           ///< substeps since the coarse matrix was factored; 0: it is to be
     uint32_t kept_age;      ///< before the step; 0: there is none to go back to
     uint32_t kept_restarts; ///< those of the history before the step
+    uint32_t retaken;       ///< pieces of this substep that were undone
     double scale;           ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup is that of before the step once that has written one
