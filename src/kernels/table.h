@@ -60,19 +60,10 @@ static void cells_precise(const mspringi_sweep *sweep, const mspringi_span *span
         lattice(sweep, spans, count, of);
 }
 
-static void lattice_tested_cells(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count,
-                                 mspringi_variant of) {
-    if (sweep->parts > MSPRINGI_DAMPING)
-        lattice(sweep, spans, count, of | MSPRINGI_DAMPED);
-    else
-        lattice(sweep, spans, count, of);
-}
-
 static void lattice_tested(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
-    const mspringi_variant of = MSPRINGI_TESTED | (sweep->force_x ? MSPRINGI_FORCED : 0);
-    if (sweep->cells)
-        lattice_tested_cells(sweep, spans, count, of | MSPRINGI_CELLS);
-    else if (sweep->parts > MSPRINGI_DAMPING)
+    const mspringi_variant of =
+        MSPRINGI_TESTED | (sweep->force_x ? MSPRINGI_FORCED : 0) | (sweep->cells ? MSPRINGI_CELLS : 0);
+    if (sweep->parts > MSPRINGI_DAMPING)
         lattice(sweep, spans, count, of | MSPRINGI_DAMPED);
     else
         lattice(sweep, spans, count, of);
