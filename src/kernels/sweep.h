@@ -2,10 +2,9 @@
 /// The sweeps of scalar.c, written for vectors of LANES slots. Each instruction set's file defines the type vec,
 /// LANES and the operations used below, as static functions of its own, and includes this.
 ///
-/// Why this shape: a row of particles is done in one go - forces of its four springs per slot, then motion, in
-/// place - and all that lives on is one row of forces for the row above. Neighbours are read by loads at the slot
-/// and at the slot + 1, so there are no gathers; forces on the slot + 1 are handed on by a shift across
-/// registers.
+/// Why this shape: a row of particles is done in one go, forces of its four springs per slot, then motion. Only
+/// one row of forces lives on, for the row above. Neighbours are read by loads at the slot and the slot + 1, so
+/// nothing is gathered. Forces on the slot + 1 are handed on by a shift across registers.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SWEEP_H
@@ -211,13 +210,8 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
             const float *rests = s->rest_lengths +
                                  (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH +
                                  slot % MSPRINGI_WIDTH;
-            const float *low = NULL, *high = NULL;
-            if (of & MSPRINGI_TESTED) {
-                const size_t place =
-                    (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
-                low = s->test->test_low + place;
-                high = s->test->test_high + place;
-            }
+            const float *low = of & MSPRINGI_TESTED ? s->test->test_low + (rests - s->rest_lengths) : NULL;
+            const float *high = of & MSPRINGI_TESTED ? s->test->test_high + (rests - s->rest_lengths) : NULL;
             vector forces[MSPRINGI_WIDTH / LANES];
             do {
                 const size_t up = (size_t)((int64_t)slot + span->up);
