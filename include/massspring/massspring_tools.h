@@ -227,7 +227,8 @@ enum {
     /// When the hook is due, it is called only for whole blocks that have a slot below below_y. There is one call for
     /// each run of such blocks. If no particle can get there in a step, the step skips the hook at no cost. The test
     /// assumes four times the speed before the step, or twice the speed after it. The hook misses only particles that
-    /// springs throw there and back within one step.
+    /// springs throw there and back within one step. Beside hooks of substeps, particles without springs take each
+    /// substep by itself.
     MSPRING_HOOK_BELOW = 1u << 1
 };
 
