@@ -488,18 +488,14 @@ bool mspringi_bodies_are_thrown(const mspring_network *network, float h) {
 /* --------------------------------------------------------------------------------------------- once it is taken */
 
 // What rows gave to particles that are flown past the floor by themselves.
-static void gain(const mspring_network *network, const mspringi_touch *t, hold *c, double h) {
+static void gain(const mspring_network *network, const mspringi_touch *t, hold *c) {
     const mspringi_active *k = &network->pairs->active;
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i);
         if (c->slots[i] == MSPRING_NONE || !mspringi_floor_is_alone(network, c->slots[i]))
             continue;
-        const double x = k->weight[node] * (c->across[i][0] * t->across + c->along[i][0] * t->along);
-        const double y = k->weight[node] * (c->across[i][1] * t->across + c->along[i][1] * t->along);
-        k->gain_x[node] += x;
-        k->gain_y[node] += y;
-        k->way_x[node] += h * x;
-        k->way_y[node] += h * y;
+        k->gain_x[node] += k->weight[node] * (c->across[i][0] * t->across + c->along[i][0] * t->along);
+        k->gain_y[node] += k->weight[node] * (c->across[i][1] * t->across + c->along[i][1] * t->along);
     }
 }
 
@@ -509,8 +505,16 @@ void mspringi_bodies_pass(mspring_network *network, float h) {
         return;
     pairs->passed += (double)h;
     mspringi_rows_count(network, pairs);
-    for (uint32_t i = 0; network->floor && i < pairs->touch_count; ++i)
-        gain(network, &pairs->touches[i], &pairs->holds[i], (double)h);
+    if (!network->floor)
+        return;
+    for (uint32_t i = 0; i < pairs->touch_count; ++i)
+        gain(network, &pairs->touches[i], &pairs->holds[i]);
+    // They move on with what they got in the pieces before, too.
+    const mspringi_active *k = &pairs->active;
+    for (uint32_t i = 0; i < k->own; ++i) {
+        k->way_x[i] += (double)h * k->gain_x[i];
+        k->way_y[i] += (double)h * k->gain_y[i];
+    }
 }
 
 void mspringi_bodies_fly(const mspring_network *network) {
@@ -524,6 +528,7 @@ void mspringi_bodies_fly(const mspring_network *network) {
         s->vx[slot] = (float)((double)s->vx[slot] + k->gain_x[i]);
         s->vy[slot] = (float)((double)s->vy[slot] + k->gain_y[i]);
         mspringi_move_by(s, slot, (float)k->way_x[i], (float)k->way_y[i]);
+        k->gain_x[i] = k->gain_y[i] = k->way_x[i] = k->way_y[i] = 0.0;
     }
 }
 
