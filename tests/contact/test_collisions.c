@@ -91,7 +91,7 @@ static void check_trials(uint32_t first, uint32_t count, kind of, double deepest
 }
 
 /// Trials in all.
-static uint32_t trials = ROUNDS(2000);
+static uint32_t trials = ROUNDS(1000);
 
 static void nothing_gets_through(void **state) {
     (void)state;

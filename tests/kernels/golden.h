@@ -5,6 +5,8 @@
 #ifndef TEST_GOLDEN_H
 #define TEST_GOLDEN_H
 
+#include <stdbool.h>
+
 #include <massspring/massspring.h>
 
 typedef struct golden_scene {
@@ -15,6 +17,7 @@ typedef struct golden_scene {
     void (*before_step)(mspring_network *network, uint32_t step);
     uint32_t substeps, steps;
     double dt;
+    bool takes_long; ///< left out if MASSSPRING_TEST_SHORT_SCENES is set, where a processor is emulated, say
 } golden_scene;
 
 extern const golden_scene golden_scenes[];

@@ -79,6 +79,12 @@ static arena *arena_new(void) {
     return made;
 }
 
+static arena *copy_of(const arena *a) {
+    arena *made = support_aligned_alloc(sizeof *made);
+    memcpy(made, a, sizeof *made);
+    return made;
+}
+
 static void check_canaries(const arena *a) {
     const uint32_t *guards[] = {a->front,         a->after_x,       a->after_y,       a->after_vx,
                                 a->after_vy,      a->after_carry_x, a->after_records, a->after_inverse_mass,
@@ -257,10 +263,9 @@ static void drop_signs_of_zero(float *values, size_t count) {
 }
 
 static void compare(const setup *s, mspringi_row_fn kernel, mspringi_row_fn scalar, mspringi_row_kind kind) {
-    arena *mine = arena_new(), *reference = arena_new(), *before = arena_new();
-    fill(mine, s);
-    fill(reference, s);
+    arena *before = arena_new();
     fill(before, s);
+    arena *mine = copy_of(before), *reference = copy_of(before);
     run(mine, s, kernel, kernels->extrema_of);
     run(reference, s, scalar, mspringi_kernels_scalar.extrema_of);
     check_canaries(mine);
@@ -302,7 +307,7 @@ static void compare_all(mspringi_row_kind kind, uint32_t parts, uint32_t record_
                         mspringi_row_fn kernel, mspringi_row_fn scalar) {
     for (uint32_t blocks = 0; blocks <= ROW; blocks++) {
         for (uint32_t live = 0; live <= 2 * W + 1 && live <= blocks * W; live++) {
-            for (uint32_t variant = 0; variant < 32; variant++) {
+            for (uint32_t variant = 0; variant < 32; variant += 5 / ROUNDS(5)) {
                 setup s = {
                     .blocks = blocks,
                     .live = live,

@@ -296,7 +296,7 @@ static void grids(void **state) {
 static void fronts_of_every_size(void **state) {
     (void)state;
     uint64_t seed = 2;
-    for (uint32_t size = 1; size <= 72; size++) {
+    for (uint32_t size = 1; size <= 72; size += 5 / ROUNDS(5)) {
         problem *p = new_problem();
         for (uint32_t i = 0; i < size; i++) {
             add_node(p, i, 0);

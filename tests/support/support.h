@@ -20,12 +20,16 @@
 
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 
-/// A number of rounds: a fifth of it where a sanitizer watches and makes each ten times as long.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+/// A number of rounds: a fifth of it where a sanitizer watches and makes each ten times as long, and in builds for
+/// another system or without optimisation (TEST_IS_SLOW).
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(TEST_IS_SLOW)
 #define ROUNDS(count) (((count) + 4) / 5)
 #else
 #define ROUNDS(count) (count)
 #endif
+
+/// Whether rounds are few, so that a test may leave out what repeats itself.
+#define ROUNDS_ARE_FEW (ROUNDS(5) < 5)
 
 /* ------------------------------------------------------------------------------------------------- checks */
 
@@ -76,7 +80,8 @@ mspring_id support_pinned(mspring_builder *builder, double x, double y, float ma
 /// Add a spring whose rest length is the distance of its ends.
 mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float damping);
 
-/// Defaults with this gravity along y and this number of substeps, and the guard that rejects steps which would grow.
+/// Defaults with this gravity along y and this number of substeps, and the guard that rejects steps which would
+/// grow.
 mspring_network_def support_def(float gravity_y, uint32_t substeps);
 
 /// Make a network of a builder and destroy the builder.

@@ -185,7 +185,7 @@ static void any_number_of_workers_gives_the_same_bits(void **state) {
     const outcome expected = run(&made, 1, NULL, 0);
     assert_true(expected.below > 0);
     for (size_t w = 0; w < COUNT_OF(worker_counts); w++) {
-        for (size_t r = 0; r < COUNT_OF(ranges); r++) {
+        for (size_t r = 0; r < COUNT_OF(ranges); r += ROUNDS_ARE_FEW ? 2 : 1) {
             const outcome is = run(&made, worker_counts[w], NULL, ranges[r]);
             assert_int_equal(is.hash, expected.hash);
             assert_int_equal(is.below, expected.below);
