@@ -251,6 +251,28 @@ static void what_breaks_off_falls(void **state) {
     recipe_free(&made);
 }
 
+/// What a step knows of elastic energy from the one before is what a loaded network sums up anew: where substeps
+/// change, too, which relative springs follow.
+static void relative_springs_are_known_again(void **state) {
+    (void)state;
+    static const double dts[] = {1.0 / 64, 1.0 / 64, 1.0 / 70, 1.0 / 70, 1.0 / 64, 1.0 / 80, 1.0 / 64};
+    recipe made = lattice(20, 8, 0.4);
+    for (uint32_t s = 0; s < made.spring_count; s++) {
+        made.springs[s].flags = MSPRING_SPRING_RELATIVE;
+    }
+    mspring_network *network = implicit_network(&made, 8), *loaded = implicit_network(&made, 8);
+    support_steps(network, 16, 1.0 / 64);
+    for (size_t i = 0; i < sizeof dts / sizeof *dts; i++) {
+        support_bring(network, loaded, MSPRING_SNAPSHOT_ALL);
+        support_steps(network, 1, dts[i]);
+        support_steps(loaded, 1, dts[i]);
+        assert_true(support_hash(network) == support_hash(loaded));
+    }
+    mspring_network_destroy(network);
+    mspring_network_destroy(loaded);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_breaks_off_falls),
@@ -259,6 +281,7 @@ int main(void) {
         cmocka_unit_test(fifty_breaks_a_frame_stay_right),
         cmocka_unit_test(restored_springs_join_tiles_again),
         cmocka_unit_test(pins_come_and_go),
+        cmocka_unit_test(relative_springs_are_known_again),
     };
     return cmocka_run_group_tests_name("implicit_edits", tests, NULL, NULL);
 }

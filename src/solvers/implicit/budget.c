@@ -125,15 +125,15 @@ static void count_edits(const mspring_network *network, uint64_t *to) {
     memcpy(to, counts, sizeof counts);
 }
 
-// Whether elastic energy is what it was after the last substep. Where the host may write to the state, or rest
-// lengths and stiffnesses follow from the time or the substep, it is computed again.
+// Whether elastic energy is what it was after the last substep. Where the host may write to the state, rest lengths
+// and stiffnesses follow from the time, or relative springs are those of another substep, it is computed again.
 static bool knows_elastic(const mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     uint64_t now[MSPRINGI_BUDGET_EDITS];
     count_edits(network, now);
     return budget->knows_elastic && !network->is_open && network->ramps.count == 0 &&
-           !network->actuators.are_pending && network->areas.hinge_count == 0 && !network->fractions.values &&
-           !network->one_way.side && budget->origin_x == network->origin_x &&
+           !network->actuators.are_pending && network->areas.hinge_count == 0 && !network->one_way.side &&
+           budget->relative_h == network->relative_h && budget->origin_x == network->origin_x &&
            budget->origin_y == network->origin_y && memcmp(now, budget->seen, sizeof now) == 0;
 }
 
@@ -553,6 +553,7 @@ static void note_elastic(const mspring_network *network) {
     for (uint32_t i = 0; i < budget->count; ++i)
         budget->knows_elastic &= budget->accounts[i].shift_x == 0.0 && budget->accounts[i].shift_y == 0.0;
     count_edits(network, budget->seen);
+    budget->relative_h = network->relative_h;
     budget->origin_x = network->origin_x;
     budget->origin_y = network->origin_y;
 }

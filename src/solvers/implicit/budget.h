@@ -110,6 +110,7 @@ typedef struct mspringi_budget {
     uint64_t seen[MSPRINGI_BUDGET_EDITS]; ///< edits after the last substep, and the origin then
     double origin_x, origin_y;
     bool knows_elastic;               ///< elastic and length of all accounts are still those of after it
+    float relative_h;                 ///< what relative springs were derived for then
     float *state;                     ///< [6][slots] before the substep
     mspringi_field impulse;           ///< of the floor before it
     double (*runs)[MSPRINGI_EFFECTS]; ///< [blocks] at the first of each run of blocks
