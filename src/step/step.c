@@ -108,6 +108,7 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
             mspringi_stage_yielding.take_back(network);
     }
     copy_state(network, &network->state, &network->backup);
+    network->backup_is_start = !is_cut && network->sleep.sleeping == 0;
     if (ops->keep)
         ops->keep(attempt->solver->object);
     if (is_cut)

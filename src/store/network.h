@@ -436,6 +436,7 @@ struct mspring_network {
 
     // State.
     mspringi_state state, backup;
+    bool backup_is_start;      ///< since it was written, nothing but the solver has written to the state
     double origin_x, origin_y; ///< world = origin + local
     float recentre_distance;   ///< how far the network may be from its origin until that is moved along
 

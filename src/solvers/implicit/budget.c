@@ -51,16 +51,10 @@ static mspringi_motion motion_of(const mspring_network *network) {
 }
 
 static mspringi_motion motion_before(const mspring_network *network) {
-    const mspringi_implicit *n = mspringi_implicit_of(network);
-    const size_t slots = mspringi_slot_count(network);
-    const float *state = n->budget.state;
-    return (mspringi_motion){state,
-                             state + slots,
-                             state + 2 * slots,
-                             state + 3 * slots,
-                             state + 4 * slots,
-                             state + 5 * slots,
-                             network->inverse_mass};
+    const budget_of *budget = &mspringi_implicit_of(network)->budget;
+    const float *s = budget->is_in_backup ? network->backup.x : budget->state;
+    const size_t n = mspringi_slot_count(network);
+    return (mspringi_motion){s, s + n, s + 2 * n, s + 3 * n, s + 4 * n, s + 5 * n, network->inverse_mass};
 }
 
 /* ------------------------------------------------------------------------------------------------- mass centres */
@@ -138,7 +132,9 @@ static bool knows_elastic(const mspring_network *network) {
 }
 
 void mspringi_budget_open(mspring_network *network) {
-    budget_of *budget = &mspringi_implicit_of(network)->budget;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    budget_of *budget = &n->budget;
+    budget->is_in_backup = n->is_kept && network->backup_is_start;
     for (uint32_t i = 0; i < budget->count; ++i)
         begin_account(network, &budget->accounts[i]);
     find_frames(network, budget);
@@ -592,7 +588,10 @@ bool mspringi_budget_close(mspring_network *network, float h, mspringi_field bas
 void mspringi_budget_undo(mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const size_t slots = mspringi_slot_count(network);
-    memcpy(network->state.x, budget->state, MSPRINGI_STATE_ARRAYS * slots * sizeof *budget->state);
+    const size_t kept = budget->is_in_backup ? mspringi_used_slots(network) : slots;
+    const float *before = motion_before(network).x;
+    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+        memcpy(network->state.x + i * slots, before + i * slots, kept * sizeof *before);
     if (network->floor)
         memcpy(network->floor->impulse.x, budget->impulse.x, 2 * slots * sizeof *budget->impulse.x);
     mspringi_scheme_reopen(network);

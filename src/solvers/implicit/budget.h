@@ -111,7 +111,8 @@ typedef struct mspringi_budget {
     double origin_x, origin_y;
     bool knows_elastic;               ///< elastic and length of all accounts are still those of after it
     float relative_h;                 ///< what relative springs were derived for then
-    float *state;                     ///< [6][slots] before the substep
+    bool is_in_backup;                ///< the state before the substep is that of before the step
+    float *state;                     ///< [6][slots] before the substep, if it is not
     mspringi_field impulse;           ///< of the floor before it
     double (*runs)[MSPRINGI_EFFECTS]; ///< [blocks] at the first of each run of blocks
     mspringi_elastic *elastic;        ///< [blocks]
