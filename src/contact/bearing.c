@@ -36,11 +36,11 @@ void mspringi_bearing_find(const mspring_network *network, mspringi_pairs *pairs
         if (k->weight[i] == 0.0)
             continue;
         for (uint32_t l = 0; l < floor->plane_count && pairs->bearing_count < before + MSPRINGI_BEARINGS; ++l)
-            add(pairs, &floor->lines[l], i, slot, x, y, k->vx[i], k->vy[i]);
+            add(pairs, &floor->lines[l], i, slot, x, y, k->v[i].x, k->v[i].y);
         if (floor->heights.count > 0 && pairs->bearing_count < before + MSPRINGI_BEARINGS) {
             const mspringi_line line =
                 mspringi_heights_line(&floor->heights, mspringi_heights_part_below(&floor->heights, x));
-            add(pairs, &line, i, slot, x, y, k->vx[i], k->vy[i]);
+            add(pairs, &line, i, slot, x, y, k->v[i].x, k->v[i].y);
         }
     }
 }
@@ -59,17 +59,17 @@ void mspringi_bearing_sweep(const mspringi_pairs *pairs) {
     const mspringi_active *k = &pairs->active;
     for (uint32_t i = 0; i < pairs->bearing_count; ++i) {
         mspringi_bearing *g = &pairs->bearings[i];
-        const double speed = k->vx[g->p] * g->nx + k->vy[g->p] * g->ny, sum = g->across + (g->least - speed);
+        const double speed = k->v[g->p].x * g->nx + k->v[g->p].y * g->ny, sum = g->across + (g->least - speed);
         const double across = sum > 0.0 ? sum : 0.0, by = across - g->across;
         if (across == 0.0 && g->across == 0.0)
             continue;
         g->across = across;
-        k->vx[g->p] += by * g->nx;
-        k->vy[g->p] += by * g->ny;
-        const double slide = k->vy[g->p] * g->nx - k->vx[g->p] * g->ny, most = g->friction * across;
+        k->v[g->p].x += by * g->nx;
+        k->v[g->p].y += by * g->ny;
+        const double slide = k->v[g->p].y * g->nx - k->v[g->p].x * g->ny, most = g->friction * across;
         const double wanted = g->along - slide, along = wanted > most ? most : wanted < -most ? -most : wanted;
-        k->vx[g->p] -= (along - g->along) * g->ny;
-        k->vy[g->p] += (along - g->along) * g->nx;
+        k->v[g->p].x -= (along - g->along) * g->ny;
+        k->v[g->p].y += (along - g->along) * g->nx;
         g->along = along;
     }
 }

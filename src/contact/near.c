@@ -107,8 +107,8 @@ static void look_at_points(const mspring_network *network, mspringi_pairs *pairs
         const double x = mspringi_x_of(s, slot), y = mspringi_y_of(s, slot);
         pairs->x[p] = x;
         pairs->y[p] = y;
-        mean.vx += k->vx[i] = (double)s->vx[slot];
-        mean.vy += k->vy[i] = (double)s->vy[slot];
+        mean.vx += k->v[i].x = (double)s->vx[slot];
+        mean.vy += k->v[i].y = (double)s->vy[slot];
         mean.wx += k->x[i] = x - pairs->seen_x[p];
         mean.wy += k->y[i] = y - pairs->seen_y[p];
     }
@@ -116,7 +116,7 @@ static void look_at_points(const mspring_network *network, mspringi_pairs *pairs
     const double part = o->point_count > 0 ? 1.0 / (double)o->point_count : 0.0;
     mean.vx *= part, mean.vy *= part, mean.wx *= part, mean.wy *= part;
     for (uint32_t i = 0; i < own; ++i) {
-        const double ux = k->vx[i] - mean.vx, uy = k->vy[i] - mean.vy;
+        const double ux = k->v[i].x - mean.vx, uy = k->v[i].y - mean.vy;
         const double dx = k->x[i] - mean.wx, dy = k->y[i] - mean.wy;
         const double u = ux * ux + uy * uy, d = dx * dx + dy * dy;
         speed = u <= speed ? speed : u; // a number that is none stays

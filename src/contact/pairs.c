@@ -109,19 +109,17 @@ static const mspringi_column members[] = {
     VIEW(active.number),
     ARRAY(active.x),
     VIEW(active.y),
-    VIEW(active.from_vx),
-    VIEW(active.from_vy),
-    VIEW(active.old_vx),
-    VIEW(active.old_vy),
-    VIEW(active.vx),
-    VIEW(active.vy),
     VIEW(active.weight),
     VIEW(active.way_x),
     VIEW(active.way_y),
     VIEW(active.gain_x),
     VIEW(active.gain_y),
     ARRAY(active.is_thrown),
+    ARRAY(active.v),
+    VIEW(active.from),
+    VIEW(active.old),
     ARRAY(touches),
+    ARRAY(colours),
     ARRAY(bearings),
     ARRAY(holds),
     ARRAY(hot),
@@ -166,22 +164,25 @@ static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t 
     mspringi_active *k = &made->active;
     double **const shape[] = {&o->shape_x, &o->shape_y};
     double **const places[] = {&made->seen_x, &made->seen_y, &made->x, &made->y};
-    double **const motion[] = {&k->x,  &k->y,      &k->from_vx, &k->from_vy, &k->old_vx, &k->old_vy, &k->vx,
-                               &k->vy, &k->weight, &k->way_x,   &k->way_y,   &k->gain_x, &k->gain_y};
+    double **const motion[] = {&k->x, &k->y, &k->weight, &k->way_x, &k->way_y, &k->gain_x, &k->gain_y};
     made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
     made->stamp = mspringi_alloc(memory, particles, sizeof *made->stamp);
     made->apart = mspringi_alloc(memory, MSPRINGI_KNOWN_APART * particles, sizeof *made->apart);
     o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
     k->particles = mspringi_alloc(memory, 2 * nodes, sizeof *k->particles);
     k->is_thrown = mspringi_alloc(memory, nodes, sizeof *k->is_thrown);
+    k->v = mspringi_alloc(memory, 3 * nodes, sizeof *k->v);
+    made->colours = mspringi_alloc(memory, nodes, sizeof *made->colours);
     made->bearings = mspringi_alloc(memory, MSPRINGI_BEARINGS * nodes, sizeof *made->bearings);
-    if (!made->groups || !made->stamp || !made->apart || !o->is_known || !k->particles || !k->is_thrown ||
-        !made->bearings)
+    if (!made->groups || !made->stamp || !made->apart || !o->is_known || !k->particles || !k->is_thrown || !k->v ||
+        !made->colours || !made->bearings)
         return false;
+    k->from = k->v + nodes;
+    k->old = k->from + nodes;
     made->masks = made->groups + nodes;
     k->number = k->particles + nodes;
     return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 4) &&
-           reserve_doubles(memory, nodes, motion, 13);
+           reserve_doubles(memory, nodes, motion, 7);
 }
 
 static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t nodes, size_t springs) {

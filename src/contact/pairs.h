@@ -66,36 +66,63 @@ typedef struct mspringi_edge_cells {
     uint32_t bucket_count, bucket_capacity, long_count;
 } mspringi_edge_cells;
 
+/// Of a node, m/s: both coordinates side by side, as sweeps need them.
+typedef struct mspringi_velocity {
+    double x, y;
+} mspringi_velocity;
+
 /// Nodes that pairs need, by a number of their own.
 typedef struct mspringi_active {
-    mspring_id *particles;     ///< [nodes]
-    uint32_t *number;          ///< [nodes] MSPRING_NONE if it is none of them
-    double *x, *y;             ///< [particles] at the start of the substep, and of each of its pieces
-    double *from_vx, *from_vy; ///< before the substep's forces
-    double *old_vx, *old_vy;   ///< before the piece's contact
-    double *vx, *vy, *weight;  ///< inverse mass, 1/kg
-    double *way_x, *way_y;     ///< what contact adds to the move
-    uint8_t *is_thrown;        ///< sweeps have changed the velocity much
-    double *gain_x, *gain_y;   ///< what it adds to the velocity of what an implicit solver lets fly by itself
-    uint32_t own, count;       ///< particles, and with the points of colliders, which are behind these
+    mspring_id *particles;   ///< [nodes]
+    uint32_t *number;        ///< [nodes] MSPRING_NONE if it is none of them
+    double *x, *y;           ///< [nodes] at the start of the substep, and of each of its pieces
+    mspringi_velocity *from; ///< [nodes] before the substep's forces
+    mspringi_velocity *old;  ///< [nodes] before the piece's contact
+    mspringi_velocity *v;    ///< [nodes]
+    double *weight;          ///< [nodes] inverse mass, 1/kg
+    double *way_x, *way_y;   ///< [nodes] what contact adds to the move
+    uint8_t *is_thrown;      ///< [nodes] sweeps have changed the velocity much
+    double *gain_x, *gain_y; ///< what it adds to the velocity of what an implicit solver lets fly by itself
+    uint32_t own, count;     ///< particles, and with the points of colliders, which are behind these
 } mspringi_active;
 
 /// A point that touches an edge, or may do so in this piece of a substep.
 typedef struct mspringi_touch {
+    // What sweeps need: two lines of the cache.
     uint32_t p, a, b; ///< active nodes
-    uint32_t candidate;
-    uint32_t collider; ///< number of the collider that the point or the edge is of, MSPRING_NONE if none is
     float friction;
     double nx, ny;           ///< from the edge to the point, of length 1
     double share_a, share_b; ///< of the edge's nearest place
-    double gap, distance;    ///< m
+    double least;            ///< speed across at which it just does not touch, m/s; DBL_MAX: it overlaps
     double target;           ///< speed across that it is to have at least, when it touches, m/s
     double mass;             ///< impulse across by a unit of velocity, kg
-    double ax, ay, bx, by;   ///< friction on the ends of the edge by a unit on the point
-    double slide_mass;       ///< the same along; 0: no friction
+    double turn_x, turn_y;   ///< along the edge: the couple of friction on its ends, by a unit along
+    double turned;           ///< speed along that a unit of impulse across gives by that couple, 1/kg
+    double slide_mass;       ///< impulse along by a unit of velocity, kg; 0: no friction
+    double drag;             ///< what the turning of a collider adds to the speed along, m/s
     double across, along;    ///< impulses, N s
-    bool bounces;            ///< target is what restitution makes of it
+
+    double gap, distance; ///< m
+    uint32_t candidate;
+    uint32_t collider; ///< number of the collider that the point or the edge is of, MSPRING_NONE if none is
+    bool bounces;      ///< target is what restitution makes of it
 } mspringi_touch;
+
+/// A place on an edge.
+typedef struct mspringi_nearest {
+    double x, y;  ///< from there to the point
+    double share; ///< of the way from a to b
+} mspringi_nearest;
+
+/// Rows that are put into an order together, at most.
+#define MSPRINGI_DRAFTS 64u
+
+/// A row that is to be made, once it is known where in the order.
+typedef struct mspringi_draft {
+    mspringi_nearest at;
+    double resistance; ///< 1/kg
+    uint32_t candidate, colour;
+} mspringi_draft;
 
 /// A row of a particle that contact may press into the floor.
 typedef struct mspringi_bearing {
@@ -248,9 +275,12 @@ struct mspringi_pairs {
 
     mspringi_active active;
     mspringi_touch *touches; ///< [row_capacity]
+    uint32_t *colours;       ///< [nodes] of the drafts that a node is in, as bits
     uint8_t *is_seen;        ///< [capacity] of candidates, while rows are added
     uint32_t *border;        ///< [capacity] candidates that just miss a row
     uint32_t touch_count, border_count, row_capacity;
+    mspringi_draft drafts[MSPRINGI_DRAFTS]; ///< rows that are to be made
+    uint32_t draft_count, most_drafts;
     bool is_crowded;            ///< a row had no room
     mspringi_row_hold *holds;   ///< [row_capacity] the same rows, of an implicit substep; NULL: no solver has such
     double passed;              ///< of an implicit substep, in pieces, s
@@ -283,11 +313,6 @@ void mspringi_outline_stamp(const mspring_network *network, mspringi_pairs *pair
 #define MSPRINGI_FASTER 1.5
 #define MSPRINGI_DRIFT 0.05
 
-/// A place on an edge.
-typedef struct mspringi_nearest {
-    double x, y;  ///< from there to the point
-    double share; ///< of the way from a to b
-} mspringi_nearest;
 static inline mspringi_nearest mspringi_nearest_on(double px, double py, double ax, double ay, double bx,
                                                    double by) {
     const double ex = bx - ax, ey = by - ay, square = ex * ex + ey * ey;
@@ -336,9 +361,9 @@ void mspringi_bearing_end(const mspring_network *network, const mspringi_pairs *
 /* sweeps.c */
 
 /// How fast a point and its place on an edge part.
-static inline double mspringi_speed_across(const mspringi_touch *t, const double *vx, const double *vy) {
-    return t->nx * (vx[t->p] - t->share_a * vx[t->a] - t->share_b * vx[t->b]) +
-           t->ny * (vy[t->p] - t->share_a * vy[t->a] - t->share_b * vy[t->b]);
+static inline double mspringi_speed_across(const mspringi_touch *t, const mspringi_velocity *v) {
+    return t->nx * (v[t->p].x - t->share_a * v[t->a].x - t->share_b * v[t->b].x) +
+           t->ny * (v[t->p].y - t->share_a * v[t->a].y - t->share_b * v[t->b].y);
 }
 /// Give all rows of a piece of h seconds their impulses. False: some would still get much deeper.
 bool mspringi_rows_sweep(const mspringi_pairs *pairs, double h, uint32_t sweeps);

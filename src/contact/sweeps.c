@@ -1,4 +1,5 @@
-/// Impulses between what touches in a piece of a substep, one row after the other.
+/// Impulses between what touches in a piece of a substep, one row after the other. Rows that follow each other
+/// mostly share no particle, so a processor takes several at once.
 ///
 /// Sums of impulses are clamped, so a later sweep may take back what an earlier one gave (Catto 2005). Friction
 /// acts along the surface at a distance from the edge, so it turns the edge, too: else angular momentum would be
@@ -33,43 +34,68 @@
 /// A piece is too long if a row would still end deeper than this share of the thickness.
 #define MOST_SHARE 0.1
 
-MSPRINGI_ALWAYS_INLINE void push_apart(const mspringi_active *k, mspringi_touch *t, double h) {
-    const double speed = mspringi_speed_across(t, k->vx, k->vy);
-    if (t->across == 0.0 && t->gap > 0.0 && t->gap + h * speed >= 0.0)
-        return;
+/* --------------------------------------------------------------------------------------------------- one row */
+
+// Whether a row that gives nothing has nothing to give.
+MSPRINGI_ALWAYS_INLINE bool is_idle(const mspringi_touch *t, double speed) {
+    return t->across == 0.0 && speed >= t->least;
+}
+
+// Give the point an impulse (x, y), and the edge the opposite one, with a couple (by x, y of what it turns by).
+MSPRINGI_ALWAYS_INLINE void give(const mspringi_active *k, const mspringi_touch *t, double x, double y,
+                                 double turn_x, double turn_y) {
+    const double weight_p = k->weight[t->p], weight_a = k->weight[t->a], weight_b = k->weight[t->b];
+    k->v[t->p].x += weight_p * x;
+    k->v[t->p].y += weight_p * y;
+    k->v[t->a].x -= weight_a * (t->share_a * x + turn_x);
+    k->v[t->a].y -= weight_a * (t->share_a * y + turn_y);
+    k->v[t->b].x -= weight_b * (t->share_b * x - turn_x);
+    k->v[t->b].y -= weight_b * (t->share_b * y - turn_y);
+}
+
+// Returns the impulse that it gives.
+MSPRINGI_ALWAYS_INLINE double push_by(mspringi_touch *t, double speed) {
     const double sum = t->across + (t->target - speed) * t->mass, across = sum > 0.0 ? sum : 0.0;
-    const double x = (across - t->across) * t->nx, y = (across - t->across) * t->ny;
+    const double by = across - t->across;
     t->across = across;
-    k->vx[t->p] += k->weight[t->p] * x;
-    k->vy[t->p] += k->weight[t->p] * y;
-    k->vx[t->a] -= t->share_a * k->weight[t->a] * x;
-    k->vy[t->a] -= t->share_a * k->weight[t->a] * y;
-    k->vx[t->b] -= t->share_b * k->weight[t->b] * x;
-    k->vy[t->b] -= t->share_b * k->weight[t->b] * y;
+    return by;
+}
+
+static void push_apart(const mspringi_active *k, mspringi_touch *t) {
+    const double speed = mspringi_speed_across(t, k->v);
+    if (is_idle(t, speed))
+        return;
+    const double by = push_by(t, speed);
+    give(k, t, by * t->nx, by * t->ny, 0.0, 0.0);
 }
 
 // How fast a point slides along an edge.
-MSPRINGI_ALWAYS_INLINE double speed_along(const mspringi_pairs *pairs, const mspringi_touch *t, const double *vx,
-                                          const double *vy) {
-    const double speed = vx[t->p] * -t->ny + vy[t->p] * t->nx + vx[t->a] * t->ax + vy[t->a] * t->ay +
-                         vx[t->b] * t->bx + vy[t->b] * t->by;
-    return t->collider == MSPRING_NONE ? speed : speed + mspringi_collider_drag(pairs, t);
+static double speed_along(const mspringi_touch *t, const mspringi_velocity *v) {
+    const double x = v[t->p].x - t->share_a * v[t->a].x - t->share_b * v[t->b].x;
+    const double y = v[t->p].y - t->share_a * v[t->a].y - t->share_b * v[t->b].y;
+    return t->nx * y - t->ny * x + (t->turn_y * (v[t->b].x - v[t->a].x) - t->turn_x * (v[t->b].y - v[t->a].y)) +
+           t->drag;
 }
 
-MSPRINGI_ALWAYS_INLINE void rub(const mspringi_pairs *pairs, mspringi_touch *t) {
-    const mspringi_active *k = &pairs->active;
-    if (t->slide_mass == 0.0 || (t->across == 0.0 && t->along == 0.0))
+// Push apart and rub. What the push does to the speed along is known before it is done, so both are given at once.
+MSPRINGI_ALWAYS_INLINE void sweep_row(const mspringi_active *k, mspringi_touch *t) {
+    const mspringi_velocity p = k->v[t->p], a = k->v[t->a], b = k->v[t->b];
+    const double x = p.x - t->share_a * a.x - t->share_b * b.x, y = p.y - t->share_a * a.y - t->share_b * b.y;
+    const double speed = t->nx * x + t->ny * y;
+    if (is_idle(t, speed))
         return;
-    const double tx = -t->ny, ty = t->nx, speed = speed_along(pairs, t, k->vx, k->vy);
-    const double most = (double)t->friction * t->across, sum = t->along - speed * t->slide_mass;
-    const double along = sum > most ? most : sum < -most ? -most : sum, by = along - t->along;
+    const double by = push_by(t, speed);
+    if (t->slide_mass == 0.0) {
+        give(k, t, by * t->nx, by * t->ny, 0.0, 0.0);
+        return;
+    }
+    const double most = (double)t->friction * t->across;
+    const double turning = t->turn_y * (b.x - a.x) - t->turn_x * (b.y - a.y) + t->drag;
+    const double slide = t->nx * y - t->ny * x + turning + by * t->turned, sum = t->along - slide * t->slide_mass;
+    const double not_less = sum > -most ? sum : -most, along = not_less < most ? not_less : most;
+    const double rub = along - t->along;
     t->along = along;
-    k->vx[t->p] += k->weight[t->p] * by * tx;
-    k->vy[t->p] += k->weight[t->p] * by * ty;
-    k->vx[t->a] += k->weight[t->a] * by * t->ax;
-    k->vy[t->a] += k->weight[t->a] * by * t->ay;
-    k->vx[t->b] += k->weight[t->b] * by * t->bx;
-    k->vy[t->b] += k->weight[t->b] * by * t->by;
+    give(k, t, by * t->nx - rub * t->ny, by * t->ny + rub * t->nx, rub * t->turn_y, -rub * t->turn_x);
 }
 
 /// What rows may still do in a piece when they have been swept.
@@ -84,8 +110,7 @@ static allowance allow(const mspringi_pairs *pairs, double h, double share) {
 
 // Whether a row would end too deep, and deeper than it begins.
 MSPRINGI_ALWAYS_INLINE bool gives_way(const mspringi_pairs *pairs, const mspringi_touch *t, const allowance *most) {
-    const double speed = mspringi_speed_across(t, pairs->active.vx, pairs->active.vy),
-                 end = t->gap + most->h * (speed + most->speed);
+    const double speed = mspringi_speed_across(t, pairs->active.v), end = t->gap + most->h * (speed + most->speed);
     return end < (t->gap < 0.0 ? t->gap : 0.0) && end < -most->deepest;
 }
 
@@ -98,7 +123,7 @@ static bool sweep_given(const mspringi_pairs *pairs, double h, bool of_colliders
         const bool is_of_collider = t->collider != MSPRING_NONE;
         if ((of_colliders && !is_of_collider) || !gives_way(pairs, t, is_of_collider ? &of_others : &of_bodies))
             continue;
-        push_apart(&pairs->active, t, h);
+        push_apart(&pairs->active, t);
         any = true;
     }
     return any;
@@ -118,12 +143,11 @@ static bool press(const mspringi_pairs *pairs, double h) {
     return false;
 }
 
-static void sweep_all(const mspringi_pairs *pairs, double h, uint32_t sweeps) {
+static void sweep_all(const mspringi_pairs *pairs, uint32_t sweeps) {
+    const mspringi_active k = pairs->active;
     for (uint32_t n = 0; n < sweeps; ++n) {
-        for (uint32_t i = 0; i < pairs->touch_count; ++i) {
-            push_apart(&pairs->active, &pairs->touches[i], h);
-            rub(pairs, &pairs->touches[i]);
-        }
+        for (uint32_t i = 0; i < pairs->touch_count; ++i)
+            sweep_row(&k, &pairs->touches[i]);
         mspringi_bearing_sweep(pairs);
     }
 }
@@ -140,9 +164,8 @@ static bool give_energy(const mspringi_pairs *pairs) {
         const mspringi_touch *t = &pairs->touches[i];
         if ((t->across == 0.0 && t->along == 0.0) || (t->target > 0.0 && !t->bounces))
             continue;
-        work +=
-            t->across * (mspringi_speed_across(t, k->from_vx, k->from_vy) + mspringi_speed_across(t, k->vx, k->vy));
-        work += t->along * (speed_along(pairs, t, k->from_vx, k->from_vy) + speed_along(pairs, t, k->vx, k->vy));
+        work += t->across * (mspringi_speed_across(t, k->from) + mspringi_speed_across(t, k->v));
+        work += t->along * (speed_along(t, k->from) + speed_along(t, k->v));
         size += t->across * t->across / t->mass;
     }
     return work > SEEN_SHARE * size;
@@ -154,10 +177,10 @@ static void bounce_less(const mspringi_pairs *pairs, double share) {
 }
 
 bool mspringi_rows_sweep(const mspringi_pairs *pairs, double h, uint32_t sweeps) {
-    sweep_all(pairs, h, sweeps);
+    sweep_all(pairs, sweeps);
     for (uint32_t n = 1; n <= MOST_BOUNCES && give_energy(pairs); ++n) {
         bounce_less(pairs, n < MOST_BOUNCES ? BOUNCE_SHARE : 0.0);
-        sweep_all(pairs, h, sweeps);
+        sweep_all(pairs, sweeps);
     }
     if (press(pairs, h))
         return true;

@@ -96,10 +96,10 @@ static void touch(stepper *s) {
         const mspring_id p = k->particles[i];
         k->x[i] = s->b->x[p];
         k->y[i] = s->b->y[p];
-        k->from_vx[i] = s->from_vx[p];
-        k->from_vy[i] = s->from_vy[p];
-        k->vx[i] = s->vx[p];
-        k->vy[i] = s->vy[p];
+        k->from[i].x = s->from_vx[p];
+        k->from[i].y = s->from_vy[p];
+        k->v[i].x = s->vx[p];
+        k->v[i].y = s->vy[p];
     }
     if (!mspringi_rows_solve(s->network, pairs, s->h))
         return;
@@ -108,8 +108,8 @@ static void touch(stepper *s) {
         const uint32_t slot = s->network->topology.slot_of_particle[p]; // whose velocity it has compared with
         s->way_x[p] = s->h * (double)s->network->state.vx[slot] + k->way_x[i];
         s->way_y[p] = s->h * (double)s->network->state.vy[slot] + k->way_y[i];
-        s->vx[p] = k->vx[i];
-        s->vy[p] = k->vy[i];
+        s->vx[p] = k->v[i].x;
+        s->vy[p] = k->v[i].y;
     }
     s->met |= pairs->touching > 0;
 }

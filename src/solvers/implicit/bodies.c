@@ -75,7 +75,9 @@ static bool flies(const mspring_network *network, size_t slot) {
 static void share_forces(const mspring_network *network, const mspringi_touch *t, hold *to) {
     const mspringi_active *k = &network->pairs->active;
     const double shares[] = {1.0, -t->share_a, -t->share_b};
-    const double along[3][2] = {{-t->ny, t->nx}, {t->ax, t->ay}, {t->bx, t->by}};
+    const double along[3][2] = {{-t->ny, t->nx},
+                                {t->share_a * t->ny - t->turn_y, t->turn_x - t->share_a * t->nx},
+                                {t->share_b * t->ny + t->turn_y, -t->turn_x - t->share_b * t->nx}};
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i);
         to->slots[i] = k->weight[node] > 0.0 ? slot_of(network, node) : MSPRING_NONE;
@@ -104,8 +106,8 @@ static void begin_row(const mspring_network *network, const mspringi_touch *t, d
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i);
         const double fall = to->slots[i] == MSPRING_NONE ? 0.0 : h * h;
-        way[i][0] = h * k->from_vx[node] + fall * (double)network->settings.gravity_x;
-        way[i][1] = h * k->from_vy[node] + fall * (double)network->settings.gravity_y;
+        way[i][0] = h * k->from[node].x + fall * (double)network->settings.gravity_x;
+        way[i][1] = h * k->from[node].y + fall * (double)network->settings.gravity_y;
     }
     to->spare = t->gap > 0.0 ? t->gap + h * t->target : 0.0;
     to->is_active = product(to->across, way) - h * t->target + to->spare < 0.0;
@@ -118,8 +120,8 @@ bool mspringi_bodies_begin(mspring_network *network, float h) {
         return false;
     mspringi_rows_note(network, pairs);
     for (uint32_t i = pairs->active.own; i < pairs->active.count; ++i) {
-        pairs->active.x[i] += pairs->passed * pairs->active.vx[i];
-        pairs->active.y[i] += pairs->passed * pairs->active.vy[i];
+        pairs->active.x[i] += pairs->passed * pairs->active.v[i].x;
+        pairs->active.y[i] += pairs->passed * pairs->active.v[i].y;
     }
     (void)mspringi_rows_prepare(network, pairs, (double)h);
     for (uint32_t i = 0; i < pairs->touch_count; ++i) {
@@ -149,8 +151,8 @@ static void predict(const mspring_network *network, hold *c, const mspringi_touc
     const mspringi_active *k = &network->pairs->active;
     const uint32_t node = node_of(t, i), slot = c->slots[i];
     if (slot == MSPRING_NONE) {
-        way[0] = h * k->from_vx[node];
-        way[1] = h * k->from_vy[node];
+        way[0] = h * k->from[node].x;
+        way[1] = h * k->from[node].y;
         return;
     }
     way[0] = n->x[slot] - k->x[node];
@@ -337,20 +339,19 @@ void mspringi_bodies_hand_on(mspring_network *network, float h) {
 // What would get too deep by more than is given is pushed apart by as much. Returns whether it was.
 static bool mend(const mspringi_pairs *pairs, mspringi_touch *t, double h, double given) {
     const mspringi_active *k = &pairs->active;
-    const double speed = t->nx * (k->vx[t->p] - t->share_a * k->vx[t->a] - t->share_b * k->vx[t->b]) +
-                         t->ny * (k->vy[t->p] - t->share_a * k->vy[t->a] - t->share_b * k->vy[t->b]);
+    const double speed = mspringi_speed_across(t, k->v);
     const double least = (t->gap < 0.0 ? t->gap : 0.0) - given;
     const double lacks = least - (t->gap + h * speed);
     if (!(lacks > UNSEEN_SHARE * pairs->thickness))
         return false;
     const double impulse = t->mass * lacks / h, x = impulse * t->nx, y = impulse * t->ny;
     t->across += impulse;
-    k->vx[t->p] += k->weight[t->p] * x;
-    k->vy[t->p] += k->weight[t->p] * y;
-    k->vx[t->a] -= t->share_a * k->weight[t->a] * x;
-    k->vy[t->a] -= t->share_a * k->weight[t->a] * y;
-    k->vx[t->b] -= t->share_b * k->weight[t->b] * x;
-    k->vy[t->b] -= t->share_b * k->weight[t->b] * y;
+    k->v[t->p].x += k->weight[t->p] * x;
+    k->v[t->p].y += k->weight[t->p] * y;
+    k->v[t->a].x -= t->share_a * k->weight[t->a] * x;
+    k->v[t->a].y -= t->share_a * k->weight[t->a] * y;
+    k->v[t->b].x -= t->share_b * k->weight[t->b] * x;
+    k->v[t->b].y -= t->share_b * k->weight[t->b] * y;
     return true;
 }
 
@@ -367,8 +368,8 @@ void mspringi_bodies_mend(const mspring_network *network, float step) {
     const mspringi_active *k = &pairs->active;
     for (uint32_t i = 0; i < k->own; ++i) {
         const uint32_t slot = slot_of(network, i);
-        k->vx[i] = (mspringi_x_of(s, slot) - k->x[i]) / h;
-        k->vy[i] = (mspringi_y_of(s, slot) - k->y[i]) / h;
+        k->v[i].x = (mspringi_x_of(s, slot) - k->x[i]) / h;
+        k->v[i].y = (mspringi_y_of(s, slot) - k->y[i]) / h;
     }
     for (uint32_t sweep = 0, again = 1; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
         again = 0;
@@ -378,8 +379,8 @@ void mspringi_bodies_mend(const mspring_network *network, float step) {
     }
     for (uint32_t i = 0; i < k->own && any; ++i) {
         const uint32_t slot = slot_of(network, i);
-        const double vx = k->vx[i] - (mspringi_x_of(s, slot) - k->x[i]) / h;
-        const double vy = k->vy[i] - (mspringi_y_of(s, slot) - k->y[i]) / h;
+        const double vx = k->v[i].x - (mspringi_x_of(s, slot) - k->x[i]) / h;
+        const double vy = k->v[i].y - (mspringi_y_of(s, slot) - k->y[i]) / h;
         if (vx == 0.0 && vy == 0.0)
             continue;
         s->vx[slot] = (float)((double)s->vx[slot] + vx);
@@ -392,9 +393,7 @@ void mspringi_bodies_mend(const mspring_network *network, float step) {
 
 // The speed across a row at the start of the substep.
 static double speed_before(const mspringi_pairs *pairs, const mspringi_touch *t) {
-    const mspringi_active *k = &pairs->active;
-    return t->nx * (k->from_vx[t->p] - t->share_a * k->from_vx[t->a] - t->share_b * k->from_vx[t->b]) +
-           t->ny * (k->from_vy[t->p] - t->share_a * k->from_vy[t->a] - t->share_b * k->from_vy[t->b]);
+    return mspringi_speed_across(t, pairs->active.from);
 }
 
 // The speed of a row along some shares at the end of the substep, by how far it came.
@@ -406,8 +405,8 @@ static double speed_of(const mspring_network *network, const mspringi_touch *t, 
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i), slot = c->slots[i];
         const bool is_known = slot == MSPRING_NONE;
-        const double x = is_known ? k->from_vx[node] : (mspringi_x_of(s, slot) - k->x[node]) / h;
-        const double y = is_known ? k->from_vy[node] : (mspringi_y_of(s, slot) - k->y[node]) / h;
+        const double x = is_known ? k->from[node].x : (mspringi_x_of(s, slot) - k->x[node]) / h;
+        const double y = is_known ? k->from[node].y : (mspringi_y_of(s, slot) - k->y[node]) / h;
         sum += shares[i][0] * x + shares[i][1] * y;
     }
     return sum;
@@ -441,8 +440,8 @@ bool mspringi_bodies_are_sound(const mspring_network *network, float h) {
 // Where a node is at the end of a substep.
 static void end_of_node(const mspring_network *network, uint32_t node, double h, double *x, double *y) {
     const mspringi_active *k = &network->pairs->active;
-    *x = k->x[node] + h * k->vx[node];
-    *y = k->y[node] + h * k->vy[node];
+    *x = k->x[node] + h * k->v[node].x;
+    *y = k->y[node] + h * k->v[node].y;
     if (node < k->own) {
         *x = mspringi_x_of(&network->state, slot_of(network, node));
         *y = mspringi_y_of(&network->state, slot_of(network, node));

@@ -35,7 +35,7 @@ static void add_loose(const mspring_network *network, double h, mspringi_field b
         if (!mspringi_budget_is_alone(budget, slot) || !(k->weight[i] > 0.0))
             continue;
         const double mass = 1.0 / k->weight[i], vx = (double)s->vx[slot], vy = (double)s->vy[slot];
-        const double had = 0.5 * mass * (k->from_vx[i] * k->from_vx[i] + k->from_vy[i] * k->from_vy[i]);
+        const double had = 0.5 * mass * (k->from[i].x * k->from[i].x + k->from[i].y * k->from[i].y);
         const double x = mspringi_x_of(s, slot) - k->x[i], y = mspringi_y_of(s, slot) - k->y[i];
         const double fx = mass * gx + (base.x ? (double)base.x[slot] : 0.0);
         const double fy = mass * gy + (base.y ? (double)base.y[slot] : 0.0);
