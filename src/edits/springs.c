@@ -372,7 +372,7 @@ MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi
         const float value = force;
         if (count - i > AHEAD)
             fetch(&records, places[mspringi_selected(at, i + AHEAD)]);
-        if (place >= records.end)
+        if (place >= records.end || !mspringi_place_is_live(network, place))
             break;
         float *record = in_plane(&records, place);
         if (has_relative && mspringi_spring_is_relative(network, spring)) {
@@ -406,7 +406,7 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
     const bool may_sleep = network->sleep.count > 0;
     const bool is_part = property == MSPRING_STIFFNESS || property == MSPRING_DAMPING;
     lattice_setter lattice = lattice_setter_of(network, property);
-    const bool runs = is_part && !may_sleep && !network->job && !network->kept;
+    const bool runs = is_part && !at->list && !may_sleep && !network->job;
     uint64_t traces = 0;
     for (; i < at->count; ++i) {
         if (runs)

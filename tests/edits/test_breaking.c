@@ -125,6 +125,52 @@ static mspring_spring_info info_of(const mspring_network *network, mspring_id sp
     return info;
 }
 
+/// Set all stiffness, in a range or a list.
+static void set_stiffness(mspring_network *network, const recipe *made, float stiffness, bool is_listed) {
+    const uint32_t count = mspring_network_spring_count(network);
+    mspring_id *all = malloc(count * sizeof *all);
+    assert_non_null(all);
+    for (mspring_id s = 0; s < count; s++) {
+        all[s] = s;
+    }
+    assert_int_equal(count, made->spring_count);
+    check_ok(is_listed ? mspring_network_set_at(network, MSPRING_STIFFNESS, all, count, &stiffness, 0)
+                       : mspring_network_set(network, MSPRING_STIFFNESS, 0, count, &stiffness, 0));
+    free(all);
+}
+
+static void a_broken_spring_that_is_set_stays_broken(void **state) {
+    (void)state;
+    for (uint32_t i = 0; i < 4; i++) {
+        const uint32_t flags = i % 2 ? MSPRING_SPRING_RELATIVE : 0;
+        const float stiffness = flags ? 0.15f : 750.0f;
+        recipe made = mixed_recipe(flags);
+        mspring_id *ids = malloc(made.spring_count * sizeof *ids);
+        assert_non_null(ids);
+        const uint32_t count = every_third(&made, ids);
+        mspring_network *broken_first = network_of(&made, MSPRING_SIMD_AUTO);
+        mspring_network *set_first = network_of(&made, MSPRING_SIMD_AUTO);
+        support_steps(broken_first, 1, 1.0 / 64); // stiffness of relative springs is known from then on
+        support_steps(set_first, 1, 1.0 / 64);
+        check_ok(mspring_network_break_springs(broken_first, ids, count));
+        set_stiffness(broken_first, &made, stiffness, i >= 2);
+        set_stiffness(set_first, &made, stiffness, i >= 2);
+        check_ok(mspring_network_break_springs(set_first, ids, count));
+        support_steps(broken_first, 10, 1.0 / 64);
+        support_steps(set_first, 10, 1.0 / 64);
+        assert_true(support_hash(broken_first) == support_hash(set_first));
+        check_ok(mspring_network_restore_springs(broken_first, ids, count, 0.0));
+        check_ok(mspring_network_restore_springs(set_first, ids, count, 0.0));
+        support_steps(broken_first, 10, 1.0 / 64);
+        support_steps(set_first, 10, 1.0 / 64);
+        assert_true(support_hash(broken_first) == support_hash(set_first));
+        mspring_network_destroy(broken_first);
+        mspring_network_destroy(set_first);
+        free(ids);
+        recipe_free(&made);
+    }
+}
+
 static void a_cut_rope_falls_in_two(void **state) {
     (void)state;
     // A weight on a rope, at rest; once the rope is cut the weight falls freely: 9.8 t^2 / 2, the sum of which over
@@ -484,6 +530,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_broken_spring_is_one_without_stiffness_and_damping),
         cmocka_unit_test(restoring_undoes_breaking),
+        cmocka_unit_test(a_broken_spring_that_is_set_stays_broken),
         cmocka_unit_test(a_cut_rope_falls_in_two),
         cmocka_unit_test(a_ramp_takes_the_kick_out_of_restoring),
         cmocka_unit_test(a_ramp_is_even_and_ends),
