@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/cpu.h"
 #include "sleep/sleep.h"
 #include "step/breaking.h"
 #include "store/changed.h"
@@ -119,6 +120,41 @@ static void look_at(mspring_network *network, mspringi_place place) {
     mspringi_events_push(network, event);
 }
 
+/// Springs that are looked at together.
+enum { BATCH = 32 };
+
+// Look at some springs. What their ids are found by is read for all of them at first, as a step leaves none of it
+// in the near caches: one read waits for another, but those of different springs do not.
+static void look_at_batch(mspring_network *network, const mspringi_place *places, uint32_t count) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t *first = network->incidence.first, *springs = network->incidence.springs;
+    uint32_t particles[BATCH];
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t base, tip;
+        mspringi_topology_ends(t, places[i], &base, &tip);
+        particles[i] = t->particle_of_slot[base];
+    }
+    for (uint32_t i = 0; i < count; ++i)
+        for (uint32_t at = first[particles[i]]; at < first[particles[i] + 1]; ++at)
+            MSPRINGI_PREFETCH(&t->place_of_spring[springs[at]]);
+    for (uint32_t i = 0; i < count; ++i)
+        look_at(network, places[i]);
+}
+
+static void look_at_hits(mspring_network *network, const mspringi_strain_hit *hits, uint32_t count) {
+    mspringi_place places[BATCH];
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+            if (hits[i].bits >> lane & 1)
+                places[found++] = hits[i].word * MSPRINGI_WIDTH + lane;
+        if (found + MSPRINGI_WIDTH > BATCH || i + 1 == count) {
+            look_at_batch(network, places, found);
+            found = 0;
+        }
+    }
+}
+
 // Whether strain is all that counts, of all springs, as the kernels have it.
 static bool is_plain(const mspring_network *network) {
     return !network->plastic.nominal && !network->one_way.side && !network->has_welds;
@@ -157,10 +193,7 @@ static void compare(mspring_network *network, double dt) {
          first = end)
         count += network->kernels->chain_strain(&sweep, first, end, hits + count);
     count += leftover_strain(network, hits + count);
-    for (const mspringi_strain_hit *hit = hits; hit < hits + count; ++hit)
-        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
-            if (hit->bits >> lane & 1)
-                look_at(network, hit->word * MSPRINGI_WIDTH + lane);
+    look_at_hits(network, hits, count);
 }
 
 /* -------------------------------------------------------------------------------------------------- thresholds */
