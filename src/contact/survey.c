@@ -207,6 +207,8 @@ static mspringi_room find_room(const mspring_network *network, const mspringi_fl
     const box all = cover(network, 0, mspringi_used_slots(network), &fastest);
     for (double way = 2.0 * reach; way < FARTHEST && look_around(floor, &all, way).is_far; way *= 2.0)
         free = way;
+    for (double more = 0.5 * free, least = 0.1 * free; more > least; more *= 0.5)
+        free += look_around(floor, &all, free + more).is_far ? more : 0.0;
     const double quarter = 0.25 * free;
     const box around = {all.min_x - quarter, all.max_x + quarter, all.min_y - quarter, all.max_y + quarter};
     const double place = fmin(fmin(-around.min_x, around.max_x), fmin(-around.min_y, around.max_y));
