@@ -37,7 +37,6 @@ static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspri
     for (; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
         const float mass = mspringi_value_of(values, i);
-        MSPRINGI_PREFETCH(&network->inverse_mass[mspringi_slot_ahead(network, at, i)]);
         if (!mspringi_particle_exists(network, particle))
             continue;
         float *inverse_mass = &network->inverse_mass[network->topology.slot_of_particle[particle]];
@@ -49,6 +48,43 @@ static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspri
     }
 }
 
+/// Particles of a range that are given masses together, whose inverses are found in vectors.
+enum { BATCH = 64 };
+
+// Set masses of a batch of particles, of which all are there.
+static inline void store_batch(const mspring_network *network, mspring_id first, const float *given, size_t stride,
+                               uint32_t count) {
+    const uint32_t *const slots = network->topology.slot_of_particle + first;
+    float *const masses = network->mass + first, *const inverse_mass = network->inverse_mass;
+    float inverses[BATCH];
+    for (uint32_t i = 0; i < count; ++i, given += stride)
+        masses[i] = mspringi_kept_value(*given);
+    if (network->inverse_mass_scale) {
+        const float *const scales = network->inverse_mass_scale + first;
+        for (uint32_t i = 0; i < count; ++i)
+            inverses[i] = scales[i] / masses[i];
+        for (uint32_t i = 0; i < count; ++i)
+            inverse_mass[slots[i]] = inverses[i];
+    } else {
+        for (uint32_t i = 0; i < count; ++i)
+            inverses[i] = 1.0f / masses[i];
+        for (uint32_t i = 0; i < count; ++i)
+            inverse_mass[slots[i]] = inverse_mass[slots[i]] > 0.0f ? inverses[i] : 0.0f;
+    }
+}
+
+static MSPRINGI_NOINLINE void store_range(const mspring_network *network, const mspringi_selection *at,
+                                          const mspringi_values *values, uint32_t i) {
+    const uint32_t *const slots = network->topology.slot_of_particle + at->first;
+    for (uint32_t end; i < at->count; i = end) {
+        end = at->count - i < BATCH ? at->count : i + BATCH;
+        const uint32_t fetched = at->count - end < BATCH ? at->count : end + BATCH;
+        for (uint32_t next = end; next < fetched; ++next)
+            MSPRINGI_PREFETCH(&network->inverse_mass[slots[next]]);
+        store_batch(network, at->first + i, values->first + i * values->stride, values->stride, end - i);
+    }
+}
+
 static mspring_result set_masses(mspring_network *network, const mspringi_selection *at,
                                  const mspringi_values *values) {
     const uint32_t first = first_other_mass(network, at, values);
@@ -57,7 +93,10 @@ static mspring_result set_masses(mspring_network *network, const mspringi_select
     mspring_result result = mspringi_reserve_spring_masses(network);
     if (result != MSPRING_OK)
         return result;
-    store_masses(network, at, values, first);
+    if (at->list || network->growth.particles)
+        store_masses(network, at, values, first);
+    else
+        store_range(network, at, values, first);
     network->is_reweighed = network->spring_mass != NULL;
     mspringi_changed(network, MSPRINGI_CHANGED_MASSES, 0);
     return MSPRING_OK;
