@@ -1,13 +1,11 @@
 /// Which points are near which edges, and for how many substeps none of them can touch.
 ///
-/// Edges lie in cells by their middles, and cells in buckets by a hash, so it does not matter how far apart bodies
-/// are. A point looks at 3 x 3 cells. Edges that are much longer than the others are compared with every point.
-///
 /// All motion is that beside the mean of the outline: what flies along together is at rest. How many substeps are
 /// quiet follows from positions and velocities alone, not from when the list was made.
 #include <math.h>
 #include <string.h>
 
+#include "base/cpu.h"
 #include "contact/pairs.h"
 
 /// What a look answers for goes beyond the thickness by this share of it, and by the way of so many steps; as a
@@ -24,17 +22,11 @@
 #define LEAST_HOT_SUBSTEPS 4.0
 #define HOT_SHARE 0.5
 
-/// An edge this many times as long as the mean is a long one.
-#define LONG_EDGE 4.0
-
 /// A list goes so many times as far beyond the thickness as is needed. Where few may touch soon, one in SPARSE of
 /// the outline's points, it goes further, and is made less often.
 #define REACH 2.0
 #define SPARSE_REACH 6.0
 #define SPARSE 4u
-
-/// Beyond this many cells all lies in one.
-#define MOST_CELLS 1e9
 
 /* ----------------------------------------------------------------------------------------------------- distance */
 
@@ -131,80 +123,6 @@ static void look_at_points(const mspring_network *network, mspringi_pairs *pairs
     pairs->moved = sqrt(moved);
 }
 
-/* ------------------------------------------------------------------------------------------------------- cells */
-
-static int32_t cell_of(double coordinate, double size) {
-    const double cell = floor(coordinate / size);
-    return cell > -MOST_CELLS && cell < MOST_CELLS ? (int32_t)cell
-           : cell > 0.0                            ? (int32_t)MOST_CELLS
-                                                   : -(int32_t)MOST_CELLS;
-}
-
-static uint32_t bucket_of(const mspringi_edge_cells *cells, int32_t x, int32_t y) {
-    uint32_t hash = (uint32_t)x * 0x9E3779B1u ^ (uint32_t)y * 0x85EBCA77u;
-    hash ^= hash >> 15;
-    return hash & (cells->bucket_count - 1);
-}
-
-// With what the surface of a collider lies beyond its ends.
-static double length_of(const mspringi_pairs *pairs, uint32_t edge) {
-    const mspring_id a = pairs->outline.a[edge], b = pairs->outline.b[edge];
-    const double ex = pairs->x[b] - pairs->x[a], ey = pairs->y[b] - pairs->y[a], length = sqrt(ex * ex + ey * ey);
-    return mspringi_is_of_collider(pairs, a) ? length + 2.0 * mspringi_collider_of(pairs, a)->radius : length;
-}
-
-// Set the long edges apart, and return how large cells are for the others.
-static double size_cells(mspringi_pairs *pairs, double reach) {
-    mspringi_edge_cells *cells = &pairs->cells;
-    double sum = 0.0, longest = 0.0;
-    for (uint32_t e = 0; e < pairs->outline.edge_count; ++e)
-        sum += length_of(pairs, e);
-    const double most = LONG_EDGE * (sum / (double)pairs->outline.edge_count + reach);
-    cells->long_count = 0;
-    for (uint32_t e = 0; e < pairs->outline.edge_count; ++e) {
-        const double length = length_of(pairs, e);
-        if (!(length <= most))
-            cells->long_edges[cells->long_count++] = e;
-        else
-            longest = length > longest ? length : longest;
-    }
-    return 0.5 * longest + reach;
-}
-
-// Groups that stand in the same place lie in other cells, unless there are colliders, which they share.
-static int32_t column_of(const mspring_network *network, const mspringi_pairs *pairs, mspring_id node, double x,
-                         double size) {
-    const uint32_t *group = network->groups.of_particle, column = (uint32_t)cell_of(x, size);
-    const bool is_apart = group && pairs->colliders.count == 0;
-    return (int32_t)(is_apart ? column + group[node] * 0x9E3779B1u : column);
-}
-
-static void fill_cells(const mspring_network *network, mspringi_pairs *pairs, double size) {
-    mspringi_edge_cells *cells = &pairs->cells;
-    const mspringi_outline *o = &pairs->outline;
-    cells->bucket_count = 1;
-    while (cells->bucket_count < o->edge_count && cells->bucket_count < cells->bucket_capacity)
-        cells->bucket_count *= 2;
-    memset(cells->first, 0, ((size_t)cells->bucket_count + 1) * sizeof *cells->first);
-    for (uint32_t e = 0, l = 0; e < o->edge_count; ++e) {
-        if (l < cells->long_count && cells->long_edges[l] == e) {
-            ++l;
-            continue;
-        }
-        cells->x[e] = column_of(network, pairs, o->a[e], 0.5 * (pairs->x[o->a[e]] + pairs->x[o->b[e]]), size);
-        cells->y[e] = cell_of(0.5 * (pairs->y[o->a[e]] + pairs->y[o->b[e]]), size);
-        cells->first[bucket_of(cells, cells->x[e], cells->y[e])]++;
-    }
-    for (uint32_t i = 0; i < cells->bucket_count; ++i)
-        cells->first[i + 1] += cells->first[i];
-    for (uint32_t e = o->edge_count, l = cells->long_count; e-- > 0;) {
-        if (l > 0 && cells->long_edges[l - 1] == e)
-            --l;
-        else
-            cells->sorted[--cells->first[bucket_of(cells, cells->x[e], cells->y[e])]] = e;
-    }
-}
-
 /* -------------------------------------------------------------------------------------------------------- list */
 
 // Points of colliders are in no group of particles: what is may touch them.
@@ -217,14 +135,6 @@ static bool may_touch(const mspring_network *network, mspring_id p, mspring_id q
     const mspringi_pairs *pairs = network->pairs;
     return pairs->groups[p] & pairs->masks[q] && pairs->groups[q] & pairs->masks[p] &&
            are_in_one_group(network, p, q);
-}
-
-// Two particles without springs are one pair, and one with a corner is it with the corner's edges.
-static bool is_counted_otherwise(const mspringi_outline *o, mspring_id p, uint32_t edge) {
-    if (o->a[edge] != o->b[edge])
-        return false;
-    const uint32_t own = o->at[o->first[p]];
-    return o->a[own] != o->b[own] || p > o->a[edge];
 }
 
 static bool is_apart(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, uint32_t edge) {
@@ -252,8 +162,8 @@ static bool try_pair(const mspring_network *network, mspringi_pairs *pairs, uint
                      uint32_t edge) {
     const mspringi_outline *o = &pairs->outline;
     const mspring_id a = o->a[edge], b = o->b[edge];
-    if (p == a || p == b || !(distance_of(pairs, p, edge) < pairs->reach) || is_counted_otherwise(o, p, edge) ||
-        !may_touch(network, p, a) || !may_touch(network, p, b) || is_apart(network, pairs, p, edge))
+    if (p == a || p == b || !(distance_of(pairs, p, edge) < pairs->reach) || !may_touch(network, p, a) ||
+        !may_touch(network, p, b) || is_apart(network, pairs, p, edge))
         return true;
     if (pairs->count == pairs->capacity)
         return false;
@@ -264,41 +174,15 @@ static bool try_pair(const mspring_network *network, mspringi_pairs *pairs, uint
     return true;
 }
 
-// The pairs of a point with the edges of cells that are so many away; of all cells, if they are as many as edges.
-static bool try_cells(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, double size,
-                      double away) {
+static bool list_point(const mspring_network *network, mspringi_pairs *pairs, mspring_id p) {
     const mspringi_edge_cells *cells = &pairs->cells;
-    const uint32_t first = pairs->count;
-    const double across = 2.0 * away + 1.0;
-    const bool is_wide = !(away == 1.0 || across * across < (double)pairs->outline.edge_count);
-    for (uint32_t k = 0; is_wide && k < cells->first[cells->bucket_count]; ++k)
-        if (!try_pair(network, pairs, first, p, cells->sorted[k]))
+    const uint32_t first = pairs->count, found = mspringi_cells_search(network, pairs, p);
+    for (uint32_t k = 0; k < found; ++k)
+        if (!try_pair(network, pairs, first, p, cells->found[k]))
             return false;
-    if (is_wide)
-        return true;
-    const int32_t y = cell_of(pairs->y[p], size), most = (int32_t)away;
-    const uint32_t first_column = (uint32_t)column_of(network, pairs, p, pairs->x[p], size) - (uint32_t)most;
-    for (int32_t j = y - most; j <= y + most; ++j)
-        for (uint32_t n = 0; n <= 2 * (uint32_t)most; ++n) {
-            const int32_t i = (int32_t)(first_column + n);
-            const uint32_t bucket = bucket_of(cells, i, j);
-            for (uint32_t k = cells->first[bucket]; k < cells->first[bucket + 1]; ++k) {
-                const uint32_t edge = cells->sorted[k];
-                if (cells->x[edge] == i && cells->y[edge] == j && !try_pair(network, pairs, first, p, edge))
-                    return false;
-            }
-        }
-    return true;
-}
-
-static bool list_point(const mspring_network *network, mspringi_pairs *pairs, mspring_id p, double size) {
-    const mspringi_edge_cells *cells = &pairs->cells;
-    const uint32_t first = pairs->count;
-    const double radius = mspringi_is_of_collider(pairs, p) ? mspringi_collider_of(pairs, p)->radius : 0.0;
-    if (!try_cells(network, pairs, p, size, radius > 0.0 ? 2.0 + floor(radius / size) : 1.0))
-        return false;
     for (uint32_t k = 0; k < cells->long_count; ++k)
-        if (!try_pair(network, pairs, first, p, cells->long_edges[k]))
+        if (!mspringi_is_counted_otherwise(&pairs->outline, p, cells->long_edges[k]) &&
+            !try_pair(network, pairs, first, p, cells->long_edges[k]))
             return false;
     return true;
 }
@@ -319,7 +203,9 @@ static void activate_below(mspringi_pairs *pairs, mspring_id end) {
         const mspring_id ends[] = {o->a[pair->edge], o->b[pair->edge]};
         if (pair->point < end)
             activate(active, pair->point);
-        for (int k = 0; k < 2; ++k)
+        if (ends[0] == ends[1] && ends[0] < end)
+            activate(active, ends[0]);
+        for (int k = 0; k < 2 && ends[0] != ends[1]; ++k)
             for (uint32_t j = o->first[ends[k]]; j < o->first[ends[k] + 1] && ends[k] < end; ++j) {
                 activate(active, o->a[o->at[j]]);
                 activate(active, o->b[o->at[j]]);
@@ -367,13 +253,12 @@ static bool make_list(const mspring_network *network, mspringi_pairs *pairs, dou
     pairs->reach = reach;
     pairs->moved = 0.0;
     if (o->edge_count > 0) {
-        const double size = size_cells(pairs, pairs->reach);
-        fill_cells(network, pairs, size);
+        mspringi_cells_fill(network, pairs, reach);
         for (uint32_t i = 0; i < o->point_count; ++i) {
             const mspring_id p = o->points[i];
             pairs->seen_x[p] = pairs->x[p];
             pairs->seen_y[p] = pairs->y[p];
-            if (!list_point(network, pairs, p, size))
+            if (!list_point(network, pairs, p))
                 return false;
         }
     }
@@ -401,18 +286,37 @@ static uint32_t count_valid(const mspringi_pairs *pairs) {
     return valid >= 1.0 ? valid < 1e6 ? (uint32_t)valid : 1000000 : 1;
 }
 
-// Find the pairs that are hot, and the nearest one.
+// Whether a pair is one of two particles without springs, and the square of their distance.
+MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_pairs *pairs, const mspringi_pair *pair, double *square) {
+    const mspring_id p = pair->point, a = pairs->outline.a[pair->edge];
+    const double dx = pairs->x[p] - pairs->x[a], dy = pairs->y[p] - pairs->y[a];
+    *square = dx * dx + dy * dy;
+    return a == pairs->outline.b[pair->edge] && !mspringi_is_of_collider(pairs, p) &&
+           !mspringi_is_of_collider(pairs, a);
+}
+
+// Find the pairs that are hot, and the nearest one. Of two particles without springs there may be many, so neither
+// roots nor branches are spent on them.
 static void look_at_pairs(mspringi_pairs *pairs) {
     const double most = pairs->thickness + 2.0 * hot_substeps(pairs) * way_of_substep(pairs) +
                         4.0 * MSPRINGI_FASTER * (double)pairs->h * pairs->speed;
+    double least = pairs->reach * pairs->reach, square;
+    uint32_t hot = 0;
     pairs->nearest = pairs->reach;
-    pairs->hot_count = 0;
     for (uint32_t i = 0; i < pairs->count; ++i) {
+        pairs->hot[hot].pair = i;
+        if (are_loose(pairs, &pairs->list[i], &square)) {
+            least = square >= least ? least : square;
+            hot += !(square > most * most);
+            continue;
+        }
         const double distance = distance_of(pairs, pairs->list[i].point, pairs->list[i].edge);
         pairs->nearest = distance >= pairs->nearest ? pairs->nearest : distance;
-        if (!(distance > most))
-            pairs->hot[pairs->hot_count++].pair = i;
+        hot += !(distance > most);
     }
+    pairs->hot_count = hot;
+    least = sqrt(least);
+    pairs->nearest = least >= pairs->nearest ? pairs->nearest : least;
     activate_all(pairs);
 }
 

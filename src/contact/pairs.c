@@ -95,9 +95,12 @@ static const mspringi_column members[] = {
     VIEW(outline.body),
     ARRAY(cells.first),
     ARRAY(cells.sorted),
+    VIEW(cells.below),
     VIEW(cells.long_edges),
-    ARRAY(cells.x),
-    VIEW(cells.y),
+    VIEW(cells.found),
+    ARRAY(cells.row),
+    ARRAY(cells.middle_x),
+    VIEW(cells.middle_y),
     ARRAY(list),
     ARRAY(seen_x),
     VIEW(seen_y),
@@ -188,6 +191,7 @@ static bool reserve_nodes(mspringi_pairs *made, mspringi_memory *memory, size_t 
 static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t nodes, size_t springs) {
     mspringi_outline *o = &made->outline;
     mspringi_edge_cells *c = &made->cells;
+    double **const middle[] = {&c->middle_x, &c->middle_y};
     const size_t edges = nodes + springs;
     c->bucket_capacity = 1;
     while (c->bucket_capacity < edges && c->bucket_capacity < (uint32_t)1 << 30)
@@ -195,17 +199,18 @@ static bool reserve_edges(mspringi_pairs *made, mspringi_memory *memory, size_t 
     o->is_edge = mspringi_alloc(memory, springs, sizeof *o->is_edge);
     o->a = mspringi_alloc(memory, 4 * edges + 3 * nodes + 1, sizeof *o->a);
     c->first = mspringi_alloc(memory, (size_t)c->bucket_capacity + 1, sizeof *c->first);
-    c->sorted = mspringi_alloc(memory, 2 * edges, sizeof *c->sorted);
-    c->x = mspringi_alloc(memory, 2 * edges, sizeof *c->x);
-    if (!o->is_edge || !o->a || !c->first || !c->sorted || !c->x)
+    c->sorted = mspringi_alloc(memory, 4 * edges + 1, sizeof *c->sorted);
+    c->row = mspringi_alloc(memory, edges, sizeof *c->row);
+    if (!o->is_edge || !o->a || !c->first || !c->sorted || !c->row || !reserve_doubles(memory, edges, middle, 2))
         return false;
     o->b = o->a + edges;
     o->at = o->b + edges;
     o->points = o->at + 2 * edges;
     o->body = o->points + nodes;
     o->first = o->body + nodes;
-    c->long_edges = c->sorted + edges;
-    c->y = c->x + edges;
+    c->below = c->sorted + edges;
+    c->long_edges = c->below + edges;
+    c->found = c->long_edges + edges;
     return true;
 }
 

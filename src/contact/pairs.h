@@ -3,6 +3,7 @@
 ///
 ///   pairs.c      the definition, given by the host
 ///   outline.c    which springs and particles are the outline
+///   cells.c      edges by cells, and those in the cells around a point
 ///   near.c       which points are near which edges, and for how many substeps none of them can touch
 ///   rows.c       which of them touch in a substep, and how they move on
 ///   sweeps.c     the impulses of those that touch
@@ -57,12 +58,17 @@ typedef struct mspringi_candidate {
     uint32_t pair, p, a, b;
 } mspringi_candidate;
 
-/// Edges by cells, in buckets; see near.c.
+/// Edges by cells, in buckets; see cells.c. What a search reads lies in the order in which it is read.
 typedef struct mspringi_edge_cells {
-    uint32_t *first;      ///< [bucket_count + 1]
-    uint32_t *sorted;     ///< [edges]
-    int32_t *x, *y;       ///< [edges] the cell of each
-    uint32_t *long_edges; ///< [edges] those that are compared with every point
+    uint32_t *first;             ///< [bucket_count + 1]
+    uint32_t *sorted;            ///< [edges] by buckets
+    uint32_t *below;             ///< [edges] of sorted ones: points that they are a pair with are below this number
+    int32_t *row;                ///< [edges] of sorted ones: of its cell
+    double *middle_x, *middle_y; ///< [edges] of sorted ones
+    uint32_t *long_edges;        ///< [edges] those that are in no cell
+    uint32_t *found;             ///< [edges + 1] by the last search; before all searches the bucket of each edge
+    double size;                 ///< of a cell, m
+    double reach;                ///< from a point to the middle of an edge in cells that is near, at most, m
     uint32_t bucket_count, bucket_capacity, long_count;
 } mspringi_edge_cells;
 
@@ -305,6 +311,15 @@ void mspringi_outline_ends(const mspring_network *network, mspring_id spring, ms
 bool mspringi_outline_is_joined(const mspring_network *network, mspring_id p, mspring_id q);
 /// Stamp what is joined so to a particle.
 void mspringi_outline_stamp(const mspring_network *network, mspringi_pairs *pairs, mspring_id p);
+
+/* cells.c */
+
+/// Sort the edges into cells, but for the long ones, for searches this far around points.
+void mspringi_cells_fill(const mspring_network *network, mspringi_pairs *pairs, double reach);
+/// Find edges in cells that a point may be a pair with. Returns how many.
+uint32_t mspringi_cells_search(const mspring_network *network, mspringi_pairs *pairs, mspring_id p);
+/// Two particles without springs are one pair, and one with a corner is it with the corner's edges.
+bool mspringi_is_counted_otherwise(const mspringi_outline *o, mspring_id p, uint32_t edge);
 
 /* near.c */
 

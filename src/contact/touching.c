@@ -194,7 +194,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     }
     if (network->running->ops->holds_bodies || !mspringi_rows_act(network, pairs) || pairs->is_strict)
         look(network, pairs);
-    else if (--pairs->valid == 0)
+    else if (--pairs->valid == 0 && pairs->taken < attempt->substeps) // a step begins with a look
         (void)mspringi_near_renew(network, pairs);
 }
 
