@@ -41,6 +41,10 @@
 /// thickness.
 #define THROWN_SHARE 0.1
 
+/// Candidates are sieved so many at a time, and at rest within this share of the thickness beyond the border.
+#define SIEVED 256u
+#define SIEVED_SHARE 0.05
+
 /// Edges at a corner that are remembered by bits, at each end.
 #define REMEMBERED 8
 
@@ -338,13 +342,42 @@ static void draft_row(const mspring_network *network, mspringi_pairs *pairs, uin
     *fastest = speed > *fastest ? speed : *fastest;
 }
 
+// Whether two particles without springs are too far from each other for a row. No root: a way is at most half the
+// sum of any length and its own square through that length.
+MSPRINGI_ALWAYS_INLINE bool are_far(const mspringi_active *k, const mspringi_candidate *c, double still,
+                                    double per_square) {
+    const double dx = k->x[c->p] - k->x[c->a], dy = k->y[c->p] - k->y[c->a];
+    const double most = still + per_square * square_of_speed(k, c->p, c->a);
+    return (c->a == c->b) & (c->p < k->own) & (c->a < k->own) & (dx * dx + dy * dy > most * most);
+}
+
+static uint32_t end_of_sieve(const mspringi_pairs *pairs, uint32_t first) {
+    return pairs->hot_count - first < SIEVED ? pairs->hot_count : first + SIEVED;
+}
+
+// The candidates from one on that may have rows, branch-free: most have none.
+static uint32_t sieve(const mspringi_pairs *pairs, uint32_t first, double h, double given, uint32_t *kept) {
+    const double length = 2.0 * SIEVED_SHARE * pairs->thickness, per_square = 2.0 * h * h / length;
+    const double still = (1.0 + BORDER_SHARE + SIEVED_SHARE) * pairs->thickness + 2.0 * h * given;
+    uint32_t count = 0;
+    for (uint32_t i = first, end = end_of_sieve(pairs, first); i < end; ++i) {
+        kept[count] = i;
+        count += !are_far(&pairs->active, &pairs->hot[i], still, per_square);
+    }
+    return count;
+}
+
 static double make_rows(const mspring_network *network, mspringi_pairs *pairs, double h, double given,
                         uint32_t drafts) {
     double fastest = 0.0;
     pairs->most_drafts = drafts;
     pairs->touch_count = pairs->draft_count = pairs->border_count = 0;
-    for (uint32_t i = 0; i < pairs->hot_count; ++i)
-        draft_row(network, pairs, i, h, given, &fastest);
+    for (uint32_t first = 0; first < pairs->hot_count; first += SIEVED) {
+        uint32_t kept[SIEVED];
+        const uint32_t count = sieve(pairs, first, h, given, kept);
+        for (uint32_t i = 0; i < count; ++i)
+            draft_row(network, pairs, kept[i], h, given, &fastest);
+    }
     add_drafts(pairs, h);
     return fastest;
 }
@@ -384,6 +417,17 @@ static bool is_thrown(const mspringi_pairs *pairs, uint32_t p, uint32_t a, uint3
     return thrown[p] | thrown[a] | thrown[b];
 }
 
+// The candidates from one on that are thrown and have not been looked at.
+static uint32_t sieve_thrown(const mspringi_pairs *pairs, uint32_t first, uint32_t *kept) {
+    uint32_t count = 0;
+    for (uint32_t i = first, end = end_of_sieve(pairs, first); i < end; ++i) {
+        const mspringi_candidate *c = &pairs->hot[i];
+        kept[count] = i;
+        count += is_thrown(pairs, c->p, c->a, c->b) & !pairs->is_seen[i];
+    }
+    return count;
+}
+
 // Add rows of pairs that may touch by the velocities that the sweeps have left. Returns whether any of them does.
 static bool add_rows(const mspring_network *network, mspringi_pairs *pairs, double h, bool any_thrown) {
     const uint32_t before = pairs->touch_count, border_count = pairs->border_count;
@@ -396,10 +440,11 @@ static bool add_rows(const mspring_network *network, mspringi_pairs *pairs, doub
         pairs->is_seen[pairs->border[i]] = 1;
         draft_row(network, pairs, pairs->border[i], h, 0.0, &fastest);
     }
-    for (uint32_t i = 0; i < pairs->hot_count && any_thrown; ++i) {
-        const mspringi_candidate *c = &pairs->hot[i];
-        if (!pairs->is_seen[i] && is_thrown(pairs, c->p, c->a, c->b))
-            draft_row(network, pairs, i, h, 0.0, &fastest);
+    for (uint32_t first = 0; any_thrown && first < pairs->hot_count; first += SIEVED) {
+        uint32_t kept[SIEVED];
+        const uint32_t count = sieve_thrown(pairs, first, kept);
+        for (uint32_t i = 0; i < count; ++i)
+            draft_row(network, pairs, kept[i], h, 0.0, &fastest);
     }
     add_drafts(pairs, h);
     for (uint32_t i = before; i < pairs->touch_count; ++i) {
