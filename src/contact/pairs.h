@@ -291,6 +291,7 @@ struct mspringi_pairs {
     mspringi_row_hold *holds;   ///< [row_capacity] the same rows, of an implicit substep; NULL: no solver has such
     double passed;              ///< of an implicit substep, in pieces, s
     double fall_x, fall_y;      ///< velocity that gravity gives in one, m/s; 0: forces have acted already
+    double share;               ///< of its substep that a piece of an implicit one is; else 1
     mspringi_bearing *bearings; ///< [MSPRINGI_BEARINGS * nodes]
     uint32_t bearing_count;
     uint32_t touching; ///< pairs that pushed each other in a substep, at most

@@ -16,7 +16,9 @@
 #include "contact/pairs.h"
 #include "store/network.h"
 
-/// Part of an overlap that is pushed apart in a substep, if that is not faster than the host allows.
+/// Part of an overlap that is pushed apart in a substep, if that is not faster than the host allows. (Pieces of an
+/// implicit one push as fast. When each pushed by this part, what was taken in 32 pieces was pushed 32 times as
+/// fast: a stiff body in a pinch had 1.9 times its energy in a step.)
 #define PUSHED_SHARE 0.2
 
 /// Nothing bounces more slowly, m/s.
@@ -174,7 +176,7 @@ static void aim(const mspringi_pairs *pairs, mspringi_touch *t, double restituti
     t->bounces = false;
     if (t->gap <= 0.0) {
         t->least = DBL_MAX;
-        t->target *= PUSHED_SHARE;
+        t->target *= PUSHED_SHARE * pairs->share;
         t->target = t->target < pairs->push ? t->target : pairs->push;
     }
     const double before = mspringi_speed_across(t, pairs->active.from);
@@ -384,6 +386,7 @@ static double make_rows(const mspring_network *network, mspringi_pairs *pairs, d
 
 double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h) {
     const mspringi_active *k = &pairs->active;
+    pairs->share = h / (double)pairs->h;
     pairs->fall_x = h * (double)network->settings.gravity_x;
     pairs->fall_y = h * (double)network->settings.gravity_y;
     for (uint32_t i = 0; i < k->own; ++i) {
@@ -581,6 +584,7 @@ static void count_thrown(mspringi_pairs *pairs, double speed) {
 }
 
 bool mspringi_rows_solve(const mspring_network *network, mspringi_pairs *pairs, double h) {
+    pairs->share = 1.0;
     const double fastest = make_rows(network, pairs, h, 0.0, MSPRINGI_DRAFTS);
     if (pairs->touch_count == 0)
         return false;

@@ -6,6 +6,10 @@
 /// momenta followed an impulse of 464 N s where 20 were due.) So the sums of all that touch are looked at, too. A
 /// substep that gains is taken again in pieces, and in the end without rows in the system. (As long as particles
 /// without springs were left out, a rope that one of them hit gained 2.1 %.)
+///
+/// Colliders and pins that stand still do no work, and those that move the work of their rows. What overlaps one is
+/// pushed off at a speed, which is work, too: of a row's impulse along its way. (As long as that was a gain, bodies
+/// that landed on a collider took 12 times as long.) Between bodies it is a gain: one in a press had 0.4 % more.
 #include "contact/pairs.h"
 #include "solvers/implicit/budget.h"
 #include "solvers/implicit/implicit.h"
@@ -50,6 +54,45 @@ double mspringi_fall_onto_bodies(const mspring_network *network, const mspringi_
     return 0.5 * mass * (gx * gx + gy * gy) * (h * h);
 }
 
+// The speed of a row along some shares: of nodes that have a weight, by how far they came, and of those that have
+// none, which are colliders and pins.
+static void speeds_of(const mspring_network *network, const mspringi_touch *t, double (*shares)[2], double h,
+                      double *own, double *others) {
+    const mspringi_active *k = &network->pairs->active;
+    const mspringi_state *s = &network->state;
+    const uint32_t nodes[] = {t->p, t->a, t->b};
+    *own = *others = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = nodes[i];
+        if (!(k->weight[node] > 0.0)) {
+            *others += shares[i][0] * k->from[node].x + shares[i][1] * k->from[node].y;
+            continue;
+        }
+        const uint32_t slot = network->topology.slot_of_particle[k->particles[node]];
+        *own += shares[i][0] * (mspringi_x_of(s, slot) - k->x[node]) / h +
+                shares[i][1] * (mspringi_y_of(s, slot) - k->y[node]) / h;
+    }
+}
+
+// Work of what has no weight: by its motion, and by pushing off what overlaps it.
+static double work_of_rows(const mspring_network *network, double h) {
+    const mspringi_pairs *pairs = network->pairs;
+    double sum = 0.0, own, others;
+    for (uint32_t i = 0; i < pairs->touch_count; ++i) {
+        const mspringi_touch *t = &pairs->touches[i];
+        mspringi_row_hold *c = &pairs->holds[i];
+        speeds_of(network, t, c->along, h, &own, &others);
+        sum -= t->along * (others + t->drag);
+        speeds_of(network, t, c->across, h, &own, &others);
+        sum -= t->across * others;
+        const double *weight = pairs->active.weight, apart = own + others;
+        const bool is_held = !(weight[t->p] > 0.0 && weight[t->a] > 0.0 && weight[t->b] > 0.0);
+        if (is_held && t->across > 0.0 && t->target > 0.0 && !t->bounces && apart > 0.0)
+            sum += t->across * (apart < t->target ? apart : t->target);
+    }
+    return sum;
+}
+
 // Whether all that touches has more energy together than before, but for work from outside. In stiff networks
 // forces of rows show in how little springs give way, which rounding may hide, and momenta would follow them.
 bool mspringi_bodies_gain(const mspring_network *network, double h, mspringi_field base) {
@@ -58,9 +101,9 @@ bool mspringi_bodies_gain(const mspring_network *network, double h, mspringi_fie
     double gain = 0.0, most = 0.0;
     bool any = false;
     for (const mspringi_account *a = budget->accounts; a < budget->accounts + budget->count; ++a) {
-        if (!a->is_touched)
+        if (!a->is_touched || a->is_asleep)
             continue;
-        if (!a->is_free || network->pairs->colliders.count > 0)
+        if (a->is_driven || a->frame_x != 0.0 || a->frame_y != 0.0)
             return false;
         any = true;
         const mspringi_centre c = mspringi_centre_of(a);
@@ -71,7 +114,8 @@ bool mspringi_bodies_gain(const mspring_network *network, double h, mspringi_fie
         gain += left_with(a, &c) + a->elastic - had - work;
         most += DRIVEN_SHARE * had + DRIVEN_FALL * c.mass * fall + mspringi_account_rounding(a, a->internal);
     }
-    if (any)
-        add_loose(network, h, base, &gain, &most);
-    return gain > most;
+    if (!any)
+        return false;
+    add_loose(network, h, base, &gain, &most);
+    return gain > most && gain - work_of_rows(network, h) > most;
 }
