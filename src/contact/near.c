@@ -65,6 +65,11 @@ static void look_at_colliders(const mspring_network *network, mspringi_pairs *pa
     }
 }
 
+// A number that is none stays.
+static double larger(double known, double found) {
+    return found > known || isnan(found) ? found : known;
+}
+
 // The same of their motion beside the mean: squares of the largest.
 static void compare_colliders(const mspringi_pairs *pairs, const mean_motion *mean, double *speed, double *moved) {
     const mspringi_colliders *c = &pairs->colliders;
@@ -79,8 +84,8 @@ static void compare_colliders(const mspringi_pairs *pairs, const mean_motion *me
         const double most = sqrt(vx * vx + vy * vy) + turning;
         const double dx = pairs->x[p] - pairs->seen_x[p] - mean->wx, dy = pairs->y[p] - pairs->seen_y[p] - mean->wy;
         const double way = dx * dx + dy * dy;
-        *speed = most * most <= *speed ? *speed : most * most;
-        *moved = way <= *moved ? *moved : way;
+        *speed = larger(*speed, most * most);
+        *moved = larger(*moved, way);
     }
 }
 
@@ -111,8 +116,8 @@ static void look_at_points(const mspring_network *network, mspringi_pairs *pairs
         const double ux = k->v[i].x - mean.vx, uy = k->v[i].y - mean.vy;
         const double dx = k->x[i] - mean.wx, dy = k->y[i] - mean.wy;
         const double u = ux * ux + uy * uy, d = dx * dx + dy * dy;
-        speed = u <= speed ? speed : u; // a number that is none stays
-        moved = d <= moved ? moved : d;
+        speed = larger(speed, u);
+        moved = larger(moved, d);
     }
     compare_colliders(pairs, &mean, &speed, &moved);
     pairs->mean_vx = mean.vx;
