@@ -73,7 +73,7 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// does if more than an eighth of capacity and 1024 may touch in a substep. Then set the same contact with a larger
 /// capacity, and step again.
 /// @param def  copied; NULL: no contact, the default. Groups, surfaces, colliders and events are forgotten.
-/// @threads exclusive   @allocates yes; about 530 bytes for a particle, 3300 more for one of the outline, 40 for a
+/// @threads exclusive   @allocates yes; about 560 bytes for a particle, 3400 more for one of the outline, 60 for a
 ///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1900 more.
 /// @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
