@@ -65,9 +65,9 @@ static void look_at_colliders(const mspring_network *network, mspringi_pairs *pa
     }
 }
 
-// A number that is none stays.
+// A velocity that is no number makes the mean none, and so all that are compared.
 static double larger(double known, double found) {
-    return found > known || isnan(found) ? found : known;
+    return found <= known ? known : found;
 }
 
 // The same of their motion beside the mean: squares of the largest.

@@ -5,7 +5,8 @@
 ///   outline.c    which springs and particles are the outline
 ///   cells.c      edges by cells, and those in the cells around a point
 ///   near.c       which points are near which edges, and for how many substeps none of them can touch
-///   rows.c       which of them touch in a substep, and how they move on
+///   rows.c       which of them touch in a substep, in which order
+///   pieces.c     solving these, in pieces of the substep, and how they move on
 ///   sweeps.c     the impulses of those that touch
 ///   touching.c   the stage: when to look, and which islands sleep and wake together
 ///   meetings.c   contacts that begin and end, as events for the host
@@ -347,20 +348,33 @@ bool mspringi_near_look(const mspring_network *network, mspringi_pairs *pairs);
 
 /* rows.c */
 
+/// Pairs that miss a row by less than this share of the thickness are remembered: small impulses may make it one.
+#define MSPRINGI_BORDER_SHARE 0.01
+
 /// Before a substep: keep what contact needs of it.
 void mspringi_rows_begin(const mspring_network *network, mspringi_pairs *pairs);
 /// The same before a piece of it.
 void mspringi_rows_note(const mspring_network *network, mspringi_pairs *pairs);
-/// After it: let contact act. Returns whether anything touched, or could have.
+/// Make the rows of an implicit substep of h seconds, or of a piece of one, from what was noted: more of them, as
+/// springs and other bodies may push in it. Returns the speed of the fastest.
+double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h);
+/// Make the rows of a piece of h seconds, of what may touch by its own speed or by one that it may be given; so
+/// many at most are put into an order together. Returns the speed of the fastest.
+double mspringi_rows_make(const mspring_network *network, mspringi_pairs *pairs, double h, double given,
+                          uint32_t drafts);
+/// Add rows of pairs that may touch by the velocities that the sweeps have left. Returns whether any of them does.
+bool mspringi_rows_add(const mspring_network *network, mspringi_pairs *pairs, double h, bool any_thrown);
+/// Whether nothing that touches, and was thrown, would move too far.
+bool mspringi_rows_are_short(const mspringi_pairs *pairs, double h);
+
+/* pieces.c */
+
+/// After a substep: let contact act. Returns whether anything touched, or could have.
 bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs);
 /// The same of nodes as they are in mspringi_active, in double precision, and no further. Floors bear what they
 /// find in the network.
 bool mspringi_rows_solve(const mspring_network *network, mspringi_pairs *pairs, double h);
-
-/// Make the rows of an implicit substep of h seconds, or of a piece of one, from what was noted: more of them, as
-/// springs and other bodies may push in it. Returns the speed of the fastest.
-double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h);
-/// Count what was given in it, once it is taken for good.
+/// Count what was given in a piece, once it is taken for good.
 void mspringi_rows_count(const mspring_network *network, mspringi_pairs *pairs);
 
 /* bearing.c */

@@ -1,5 +1,5 @@
-/// What happens to points and edges that touch in a substep: impulses, one pair after the other. The order follows
-/// from ids and from which pairs there are.
+/// Which points and edges touch in a substep, each with a row for its impulse. Their order follows from ids and
+/// from which pairs there are.
 ///
 /// A row is a point and the nearest place on an edge. The gap at the end of the substep, gap + h v, is not to be
 /// negative; what overlaps already is pushed apart slowly, by a velocity. A pair has a row if it may touch by the
@@ -24,20 +24,8 @@
 /// Nothing bounces more slowly, m/s.
 #define SLOWEST_BOUNCE 0.2
 
-/// A substep is cut into pieces in which nothing moves further than the thickness; into so many at most.
-#define MOST_PIECES 64
-
-/// So many times at most, in all pieces of a substep.
-#define MOST_CUTS 6
-
-/// Rows of what is thrown are added, and all rows swept again, so many times at most.
-#define MOST_ROUNDS 8
-
 /// Further than this many thicknesses nothing may move in a piece as the sweeps have left it.
 #define FURTHEST 1.25
-
-/// Pairs that miss a row by less than this share of the thickness are remembered: small impulses may make it one.
-#define BORDER_SHARE 0.01
 
 /// Half of how much nearer an implicit substep may bring two bodies than their speeds do, as a share of the
 /// thickness.
@@ -85,15 +73,6 @@ void mspringi_rows_begin(const mspring_network *network, mspringi_pairs *pairs) 
     for (uint32_t i = 0; i < k->own; ++i)
         k->way_x[i] = k->way_y[i] = k->gain_x[i] = k->gain_y[i] = 0.0;
     pairs->passed = 0.0;
-}
-
-static void begin(const mspring_network *network, const mspringi_active *k) {
-    for (uint32_t i = 0; i < k->own; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
-        k->v[i].x = (double)network->state.vx[slot];
-        k->v[i].y = (double)network->state.vy[slot];
-        k->way_x[i] = k->way_y[i] = 0.0;
-    }
 }
 
 /* --------------------------------------------------------------------------------------------------------- rows */
@@ -315,7 +294,7 @@ static void draft_row(const mspring_network *network, mspringi_pairs *pairs, uin
     mspringi_pair *pair = &pairs->list[c->pair];
     const mspringi_collider *collider = pairs->colliders.count > 0 ? collider_of_pair(pairs, pair) : NULL;
     const double thickness = collider ? pairs->thickness + collider->radius : pairs->thickness;
-    const double still = thickness + BORDER_SHARE * pairs->thickness;
+    const double still = thickness + MSPRINGI_BORDER_SHARE * pairs->thickness;
     const double square_way = 4.0 * h * h * (to_ends > given * given ? to_ends : given * given);
     if (square > 2.0 * (still * still + square_way)) // further than the border: most are, and need no root
         return;
@@ -360,59 +339,13 @@ static uint32_t end_of_sieve(const mspringi_pairs *pairs, uint32_t first) {
 // The candidates from one on that may have rows, branch-free: most have none.
 static uint32_t sieve(const mspringi_pairs *pairs, uint32_t first, double h, double given, uint32_t *kept) {
     const double length = 2.0 * SIEVED_SHARE * pairs->thickness, per_square = 2.0 * h * h / length;
-    const double still = (1.0 + BORDER_SHARE + SIEVED_SHARE) * pairs->thickness + 2.0 * h * given;
+    const double still = (1.0 + MSPRINGI_BORDER_SHARE + SIEVED_SHARE) * pairs->thickness + 2.0 * h * given;
     uint32_t count = 0;
     for (uint32_t i = first, end = end_of_sieve(pairs, first); i < end; ++i) {
         kept[count] = i;
         count += !are_far(&pairs->active, &pairs->hot[i], still, per_square);
     }
     return count;
-}
-
-static double make_rows(const mspring_network *network, mspringi_pairs *pairs, double h, double given,
-                        uint32_t drafts) {
-    double fastest = 0.0;
-    pairs->most_drafts = drafts;
-    pairs->touch_count = pairs->draft_count = pairs->border_count = 0;
-    for (uint32_t first = 0; first < pairs->hot_count; first += SIEVED) {
-        uint32_t kept[SIEVED];
-        const uint32_t count = sieve(pairs, first, h, given, kept);
-        for (uint32_t i = 0; i < count; ++i)
-            draft_row(network, pairs, kept[i], h, given, &fastest);
-    }
-    add_drafts(pairs, h);
-    return fastest;
-}
-
-double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h) {
-    const mspringi_active *k = &pairs->active;
-    pairs->share = h / (double)pairs->h;
-    pairs->fall_x = h * (double)network->settings.gravity_x;
-    pairs->fall_y = h * (double)network->settings.gravity_y;
-    for (uint32_t i = 0; i < k->own; ++i) {
-        k->v[i].x = k->from[i].x;
-        k->v[i].y = k->from[i].y;
-    }
-    const double fastest = make_rows(network, pairs, h, 0.0, 1);
-    (void)make_rows(network, pairs, h, fastest + THROWN_SHARE * pairs->thickness / h, 1);
-    return fastest;
-}
-
-/* -------------------------------------------------------------------------------------------- what is thrown */
-
-// Mark the particles whose velocities the sweeps have changed by so much that pairs beyond the border may have come
-// into reach. Returns whether there are any.
-static bool mark_thrown(const mspringi_pairs *pairs, double h) {
-    const mspringi_active *k = &pairs->active;
-    const double least = 0.25 * BORDER_SHARE * pairs->thickness / h;
-    uint8_t any = 0;
-    for (uint32_t i = 0; i < k->own; ++i) {
-        const double x = k->v[i].x - k->old[i].x, y = k->v[i].y - k->old[i].y;
-        k->is_thrown[i] = x * x + y * y > least * least;
-        any |= k->is_thrown[i];
-    }
-    memset(k->is_thrown + k->own, 0, k->count - k->own);
-    return any;
 }
 
 static bool is_thrown(const mspringi_pairs *pairs, uint32_t p, uint32_t a, uint32_t b) {
@@ -431,8 +364,41 @@ static uint32_t sieve_thrown(const mspringi_pairs *pairs, uint32_t first, uint32
     return count;
 }
 
-// Add rows of pairs that may touch by the velocities that the sweeps have left. Returns whether any of them does.
-static bool add_rows(const mspring_network *network, mspringi_pairs *pairs, double h, bool any_thrown) {
+// Draft the rows of candidates that may have some; of those that are thrown alone, which have none yet.
+static void draft_rows(const mspring_network *network, mspringi_pairs *pairs, double h, double given,
+                       bool are_thrown, double *fastest) {
+    for (uint32_t first = 0; first < pairs->hot_count; first += SIEVED) {
+        uint32_t kept[SIEVED];
+        const uint32_t count = are_thrown ? sieve_thrown(pairs, first, kept) : sieve(pairs, first, h, given, kept);
+        for (uint32_t i = 0; i < count; ++i)
+            draft_row(network, pairs, kept[i], h, given, fastest);
+    }
+}
+
+double mspringi_rows_make(const mspring_network *network, mspringi_pairs *pairs, double h, double given,
+                          uint32_t drafts) {
+    double fastest = 0.0;
+    pairs->most_drafts = drafts;
+    pairs->touch_count = pairs->draft_count = pairs->border_count = 0;
+    draft_rows(network, pairs, h, given, false, &fastest);
+    add_drafts(pairs, h);
+    return fastest;
+}
+
+double mspringi_rows_prepare(const mspring_network *network, mspringi_pairs *pairs, double h) {
+    const mspringi_active *k = &pairs->active;
+    pairs->share = h / (double)pairs->h;
+    pairs->fall_x = h * (double)network->settings.gravity_x;
+    pairs->fall_y = h * (double)network->settings.gravity_y;
+    memcpy(k->v, k->from, k->own * sizeof *k->v);
+    const double fastest = mspringi_rows_make(network, pairs, h, 0.0, 1);
+    (void)mspringi_rows_make(network, pairs, h, fastest + THROWN_SHARE * pairs->thickness / h, 1);
+    return fastest;
+}
+
+/* -------------------------------------------------------------------------------------------- what is thrown */
+
+bool mspringi_rows_add(const mspring_network *network, mspringi_pairs *pairs, double h, bool any_thrown) {
     const uint32_t before = pairs->touch_count, border_count = pairs->border_count;
     double fastest = 0.0;
     memset(pairs->is_seen, 0, pairs->hot_count);
@@ -443,12 +409,8 @@ static bool add_rows(const mspring_network *network, mspringi_pairs *pairs, doub
         pairs->is_seen[pairs->border[i]] = 1;
         draft_row(network, pairs, pairs->border[i], h, 0.0, &fastest);
     }
-    for (uint32_t first = 0; any_thrown && first < pairs->hot_count; first += SIEVED) {
-        uint32_t kept[SIEVED];
-        const uint32_t count = sieve_thrown(pairs, first, kept);
-        for (uint32_t i = 0; i < count; ++i)
-            draft_row(network, pairs, kept[i], h, 0.0, &fastest);
-    }
+    if (any_thrown)
+        draft_rows(network, pairs, h, 0.0, true, &fastest);
     add_drafts(pairs, h);
     for (uint32_t i = before; i < pairs->touch_count; ++i) {
         const mspringi_touch *t = &pairs->touches[i];
@@ -458,147 +420,12 @@ static bool add_rows(const mspring_network *network, mspringi_pairs *pairs, doub
     return false;
 }
 
-// Whether nothing that touches, and was thrown, would move too far.
-static bool is_short(const mspringi_pairs *pairs, double h) {
+bool mspringi_rows_are_short(const mspringi_pairs *pairs, double h) {
     const double most = FURTHEST * pairs->thickness / h;
     for (uint32_t i = 0; i < pairs->touch_count; ++i) {
         const mspringi_touch *t = &pairs->touches[i];
         if (is_thrown(pairs, t->p, t->a, t->b) && square_to_ends(&pairs->active, t->p, t->a, t->b) > most * most)
             return false;
     }
-    return true;
-}
-
-// Solve a piece. False: it is too long for what the sweeps have made of it.
-static bool solve(const mspring_network *network, mspringi_pairs *pairs, double h) {
-    mspringi_bearing_begin(pairs, h);
-    for (uint32_t round = 0;; ++round) {
-        const bool holds = mspringi_rows_sweep(pairs, h, round == 0 ? pairs->def.sweeps : 1);
-        const bool any_thrown = mark_thrown(pairs, h);
-        if (!any_thrown && pairs->border_count == 0)
-            return holds;
-        if (round == MOST_ROUNDS)
-            return false;
-        if (!add_rows(network, pairs, h, any_thrown))
-            return holds && (!any_thrown || is_short(pairs, h));
-    }
-}
-
-/* --------------------------------------------------------------------------------------------- the substep */
-
-void mspringi_rows_count(const mspring_network *network, mspringi_pairs *pairs) {
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < pairs->touch_count && pairs->meetings.capacity > 0; ++i)
-        if (pairs->touches[i].across > 0.0)
-            mspringi_meetings_push(network, pairs, &pairs->touches[i]);
-    mspringi_meetings_begin_piece(pairs);
-    for (uint32_t i = 0; i < pairs->touch_count; ++i) {
-        const mspringi_touch *t = &pairs->touches[i];
-        if (t->collider != MSPRING_NONE)
-            mspringi_colliders_push(pairs, t);
-        count += t->across > 0.0;
-        pairs->deepest = -t->gap > pairs->deepest ? -t->gap : pairs->deepest;
-    }
-    pairs->touching = count > pairs->touching ? count : pairs->touching;
-}
-
-static void keep_velocities(const mspringi_active *k) {
-    memcpy(k->old, k->v, k->own * sizeof *k->v);
-}
-
-static void restore_velocities(const mspringi_active *k) {
-    memcpy(k->v, k->old, k->own * sizeof *k->v);
-}
-
-// Go along for a piece of h seconds. What contact adds to the move is counted apart. The next piece bounces by what
-// this one has left.
-static void advance(const mspring_network *network, const mspringi_active *k, double h, bool is_last) {
-    for (uint32_t i = 0; i < k->own && !is_last; ++i) {
-        k->from[i].x += k->v[i].x - k->old[i].x;
-        k->from[i].y += k->v[i].y - k->old[i].y;
-    }
-    for (uint32_t i = 0; i < k->own; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
-        k->way_x[i] += h * (k->v[i].x - (double)network->state.vx[slot]);
-        k->way_y[i] += h * (k->v[i].y - (double)network->state.vy[slot]);
-    }
-    for (uint32_t i = 0; i < k->count && !is_last; ++i) {
-        k->x[i] += h * k->v[i].x;
-        k->y[i] += h * k->v[i].y;
-    }
-}
-
-// Returns the largest speed that contact has given beside the outline's mean, m/s.
-static double put_back(const mspring_network *network, const mspringi_pairs *pairs) {
-    const mspringi_state *s = &network->state;
-    const mspringi_active *k = &pairs->active;
-    double most = 0.0;
-    for (uint32_t i = 0; i < k->own; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
-        if (k->way_x[i] == 0.0 && k->way_y[i] == 0.0 && k->v[i].x == (double)s->vx[slot] &&
-            k->v[i].y == (double)s->vy[slot])
-            continue;
-        const double x = k->v[i].x - pairs->mean_vx, y = k->v[i].y - pairs->mean_vy, square = x * x + y * y;
-        most = square > most ? square : most;
-        s->vx[slot] = (float)k->v[i].x;
-        s->vy[slot] = (float)k->v[i].y;
-        mspringi_move_by(s, slot, (float)k->way_x[i], (float)k->way_y[i]);
-    }
-    return sqrt(most);
-}
-
-// Take pieces of even length, or more of them where that is too long.
-static void take_pieces(const mspring_network *network, mspringi_pairs *pairs, double h, uint32_t pieces) {
-    const mspringi_active *k = &pairs->active;
-    bool is_made = pieces == 1;
-    for (uint32_t left = pieces, cuts = 0; left > 0;) {
-        const double piece = h / left;
-        if (!is_made)
-            (void)make_rows(network, pairs, piece, 0.0, MSPRINGI_DRAFTS);
-        is_made = false;
-        keep_velocities(k);
-        if (!solve(network, pairs, piece) && cuts < MOST_CUTS && left < MOST_PIECES) {
-            restore_velocities(k);
-            left = 2 * left < MOST_PIECES ? 2 * left : MOST_PIECES;
-            ++cuts;
-            continue;
-        }
-        mspringi_rows_count(network, pairs);
-        mspringi_bearing_end(network, pairs);
-        advance(network, k, piece, left == 1);
-        h -= piece;
-        --left;
-    }
-}
-
-// What contact has made faster than the last look allows for: the list is to be renewed. If pairs may be missing
-// from it in this substep already, the step is repeated with a look for such speeds.
-static void count_thrown(mspringi_pairs *pairs, double speed) {
-    const double spare = MSPRINGI_DRIFT * pairs->thickness / pairs->dt;
-    if (speed > MSPRINGI_FASTER * pairs->speed + spare)
-        pairs->valid = 1;
-    if (speed > 3.0 * pairs->speed + 0.25 * pairs->thickness / (double)pairs->h) {
-        pairs->is_missed = true;
-        pairs->thrown = speed > pairs->thrown ? speed : pairs->thrown;
-    }
-}
-
-bool mspringi_rows_solve(const mspring_network *network, mspringi_pairs *pairs, double h) {
-    pairs->share = 1.0;
-    const double fastest = make_rows(network, pairs, h, 0.0, MSPRINGI_DRAFTS);
-    if (pairs->touch_count == 0)
-        return false;
-    mspringi_bearing_find(network, pairs);
-    const double thicknesses = h * fastest / pairs->thickness;
-    take_pieces(network, pairs, h, thicknesses < MOST_PIECES ? (uint32_t)thicknesses + 1 : MOST_PIECES);
-    return true;
-}
-
-bool mspringi_rows_act(const mspring_network *network, mspringi_pairs *pairs) {
-    begin(network, &pairs->active);
-    pairs->fall_x = pairs->fall_y = 0.0;
-    if (!mspringi_rows_solve(network, pairs, (double)pairs->h))
-        return false;
-    count_thrown(pairs, put_back(network, pairs));
     return true;
 }
