@@ -65,36 +65,11 @@ void mspringi_strands_destroy(mspringi_strands *strands, mspringi_memory *memory
 
 /// Equal components, sixteen side by side.
 typedef struct mspringi_herds {
-    uint32_t *particles; ///< [group_count][MSPRINGI_WIDTH] herd after herd: those of the same place in each
-    uint8_t *rung_above; ///< [group_count] of trees the rung, at the group above it, of the spring to it; that of
-                         ///< the spring to the group above is the first
+    uint32_t *particles; ///< [group_count][MSPRINGI_WIDTH] herd after herd: those of the same number in each
+    uint8_t *is_first;   ///< [group_count] 1 for the first group of a herd
     uint32_t group_count;
     uint32_t spring_count; ///< of one component of each herd
-
-    // While they are looked for.
-    uint8_t *known;                      ///< [particles]
-    uint32_t tree_count, tree_particles; ///< all that there are
-    uint32_t *in_order;                  ///< [tree_particles] tree after tree, as their codes have them
-    uint64_t *keys, *scratch;            ///< [tree_count] code, and first of in_order
-    uint32_t listed, listed_particles;
 } mspringi_herds;
-
-/// What rung_above has for the first group of a herd, and for others whose springs have rungs in the order of their
-/// ids.
-#define MSPRINGI_ROOT 0xff
-#define MSPRINGI_BY_ORDER 0xfe
-
-/// Find them, in this order; those with a range look at particles. Their particles get MSPRINGI_ROW_WEB in kinds.
-mspring_result mspringi_herds_begin(mspringi_herds *herds, const mspringi_graph *graph, mspringi_memory *memory,
-                                    mspringi_message *message);
-void mspringi_herds_explore(mspringi_herds *herds, const mspringi_graph *graph, uint32_t first, uint32_t end);
-mspring_result mspringi_herds_reserve(mspringi_herds *herds, mspringi_memory *memory, mspringi_message *message);
-void mspringi_herds_compare(mspringi_herds *herds, const mspringi_graph *graph, uint32_t first, uint32_t end);
-mspring_result mspringi_herds_fill(mspringi_herds *herds, uint8_t *kinds, mspringi_memory *memory,
-                                   mspringi_message *message);
-/// Free what is needed only while they are looked for.
-void mspringi_herds_forget(mspringi_herds *herds, mspringi_memory *memory);
-void mspringi_herds_destroy(mspringi_herds *herds, mspringi_memory *memory);
 
 /// Components of at most MSPRINGI_LARGEST_COPY particles, while those that are equal are looked for.
 typedef struct mspringi_copies {
@@ -110,7 +85,7 @@ typedef struct mspringi_copies {
 } mspringi_copies;
 struct mspringi_assembly;
 
-/// Find them, behind the trees, in this order: explore and list look at particles; choose is called until it no
+/// Find them, in this order: explore and list look at particles; choose is called until it no
 /// longer asks to be called again. Their particles get MSPRINGI_ROW_WEB in kinds. So do
 /// those that are left of their shapes, until grids and strands have been found: they become loose.
 mspring_result mspringi_copies_begin(mspringi_copies *copies, const mspringi_graph *graph, mspringi_memory *memory,

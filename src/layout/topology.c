@@ -42,7 +42,6 @@ static mspring_result begin_web(mspringi_assembly *a) {
                                     .block_count = t->block_count,
                                     .herd_groups = a->herds.group_count,
                                     .herd_springs = a->herds.spring_count,
-                                    .rung_above = a->herds.rung_above,
                                     .strip_of_block = mspringi_assembly_list_strips_of_blocks(a)};
     if (!a->weaving.strip_of_block)
         return mspringi_assembly_fail(a);
@@ -123,38 +122,12 @@ static mspring_result make_graph(mspringi_assembly *a) {
         mspringi_graph_create(&a->graph, a->builder, a->is_checked, a->memory, a->message);
     a->topology->second_count = a->graph.second_count;
     if (a->graph.second_count > 0)
-        a->herding = MSPRINGI_NO_HERDS;
+        a->has_herds = false;
     return result;
 }
 
-static mspring_result begin_herds(mspringi_assembly *a) {
-    return a->herding != MSPRINGI_HERDS_OF_WRECKAGE
-               ? MSPRING_OK
-               : mspringi_herds_begin(&a->herds, &a->graph, a->memory, a->message);
-}
-
-static mspring_result explore_trees(mspringi_assembly *a, uint32_t first, uint32_t end) {
-    if (a->herds.known)
-        mspringi_herds_explore(&a->herds, &a->graph, first, end);
-    return MSPRING_OK;
-}
-
-static mspring_result reserve_herds(mspringi_assembly *a) {
-    return mspringi_herds_reserve(&a->herds, a->memory, a->message);
-}
-
-static mspring_result compare_trees(mspringi_assembly *a, uint32_t first, uint32_t end) {
-    mspringi_herds_compare(&a->herds, &a->graph, first, end);
-    return MSPRING_OK;
-}
-
-static mspring_result fill_herds(mspringi_assembly *a) {
-    return mspringi_herds_fill(&a->herds, a->kinds, a->memory, a->message);
-}
-
 static mspring_result begin_copies(mspringi_assembly *a) {
-    return a->herding == MSPRINGI_NO_HERDS ? MSPRING_OK
-                                           : mspringi_copies_begin(&a->copies, &a->graph, a->memory, a->message);
+    return !a->has_herds ? MSPRING_OK : mspringi_copies_begin(&a->copies, &a->graph, a->memory, a->message);
 }
 
 static mspring_result explore_copies(mspringi_assembly *a, uint32_t first, uint32_t end) {
@@ -337,11 +310,6 @@ MSPRINGI_PASSES(layout, mspringi_assembly)
 
 static const layout_pass layout_passes[] = {
     MSPRINGI_ONCE(make_graph),
-    MSPRINGI_ONCE(begin_herds),
-    MSPRINGI_EACH(explore_trees, particles_of, 16000),
-    MSPRINGI_ONCE(reserve_herds),
-    MSPRINGI_EACH(compare_trees, particles_of, 4000),
-    MSPRINGI_ONCE(fill_herds),
     MSPRINGI_ONCE(begin_copies),
     MSPRINGI_EACH(explore_copies, particles_of, 16000),
     MSPRINGI_ONCE(reserve_copies),
@@ -392,7 +360,7 @@ static const layout_pass layout_passes[] = {
 };
 
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       bool is_checked, mspringi_herding herding, uint32_t workers, uint32_t lanes,
+                                       bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
                                        mspringi_memory *memory, mspringi_message *message,
                                        mspringi_assembly **begun) {
     mspringi_assembly *a = mspringi_alloc(memory, 1, sizeof *a);
@@ -407,7 +375,7 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
     a->message = message;
     a->builder = builder;
     a->is_checked = is_checked;
-    a->herding = herding;
+    a->has_herds = has_herds;
     a->workers = workers;
     a->lanes = lanes;
     *begun = a;
@@ -431,7 +399,8 @@ void mspringi_topology_abandon(mspringi_assembly *begun, mspringi_memory *memory
     mspringi_free(memory, begun->busy);
     mspringi_weaving_destroy(&begun->weaving, memory);
     mspringi_graph_destroy(&begun->graph, memory);
-    mspringi_herds_destroy(&begun->herds, memory);
+    mspringi_free(memory, begun->herds.particles);
+    mspringi_free(memory, begun->herds.is_first);
     mspringi_copies_destroy(&begun->copies, memory);
     mspringi_strands_destroy(&begun->strands, memory);
     mspringi_grids_destroy(&begun->grids, memory);
@@ -466,11 +435,11 @@ static mspring_result keep_spare(mspringi_topology *t, mspringi_memory *memory, 
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        const mspringi_reserve *reserve, mspringi_herding herding, uint32_t workers,
+                                        const mspringi_reserve *reserve, bool has_herds, uint32_t workers,
                                         uint32_t lanes, mspringi_memory *memory, mspringi_message *message) {
     mspringi_assembly *begun = NULL;
     mspring_result result =
-        mspringi_topology_begin(builder, reserve, false, herding, workers, lanes, memory, message, &begun);
+        mspringi_topology_begin(builder, reserve, false, has_herds, workers, lanes, memory, message, &begun);
     for (bool is_done = false; result == MSPRING_OK && !is_done;)
         result = mspringi_topology_run(begun, &is_done);
     if (result != MSPRING_OK) {

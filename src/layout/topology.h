@@ -86,7 +86,8 @@ typedef struct mspringi_reserve {
 typedef struct mspringi_topology {
     uint32_t particle_count, spring_count; ///< ids so far
     mspringi_reserve reserve;
-    uint32_t block_count; ///< with padding in front, behind, and between rows and what follows: lane + 1 can be read
+    uint32_t
+        block_count; ///< with padding in front, behind, and between rows and what follows: lane + 1 can be read
     uint32_t lattice_first, lattice_blocks; ///< blocks: first, number
     uint32_t chain_first, chain_blocks;
     uint32_t web_first, web_blocks;
@@ -127,7 +128,7 @@ typedef struct mspringi_topology {
     uint32_t wavefront_strips; ///< the strips that they are in
     uint32_t skew;             ///< strips by which each substep of such a pass must stay behind the one before
     uint32_t carry_blocks;     ///< blocks of the carry row
-    uint32_t herd_strip;       ///< strip of the web's trees that stand in herds, or MSPRING_NONE
+    uint32_t herd_strip;       ///< strip of the web's equal components that stand in herds, or MSPRING_NONE
     uint32_t herd_springs;     ///< springs of these
 
     uint32_t second_count;  ///< springs that lie beside another
@@ -168,17 +169,10 @@ static inline uint32_t mspringi_swept_count(const mspringi_topology *topology) {
     return topology->spring_count - topology->inactive_count;
 }
 
-/// What may stand in herds.
-typedef enum mspringi_herding {
-    MSPRINGI_NO_HERDS,
-    MSPRINGI_HERDS_OF_COPIES,  ///< equal components
-    MSPRINGI_HERDS_OF_WRECKAGE ///< these, and small trees of one shape in any order
-} mspringi_herding;
-
 /// Lay out what the builder holds, for steps that so many workers share and make with registers of so many lanes
 /// (MSPRINGI_QUARTER or more), with room for spare ids. Lanes make no difference to where anything lies.
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
-                                        const mspringi_reserve *reserve, mspringi_herding herding, uint32_t workers,
+                                        const mspringi_reserve *reserve, bool has_herds, uint32_t workers,
                                         uint32_t lanes, mspringi_memory *memory, mspringi_message *message);
 /// The same as a list of plain functions: begin, run one after the other until it is done unless one fails, then
 /// finish; or abandon at any time, which allows NULL. The builder and what memory and message point to must stay;
@@ -186,7 +180,7 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
 /// only, in an array with room for all ids.
 typedef struct mspringi_assembly mspringi_assembly;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
-                                       bool is_checked, mspringi_herding herding, uint32_t workers, uint32_t lanes,
+                                       bool is_checked, bool has_herds, uint32_t workers, uint32_t lanes,
                                        mspringi_memory *memory, mspringi_message *message,
                                        mspringi_assembly **begun);
 /// Run the next function, which takes a millisecond at most for 200,000 springs. How many there are depends neither

@@ -104,10 +104,9 @@ mspring_result mspringi_left_list(mspring_job *job, uint32_t first, uint32_t end
 // Herds are for the explicit solver: the implicit one takes the springs of the web one by one, and twice as long
 // for a wreck that mostly stands in such.
 mspring_result mspringi_left_begin_layout(mspring_job *job) {
-    const mspringi_herding herding =
-        job->from.solver.ops->has_herds ? MSPRINGI_HERDS_OF_WRECKAGE : MSPRINGI_NO_HERDS;
+    const bool has_herds = job->from.solver.ops->has_herds;
     const mspringi_topology *t = mspringi_job_first(job);
-    return mspringi_topology_begin(&job->left, &t->reserve, t->second_count == 0, herding, job->workers,
+    return mspringi_topology_begin(&job->left, &t->reserve, t->second_count == 0, has_herds, job->workers,
                                    job->from.kernels->lanes, &job->to.memory, &job->to.message, &job->assembly);
 }
 

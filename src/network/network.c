@@ -266,9 +266,9 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
-        result = mspringi_topology_create(
-            &network->topology, builder, &reserve, has_herds ? MSPRINGI_HERDS_OF_COPIES : MSPRINGI_NO_HERDS,
-            mspringi_tasks_shares(network->tasks), network->kernels->lanes, &network->memory, &network->message);
+        result = mspringi_topology_create(&network->topology, builder, &reserve, has_herds ? true : false,
+                                          mspringi_tasks_shares(network->tasks), network->kernels->lanes,
+                                          &network->memory, &network->message);
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level == MSPRING_SIMD_AUTO)

@@ -5,63 +5,43 @@
 
 #include "store/sections.h"
 
-// The next id and a reserved word.
-#define HEAD_BYTES ((size_t)8)
-// Id, particle, 3 floats, a reserved word, 6 doubles.
-#define GRIP_BYTES ((size_t)72)
-
 #define STRONGEST 1e30f
 
-/// What a section begins with.
-typedef struct grips_head {
-    mspring_id next_id;
-    uint32_t reserved;
-} grips_head;
-
-/// One of them, as it is read.
-typedef struct grip_record {
+/// One of them, as it is saved.
+typedef struct record {
     uint32_t reserved;
     mspringi_grip grip;
-} grip_record;
+} record;
 
-// Without it there has never been a grip.
-static size_t grips_size(const mspring_network *network) {
-    return network->grips.next_id > 0 ? HEAD_BYTES + network->grips.count * GRIP_BYTES : 0;
+static void hand_head(mspringi_io *io, mspring_id *next_id, uint32_t *reserved) {
+    MSPRINGI_HAND(io, *next_id);
+    MSPRINGI_HAND(io, *reserved);
 }
 
+static void hand_grip(mspringi_io *io, record *r) {
+    MSPRINGI_HAND(io, r->grip.id);
+    MSPRINGI_HAND(io, r->grip.particle);
+    MSPRINGI_HAND(io, r->grip.stiffness);
+    MSPRINGI_HAND(io, r->grip.damping);
+    MSPRINGI_HAND(io, r->grip.max_force);
+    MSPRINGI_HAND(io, r->reserved);
+    MSPRINGI_HAND(io, r->grip.x);
+    MSPRINGI_HAND(io, r->grip.y);
+    MSPRINGI_HAND(io, r->grip.from_x);
+    MSPRINGI_HAND(io, r->grip.from_y);
+    MSPRINGI_HAND(io, r->grip.impulse_x);
+    MSPRINGI_HAND(io, r->grip.impulse_y);
+}
+
+// Without a section there has never been a grip.
 static void grips_save(const mspring_network *network, mspringi_writer *to) {
-    const uint32_t head[] = {network->grips.next_id, 0};
-    mspringi_put(to, head, 2, sizeof head[0]);
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        const mspringi_grip *grip = &network->grips.list[i];
-        const uint32_t ids[] = {grip->id, grip->particle}, reserved = 0;
-        const float floats[] = {grip->stiffness, grip->damping, grip->max_force};
-        const double doubles[] = {grip->x, grip->y, grip->from_x, grip->from_y, grip->impulse_x, grip->impulse_y};
-        mspringi_put(to, ids, 2, sizeof ids[0]);
-        mspringi_put(to, floats, 3, sizeof floats[0]);
-        mspringi_put(to, &reserved, 1, sizeof reserved);
-        mspringi_put(to, doubles, 6, sizeof doubles[0]);
-    }
-}
-
-static const uint8_t *read_head(const uint8_t *from, grips_head *head) {
-    from = mspringi_get(from, &head->next_id, 1, sizeof head->next_id);
-    return mspringi_get(from, &head->reserved, 1, sizeof head->reserved);
-}
-
-static const uint8_t *read_grip(const uint8_t *from, grip_record *record) {
-    mspringi_grip *grip = &record->grip;
-    double *const doubles[] = {&grip->x,      &grip->y,         &grip->from_x,
-                               &grip->from_y, &grip->impulse_x, &grip->impulse_y};
-    float *const floats[] = {&grip->stiffness, &grip->damping, &grip->max_force};
-    from = mspringi_get(from, &grip->id, 1, sizeof grip->id);
-    from = mspringi_get(from, &grip->particle, 1, sizeof grip->particle);
-    for (size_t i = 0; i < 3; ++i)
-        from = mspringi_get(from, floats[i], 1, sizeof *floats[i]);
-    from = mspringi_get(from, &record->reserved, 1, sizeof record->reserved);
-    for (size_t i = 0; i < 6; ++i)
-        from = mspringi_get(from, doubles[i], 1, sizeof *doubles[i]);
-    return from;
+    mspringi_io io = mspringi_io_to(to);
+    mspring_id next_id = network->grips.next_id;
+    if (next_id == 0)
+        return;
+    hand_head(&io, &next_id, &(uint32_t){0});
+    for (uint32_t i = 0; i < network->grips.count; ++i)
+        hand_grip(&io, &(record){.grip = network->grips.list[i]});
 }
 
 static bool is_strength(float value, float most) {
@@ -72,10 +52,10 @@ static bool is_target(double value) {
     return fabs(value) <= MSPRING_MAX_COORDINATE;
 }
 
-static mspring_result check_grip(mspring_network *network, const grip_record *record) {
+static mspring_result check_grip(mspring_network *network, const record *r) {
     const mspringi_section *section = &mspringi_section_grips;
-    const mspringi_grip *grip = &record->grip;
-    if (record->reserved != 0 || grip->particle >= network->topology.reserve.particle_end)
+    const mspringi_grip *grip = &r->grip;
+    if (r->reserved != 0 || grip->particle >= network->topology.reserve.particle_end)
         return mspringi_section_fail(network, section, "grip %s holds particle %s", MSPRINGI_ID(grip->id),
                                      MSPRINGI_ID(grip->particle));
     if (!is_strength(grip->stiffness, STRONGEST) || !is_strength(grip->damping, STRONGEST) ||
@@ -92,45 +72,43 @@ static mspring_result check_grip(mspring_network *network, const grip_record *re
 
 static mspring_result grips_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_grips;
-    const size_t count = size > HEAD_BYTES ? (size - HEAD_BYTES) / GRIP_BYTES : 0;
-    grips_head head;
+    mspringi_io io = mspringi_io_from(from, size);
+    mspring_id next_id, least = 0;
+    uint32_t reserved, count = 0;
     if (size == 0)
         return MSPRING_OK;
-    mspring_result result = mspringi_section_check_size(network, section, size, HEAD_BYTES + count * GRIP_BYTES);
-    if (result != MSPRING_OK)
-        return result;
-    from = read_head(from, &head);
-    if (head.reserved != 0 || count > MSPRING_MAX_GRIPS)
-        return mspringi_section_fail(network, section, "it has %zu grips", count);
-    for (size_t i = 0, least = 0; result == MSPRING_OK && i < count; ++i) {
-        grip_record record = {0};
-        from = read_grip(from, &record);
-        if (record.grip.id < least || record.grip.id >= head.next_id)
-            return mspringi_section_fail(network, section, "grip %u comes in the wrong order",
-                                         (unsigned)record.grip.id);
-        result = check_grip(network, &record);
-        least = (size_t)record.grip.id + 1;
+    hand_head(&io, &next_id, &reserved);
+    mspring_result result = MSPRING_OK;
+    for (; result == MSPRING_OK && io.left > 0 && !io.is_short; ++count) {
+        record r;
+        hand_grip(&io, &r);
+        if (r.grip.id < least || r.grip.id >= next_id || count == MSPRING_MAX_GRIPS)
+            return mspringi_section_fail(network, section, "grip %u comes in the wrong order", (unsigned)r.grip.id);
+        result = check_grip(network, &r);
+        least = r.grip.id + 1;
     }
+    if (result == MSPRING_OK && reserved != 0)
+        result = mspringi_section_fail(network, section, "it has %u grips", (unsigned)count);
+    if (result == MSPRING_OK)
+        result = mspringi_section_end(network, section, &io);
     return result == MSPRING_OK && count > 0 ? mspringi_grips_reserve(network) : result;
 }
 
 // After the section of growth: a grip on what is not there is left out.
 static void grips_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
     mspringi_grips *grips = &network->grips;
-    grips_head head;
+    uint32_t reserved;
     mspringi_grips_clear(grips);
-    if (size == 0)
-        return;
-    from = read_head(from, &head);
-    grips->next_id = head.next_id;
-    for (size_t i = 0; i < (size - HEAD_BYTES) / GRIP_BYTES; ++i) {
-        grip_record record = {0};
-        from = read_grip(from, &record);
-        if (record.grip.particle < network->topology.particle_count &&
-            mspringi_particle_exists(network, record.grip.particle))
-            grips->list[grips->count++] = record.grip;
+    if (size > 0)
+        hand_head(&io, &grips->next_id, &reserved);
+    while (io.left > 0) {
+        record r = {0};
+        hand_grip(&io, &r);
+        if (r.grip.particle < network->topology.particle_count &&
+            mspringi_particle_exists(network, r.grip.particle))
+            grips->list[grips->count++] = r.grip;
     }
 }
 
-const mspringi_section mspringi_section_grips = {"grip",     "grips",     false,     grips_size,
-                                                 grips_save, grips_check, grips_load};
+const mspringi_section mspringi_section_grips = {"grip", "grips", false, NULL, grips_save, grips_check, grips_load};

@@ -7,14 +7,10 @@
 /* ------------------------------------------------------------------------------------------------- groups that are
  * held */
 
-static size_t held_size(const mspring_network *network) {
-    const mspringi_groups *g = &network->groups;
-    return g->held > 0 ? g->count : 0;
-}
-
 static void held_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_groups *g = &network->groups;
-    mspringi_put(to, g->flags, g->count, 1);
+    if (g->held > 0)
+        mspringi_put(to, g->flags, g->count, 1);
 }
 
 static mspring_result held_check(mspring_network *network, const uint8_t *from, size_t size) {
@@ -39,22 +35,17 @@ static void held_load(mspring_network *network, const uint8_t *from, size_t size
 }
 
 const mspringi_section mspringi_section_held = {
-    "held", "groups that are held", false, held_size, held_save, held_check, held_load};
+    "held", "groups that are held", false, NULL, held_save, held_check, held_load};
 
 /* ---------------------------------------------------------------------------------------------------- actuators */
 
 // Of each: the rest length in force, the one that signals ask for, and that before any flow.
 enum { VALUES = 3 };
-#define HEAD_BYTES ((size_t)8)
-
-static size_t actuators_size(const mspring_network *network) {
-    const size_t count = network->actuators.count;
-    return count > 0 ? HEAD_BYTES + count * VALUES * sizeof(float) : 0;
-}
-
 static void actuators_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_actuators *a = &network->actuators;
     const uint32_t head[] = {a->are_pending, 0};
+    if (a->count == 0)
+        return;
     mspringi_put(to, head, 2, sizeof head[0]);
     for (uint32_t i = 0; i < a->count; ++i) {
         const float *nominal = network->plastic.nominal;
@@ -74,7 +65,7 @@ static mspring_result actuators_check(mspring_network *network, const uint8_t *f
     const size_t count = network->actuators.count;
     uint32_t head[2];
     mspring_result result = mspringi_section_check_size(
-        network, section, size, count > 0 ? HEAD_BYTES + count * VALUES * sizeof(float) : 0);
+        network, section, size, count > 0 ? sizeof head + count * VALUES * sizeof(float) : 0);
     if (result != MSPRING_OK || count == 0)
         return result;
     from = mspringi_get(from, head, 2, sizeof head[0]);
@@ -112,5 +103,5 @@ static void actuators_load(mspring_network *network, const uint8_t *from, size_t
     }
 }
 
-const mspringi_section mspringi_section_actuators = {"actu",         "actuators",     false,         actuators_size,
+const mspringi_section mspringi_section_actuators = {"actu",         "actuators",     false,         NULL,
                                                      actuators_save, actuators_check, actuators_load};

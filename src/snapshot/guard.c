@@ -7,66 +7,46 @@
 #include "stability/guard.h"
 #include "store/sections.h"
 
-typedef struct guard_head {
+typedef struct record {
     double dt; ///< what is stable in any shape, s, and for which spring
     float h, global_damping, peak;
     uint32_t policy, reserved, spring, state, fallback_steps;
-} guard_head;
-#define HEAD_BYTES ((size_t)40)
-
-// Of a mspringi_solver_basis.
-#define FALLBACK_BYTES ((size_t)16)
+    mspringi_solver_basis fallback; ///< MSPRING_GUARD_IMPLICIT
+} record;
 
 /// Whether dt is known, and whether that was before the last edit.
 enum { UNKNOWN, OUTDATED, KNOWN };
 
-static size_t guard_size(const mspring_network *network) {
-    return HEAD_BYTES + (network->settings.guard == MSPRING_GUARD_IMPLICIT ? FALLBACK_BYTES : 0);
-}
-
-static void fallback_save(const mspringi_solver *fallback, mspringi_writer *to) {
-    const mspringi_solver_basis basis = mspringi_solver_get_basis(fallback);
-    mspringi_put(to, &basis.scale, 1, sizeof basis.scale);
-    mspringi_put(to, &basis.turn_inertia, 1, sizeof basis.turn_inertia);
-    mspringi_put(to, &basis.tile_size, 1, sizeof basis.tile_size);
+static void hand(mspringi_io *io, record *r) {
+    MSPRINGI_HAND(io, r->dt);
+    mspringi_hand(io, &r->h, 3, sizeof(float)); // and those that follow
+    mspringi_hand(io, &r->policy, 5, sizeof(uint32_t));
+    if (r->policy != MSPRING_GUARD_IMPLICIT)
+        return;
+    MSPRINGI_HAND(io, r->fallback.scale);
+    MSPRINGI_HAND(io, r->fallback.turn_inertia);
+    MSPRINGI_HAND(io, r->fallback.tile_size);
 }
 
 static void guard_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_guard *guard = &network->guard;
-    const mspringi_any_shape *any_shape = &network->any_shape;
-    const bool outdated = any_shape->masses != network->edits.masses ||
-                          any_shape->values != network->edits.values || any_shape->growth != network->edits.growth;
-    const float floats[] = {guard->h, guard->global_damping, guard->peak};
-    const uint32_t words[] = {(uint32_t)network->settings.guard, 0, any_shape->spring,
-                              !any_shape->is_known ? UNKNOWN
-                              : outdated           ? OUTDATED
-                                                   : KNOWN,
-                              guard->fallback_steps};
-    mspringi_put(to, &any_shape->dt, 1, sizeof any_shape->dt);
-    mspringi_put(to, floats, sizeof floats / sizeof floats[0], sizeof floats[0]);
-    mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
+    const mspringi_any_shape *known = &network->any_shape;
+    const bool outdated = known->masses != network->edits.masses || known->values != network->edits.values ||
+                          known->growth != network->edits.growth;
+    mspringi_io io = mspringi_io_to(to);
+    record r = {.dt = known->dt,
+                .h = guard->h,
+                .global_damping = guard->global_damping,
+                .peak = guard->peak,
+                .policy = (uint32_t)network->settings.guard,
+                .spring = known->spring,
+                .state = !known->is_known ? UNKNOWN
+                         : outdated       ? OUTDATED
+                                          : KNOWN,
+                .fallback_steps = guard->fallback_steps};
     if (network->settings.guard == MSPRING_GUARD_IMPLICIT)
-        fallback_save(&network->fallback, to);
-}
-
-static const uint8_t *read_head(const uint8_t *from, guard_head *head) {
-    from = mspringi_get(from, &head->dt, 1, sizeof head->dt);
-    from = mspringi_get(from, &head->h, 1, sizeof head->h);
-    from = mspringi_get(from, &head->global_damping, 1, sizeof head->global_damping);
-    from = mspringi_get(from, &head->peak, 1, sizeof head->peak);
-    from = mspringi_get(from, &head->policy, 1, sizeof head->policy);
-    from = mspringi_get(from, &head->reserved, 1, sizeof head->reserved);
-    from = mspringi_get(from, &head->spring, 1, sizeof head->spring);
-    from = mspringi_get(from, &head->state, 1, sizeof head->state);
-    return mspringi_get(from, &head->fallback_steps, 1, sizeof head->fallback_steps);
-}
-
-static mspringi_solver_basis read_fallback(const uint8_t *from) {
-    mspringi_solver_basis basis;
-    from = mspringi_get(from, &basis.scale, 1, sizeof basis.scale);
-    from = mspringi_get(from, &basis.turn_inertia, 1, sizeof basis.turn_inertia);
-    (void)mspringi_get(from, &basis.tile_size, 1, sizeof basis.tile_size);
-    return basis;
+        r.fallback = mspringi_solver_get_basis(&network->fallback);
+    hand(&io, &r);
 }
 
 // See that there is a fallback with such tiles. One that is in use is not touched.
@@ -87,13 +67,10 @@ static mspring_result check_fallback(mspring_network *network, const mspringi_so
 
 static mspring_result guard_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_guard;
-    guard_head head = {0};
-    if (size < HEAD_BYTES)
-        return mspringi_section_check_size(network, section, size, HEAD_BYTES);
-    from = read_head(from, &head);
-    const bool falls_back = head.policy == MSPRING_GUARD_IMPLICIT;
-    mspring_result result =
-        mspringi_section_check_size(network, section, size, HEAD_BYTES + (falls_back ? FALLBACK_BYTES : 0));
+    mspringi_io io = mspringi_io_from(from, size);
+    record head;
+    hand(&io, &head);
+    mspring_result result = mspringi_section_end(network, section, &io);
     if (result != MSPRING_OK)
         return result;
     if (!(head.h >= 0.0f && head.h <= FLT_MAX && head.global_damping >= 0.0f && head.global_damping <= 1e6f &&
@@ -104,23 +81,16 @@ static mspring_result guard_check(mspring_network *network, const uint8_t *from,
     if (head.reserved != 0)
         return mspringi_section_fail(network, section, "bits that have no meaning are %#x",
                                      (unsigned)head.reserved);
-    mspringi_solver_basis fallback = {0};
-    if (falls_back)
-        fallback = read_fallback(from);
     if (mspringi_guard_looks((mspring_guard)head.policy))
         result = mspringi_border_reserve(network);
-    return result == MSPRING_OK && falls_back ? check_fallback(network, &fallback) : result;
-}
-
-static void fallback_load(mspring_network *network, const uint8_t *from) {
-    const mspringi_solver_basis basis = read_fallback(from);
-    network->fallback.ops->set_basis(network->fallback.object, network, &basis);
+    return result == MSPRING_OK && head.policy == MSPRING_GUARD_IMPLICIT ? check_fallback(network, &head.fallback)
+                                                                         : result;
 }
 
 static void guard_load(mspring_network *network, const uint8_t *from, size_t size) {
-    guard_head head;
-    (void)size;
-    from = read_head(from, &head);
+    mspringi_io io = mspringi_io_from(from, size);
+    record head;
+    hand(&io, &head);
     network->settings.guard = (mspring_guard)head.policy;
     network->guard = (mspringi_guard){.h = head.h,
                                       .global_damping = head.global_damping,
@@ -129,7 +99,7 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
                                       .place = INFINITY,
                                       .fallback_steps = head.fallback_steps};
     if (head.policy == MSPRING_GUARD_IMPLICIT)
-        fallback_load(network, from);
+        network->fallback.ops->set_basis(network->fallback.object, network, &head.fallback);
     // Edits of before and after are counted differently.
     mspringi_any_shape *any_shape = &network->any_shape;
     *any_shape = (mspringi_any_shape){
@@ -144,4 +114,4 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
 }
 
 const mspringi_section mspringi_section_guard = {
-    "guar", "guard of the stability border", false, guard_size, guard_save, guard_check, guard_load};
+    "guar", "guard of the stability border", false, NULL, guard_save, guard_check, guard_load};

@@ -81,19 +81,19 @@ typedef struct counts {
     uint64_t count, is_bent;
     double dissipated;
 } counts;
-enum { COUNT_BYTES = 24 };
 
-static size_t bent_size(const mspring_network *network) {
-    const mspringi_plastic *p = &network->plastic;
-    const size_t lengths = p->is_bent ? network->topology.reserve.spring_end * sizeof(float) : 0;
-    return p->yields ? COUNT_BYTES + lengths : 0;
+static void hand_counts(mspringi_io *io, counts *c) {
+    MSPRINGI_HAND(io, c->count);
+    MSPRINGI_HAND(io, c->is_bent);
+    MSPRINGI_HAND(io, c->dissipated);
 }
 
 static void bent_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_plastic *p = &network->plastic;
-    const uint64_t numbers[] = {p->count, p->is_bent};
-    mspringi_put(to, numbers, 2, sizeof numbers[0]);
-    mspringi_put(to, &p->dissipated, 1, sizeof p->dissipated);
+    mspringi_io io = mspringi_io_to(to);
+    if (!p->yields)
+        return;
+    hand_counts(&io, &(counts){p->count, p->is_bent, p->dissipated});
     for (mspring_id s = 0; p->is_bent && s < network->topology.reserve.spring_end; ++s) {
         const float length = mspringi_spring_exists(network, s)
                                  ? mspringi_place_own_length(network, network->topology.place_of_spring[s])
@@ -102,45 +102,38 @@ static void bent_save(const mspring_network *network, mspringi_writer *to) {
     }
 }
 
-static const uint8_t *read_counts(const uint8_t *from, counts *read) {
-    from = mspringi_get(from, &read->count, 1, sizeof read->count);
-    from = mspringi_get(from, &read->is_bent, 1, sizeof read->is_bent);
-    return mspringi_get(from, &read->dissipated, 1, sizeof read->dissipated);
-}
-
 static mspring_result bent_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_bent;
     const uint32_t springs = network->topology.reserve.spring_end;
+    mspringi_io io = mspringi_io_from(from, size);
     counts read;
     if (size == 0)
         return MSPRING_OK;
-    if (size < COUNT_BYTES)
-        return mspringi_section_fail(network, section, "they take %zu bytes", size);
-    from = read_counts(from, &read);
+    hand_counts(&io, &read);
     if (read.is_bent > 1 || !(read.dissipated >= 0.0))
         return mspringi_section_fail(network, section, "%g J were dissipated", read.dissipated);
-    mspring_result result = mspringi_section_check_size(network, section, size,
-                                                        COUNT_BYTES + (read.is_bent ? springs * sizeof(float) : 0));
-    for (mspring_id s = 0; result == MSPRING_OK && read.is_bent && s < springs; ++s) {
-        const float length = mspringi_float_at(from, s);
-        if (!mspringi_is_spring_value(MSPRINGI_REST_LENGTH, length))
-            result = mspringi_section_fail(network, section, "spring %u has rest length %g m", (unsigned)s,
-                                           (double)length);
+    for (mspring_id s = 0; read.is_bent && !io.is_short && s < springs; ++s) {
+        float length;
+        MSPRINGI_HAND(&io, length);
+        if (!io.is_short && !mspringi_is_spring_value(MSPRINGI_REST_LENGTH, length))
+            return mspringi_section_fail(network, section, "spring %u has rest length %g m", (unsigned)s,
+                                         (double)length);
     }
+    const mspring_result result = mspringi_section_end(network, section, &io);
     return result == MSPRING_OK ? mspringi_plastic_reserve(network) : result;
 }
 
 // Ramps have been ended, and come back after this.
 static void bent_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_plastic *p = &network->plastic;
-    counts read = {0};
+    mspringi_io io = mspringi_io_from(from, size);
+    counts read;
     if (!p->nominal)
         return;
-    if (size > 0)
-        from = read_counts(from, &read);
+    hand_counts(&io, &read);
     for (mspring_id s = 0; (p->is_bent || read.is_bent) && s < network->topology.spring_count; ++s) {
         const mspringi_place place = network->topology.place_of_spring[s];
-        const float length = read.is_bent ? mspringi_float_at(from, s) : p->nominal[place];
+        const float length = read.is_bent ? mspringi_float_at(io.from, s) : p->nominal[place];
         if (!mspringi_spring_exists(network, s) || mspringi_place_get(network, place).rest_length == length)
             continue;
         mspringi_place_set_rest_length(network, place, length);
@@ -153,4 +146,4 @@ static void bent_load(mspring_network *network, const uint8_t *from, size_t size
 }
 
 const mspringi_section mspringi_section_bent = {
-    "bent", "springs that have yielded", false, bent_size, bent_save, bent_check, bent_load};
+    "bent", "springs that have yielded", false, NULL, bent_save, bent_check, bent_load};

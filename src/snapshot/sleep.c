@@ -15,10 +15,17 @@ typedef struct sleep_head {
     uint32_t still_count; ///< islands that are awake and have been still
     uint32_t any_asleep, has_force;
 } sleep_head;
-#define HEAD_BYTES ((size_t)20)
+
+static void hand_head(mspringi_io *io, sleep_head *head) {
+    mspringi_hand(io, &head->speed, 2, sizeof(float)); // and those that follow
+    mspringi_hand(io, &head->still_count, 3, sizeof(uint32_t));
+}
 
 // A slot, and for how long its island has been still.
-#define STILL_BYTES (sizeof(uint32_t) + sizeof(double))
+static void hand_still(mspringi_io *io, uint32_t *slot, double *still) {
+    MSPRINGI_HAND(io, *slot);
+    MSPRINGI_HAND(io, *still);
+}
 
 static size_t words_of_particles(const mspring_network *network) {
     return ((size_t)network->topology.reserve.particle_end + 31) / 32;
@@ -26,12 +33,6 @@ static size_t words_of_particles(const mspring_network *network) {
 
 static size_t force_floats(const mspring_network *network, const sleep_head *head) {
     return head->has_force ? 2 * mspringi_slot_count(network) : 0;
-}
-
-static size_t size_of(const mspring_network *network, const sleep_head *head) {
-    return HEAD_BYTES + head->still_count * STILL_BYTES +
-           (head->any_asleep ? words_of_particles(network) * sizeof(uint32_t) : 0) +
-           force_floats(network, head) * sizeof(float);
 }
 
 static bool is_listed(const mspringi_sleep *sleep, uint32_t island) {
@@ -49,11 +50,6 @@ static sleep_head make_head(const mspring_network *network) {
     return head;
 }
 
-static size_t sleep_size(const mspring_network *network) {
-    const sleep_head head = make_head(network);
-    return size_of(network, &head);
-}
-
 // What has been disturbed wakes before the next step.
 static bool sleeps_on(const mspring_network *network, mspring_id particle) {
     const mspringi_sleep *sleep = &network->sleep;
@@ -64,17 +60,12 @@ static bool sleeps_on(const mspring_network *network, mspring_id particle) {
 
 static void sleep_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_sleep *sleep = &network->sleep;
-    const sleep_head head = make_head(network);
-    const float settings[] = {head.speed, head.time};
-    const uint32_t words[] = {head.still_count, head.any_asleep, head.has_force};
-    mspringi_put(to, settings, 2, sizeof settings[0]);
-    mspringi_put(to, words, 3, sizeof words[0]);
-    for (uint32_t i = 0; i < sleep->count; ++i) {
-        if (!is_listed(sleep, i))
-            continue;
-        mspringi_put(to, &sleep->lowest[i], 1, sizeof sleep->lowest[i]);
-        mspringi_put(to, &sleep->still[i], 1, sizeof sleep->still[i]);
-    }
+    mspringi_io io = mspringi_io_to(to);
+    sleep_head head = make_head(network);
+    hand_head(&io, &head);
+    for (uint32_t i = 0; i < sleep->count; ++i)
+        if (is_listed(sleep, i))
+            hand_still(&io, &sleep->lowest[i], &sleep->still[i]);
     const uint32_t particles = network->topology.reserve.particle_end;
     for (mspring_id first = 0; head.any_asleep && first < particles; first += 32) {
         uint32_t bits = 0;
@@ -85,25 +76,12 @@ static void sleep_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
 }
 
-static const uint8_t *read_head(const uint8_t *from, sleep_head *head) {
-    from = mspringi_get(from, &head->speed, 1, sizeof head->speed);
-    from = mspringi_get(from, &head->time, 1, sizeof head->time);
-    from = mspringi_get(from, &head->still_count, 1, sizeof head->still_count);
-    from = mspringi_get(from, &head->any_asleep, 1, sizeof head->any_asleep);
-    return mspringi_get(from, &head->has_force, 1, sizeof head->has_force);
-}
-
-static const uint8_t *read_still(const uint8_t *from, uint32_t *slot, double *still) {
-    from = mspringi_get(from, slot, 1, sizeof *slot);
-    return mspringi_get(from, still, 1, sizeof *still);
-}
-
-static mspring_result check_still(mspring_network *network, const uint8_t *from, uint32_t count) {
+static mspring_result check_still(mspring_network *network, mspringi_io *io, uint32_t count) {
     const size_t slots = mspringi_slot_count(network);
     for (uint32_t i = 0; i < count; ++i) {
         uint32_t slot;
         double still;
-        from = read_still(from, &slot, &still);
+        hand_still(io, &slot, &still);
         if (slot >= slots || !(still > 0.0 && still <= 1e300))
             return mspringi_section_fail(network, &mspringi_section_sleep, "slot %u has been still for %g s",
                                          (unsigned)slot, still);
@@ -113,49 +91,48 @@ static mspring_result check_still(mspring_network *network, const uint8_t *from,
 
 static mspring_result sleep_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_sleep;
+    mspringi_io io = mspringi_io_from(from, size);
     sleep_head head;
-    if (size < HEAD_BYTES)
-        return mspringi_section_check_size(network, section, size, HEAD_BYTES);
-    from = read_head(from, &head);
+    hand_head(&io, &head);
     if (!(head.speed >= 0.0f && head.speed <= 1e15f && head.time >= 0.0f && head.time <= 1e6f) ||
         head.any_asleep > (head.speed > 0.0f) || head.has_force > head.any_asleep ||
         head.still_count > (head.speed > 0.0f ? network->topology.reserve.particle_end : 0))
         return mspringi_section_fail(network, section, "%u islands below %g m/s for less than %g s",
                                      (unsigned)head.still_count, (double)head.speed, (double)head.time);
-    mspring_result result = mspringi_section_check_size(network, section, size, size_of(network, &head));
+    mspring_result result = check_still(network, &io, head.still_count);
+    for (size_t i = 0; head.any_asleep && i < words_of_particles(network); ++i)
+        mspringi_hand(&io, &(uint32_t){0}, 1, sizeof(uint32_t));
+    for (size_t i = 0; result == MSPRING_OK && i < force_floats(network, &head); ++i) {
+        float force;
+        MSPRINGI_HAND(&io, force);
+        if (!isfinite(force))
+            result = mspringi_section_fail(network, section, "a force is %g N", (double)force);
+    }
     if (result == MSPRING_OK)
-        result = check_still(network, from, head.still_count);
-    if (result != MSPRING_OK)
-        return result;
-    const size_t floats = force_floats(network, &head);
-    from += size - HEAD_BYTES - floats * sizeof(float);
-    for (size_t i = 0; result == MSPRING_OK && i < floats; ++i)
-        if (!isfinite(mspringi_float_at(from, i)))
-            result = mspringi_section_fail(network, section, "a force is %g N", (double)mspringi_float_at(from, i));
+        result = mspringi_section_end(network, section, &io);
     return result == MSPRING_OK && head.speed > 0.0f ? mspringi_sleep_reserve(network) : result;
 }
 
 // Mark the islands all of whose particles sleep.
-static const uint8_t *mark_asleep(const mspring_network *network, const uint8_t *from) {
+static void mark_asleep(const mspring_network *network, mspringi_io *io) {
     const mspringi_sleep *sleep = &network->sleep;
     const uint32_t particles = network->topology.reserve.particle_end;
     memset(sleep->mark, 1, sleep->count * sizeof *sleep->mark);
     for (mspring_id first = 0; first < particles; first += 32) {
         uint32_t bits;
-        from = mspringi_get(from, &bits, 1, sizeof bits);
+        MSPRINGI_HAND(io, bits);
         for (mspring_id p = first; p < first + 32 && p < particles; ++p)
             if (!(bits >> (p - first) & 1) && mspringi_particle_exists(network, p))
                 sleep->mark[sleep->island[network->topology.slot_of_particle[p]]] = 0;
     }
-    return from;
 }
 
 // After all that could disturb it.
 static void sleep_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_sleep *sleep = &network->sleep;
+    mspringi_io io = mspringi_io_from(from, size);
     sleep_head head;
-    (void)size;
-    from = read_head(from, &head);
+    hand_head(&io, &head);
     network->settings.sleep_speed = head.speed;
     network->settings.sleep_time = head.time;
     sleep->count = sleep->sleeping = 0;
@@ -166,17 +143,16 @@ static void sleep_load(mspring_network *network, const uint8_t *from, size_t siz
     for (uint32_t i = 0; i < head.still_count; ++i) {
         uint32_t slot;
         double still;
-        from = read_still(from, &slot, &still);
+        hand_still(&io, &slot, &still);
         if (sleep->island[slot] != MSPRING_NONE)
             sleep->still[sleep->island[slot]] = still;
     }
     if (!head.any_asleep)
         return;
-    from = mark_asleep(network, from);
+    mark_asleep(network, &io);
     mspringi_sleep_fall(network, (mspringi_field){NULL, NULL});
-    mspringi_get(from, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
+    mspringi_hand(&io, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
     sleep->has_force = head.has_force;
 }
 
-const mspringi_section mspringi_section_sleep = {"slee",     "sleep",     false,     sleep_size,
-                                                 sleep_save, sleep_check, sleep_load};
+const mspringi_section mspringi_section_sleep = {"slee", "sleep", false, NULL, sleep_save, sleep_check, sleep_load};

@@ -41,6 +41,14 @@ mspring_result mspringi_section_check_size(mspring_network *network, const mspri
                : mspringi_section_fail(network, section, "they take %zu bytes instead of %zu", size, expected);
 }
 
+mspring_result mspringi_section_end(mspring_network *network, const mspringi_section *section,
+                                    const mspringi_io *io) {
+    return !io->is_short && io->left == 0
+               ? MSPRING_OK
+               : mspringi_section_fail(network, section, "they take %zu bytes, which are too %s", io->size,
+                                       io->is_short ? "few" : "many");
+}
+
 static mspring_result fail(mspring_network *network, const char *what) {
     return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "the snapshot %s", what);
 }
@@ -49,7 +57,13 @@ static mspring_result fail(mspring_network *network, const char *what) {
 
 static size_t section_size(const mspring_network *network, const mspringi_section *section,
                            mspring_snapshot_contents contents) {
-    return section->parameters && contents == MSPRING_SNAPSHOT_FRAME ? 0 : section->size(network);
+    mspringi_writer counts = {0};
+    if (section->parameters && contents == MSPRING_SNAPSHOT_FRAME)
+        return 0;
+    if (section->size)
+        return section->size(network);
+    section->save(network, &counts);
+    return counts.counted;
 }
 
 static size_t total_size(const mspring_network *network, mspring_snapshot_contents contents, uint32_t *count) {

@@ -2,13 +2,10 @@
 #include "store/sections.h"
 
 // A solver that carries nothing has no section.
-static size_t implicit_size(const mspring_network *network) {
-    const mspringi_solver *solver = &network->solver;
-    return solver->ops->size ? solver->ops->size(network, solver->object) : 0;
-}
-
 static void implicit_save(const mspring_network *network, mspringi_writer *to) {
-    network->solver.ops->save(network, network->solver.object, to);
+    const mspringi_solver *solver = &network->solver;
+    if (solver->ops->save)
+        solver->ops->save(network, solver->object, to);
 }
 
 static mspring_result implicit_check(mspring_network *network, const uint8_t *from, size_t size) {
@@ -25,29 +22,23 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
         network->solver.ops->load(network, network->solver.object, from, size);
 }
 
-const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,        implicit_size,
+const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,        NULL,
                                                     implicit_save, implicit_check,    implicit_load};
 
 /* --------------------------------------------------------------------------------------------------- precision */
 
 // There if low words count in the lengths of springs, which is the network's own for good: 1.
-#define PRECISION_BYTES ((size_t)4)
-
-static size_t precision_size(const mspring_network *network) {
-    return network->is_precise ? PRECISION_BYTES : 0;
-}
-
 static void precision_save(const mspring_network *network, mspringi_writer *to) {
-    const uint32_t is_precise = network->is_precise;
-    mspringi_put(to, &is_precise, 1, sizeof is_precise);
+    if (network->is_precise)
+        mspringi_put(to, &(uint32_t){1}, 1, sizeof(uint32_t));
 }
 
 static mspring_result precision_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_precision;
-    uint32_t is_precise = 0;
-    if (size == PRECISION_BYTES)
-        mspringi_get(from, &is_precise, 1, sizeof is_precise);
-    if (size > 0 && is_precise != 1)
+    mspringi_io io = mspringi_io_from(from, size);
+    uint32_t is_precise;
+    MSPRINGI_HAND(&io, is_precise);
+    if (size > 0 && (io.left > 0 || is_precise != 1))
         return mspringi_section_fail(network, section, "it takes %zu bytes and is %u", size, (unsigned)is_precise);
     if ((size > 0) == network->is_precise)
         return MSPRING_OK;
@@ -62,5 +53,5 @@ static void precision_load(mspring_network *network, const uint8_t *from, size_t
     (void)size;
 }
 
-const mspringi_section mspringi_section_precision = {"prec",         "precision",     false,         precision_size,
+const mspringi_section mspringi_section_precision = {"prec",         "precision",     false,         NULL,
                                                      precision_save, precision_check, precision_load};

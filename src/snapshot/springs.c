@@ -250,40 +250,29 @@ const mspringi_section mspringi_section_stressed = {"stsd",        "stressed spr
 
 /* ------------------------------------------------------------------------------------------------------ ramps */
 
-#define RAMP_BYTES ((size_t)32)
 #define LONGEST_SPRING 1e13 // m, between the corners of where particles may be
 
-static size_t ramps_size(const mspring_network *network) {
-    return network->ramps.count * RAMP_BYTES;
+static void hand_ramp(mspringi_io *io, mspringi_ramp *ramp) {
+    MSPRINGI_HAND(io, ramp->spring);
+    MSPRINGI_HAND(io, ramp->to);
+    MSPRINGI_HAND(io, ramp->from);
+    MSPRINGI_HAND(io, ramp->seconds);
+    MSPRINGI_HAND(io, ramp->passed);
 }
 
 static void ramps_save(const mspring_network *network, mspringi_writer *to) {
-    for (size_t i = 0; i < network->ramps.count; ++i) {
-        const mspringi_ramp *ramp = &network->ramps.list[i];
-        mspringi_put(to, &ramp->spring, 1, sizeof ramp->spring);
-        mspringi_put(to, &ramp->to, 1, sizeof ramp->to);
-        mspringi_put(to, &ramp->from, 1, sizeof ramp->from);
-        mspringi_put(to, &ramp->seconds, 1, sizeof ramp->seconds);
-        mspringi_put(to, &ramp->passed, 1, sizeof ramp->passed);
-    }
-}
-
-static const uint8_t *read_ramp(const uint8_t *from, mspringi_ramp *ramp) {
-    from = mspringi_get(from, &ramp->spring, 1, sizeof ramp->spring);
-    from = mspringi_get(from, &ramp->to, 1, sizeof ramp->to);
-    from = mspringi_get(from, &ramp->from, 1, sizeof ramp->from);
-    from = mspringi_get(from, &ramp->seconds, 1, sizeof ramp->seconds);
-    return mspringi_get(from, &ramp->passed, 1, sizeof ramp->passed);
+    mspringi_io io = mspringi_io_to(to);
+    for (size_t i = 0; i < network->ramps.count; ++i)
+        hand_ramp(&io, &network->ramps.list[i]);
 }
 
 static mspring_result ramps_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_ramps;
-    const size_t count = size / RAMP_BYTES;
-    if (size % RAMP_BYTES != 0 || count > network->topology.reserve.spring_end)
-        return mspringi_section_fail(network, section, "they take %zu bytes", size);
-    for (size_t i = 0; i < count; ++i) {
+    mspringi_io io = mspringi_io_from(from, size);
+    uint32_t count = 0;
+    for (; io.left > 0 && !io.is_short && count <= network->topology.reserve.spring_end; ++count) {
         mspringi_ramp ramp;
-        from = read_ramp(from, &ramp);
+        hand_ramp(&io, &ramp);
         if (!(ramp.spring < network->topology.reserve.spring_end && ramp.from > 0.0 &&
               ramp.from <= LONGEST_SPRING && mspringi_is_spring_value(MSPRINGI_REST_LENGTH, ramp.to) &&
               ramp.seconds > 0.0 && ramp.seconds <= MSPRINGI_LONGEST_RAMP && ramp.passed >= 0.0 &&
@@ -292,15 +281,16 @@ static mspring_result ramps_check(mspring_network *network, const uint8_t *from,
                                          (unsigned)ramp.spring, ramp.from, (double)ramp.to, ramp.passed,
                                          ramp.seconds);
     }
-    return count > 0 ? mspringi_ramps_reserve(network, (uint32_t)count) : MSPRING_OK;
+    const mspring_result result = mspringi_section_end(network, section, &io);
+    return result == MSPRING_OK && count > 0 ? mspringi_ramps_reserve(network, count) : result;
 }
 
 static void ramps_load(mspring_network *network, const uint8_t *from, size_t size) {
-    // One of a spring that is not there can only be forged: it has no ends to wake.
+    mspringi_io io = mspringi_io_from(from, size);
     network->ramps.count = 0;
-    for (size_t i = 0; i < size / RAMP_BYTES; ++i) {
+    while (io.left > 0) { // One of a spring that is not there can only be forged: it has no ends to wake.
         mspringi_ramp ramp;
-        from = read_ramp(from, &ramp);
+        hand_ramp(&io, &ramp);
         if (mspringi_spring_exists(network, ramp.spring))
             mspringi_ramp_add(network, &ramp);
     }
@@ -308,4 +298,4 @@ static void ramps_load(mspring_network *network, const uint8_t *from, size_t siz
 }
 
 const mspringi_section mspringi_section_ramps = {
-    "ramp", "springs on the way to their rest lengths", false, ramps_size, ramps_save, ramps_check, ramps_load};
+    "ramp", "springs on the way to their rest lengths", false, NULL, ramps_save, ramps_check, ramps_load};

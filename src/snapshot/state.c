@@ -17,48 +17,30 @@ typedef struct settings {
     float recentre_distance, relative_h, gravity_x, gravity_y, global_damping, max_speed, relax;
     uint32_t substeps, max_substeps, auto_substeps;
 } settings;
-#define SETTINGS_BYTES ((size_t)56)
 
-static size_t settings_size(const mspring_network *network) {
-    (void)network;
-    return SETTINGS_BYTES;
+static void hand_settings(mspringi_io *io, settings *s) {
+    MSPRINGI_HAND(io, s->origin_x);
+    MSPRINGI_HAND(io, s->origin_y);
+    mspringi_hand(io, &s->recentre_distance, 7, sizeof(float)); // and those that follow
+    mspringi_hand(io, &s->substeps, 3, sizeof(uint32_t));
 }
 
 static void settings_save(const mspring_network *network, mspringi_writer *to) {
-    const double origin[] = {network->origin_x, network->origin_y};
-    const float values[] = {network->recentre_distance,       network->relative_h,
-                            network->settings.gravity_x,      network->settings.gravity_y,
-                            network->settings.global_damping, network->settings.max_speed,
-                            network->settings.relax_fraction};
-    const uint32_t counts[] = {network->substeps, network->max_substeps, network->auto_substeps};
-    mspringi_put(to, origin, 2, sizeof origin[0]);
-    mspringi_put(to, values, 7, sizeof values[0]);
-    mspringi_put(to, counts, 3, sizeof counts[0]);
-}
-
-static settings read_settings(const uint8_t *from) {
-    settings s;
-    from = mspringi_get(from, &s.origin_x, 1, sizeof s.origin_x);
-    from = mspringi_get(from, &s.origin_y, 1, sizeof s.origin_y);
-    from = mspringi_get(from, &s.recentre_distance, 1, sizeof s.recentre_distance);
-    from = mspringi_get(from, &s.relative_h, 1, sizeof s.relative_h);
-    from = mspringi_get(from, &s.gravity_x, 1, sizeof s.gravity_x);
-    from = mspringi_get(from, &s.gravity_y, 1, sizeof s.gravity_y);
-    from = mspringi_get(from, &s.global_damping, 1, sizeof s.global_damping);
-    from = mspringi_get(from, &s.max_speed, 1, sizeof s.max_speed);
-    from = mspringi_get(from, &s.relax, 1, sizeof s.relax);
-    from = mspringi_get(from, &s.substeps, 1, sizeof s.substeps);
-    from = mspringi_get(from, &s.max_substeps, 1, sizeof s.max_substeps);
-    mspringi_get(from, &s.auto_substeps, 1, sizeof s.auto_substeps);
-    return s;
+    mspringi_io io = mspringi_io_to(to);
+    hand_settings(&io, &(settings){network->origin_x, network->origin_y, network->recentre_distance,
+                                   network->relative_h, network->settings.gravity_x, network->settings.gravity_y,
+                                   network->settings.global_damping, network->settings.max_speed,
+                                   network->settings.relax_fraction, network->substeps, network->max_substeps,
+                                   network->auto_substeps});
 }
 
 static mspring_result settings_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_settings;
-    mspring_result result = mspringi_section_check_size(network, section, size, SETTINGS_BYTES);
-    if (result != MSPRING_OK)
-        return result;
-    const settings s = read_settings(from);
+    mspringi_io io = mspringi_io_from(from, size);
+    settings s;
+    hand_settings(&io, &s);
+    if (mspringi_section_end(network, section, &io) != MSPRING_OK)
+        return MSPRING_ERROR_SNAPSHOT;
     // A network may have walked: its origin is no further than a particle may be from where it was put.
     const double largest = 2.0 * MSPRING_MAX_COORDINATE;
     if (!(fabs(s.origin_x) <= largest && fabs(s.origin_y) <= largest && s.recentre_distance > 0.0f))
@@ -80,8 +62,9 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
 }
 
 static void settings_load(mspring_network *network, const uint8_t *from, size_t size) {
-    (void)size;
-    const settings s = read_settings(from);
+    mspringi_io io = mspringi_io_from(from, size);
+    settings s;
+    hand_settings(&io, &s);
     mspringi_origin_set(network, s.origin_x, s.origin_y);
     network->recentre_distance = s.recentre_distance;
     network->settings.gravity_x = s.gravity_x;
@@ -95,41 +78,31 @@ static void settings_load(mspring_network *network, const uint8_t *from, size_t 
     mspringi_derive_relative(network, s.relative_h);
 }
 
-const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,        settings_size,
+const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,        NULL,
                                                     settings_save, settings_check, settings_load};
 
 /* ---------------------------------------------------------------------------------------------- steps so far */
 
-#define STEPS_BYTES ((size_t)28)
-
-static size_t steps_size(const mspring_network *network) {
-    (void)network;
-    return STEPS_BYTES;
+static void hand_steps(mspringi_io *io, mspringi_steps *steps) {
+    MSPRINGI_HAND(io, steps->count);
+    MSPRINGI_HAND(io, steps->fallback_count);
+    MSPRINGI_HAND(io, steps->time);
+    MSPRINGI_HAND(io, steps->substeps);
 }
 
 static void steps_save(const mspring_network *network, mspringi_writer *to) {
-    const mspringi_steps *steps = &network->steps;
-    const uint64_t counts[] = {steps->count, steps->fallback_count};
-    mspringi_put(to, counts, 2, sizeof counts[0]);
-    mspringi_put(to, &steps->time, 1, sizeof steps->time);
-    mspringi_put(to, &steps->substeps, 1, sizeof steps->substeps);
-}
-
-static mspringi_steps read_steps(const uint8_t *from) {
-    mspringi_steps steps = {.result = MSPRING_OK, .outcome = mspringi_outcome_none()};
-    from = mspringi_get(from, &steps.count, 1, sizeof steps.count);
-    from = mspringi_get(from, &steps.fallback_count, 1, sizeof steps.fallback_count);
-    from = mspringi_get(from, &steps.time, 1, sizeof steps.time);
-    mspringi_get(from, &steps.substeps, 1, sizeof steps.substeps);
-    return steps;
+    mspringi_io io = mspringi_io_to(to);
+    mspringi_steps steps = network->steps;
+    hand_steps(&io, &steps);
 }
 
 static mspring_result steps_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_steps;
-    mspring_result result = mspringi_section_check_size(network, section, size, STEPS_BYTES);
-    if (result != MSPRING_OK)
-        return result;
-    const mspringi_steps steps = read_steps(from);
+    mspringi_io io = mspringi_io_from(from, size);
+    mspringi_steps steps;
+    hand_steps(&io, &steps);
+    if (mspringi_section_end(network, section, &io) != MSPRING_OK)
+        return MSPRING_ERROR_SNAPSHOT;
     const bool has_stepped = steps.count > 0;
     if (!(steps.time >= 0.0 && steps.time <= DBL_MAX) || (steps.time > 0.0) != has_stepped ||
         (steps.substeps > 0) != has_stepped || steps.substeps > MSPRING_MAX_SUBSTEPS ||
@@ -142,12 +115,12 @@ static mspring_result steps_check(mspring_network *network, const uint8_t *from,
 }
 
 static void steps_load(mspring_network *network, const uint8_t *from, size_t size) {
-    (void)size;
-    network->steps = read_steps(from);
+    mspringi_io io = mspringi_io_from(from, size);
+    network->steps = (mspringi_steps){.result = MSPRING_OK, .outcome = mspringi_outcome_none()};
+    hand_steps(&io, &network->steps);
 }
 
-const mspringi_section mspringi_section_steps = {"step",     "steps",     false,     steps_size,
-                                                 steps_save, steps_check, steps_load};
+const mspringi_section mspringi_section_steps = {"step", "steps", false, NULL, steps_save, steps_check, steps_load};
 
 /* ------------------------------------------------------------------------------------------------ whole arrays */
 

@@ -54,6 +54,10 @@ void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t 
     const uint8_t *from = values;
     if (count == 0)
         return;
+    if (!to->sum) {
+        to->counted += count * width;
+        return;
+    }
     if (!MSPRINGI_BIG_ENDIAN_HOST) {
         put_bytes(to, from, count * width);
         return;
@@ -71,6 +75,20 @@ void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t 
 void mspringi_put_zeros(mspringi_writer *to, size_t count) {
     for (size_t i = 0; i < count; ++i)
         mspringi_put(to, &(uint8_t){0}, 1, 1);
+}
+
+void mspringi_hand(mspringi_io *io, void *values, size_t count, size_t width) {
+    if (io->to) {
+        mspringi_put(io->to, values, count, width);
+        return;
+    }
+    io->is_short = io->is_short || io->left < count * width;
+    if (io->is_short) {
+        memset(values, 0, count * width);
+        return;
+    }
+    io->from = mspringi_get(io->from, values, count, width);
+    io->left -= count * width;
 }
 
 void mspringi_put_header(mspringi_writer *to, const mspringi_snapshot_header *header) {

@@ -38,8 +38,9 @@ static inline size_t mspringi_round_up(size_t size, size_t unit) {
 
 uint64_t mspringi_checksum_value(const mspringi_checksum *checksum);
 
-/// Where the next byte goes. The checksum is taken on the way.
+/// Where the next byte goes. The checksum is taken on the way. One of zeros only counts.
 typedef struct mspringi_writer {
+    size_t counted;
     uint8_t *at;
     const uint8_t *unsummed; ///< the unit that is begun
     mspringi_checksum_fn sum;
@@ -66,6 +67,18 @@ static inline const uint8_t *mspringi_get(const uint8_t *from, void *values, siz
         memcpy(values, from, count * width);
     return from + count * width;
 }
+
+/// Values on their way into a snapshot or out of it. A function that hands them on says once what a record consists
+/// of: saving, loading and counting are three ways to call it.
+typedef struct mspringi_io {
+    mspringi_writer *to; ///< NULL: they are read
+    const uint8_t *from;
+    size_t size, left; ///< bytes there are, and of these to be read
+    bool is_short; ///< there were too few: the rest is 0
+} mspringi_io;
+
+void mspringi_hand(mspringi_io *io, void *values, size_t count, size_t width);
+#define MSPRINGI_HAND(io, value) mspringi_hand(io, &(value), 1, sizeof(value))
 
 void mspringi_put_header(mspringi_writer *to, const mspringi_snapshot_header *header);
 /// @return false if this does not begin as snapshots do; at least MSPRINGI_SNAPSHOT_HEADER_BYTES must be there

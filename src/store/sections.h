@@ -11,12 +11,20 @@
 #include "store/format.h"
 #include "store/network.h"
 
+static inline mspringi_io mspringi_io_to(mspringi_writer *to) {
+    return (mspringi_io){.to = to};
+}
+static inline mspringi_io mspringi_io_from(const uint8_t *from, size_t size) {
+    return (mspringi_io){.from = from, .size = size, .left = size};
+}
+
 typedef struct mspringi_section {
     char tag[5];      ///< 4 letters
     const char *name; ///< what is in it, for messages
     bool parameters;  ///< only edits change it: left out of MSPRING_SNAPSHOT_FRAME
 
-    /// Bytes, 0 if the network has none of it: then there is no such section.
+    /// Writes nothing if the network has none of it: then there is no such section. size: what that comes to, for
+    /// those that would take long only to be counted; NULL: they are saved to a writer that counts.
     size_t (*size)(const mspring_network *network);
     void (*save)(const mspring_network *network, mspringi_writer *to);
 
@@ -81,6 +89,9 @@ mspring_result mspringi_section_fail(mspring_network *network, const mspringi_se
 /// Refuse another size than the expected one.
 mspring_result mspringi_section_check_size(mspring_network *network, const mspringi_section *section, size_t size,
                                            size_t expected);
+/// Refuse a section of which too little was there, or something is left.
+mspring_result mspringi_section_end(mspring_network *network, const mspringi_section *section,
+                                    const mspringi_io *io);
 
 /// Value number index of a section's array.
 static inline float mspringi_float_at(const uint8_t *from, size_t index) {

@@ -106,7 +106,6 @@ struct mspringi_solver_ops {
 
     // describe: what a plan says of it. The others are those of a snapshot's section (store/sections.h).
     void (*describe)(const void *object, mspring_plan *plan);
-    size_t (*size)(const mspring_network *network, const void *object);
     void (*save)(const mspring_network *network, const void *object, struct mspringi_writer *to);
     mspring_result (*check)(mspring_network *network, const void *object, const uint8_t *from, size_t size);
     void (*load)(mspring_network *network, void *object, const uint8_t *from, size_t size);

@@ -35,7 +35,7 @@ static laid_out lay_out_for(const mspring_builder *builder, uint32_t workers, ui
     laid_out out = {.parts = 0};
     mspringi_message message = {0};
     mspringi_assembly *begun = NULL;
-    check_ok(mspringi_topology_begin(builder, &reserve, false, MSPRINGI_HERDS_OF_WRECKAGE, workers, lanes, memory,
+    check_ok(mspringi_topology_begin(builder, &reserve, false, true, workers, lanes, memory,
                                      &message, &begun));
     for (bool is_done = false; !is_done; out.parts++) {
         check_ok(mspringi_topology_run(begun, &is_done));

@@ -298,7 +298,7 @@ static void failing_memory_is_said_and_freed(void **state) {
         check_ok(mspringi_memory_init(&memory, &allocator, &message));
         watched.calls = 0;
         watched.fail_at = n;
-        const mspring_result result = mspringi_topology_create(&topology, builder, &reserve, MSPRINGI_NO_HERDS, 1,
+        const mspring_result result = mspringi_topology_create(&topology, builder, &reserve, false, 1,
                                                                MSPRINGI_WIDTH, &memory, &message);
         if (n == 0) {
             check_ok(result);

@@ -58,8 +58,7 @@ static int64_t offset_between(uint32_t from_block, uint32_t to_block) {
 // Where the span of herds that begins with a group ends: herds are whole in it.
 static uint32_t end_of_herds(const mspringi_assembly *a, uint32_t first) {
     uint32_t end = first + 1;
-    while (end < a->herds.group_count &&
-           (end - first < MSPRINGI_HERD_SPAN || a->herds.rung_above[end] != MSPRINGI_ROOT))
+    while (end < a->herds.group_count && (end - first < MSPRINGI_HERD_SPAN || !a->herds.is_first[end]))
         ++end;
     return end;
 }

@@ -51,7 +51,7 @@ struct mspringi_assembly {
     uint32_t home_blocks;        ///< blocks of the web that have been given to rows
     size_t row_capacity, span_capacity;
     bool is_checked; ///< no two springs join the same particles
-    mspringi_herding herding;
+    bool has_herds;
     mspringi_cursor cursor;
     uint32_t loose;        ///< the next loose slot
     uint32_t web_place;    ///< of the web's last particle so far

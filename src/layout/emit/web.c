@@ -193,16 +193,6 @@ static uint32_t take_entry(const mspringi_weaving *w, uint32_t node) {
     return entry_at(web, node, has_upright + w->used[node]++);
 }
 
-// The entry of a node for the spring to another. Those of a herd of trees are where their shape has them.
-static uint32_t find_entry(const mspringi_weaving *w, uint32_t node, uint32_t other) {
-    const uint32_t group = node / MSPRINGI_WIDTH, other_group = other / MSPRINGI_WIDTH;
-    const uint32_t lower = group > other_group ? group : other_group;
-    if (node >= w->own_count || group < w->web->first_herd)
-        return take_entry(w, node);
-    const uint32_t rung = w->rung_above[lower - w->web->first_herd];
-    return rung == MSPRINGI_BY_ORDER ? take_entry(w, node) : entry_at(w->web, node, lower == group ? 0 : rung);
-}
-
 void mspringi_web_fill(const mspringi_weaving *w, uint32_t first, uint32_t end) {
     const mspringi_web *web = w->web;
     for (uint32_t s = first; s < end; ++s) {
@@ -213,8 +203,8 @@ void mspringi_web_fill(const mspringi_weaving *w, uint32_t first, uint32_t end) 
             web->neighbour[web->entry[2 * s]] = low + MSPRINGI_WIDTH;
             continue;
         }
-        web->entry[2 * s] = find_entry(w, node_a, node_b);
-        web->entry[2 * s + 1] = find_entry(w, node_b, node_a);
+        web->entry[2 * s] = take_entry(w, node_a);
+        web->entry[2 * s + 1] = take_entry(w, node_b);
         web->neighbour[web->entry[2 * s]] = node_b;
         web->neighbour[web->entry[2 * s + 1]] = node_a;
         if (web->is_read)

@@ -29,7 +29,6 @@
 #define MSPRINGI_WIDTH 16
 
 /// Particles of the largest tree, and of the largest other component, that may stand in a herd.
-#define MSPRINGI_LARGEST_TREE 8
 #define MSPRINGI_LARGEST_COPY 256
 /// Ends of springs that such a component may have: a carry row holds a force for each.
 #define MSPRINGI_MOST_ENDS 2048
@@ -67,7 +66,6 @@ typedef struct mspringi_weaving {
     uint32_t first_slot, own_count;         ///< the slots of the web rows
     uint32_t block_count;                   ///< of all slots
     uint32_t herd_groups, herd_springs;     ///< the last of these, in herds, and springs of one component of each
-    const uint8_t *rung_above;              ///< as in mspringi_herds
     uint32_t *strip_of_block;               ///< [block_count] in what strip another slot is; freed with the rest
     uint32_t *degree, *node_of_slot, *used; ///< by slot, by slot and by node
     uint32_t homed_count;                   ///< the first of these, that have a home

@@ -2,14 +2,11 @@
 ///
 /// Two components are equal if a search from the lowest id of each, which goes through the springs of a particle by
 /// rising id, meets the same graph. So copies that were built by the same calls are found, wherever they lie and
-/// whatever their springs are, without comparing graphs of any order. (Trees that are left of a wreck have no such
-/// order: herds.c looks for those.)
+/// whatever their springs are, without comparing graphs of any order.
 ///
 /// Each shape is laid out alone to see what it consists of. One that is all lattice or all strand stays so: rows of
 /// lattices side by side take as long for 3x3 particles, and 0.7 of the time for 6x6. A spring that is left over
 /// costs as much as twenty of a lattice's where it pulls at rows, and as much as two in a herd.
-#include <string.h>
-
 #include "base/mix.h"
 #include "layout/emit/assembly.h"
 
@@ -172,8 +169,8 @@ static mspring_result lay_out(mspringi_assembly *a, struct mspring_builder *alon
     const mspringi_reserve reserve = {.particle_end = (uint32_t)alone->particle_count,
                                       .spring_end = (uint32_t)alone->spring_count};
     mspringi_assembly *begun = NULL;
-    mspring_result result = mspringi_topology_begin(alone, &reserve, true, MSPRINGI_NO_HERDS, 1, a->lanes,
-                                                    a->memory, a->message, &begun);
+    mspring_result result =
+        mspringi_topology_begin(alone, &reserve, true, false, 1, a->lanes, a->memory, a->message, &begun);
     for (bool is_done = false; result == MSPRING_OK && !is_done;)
         result = mspringi_topology_run(begun, &is_done);
     *irregular = result == MSPRING_OK ? begun->made.leftover_count : 0;
@@ -253,7 +250,7 @@ static void stand(mspringi_assembly *a, const uint32_t *chosen) {
     mspringi_herds *herds = &a->herds;
     const uint32_t size = size_of(&a->copies, chosen[0]);
     for (uint32_t node = 0; node < size; ++node, ++herds->group_count) {
-        herds->rung_above[herds->group_count] = node == 0 ? MSPRINGI_ROOT : MSPRINGI_BY_ORDER;
+        herds->is_first[herds->group_count] = node == 0;
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
             const uint32_t p = a->copies.in_order[a->copies.first[chosen[lane]] + node];
             herds->particles[herds->group_count * MSPRINGI_WIDTH + lane] = p;
@@ -272,19 +269,11 @@ static void mark_left(mspringi_assembly *a, mspringi_row_kind kind) {
 
 mspring_result mspringi_copies_fill(mspringi_assembly *a) {
     mspringi_herds *herds = &a->herds;
-    const uint32_t before = herds->group_count, groups = before + a->copies.group_count;
     if (a->copies.group_count > 0) {
-        uint32_t *particles = mspringi_alloc(a->memory, (size_t)groups * MSPRINGI_WIDTH, sizeof *particles);
-        uint8_t *rung_above = mspringi_alloc(a->memory, groups, sizeof *rung_above);
-        if (before > 0 && particles && rung_above) {
-            memcpy(particles, herds->particles, (size_t)before * MSPRINGI_WIDTH * sizeof *particles);
-            memcpy(rung_above, herds->rung_above, before * sizeof *rung_above);
-        }
-        mspringi_free(a->memory, herds->particles);
-        mspringi_free(a->memory, herds->rung_above);
-        herds->particles = particles;
-        herds->rung_above = rung_above;
-        if (!particles || !rung_above)
+        herds->particles =
+            mspringi_alloc(a->memory, (size_t)a->copies.group_count * MSPRINGI_WIDTH, sizeof *herds->particles);
+        herds->is_first = mspringi_alloc(a->memory, a->copies.group_count, sizeof *herds->is_first);
+        if (!herds->particles || !herds->is_first)
             return out_of_memory(&a->copies, a->message);
     }
     for (uint32_t i = 0; i < a->copies.chosen_count; i += MSPRINGI_WIDTH)

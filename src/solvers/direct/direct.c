@@ -429,8 +429,7 @@ static void fill_twice(const mspring_network *network, double added) {
         else
             add_any_edges(n, (uint32_t)first);
     }
-    mspringi_floor_add_nodes(network, node.xx, node.xy, node.yy);
-    mspringi_grips_add_nodes(network, node.xx, node.yy);
+    mspringi_holds_add_nodes(network, node.xx, node.xy, node.yy);
     for (size_t i = 0; i < slots; ++i) {
         const double mass = n->mass[i] > 0.0f ? (double)n->mass[i] : PINNED_MASS;
         const double on_top = mass + added * (node.xx[i] + node.yy[i]);

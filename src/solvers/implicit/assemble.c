@@ -256,8 +256,7 @@ double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate
     if (has_others) {
         if (mate->index == 0)
             n->leftover_product = multiply_leftover(network, n->direction, n->product) +
-                                  mspringi_floor_multiply(network, n->direction, n->product) +
-                                  mspringi_grips_multiply(network, n->direction, n->product) +
+                                  mspringi_holds_multiply(network, n->direction, n->product) +
                                   mspringi_angles_multiply(network, n->direction, n->product) +
                                   mspringi_bodies_multiply(network, n->direction, n->product);
         mspringi_meet(mate);

@@ -64,41 +64,10 @@ void mspringi_grips_add_terms(mspring_network *network, float h, uint32_t pass) 
     }
 }
 
-double mspringi_grips_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
-    double sum = 0.0;
-    uint32_t slot;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        if (!is_held(network, &network->grips.list[i], &slot))
-            continue;
-        const double weight = weight_of(network, &network->grips.list[i]);
-        const double x = (double)from.x[slot], y = (double)from.y[slot];
-        to.x[slot] += (float)(weight * x);
-        to.y[slot] += (float)(weight * y);
-        sum += weight * (x * x + y * y);
-    }
-    return sum;
-}
-
-void mspringi_grips_stiffen(const mspring_network *network) {
-    mspringi_implicit *n = mspringi_implicit_of(network);
-    uint32_t slot;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        if (!is_held(network, &network->grips.list[i], &slot) || n->tiles.of_slot[slot] == MSPRING_NONE)
-            continue;
-        const double weight = weight_of(network, &network->grips.list[i]);
-        mspringi_coarse_add(&n->coarse, n->tiles.of_slot[slot], weight, 0.0, weight, (double)n->arm.x[slot],
-                            (double)n->arm.y[slot]);
-    }
-}
-
-void mspringi_grips_add_nodes(const mspring_network *network, double *xx, double *yy) {
-    uint32_t slot;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        if (!is_held(network, &network->grips.list[i], &slot))
-            continue;
-        xx[slot] += weight_of(network, &network->grips.list[i]);
-        yy[slot] += weight_of(network, &network->grips.list[i]);
-    }
+bool mspringi_grip_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold) {
+    const double weight = weight_of(network, &network->grips.list[i]);
+    *hold = (mspringi_slot_stiffness){.xx = weight, .yy = weight};
+    return is_held(network, &network->grips.list[i], &hold->slot);
 }
 
 bool mspringi_grips_review(mspring_network *network, float alpha) {

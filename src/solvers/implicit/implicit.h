@@ -133,7 +133,6 @@ void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit
 
 /* saved.c: a snapshot's section */
 
-size_t mspringi_implicit_size(const mspring_network *network, const mspringi_implicit *implicit);
 void mspringi_implicit_save(const mspring_network *network, const mspringi_implicit *implicit,
                             struct mspringi_writer *to);
 mspring_result mspringi_implicit_check(mspring_network *network, const mspringi_implicit *implicit,

@@ -14,15 +14,17 @@ typedef struct implicit_head {
     float h;
     uint32_t restarts, integrator, iterations, coarse_period, age;
 } implicit_head;
-#define HEAD_BYTES ((size_t)40)
+
+static void hand_head(mspringi_io *io, implicit_head *head) {
+    MSPRINGI_HAND(io, head->fingerprint);
+    MSPRINGI_HAND(io, head->scale);
+    MSPRINGI_HAND(io, head->h);
+    mspringi_hand(io, &head->restarts, 5, sizeof(uint32_t)); // and those that follow
+}
 
 // Of what it was made for: other tiles, or another order, would give other bits.
 static uint64_t fingerprint_of(const mspringi_implicit *n) {
     return n->is_direct ? n->direct.fingerprint : n->tiles.fingerprint;
-}
-
-static size_t implicit_size_of(const mspringi_implicit *n, size_t coarse_values) {
-    return HEAD_BYTES + n->history_size * sizeof(float) + coarse_values * sizeof(double);
 }
 
 // The age of the coarse matrix that the next substep finds. One that has contacts in it is not used again.
@@ -36,36 +38,17 @@ static size_t coarse_values(const mspring_network *network, const mspringi_impli
     return age_of(network, n) > 0 ? n->coarse.value_count : 0;
 }
 
-size_t mspringi_implicit_size(const mspring_network *network, const mspringi_implicit *n) {
-    return implicit_size_of(n, coarse_values(network, n));
-}
-
 void mspringi_implicit_save(const mspring_network *network, const mspringi_implicit *n, mspringi_writer *to) {
     // A history of a motion that has ended is as good as none.
     const bool ended = n->seen.motion != network->edits.motion;
-    const uint32_t words[] = {ended ? 1 : n->history.restarts, (uint32_t)n->integrator, n->iterations,
-                              n->coarse_period, age_of(network, n)};
-    const uint64_t fingerprint = fingerprint_of(n);
-    mspringi_put(to, &fingerprint, 1, sizeof fingerprint);
-    mspringi_put(to, &n->scale, 1, sizeof n->scale);
-    mspringi_put(to, &n->history.h, 1, sizeof n->history.h);
-    mspringi_put(to, words, sizeof words / sizeof words[0], sizeof words[0]);
+    mspringi_io io = mspringi_io_to(to);
+    hand_head(&io, &(implicit_head){fingerprint_of(n), n->scale, n->history.h, ended ? 1 : n->history.restarts,
+                                    (uint32_t)n->integrator, n->iterations, n->coarse_period, age_of(network, n)});
     if (ended)
         mspringi_put_zeros(to, n->history_size * sizeof(float));
     else
         mspringi_put(to, n->history.first.x, n->history_size, sizeof(float));
     mspringi_put(to, n->coarse.values, coarse_values(network, n), sizeof(double));
-}
-
-static const uint8_t *read_head(const uint8_t *from, implicit_head *head) {
-    from = mspringi_get(from, &head->fingerprint, 1, sizeof head->fingerprint);
-    from = mspringi_get(from, &head->scale, 1, sizeof head->scale);
-    from = mspringi_get(from, &head->h, 1, sizeof head->h);
-    from = mspringi_get(from, &head->restarts, 1, sizeof head->restarts);
-    from = mspringi_get(from, &head->integrator, 1, sizeof head->integrator);
-    from = mspringi_get(from, &head->iterations, 1, sizeof head->iterations);
-    from = mspringi_get(from, &head->coarse_period, 1, sizeof head->coarse_period);
-    return mspringi_get(from, &head->age, 1, sizeof head->age);
 }
 
 static mspring_result check_head(mspring_network *network, const mspringi_implicit *n, const implicit_head *head) {
@@ -89,27 +72,24 @@ static mspring_result check_head(mspring_network *network, const mspringi_implic
 mspring_result mspringi_implicit_check(mspring_network *network, const mspringi_implicit *n, const uint8_t *from,
                                        size_t size) {
     const mspringi_section *section = &mspringi_section_implicit;
-    implicit_head head = {0};
-    if (size < HEAD_BYTES)
-        return mspringi_section_check_size(network, section, size, HEAD_BYTES);
-    from = read_head(from, &head);
+    mspringi_io io = mspringi_io_from(from, size);
+    implicit_head head;
+    hand_head(&io, &head);
     mspring_result result = check_head(network, n, &head);
-    // How large the coarse matrix is depends on what is broken in the snapshot.
-    const size_t fixed = implicit_size_of(n, 0), rest = size > fixed ? size - fixed : 0;
-    const size_t values = head.age > 0 ? rest / sizeof(double) : 0;
-    if (result == MSPRING_OK)
-        result = mspringi_section_check_size(network, section, size, implicit_size_of(n, values));
-    for (size_t i = 0; result == MSPRING_OK && i < n->history_size; ++i)
-        if (!isfinite(mspringi_float_at(from, i)))
+    for (size_t i = 0; result == MSPRING_OK && i < n->history_size; ++i) {
+        float value;
+        MSPRINGI_HAND(&io, value);
+        if (!isfinite(value))
             result = mspringi_section_fail(network, section, "its history is not finite");
-    from += n->history_size * sizeof(float);
-    for (size_t i = 0; result == MSPRING_OK && i < values; ++i) {
+    }
+    // How large the coarse matrix is depends on what is broken in the snapshot.
+    while (result == MSPRING_OK && head.age > 0 && io.left > 0 && !io.is_short) {
         double value;
-        from = mspringi_get(from, &value, 1, sizeof value);
+        MSPRINGI_HAND(&io, value);
         if (!isfinite(value))
             result = mspringi_section_fail(network, section, "its coarse matrix is not finite");
     }
-    return result;
+    return result == MSPRING_OK ? mspringi_section_end(network, section, &io) : result;
 }
 
 // Slots without particle stay where they are, and have no past for a particle that is added.
@@ -123,21 +103,22 @@ static void clear_history(const mspring_network *network, const mspringi_implici
 }
 
 void mspringi_implicit_load(mspring_network *network, mspringi_implicit *n, const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
     implicit_head head;
-    from = read_head(from, &head);
+    hand_head(&io, &head);
     n->scale = head.scale;
     n->history.h = head.h;
     n->history.restarts = head.restarts;
     n->iterations = head.iterations;
     n->coarse_period = head.coarse_period;
     n->budget.is_known = n->budget.knows_elastic = false;
-    from = mspringi_get(from, n->history.first.x, n->history_size, sizeof(float));
+    mspringi_hand(&io, n->history.first.x, n->history_size, sizeof(float));
     clear_history(network, n);
     mspringi_implicit_follow(network, n);
     // The matrix of other tiles than those that follow from the rest of the snapshot would be of no use.
-    n->age = size == implicit_size_of(n, n->coarse.value_count) ? head.age : 0;
+    n->age = io.left == n->coarse.value_count * sizeof(double) ? head.age : 0;
     if (n->age > 0)
-        mspringi_get(from, n->coarse.values, n->coarse.value_count, sizeof(double));
+        mspringi_hand(&io, n->coarse.values, n->coarse.value_count, sizeof(double));
     if (network->floor)
         network->floor->is_in_coarse = false;
 }

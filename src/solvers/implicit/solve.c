@@ -75,8 +75,7 @@ static void factor_coarse(const mspring_network *network) {
     if (n->age > 0)
         return;
     mspringi_coarse_complete(&n->coarse, &n->tiles, &parts);
-    mspringi_floor_stiffen(network);
-    mspringi_grips_stiffen(network);
+    mspringi_holds_stiffen(network);
     mspringi_angles_stiffen(network);
     mspringi_coarse_factor(&n->coarse);
 }

@@ -162,10 +162,6 @@ static void describe(const void *object, mspring_plan *plan) {
     plan->coarse_period = n->coarse_period;
 }
 
-static size_t size(const mspring_network *network, const void *object) {
-    return mspringi_implicit_size(network, object);
-}
-
 static void save(const mspring_network *network, const void *object, struct mspringi_writer *to) {
     mspringi_implicit_save(network, object, to);
 }
@@ -179,12 +175,12 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
 }
 
 #define BOTH                                                                                                       \
-    .takes_one = true, .holds_grips = true, .holds_bodies = true, .holds_areas = true, .create = create, .build = build, .fits = fits, .adjust = adjust,      \
-    .destroy = destroy, .relocate = relocate, .reserve = reserve, .get_def = get_def, .take_over = take_over,      \
-    .get_basis = get_basis, .set_basis = set_basis, .substeps = substeps, .keep = keep, .restore = restore,        \
-    .forget = forget, .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring,              \
-    .new_floor = new_floor, .is_alone = is_alone, .has_alone = has_alone, .describe = describe, .size = size,      \
-    .save = save, .check = check, .load = load
+    .takes_one = true, .holds_grips = true, .holds_bodies = true, .holds_areas = true, .create = create,           \
+    .build = build, .fits = fits, .adjust = adjust, .destroy = destroy, .relocate = relocate, .reserve = reserve,  \
+    .get_def = get_def, .take_over = take_over, .get_basis = get_basis, .set_basis = set_basis,                    \
+    .substeps = substeps, .keep = keep, .restore = restore, .forget = forget, .clear_slot = clear_slot,            \
+    .rest_slot = rest_slot, .clear_spring = clear_spring, .new_floor = new_floor, .is_alone = is_alone,            \
+    .has_alone = has_alone, .describe = describe, .save = save, .check = check, .load = load
 
 const mspringi_solver_ops mspringi_implicit_ops = {.can_add = true, BOTH};
 

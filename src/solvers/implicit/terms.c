@@ -178,41 +178,10 @@ bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass) 
     return true;
 }
 
-double mspringi_floor_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
-    const mspringi_floor *floor = network->floor;
-    double sum = 0.0;
-    for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
-        const uint32_t slot = floor->contacts[i].slot;
-        const term add = term_of(&floor->contacts[i]);
-        const double x = (double)from.x[slot], y = (double)from.y[slot];
-        const double to_x = add.xx * x + add.xy * y, to_y = add.xy * x + add.yy * y;
-        to.x[slot] += (float)to_x;
-        to.y[slot] += (float)to_y;
-        sum += x * to_x + y * to_y;
-    }
-    return sum;
-}
-
-void mspringi_floor_stiffen(const mspring_network *network) {
-    mspringi_implicit *n = mspringi_implicit_of(network);
-    const mspringi_floor *floor = network->floor;
-    for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
-        const uint32_t slot = floor->contacts[i].slot, tile = n->tiles.of_slot[slot];
-        const term add = term_of(&floor->contacts[i]);
-        const double x = (double)n->arm.x[slot], y = (double)n->arm.y[slot];
-        if (tile != MSPRING_NONE)
-            mspringi_coarse_add(&n->coarse, tile, add.xx, add.xy, add.yy, x, y);
-    }
-}
-
-void mspringi_floor_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy) {
-    const mspringi_floor *floor = network->floor;
-    for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
-        const term add = term_of(&floor->contacts[i]);
-        xx[floor->contacts[i].slot] += add.xx;
-        xy[floor->contacts[i].slot] += add.xy;
-        yy[floor->contacts[i].slot] += add.yy;
-    }
+bool mspringi_floor_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold) {
+    const term add = term_of(&network->floor->contacts[i]);
+    *hold = (mspringi_slot_stiffness){network->floor->contacts[i].slot, add.xx, add.xy, add.yy};
+    return true;
 }
 
 /* -------------------------------------------------------------------------------------------------- the review */

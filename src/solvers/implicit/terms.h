@@ -4,6 +4,7 @@
 ///
 ///   terms.c      the floor
 ///   held.c       grips
+///   holds.c      what both of them add
 ///   bodies.c     contact between bodies
 ///   areas.c      areas
 ///   angles.c     angle springs
@@ -18,18 +19,27 @@
 #include "solvers/implicit/budget.h"
 #include "solvers/implicit/implicit.h"
 
+/// What holds a particle: a block on the diagonal of the matrix.
+typedef struct mspringi_slot_stiffness {
+    uint32_t slot;
+    double xx, xy, yy;
+} mspringi_slot_stiffness;
+/// That of the floor's or the grips' number i; false: it does not hold, or is not in the system.
+bool mspringi_floor_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold);
+bool mspringi_grip_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold);
+
+/// Add all of them to a product, to the coarse matrix, to the blocks on the diagonal in double precision.
+/// @return mspringi_holds_multiply(): what they add to from . to
+double mspringi_holds_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
+void mspringi_holds_stiffen(const mspring_network *network);
+void mspringi_holds_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy);
+
 /// How many substeps an implicit one of h is better divided into, after mspringi_floor_keep().
 uint32_t mspringi_floor_pieces(const mspring_network *network, float h);
 
 /// Add what holds particles to the matrix and the right-hand side of a substep of h that has been assembled for the
 /// pass-th time. Returns false if particles hit the floor and the substep should be one of implicit Euler.
 bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass);
-
-/// Add it to a product, to the coarse matrix, to the blocks on the diagonal in double precision.
-/// @return mspringi_floor_multiply(): what it adds to from . to
-double mspringi_floor_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-void mspringi_floor_stiffen(const mspring_network *network);
-void mspringi_floor_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy);
 
 /// Look at the solution, displacement + alpha direction. Returns whether other particles are to be held than were.
 bool mspringi_floor_review(mspring_network *network, float alpha, uint32_t pass);
@@ -40,9 +50,6 @@ void mspringi_floor_bear(const mspring_network *network, float h);
 /// The same of grips that hold particles with springs: add them to the system, to a product, to the coarse matrix
 /// and to the blocks on the diagonal. Look whether any was to exert more than it can.
 void mspringi_grips_add_terms(mspring_network *network, float h, uint32_t pass);
-double mspringi_grips_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-void mspringi_grips_stiffen(const mspring_network *network);
-void mspringi_grips_add_nodes(const mspring_network *network, double *xx, double *yy);
 bool mspringi_grips_review(mspring_network *network, float alpha);
 /// Once a substep of h, or a piece of one, has been taken for good: count what grips gave in it.
 void mspringi_grips_pass(mspring_network *network, float h);

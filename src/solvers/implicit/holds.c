@@ -1,0 +1,46 @@
+/// What floor and grips add to the linear system of a substep: a block for each particle that they hold.
+#include "solvers/implicit/terms.h"
+
+// The next, from number at on: the floor's, then the grips'.
+static bool next_hold(const mspring_network *network, uint32_t *at, mspringi_slot_stiffness *hold) {
+    const uint32_t floor = network->floor ? network->floor->contact_count : 0;
+    while (*at < floor + network->grips.count) {
+        const uint32_t i = (*at)++;
+        const bool holds =
+            i < floor ? mspringi_floor_hold(network, i, hold) : mspringi_grip_hold(network, i - floor, hold);
+        if (holds)
+            return true;
+    }
+    return false;
+}
+
+double mspringi_holds_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
+    mspringi_slot_stiffness hold;
+    double sum = 0.0;
+    for (uint32_t at = 0; next_hold(network, &at, &hold);) {
+        const double x = (double)from.x[hold.slot], y = (double)from.y[hold.slot];
+        const double to_x = hold.xx * x + hold.xy * y, to_y = hold.xy * x + hold.yy * y;
+        to.x[hold.slot] += (float)to_x;
+        to.y[hold.slot] += (float)to_y;
+        sum += x * to_x + y * to_y;
+    }
+    return sum;
+}
+
+void mspringi_holds_stiffen(const mspring_network *network) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    mspringi_slot_stiffness hold;
+    for (uint32_t at = 0; next_hold(network, &at, &hold);)
+        if (n->tiles.of_slot[hold.slot] != MSPRING_NONE)
+            mspringi_coarse_add(&n->coarse, n->tiles.of_slot[hold.slot], hold.xx, hold.xy, hold.yy,
+                                (double)n->arm.x[hold.slot], (double)n->arm.y[hold.slot]);
+}
+
+void mspringi_holds_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy) {
+    mspringi_slot_stiffness hold;
+    for (uint32_t at = 0; next_hold(network, &at, &hold);) {
+        xx[hold.slot] += hold.xx;
+        xy[hold.slot] += hold.xy;
+        yy[hold.slot] += hold.yy;
+    }
+}
