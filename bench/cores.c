@@ -12,8 +12,8 @@
 
 #include "modes.h"
 #include "solvers/explicit/explicit.h"
-#include "solvers/explicit/shares.h"
-#include "solvers/explicit/stint.h"
+#include "solvers/explicit/partition.h"
+#include "solvers/explicit/pass_task.h"
 
 /// Time until a worker sees what another one said, s.
 #define MESSAGE 0.27e-6
@@ -22,7 +22,7 @@
 /// last.
 #define RUN 1e-6
 
-/// What a block of a border takes in a substep, in units of weight: HALO_WEIGHT of shares.c.
+/// What a block of a border takes in a substep, in units of weight: HALO_WEIGHT of partition.c.
 #define BORDER_WEIGHT 12.0
 
 /// Most substeps of a pass, and more.
@@ -52,7 +52,7 @@ static const bench_column columns[] = {
 
 /// A step under way: times in seconds.
 typedef struct simulation {
-    const mspringi_shares *shares;
+    const mspringi_partition *partition;
     const uint64_t *weights; ///< of the strips below each
     double unit, halo;       ///< time of a unit of weight; of a border in a substep
     double now[MSPRING_MAX_WORKERS], work[MSPRING_MAX_WORKERS];
@@ -66,18 +66,20 @@ static double later(double a, double b) {
 
 // A pass begins when the neighbours have ended the one before, as wait_for_last() in explicit.c has it.
 static void begin_pass(simulation *s, uint32_t share, uint32_t pass) {
-    const mspringi_shares *all = s->shares;
+    const mspringi_partition *all = s->partition;
     if (pass > 0 && share > 0)
         s->now[share] = later(s->now[share], s->last[share - 1] + MESSAGE);
     if (pass > 0 && share + 1 < all->workers &&
-        mspringi_shares_end(all, share, pass, 0) > mspringi_shares_end(all, share, pass - 1, all->group - 1))
+        mspringi_partition_end_strip(all, share, pass, 0) >
+            mspringi_partition_end_strip(all, share, pass - 1, all->group - 1))
         s->now[share] = later(s->now[share], s->last[share + 1] + MESSAGE);
 }
 
 static void take_strip(simulation *s, uint32_t share, uint32_t pass, uint32_t substep, uint32_t strip) {
-    const mspringi_shares *all = s->shares;
-    const uint32_t begin = mspringi_shares_begin(all, share, pass, substep);
-    if (share + 1 < all->workers && strip + 2 * all->skew >= mspringi_shares_end(all, share, pass, substep))
+    const mspringi_partition *all = s->partition;
+    const uint32_t begin = mspringi_partition_first_strip(all, share, pass, substep);
+    if (share + 1 < all->workers &&
+        strip + 2 * all->skew >= mspringi_partition_end_strip(all, share, pass, substep))
         s->now[share] = later(s->now[share], s->above[substep] + MESSAGE);
     const double takes = s->unit * (double)(s->weights[strip + 1] - s->weights[strip]) +
                          (share > 0 && strip == begin ? s->halo : 0.0);
@@ -89,15 +91,15 @@ static void take_strip(simulation *s, uint32_t share, uint32_t pass, uint32_t su
 
 // The loops of make_pass() in explicit.c.
 static void make_pass(simulation *s, uint32_t share, uint32_t pass) {
-    const mspringi_shares *all = s->shares;
-    const uint32_t count = mspringi_shares_substeps(all, pass), skew = all->skew;
-    const uint32_t end = mspringi_shares_end(all, share, pass, count - 1) + (count - 1) * skew;
+    const mspringi_partition *all = s->partition;
+    const uint32_t count = mspringi_partition_substeps(all, pass), skew = all->skew;
+    const uint32_t end = mspringi_partition_end_strip(all, share, pass, count - 1) + (count - 1) * skew;
     begin_pass(s, share, pass);
-    for (uint32_t front = mspringi_shares_begin(all, share, pass, 0); front < end; front++) {
+    for (uint32_t front = mspringi_partition_first_strip(all, share, pass, 0); front < end; front++) {
         for (uint32_t i = 0; i < count && i * skew <= front; i++) {
             const uint32_t strip = front - i * skew;
-            if (strip >= mspringi_shares_begin(all, share, pass, i) &&
-                strip < mspringi_shares_end(all, share, pass, i)) {
+            if (strip >= mspringi_partition_first_strip(all, share, pass, i) &&
+                strip < mspringi_partition_end_strip(all, share, pass, i)) {
                 take_strip(s, share, pass, i, strip);
             }
         }
@@ -106,7 +108,7 @@ static void make_pass(simulation *s, uint32_t share, uint32_t pass) {
 
 // The uppermost worker first: within a pass it waits for nobody.
 static void simulate(simulation *s) {
-    const mspringi_shares *all = s->shares;
+    const mspringi_partition *all = s->partition;
     for (uint32_t pass = 0; pass * all->group < all->count; pass++) {
         for (uint32_t share = all->workers; share-- > 0;) {
             make_pass(s, share, pass);
@@ -123,19 +125,19 @@ static double time_of(const simulation *s, uint32_t begin, uint32_t end) {
 
 // The longest task of each run, one run after the other. What both ends of the strips leave is one task's.
 static double simulate_tasks(const simulation *s) {
-    const mspringi_shares *all = s->shares;
+    const mspringi_partition *all = s->partition;
     double step = 0.0;
     for (uint32_t pass = 0; pass * all->group < all->count; pass++) {
-        const uint32_t count = mspringi_shares_substeps(all, pass);
+        const uint32_t count = mspringi_partition_substeps(all, pass);
         double tile = 0.0, border = 0.0;
         for (uint32_t share = 0; share < all->workers; share++) {
-            mspringi_stint upright = {.shares = all, .share = share, .pass = pass};
-            mspringi_stint left = {.shares = all, .share = share, .pass = pass, .is_border = true};
-            mspringi_stint top = {.shares = all, .share = all->workers, .pass = pass, .is_border = true};
+            mspringi_pass_task upright = {.partition = all, .share = share, .pass = pass};
+            mspringi_pass_task left = {.partition = all, .share = share, .pass = pass, .is_border = true};
+            mspringi_pass_task top = {.partition = all, .share = all->workers, .pass = pass, .is_border = true};
             double first = 0.0, second = 0.0;
-            mspringi_stint_begin(&upright);
-            mspringi_stint_begin(&left);
-            mspringi_stint_begin(&top);
+            mspringi_pass_task_begin(&upright);
+            mspringi_pass_task_begin(&left);
+            mspringi_pass_task_begin(&top);
             for (uint32_t i = 0; i < count; i++) {
                 first += time_of(s, upright.begin[i], upright.end[i]) + s->halo;
                 second += time_of(s, left.begin[i], left.end[i]) + s->halo;
@@ -189,7 +191,7 @@ typedef struct tasks_row {
 
 static void print_row(const bench_options *options, const char *label, const mspring_network *network,
                       const simulation *s, uint32_t workers, const single *one, const tasks_row *tasks) {
-    const mspringi_shares *all = s->shares;
+    const mspringi_partition *all = s->partition;
     double most = 0.0, sum = 0.0, end = 0.0;
     for (uint32_t i = 0; i < all->workers; i++) {
         most = later(most, s->work[i]);
@@ -218,10 +220,11 @@ static void print_row(const bench_options *options, const char *label, const msp
 }
 
 // The time of a unit of weight, and of a border.
-static void scale(simulation *s, const mspring_network *network, const mspringi_shares *shares, const single *one) {
-    s->shares = shares;
+static void scale(simulation *s, const mspring_network *network, const mspringi_partition *partition,
+                  const single *one) {
+    s->partition = partition;
     s->weights = network->halos.weights;
-    s->unit = (one->step - one->fixed) / ((double)s->weights[shares->strips] * shares->count);
+    s->unit = (one->step - one->fixed) / ((double)s->weights[partition->strips] * partition->count);
     s->halo = s->unit * BORDER_WEIGHT * network->topology.carry_blocks;
 }
 
@@ -231,10 +234,10 @@ static bool tasks_of(const bench_scene *subject, mspring_simd level, uint32_t wo
     simulation *s = calloc(1, sizeof *s);
     const bool ok = network != NULL && s != NULL;
     if (ok) {
-        const mspringi_shares shares = mspringi_shares_plan(network, NULL, substeps, network->depth);
-        *row = (tasks_row){.used = shares.workers, .group = shares.group, .gain = 1.0};
-        if (shares.workers > 1) {
-            scale(s, network, &shares, one);
+        const mspringi_partition partition = mspringi_partition_make(network, NULL, substeps, network->depth);
+        *row = (tasks_row){.used = partition.workers, .group = partition.group, .gain = 1.0};
+        if (partition.workers > 1) {
+            scale(s, network, &partition, one);
             row->gain = one->step / (one->fixed + simulate_tasks(s));
         }
     }
@@ -249,17 +252,17 @@ static bool row_of(const bench_scene *subject, const bench_options *options, msp
     if (!network) {
         return false;
     }
-    const mspringi_shares shares = mspringi_shares_plan(network, NULL, substeps, network->depth);
+    const mspringi_partition partition = mspringi_partition_make(network, NULL, substeps, network->depth);
     simulation *s = calloc(1, sizeof *s);
     tasks_row tasks;
     const bool ok =
-        s != NULL && shares.group <= MOST_SUBSTEPS && tasks_of(subject, level, workers, substeps, one, &tasks);
-    *used = shares.workers;
-    if (ok && shares.workers == 1) {
-        s->shares = &shares;
+        s != NULL && partition.group <= MOST_SUBSTEPS && tasks_of(subject, level, workers, substeps, one, &tasks);
+    *used = partition.workers;
+    if (ok && partition.workers == 1) {
+        s->partition = &partition;
         s->now[0] = s->work[0] = one->step;
     } else if (ok) {
-        scale(s, network, &shares, one);
+        scale(s, network, &partition, one);
         simulate(s);
     }
     if (ok) {

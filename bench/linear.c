@@ -39,7 +39,7 @@ static const bench_column columns[] = {
 typedef struct linear_system {
     mspringi_memory memory;
     mspringi_message message;
-    mspringi_cholesky_plan plan;
+    mspringi_cholesky_symbolic plan;
     mspringi_cholesky_float single;
     mspringi_cholesky_double twice;
     uint32_t nodes, edges;
@@ -54,7 +54,7 @@ typedef struct linear_system {
 static void system_free(linear_system *s) {
     mspringi_cholesky_float_destroy(&s->single, &s->memory);
     mspringi_cholesky_double_destroy(&s->twice, &s->memory);
-    mspringi_cholesky_plan_destroy(&s->plan, &s->memory);
+    mspringi_cholesky_symbolic_destroy(&s->plan, &s->memory);
     void *const blocks[] = {s->a,
                             s->b,
                             s->absent,
@@ -137,7 +137,7 @@ static bool fill(linear_system *s, mspring_network *network) {
 static bool analyse(linear_system *s, mspring_simd level, scene_error *error) {
     const mspringi_cholesky_graph graph = {s->nodes, s->edges, s->a, s->b, s->absent, s->x, s->y, 0};
     const double start = bench_seconds();
-    bool ok = mspringi_cholesky_plan_create(&s->plan, &graph, &s->memory, &s->message) == MSPRING_OK;
+    bool ok = mspringi_cholesky_symbolic_create(&s->plan, &graph, &s->memory, &s->message) == MSPRING_OK;
     s->plan_seconds = bench_seconds() - start;
     ok = ok && mspringi_cholesky_float_create(&s->single, &s->plan, level, &s->memory, &s->message) == MSPRING_OK &&
          mspringi_cholesky_double_create(&s->twice, &s->plan, level, &s->memory, &s->message) == MSPRING_OK;

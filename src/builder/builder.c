@@ -209,7 +209,7 @@ mspring_result mspringi_find_rest_length(mspringi_message *message, size_t index
     if (!(length >= 0.0f && length <= MSPRINGI_LARGEST_LENGTH))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "spring %zu: rest length is %g m, it must be 0 to 4e12", index, (double)length);
-    *rest_length = mspringi_kept_length(length);
+    *rest_length = mspringi_broken_length(length);
     return MSPRING_OK;
 }
 

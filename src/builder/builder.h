@@ -6,7 +6,7 @@
 #define MSPRINGI_BUILDER_H
 
 #include "base/memory.h"
-#include "builder/areas.h"
+#include "builder/builder_areas.h"
 
 #include <massspring/massspring_batch.h>
 #include <massspring/massspring_laws.h>
@@ -28,7 +28,7 @@ typedef struct mspringi_particle {
 #define MSPRINGI_WELD 0x1p-50f
 
 /// A rest length as it is kept, and as the host reads it.
-static inline float mspringi_kept_length(float given) {
+static inline float mspringi_broken_length(float given) {
     return given == 0.0f ? MSPRINGI_WELD : given;
 }
 static inline float mspringi_read_length(float kept) {

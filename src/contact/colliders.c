@@ -1,11 +1,11 @@
 /// Shapes of the host: adding, moving and reading them.
-#include "contact/pairs.h"
+#include "contact/contacts.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/cpu.h"
-#include "base/turn.h"
+#include "base/rotation.h"
 #include "store/changed.h"
 
 #define MOST_FRICTION 1e6
@@ -121,42 +121,44 @@ static void write_shape(const mspring_collider_def *def, double *shape) {
 }
 
 // Points are those of the collider that has them by rising id.
-static void number_points(mspringi_pairs *pairs) {
-    mspringi_colliders *all = &pairs->colliders;
+static void number_points(mspringi_contacts *contacts) {
+    mspringi_colliders *all = &contacts->colliders;
     for (uint32_t i = 0; i < all->count; ++i) {
         const mspringi_collider *c = &all->list[i];
         for (uint32_t k = c->first; k < c->first + c->count; ++k) {
             all->owner[k] = i;
-            pairs->groups[pairs->particles + k] = c->def.groups;
-            pairs->masks[pairs->particles + k] = c->def.masks;
+            contacts->groups[contacts->particles + k] = c->def.groups;
+            contacts->masks[contacts->particles + k] = c->def.masks;
         }
     }
 }
 
 // The list is another, and all wakes.
 static void renew(mspring_network *network) {
-    mspringi_colliders *all = &network->pairs->colliders;
-    number_points(network->pairs);
+    mspringi_colliders *all = &network->contacts->colliders;
+    number_points(network->contacts);
     all->are_new = true;
     all->is_placed = false;
-    mspringi_changed(network, MSPRINGI_CHANGED_CONTACT, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
 }
 
 /* --------------------------------------------------------------------------------------------- adding, removing */
 
 static mspring_result make_room(mspring_network *network, uint32_t points) {
-    const mspringi_colliders *all = &network->pairs->colliders;
+    const mspringi_colliders *all = &network->contacts->colliders;
     const uint32_t needed = all->point_count + points, twice = 2 * all->point_capacity;
     if (needed > MOST_POINTS)
         return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
                              "the colliders would have %u points in all, they must have at most %u",
                              (unsigned)needed, (unsigned)MOST_POINTS);
     void *list = all->list;
-    bool ok = mspringi_grow(&network->memory, &list, &network->pairs->colliders.capacity, (size_t)all->count + 1,
+    bool ok = mspringi_grow(&network->memory, &list, &network->contacts->colliders.capacity, (size_t)all->count + 1,
                             sizeof *all->list);
-    network->pairs->colliders.list = list;
+    network->contacts->colliders.list = list;
     if (ok && needed > all->point_capacity)
-        ok = mspringi_pairs_widen(network, needed > twice ? needed : twice < MOST_POINTS ? twice : MOST_POINTS);
+        ok = mspringi_contacts_reserve_points(network, needed > twice        ? needed
+                                                       : twice < MOST_POINTS ? twice
+                                                                             : MOST_POINTS);
     return ok ? MSPRING_OK
               : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                               "no memory for collider %u of %u points, beside %u points of others",
@@ -164,7 +166,7 @@ static mspring_result make_room(mspring_network *network, uint32_t points) {
 }
 
 static void append(mspring_network *network, const mspring_collider_def *def) {
-    mspringi_colliders *all = &network->pairs->colliders;
+    mspringi_colliders *all = &network->contacts->colliders;
     const uint32_t count = points_of(def);
     const bool is_open = def->kind == MSPRING_COLLIDER_CHAIN && !(def->flags & MSPRING_COLLIDER_CLOSED);
     mspringi_collider *c = &all->list[all->count++];
@@ -183,10 +185,10 @@ static void append(mspring_network *network, const mspring_collider_def *def) {
 
 mspring_result mspring_network_add_collider(mspring_network *network, const mspring_collider_def *def,
                                             mspring_id *collider) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
-    if (!network->pairs)
+    if (!network->contacts)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "colliders need contact: call mspring_network_set_contact() first");
     if (!def)
@@ -213,10 +215,10 @@ mspring_result mspring_network_add_collider(mspring_network *network, const mspr
 #define NO_COLLIDER "there is no collider %s"
 
 // NULL if there is none.
-static mspringi_collider *find(const mspringi_pairs *pairs, mspring_id id) {
-    if (!pairs)
+static mspringi_collider *find(const mspringi_contacts *contacts, mspring_id id) {
+    if (!contacts)
         return NULL;
-    const mspringi_colliders *all = &pairs->colliders;
+    const mspringi_colliders *all = &contacts->colliders;
     uint32_t low = 0, high = all->count;
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
@@ -229,10 +231,10 @@ static mspringi_collider *find(const mspringi_pairs *pairs, mspring_id id) {
 }
 
 static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspringi_collider **found) {
-    const mspring_result result = mspringi_enter(network);
+    const mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
-    *found = find(network->pairs, id);
+    *found = find(network->contacts, id);
     return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_COLLIDER, MSPRINGI_ID(id));
 }
 
@@ -241,7 +243,7 @@ mspring_result mspring_network_remove_collider(mspring_network *network, mspring
     const mspring_result result = find_or_fail(network, collider, &c);
     if (result != MSPRING_OK)
         return result;
-    mspringi_colliders *all = &network->pairs->colliders;
+    mspringi_colliders *all = &network->contacts->colliders;
     const uint32_t count = c->count, end = c->first + count;
     memmove(all->shape + 2 * (size_t)c->first, all->shape + 2 * (size_t)end,
             2 * (size_t)(all->point_count - end) * sizeof *all->shape);
@@ -287,9 +289,9 @@ mspring_result mspring_network_place_collider(mspring_network *network, mspring_
     c->def.x = x;
     c->def.y = y;
     c->def.angle = angle;
-    network->pairs->is_listed = network->pairs->is_fresh = false;
-    network->pairs->colliders.is_placed = false;
-    mspringi_changed(network, MSPRINGI_CHANGED_CONTACT, 0);
+    network->contacts->is_listed = network->contacts->is_fresh = false;
+    network->contacts->colliders.is_placed = false;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
     return MSPRING_OK;
 }
 
@@ -300,11 +302,12 @@ mspring_result mspring_network_get_collider(const mspring_network *network, mspr
     const mspring_result result = mspringi_check_report(network, "mspring_collider_def", def, sizeof *def);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_collider *c = find(network->pairs, collider);
+    const mspringi_collider *c = find(network->contacts, collider);
     if (!c)
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_COLLIDER, MSPRINGI_ID(collider));
     mspring_collider_def had = c->def;
-    had.points = had.kind == MSPRING_COLLIDER_CHAIN ? network->pairs->colliders.shape + 2 * (size_t)c->first : NULL;
+    had.points =
+        had.kind == MSPRING_COLLIDER_CHAIN ? network->contacts->colliders.shape + 2 * (size_t)c->first : NULL;
     mspringi_put_struct(def, &had, sizeof had);
     return MSPRING_OK;
 }
@@ -315,10 +318,10 @@ mspring_result mspring_network_get_collider_impulse(const mspring_network *netwo
         return MSPRING_ERROR_ARGUMENT;
     if (!x || !y || !angular)
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the impulse is NULL");
-    const mspringi_collider *c = find(network->pairs, collider);
+    const mspringi_collider *c = find(network->contacts, collider);
     if (!c)
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_COLLIDER, MSPRINGI_ID(collider));
-    const bool is_of_last_step = network->pairs->colliders.reported == network->steps.count;
+    const bool is_of_last_step = network->contacts->colliders.reported == network->steps.count;
     *x = is_of_last_step ? c->impulse_x : 0.0;
     *y = is_of_last_step ? c->impulse_y : 0.0;
     *angular = is_of_last_step ? c->angular : 0.0;

@@ -216,7 +216,7 @@ void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory) 
     mspringi_free(memory, floor->start.x);
     mspringi_free(memory, floor->before.x);
     mspringi_free(memory, floor->impulse.x);
-    mspringi_free(memory, floor->former.x);
+    mspringi_free(memory, floor->previous_impulse.x);
     mspringi_free(memory, floor);
 }
 
@@ -247,7 +247,7 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     floor->contact_capacity = (uint32_t)(floor->slot_count / 4) + 64;
     floor->contact_count = 0;
     floor->contacts = mspringi_alloc(memory, floor->contact_capacity, sizeof *floor->contacts);
-    floor->impulse = floor->former = floor->start = (mspringi_field){NULL, NULL};
+    floor->impulse = floor->previous_impulse = floor->start = (mspringi_field){NULL, NULL};
     floor->before = (mspringi_state){
         .x = mspringi_alloc(memory, MSPRINGI_STATE_ARRAYS * floor->slot_count, sizeof *floor->before.x)};
     if (floor->before.x) {
@@ -262,7 +262,7 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     floor->room.reach = 0.0;
     return floor->clearances && floor->contacts && floor->before.x &&
            reserve_field(&floor->impulse, floor->slot_count, memory) &&
-           reserve_field(&floor->former, floor->slot_count, memory) &&
+           reserve_field(&floor->previous_impulse, floor->slot_count, memory) &&
            reserve_field(&floor->start, floor->slot_count, memory);
 }
 
@@ -352,7 +352,7 @@ static bool is_same(const mspringi_floor *floor, const mspring_floor_def *b) {
 }
 
 mspring_result mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK && def)
         result = check_floor(def, &network->message);
     if (result != MSPRING_OK || is_same(network->floor, def))
@@ -368,7 +368,7 @@ mspring_result mspring_network_set_floor(mspring_network *network, const mspring
     }
     mspringi_floor_destroy(network->floor, &network->memory);
     network->floor = made;
-    mspringi_changed(network, MSPRINGI_CHANGED_NEW_FLOOR, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_NEW_FLOOR, 0);
     return MSPRING_OK;
 }
 
@@ -377,9 +377,9 @@ mspring_result mspring_network_set_floor(mspring_network *network, const mspring
 static void exchange_impulses(mspringi_floor *floor) {
     const mspringi_field impulse = floor->impulse;
     const bool has_impulse = floor->has_impulse;
-    floor->impulse = floor->former;
+    floor->impulse = floor->previous_impulse;
     floor->has_impulse = floor->had_impulse;
-    floor->former = impulse;
+    floor->previous_impulse = impulse;
     floor->had_impulse = has_impulse;
 }
 
@@ -389,8 +389,8 @@ static void keep_impulses(const mspring_network *network) {
     for (size_t slot = 0; slot < mspringi_used_slots(network); ++slot) {
         if (!mspringi_slot_is_asleep(network, slot))
             continue;
-        floor->impulse.x[slot] = floor->former.x[slot];
-        floor->impulse.y[slot] = floor->former.y[slot];
+        floor->impulse.x[slot] = floor->previous_impulse.x[slot];
+        floor->impulse.y[slot] = floor->previous_impulse.y[slot];
     }
     floor->has_impulse = true;
 }
@@ -406,13 +406,13 @@ static void begin_impulses(mspring_network *network) {
 }
 
 void mspringi_floor_clear_slot(const mspringi_floor *floor, uint32_t slot) {
-    const mspringi_field fields[] = {floor->impulse, floor->former};
+    const mspringi_field fields[] = {floor->impulse, floor->previous_impulse};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
         if (fields[i].x)
             fields[i].x[slot] = fields[i].y[slot] = 0.0f;
 }
 
-void mspringi_floor_take_back(mspringi_floor *floor) {
+void mspringi_floor_roll_back(mspringi_floor *floor) {
     if (floor)
         exchange_impulses(floor);
 }
@@ -440,16 +440,16 @@ static bool is_used(const mspring_network *network) {
 
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    network->floor->is_missed = network->floor->is_strict = false;
+    network->floor->is_missed = network->floor->is_second_try = false;
 }
 
 // A strip that was left out may have met the surface, and what has become of it there is lost.
-static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
+static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_floor *floor = network->floor;
     (void)attempt;
-    if (!floor->is_missed || floor->is_strict)
+    if (!floor->is_missed || floor->is_second_try)
         return false;
-    floor->is_strict = true;
+    floor->is_second_try = true;
     return true;
 }
 
@@ -460,13 +460,13 @@ static void begin(mspring_network *network, mspringi_field force) {
         begin_impulses(network);
 }
 
-static void take_back(mspring_network *network) {
+static void roll_back(mspring_network *network) {
     if (!mspringi_sleep_is_whole(network))
-        mspringi_floor_take_back(network->floor);
+        mspringi_floor_roll_back(network->floor);
 }
 
 const mspringi_stage mspringi_stage_floor = {.is_used = is_used,
                                              .before_step = before_step,
                                              .forces_known = begin,
-                                             .has_missed = has_missed,
-                                             .take_back = take_back};
+                                             .must_repeat = must_repeat,
+                                             .roll_back = roll_back};

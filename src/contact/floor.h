@@ -2,18 +2,19 @@
 /// What particles cannot get through: half-planes and a field of heights.
 ///
 ///   floor.c      the definition, given by the host
-///   surface.c    where the surface is, and which way it faces
-///   survey.c     how far it is from strips and from the whole network
-///   bounce.c     what it does to a particle in a substep of symplectic Euler, and to one without springs
-///   explicit.c   the same of all particles of such substeps
-///   collide.c    what it does to particles with springs after an implicit substep; see solvers/implicit/terms.c
-///   silt.c       what silt above the heights does to a particle; kernels/silt.h has blocks of them
+///   floor_surface.c    where the surface is, and which way it faces
+///   floor_clearance.c     how far it is from strips and from the whole network
+///   floor_bounce.c     what it does to a particle in a substep of symplectic Euler, and to one without springs
+///   floor_explicit.c   the same of all particles of such substeps
+///   floor_implicit.c    what it does to particles with springs after an implicit substep; see
+///   solvers/implicit/implicit_floor.c silt.c       what silt above the heights does to a particle;
+///   kernels/silt_kernel.h has blocks of them
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FLOOR_H
 #define MSPRINGI_FLOOR_H
 
-#include "kernels/bounce.h"
+#include "kernels/bounce_kernel.h"
 #include "store/network.h"
 
 typedef struct mspringi_half_plane {
@@ -46,7 +47,7 @@ typedef struct mspringi_clearance {
 } mspringi_clearance;
 
 /// A particle and a straight surface that it touches, or may touch, in an implicit substep.
-typedef struct mspringi_contact {
+typedef struct mspringi_floor_contact {
     uint32_t slot;
     bool is_active;   ///< it is held
     double slip;      ///< it slides this way along the surface, 1 or -1; 0: it sticks
@@ -57,7 +58,7 @@ typedef struct mspringi_contact {
     double stiffness; ///< of what holds it, in the units of the matrix
     double normal;    ///< what holds it across the surface, in the units of the right-hand side
     double along;     ///< what brakes it along the surface, likewise
-} mspringi_contact;
+} mspringi_floor_contact;
 
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
@@ -71,15 +72,15 @@ typedef struct mspringi_floor {
     mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
     mspringi_state before;  ///< [slot_count] before a substep: velocities, or all of particles without springs
     mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
-    mspringi_field former;  ///< [slot_count] in the step before it, as long as one is made
+    mspringi_field previous_impulse; ///< [slot_count] in the step before it, as long as one is made
     size_t slot_count;
-    double reach;               ///< twice as far, m, as anything may come in the substeps of the last survey
-    bool is_near;               ///< some strip may come near in these, or there was no survey yet
-    bool is_missed;             ///< forces have driven a strip further than the survey had thought
-    bool is_strict;             ///< so this time none is left out
-    mspringi_room room;         ///< that all of the network was in
-    mspringi_bounds clear;      ///< where no surface is, around the network as it was before an implicit substep
-    mspringi_contact *contacts; ///< of an implicit substep
+    double reach;           ///< twice as far, m, as anything may come in the substeps of the last survey
+    bool is_near;           ///< some strip may come near in these, or there was no survey yet
+    bool is_missed;         ///< forces have driven a strip further than the survey had thought
+    bool is_second_try;     ///< so this time none is left out
+    mspringi_safe_box room; ///< that all of the network was in
+    mspringi_bounds clear;  ///< where no surface is, around the network as it was before an implicit substep
+    mspringi_floor_contact *contacts; ///< of an implicit substep
     uint32_t contact_count, contact_capacity;
     bool is_in_coarse; ///< some are in the coarse matrix
     bool has_impulse;  ///< impulse is not all zero
@@ -87,9 +88,9 @@ typedef struct mspringi_floor {
 } mspringi_floor;
 
 /// A particle that has moved from its start in a substep, local coordinates.
-typedef struct mspringi_body {
+typedef struct mspringi_moved_particle {
     double start_x, start_y, x, y, vx, vy;
-} mspringi_body;
+} mspringi_moved_particle;
 
 void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
 
@@ -101,14 +102,14 @@ mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *
 void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory);
 
 /// Go back to the impulses of the step before the one that was begun last. NULL is allowed.
-void mspringi_floor_take_back(mspringi_floor *floor);
+void mspringi_floor_roll_back(mspringi_floor *floor);
 /// Forget what pushed the particle in a slot: it is another one from now on.
 void mspringi_floor_clear_slot(const mspringi_floor *floor, uint32_t slot);
 
-/* surface.c */
+/* floor_surface.c */
 
 /// Have lines and heights follow the local origin.
-void mspringi_floor_follow(mspringi_floor *floor, double origin_x, double origin_y);
+void mspringi_floor_set_origin(mspringi_floor *floor, double origin_x, double origin_y);
 
 /// Distances below which a particle at (x, y) touches a surface: some last places of its coordinates.
 double mspringi_floor_slop(double x, double y);
@@ -118,12 +119,12 @@ double mspringi_floor_slop(double x, double y);
 mspringi_line mspringi_heights_line(const mspringi_heights *heights, int64_t part);
 
 /// The part that is below x.
-int64_t mspringi_heights_part_below(const mspringi_heights *heights, double x);
+int64_t mspringi_heights_segment_below(const mspringi_heights *heights, double x);
 
 /// The part that a particle on its way from (start_x, start_y) to (x, y) meets or, if it meets none, the one that
 /// is below it at the end.
-int64_t mspringi_heights_part_met(const mspringi_heights *heights, double start_x, double start_y, double x,
-                                  double y);
+int64_t mspringi_heights_first_hit(const mspringi_heights *heights, double start_x, double start_y, double x,
+                                   double y);
 
 /// Height of the highest knot between two x, and of the next ones beyond them.
 double mspringi_heights_highest(const mspringi_heights *heights, double low, double high);
@@ -132,10 +133,10 @@ double mspringi_heights_highest(const mspringi_heights *heights, double low, dou
 /// from the line below it.)
 double mspringi_floor_distance(const mspringi_floor *floor, double x, double y);
 
-/* survey.c */
+/* floor_clearance.c */
 
 /// Look how far every strip is from the surface, and which of them stay clear of it for so many seconds.
-void mspringi_floor_survey(mspring_network *network, double seconds);
+void mspringi_floor_update_clearances(mspring_network *network, double seconds);
 
 /// Whether a block of a strip that may come near the surface may do so itself, in the same substeps.
 bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block);
@@ -149,12 +150,12 @@ bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, ms
 
 /// The same of other surfaces, whose lines are local, and a room of theirs; way is what a particle may have gone at
 /// the highest speed.
-bool mspringi_room_is_enough(const mspring_network *network, const mspringi_floor *surfaces, mspringi_room *room,
-                             double seconds);
-bool mspringi_room_was_enough(const mspring_network *network, const mspringi_room *room, double way,
-                              mspringi_extrema seen);
+bool mspringi_safe_box_suffices(const mspring_network *network, const mspringi_floor *surfaces,
+                                mspringi_safe_box *room, double seconds);
+bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_safe_box *room, double way,
+                                mspringi_extrema seen);
 
-/* bounce.c */
+/* floor_bounce.c */
 
 /// Have a point that is inside the surface put onto it. Returns whether it was.
 bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *y);
@@ -162,12 +163,12 @@ bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *
 /// Let the surface act on a particle that a substep of symplectic Euler of h seconds moves from (x, y) at (vx, vy),
 /// and came there at (from_vx, from_vy). Returns false if it does nothing; else it ends at p->x + h p->vx.
 bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx, double from_vy,
-                           mspringi_going *p);
+                           mspringi_bouncing_particle *p);
 
 /// Let a particle without springs fly past the surface for p->left seconds. Returns whether that did anything;
 /// (*vx, *vy) is the velocity of how->skew ago.
-bool mspringi_floor_fly(const mspringi_floor *floor, const mspringi_turning *how, mspringi_flyer *p, double *vx,
-                        double *vy);
+bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const mspringi_bounce_params *how,
+                                       mspringi_free_particle *p, double *vx, double *vy);
 
 /* silt.c */
 
@@ -176,50 +177,50 @@ static inline bool mspringi_has_silt(const mspringi_heights *heights) {
 }
 
 /// The share of its velocity that silt takes from a particle at (x, y), if there is any, in so many seconds.
-double mspringi_silt_taken(const mspringi_heights *heights, double x, double y, double seconds);
+double mspringi_silt_damping(const mspringi_heights *heights, double x, double y, double seconds);
 
 /// Let it act on a particle after a substep of h seconds.
 void mspringi_silt_brake(const mspring_network *network, size_t slot, double h);
 
-/* explicit.c */
+/* floor_explicit.c */
 
 /// Whether a strip may come near the surface in the substeps that the last survey was for.
 bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip);
 
 /// Before substeps of symplectic Euler: keep the velocities of whole blocks. Those of a strip that stays clear are
 /// left out, here and in what follows.
-void mspringi_floor_note(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
-                         uint32_t span_count);
+void mspringi_floor_save_velocities(const mspring_network *network, const mspringi_strip *strip,
+                                    const mspringi_span *spans, uint32_t span_count);
 
 /// Let the surface act on the particles of whole blocks that a substep of h seconds has moved: on those with
 /// springs, or on those without.
-void mspringi_floor_touch(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
+void mspringi_floor_apply(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
                           uint32_t span_count, float h);
-void mspringi_floor_touch_loose(const mspring_network *network, const mspringi_strip *strip,
+void mspringi_floor_apply_loose(const mspring_network *network, const mspringi_strip *strip,
                                 const mspringi_span *span, float h);
 
 /// Look whether the strips that were left out have stayed clear.
-void mspringi_floor_look_far(const mspring_network *network);
+void mspringi_floor_check_clear(const mspring_network *network);
 
 /// Whether no spring pulls at a particle, in a network with another solver: it is in the loose row, or all its
 /// springs broke. (A clamped one knows of those in the loose row alone.)
-bool mspringi_floor_is_alone(const mspring_network *network, size_t slot);
+bool mspringi_floor_is_isolated(const mspring_network *network, size_t slot);
 
 /// Of a network with another solver: keep the particles without springs as they are, and take so many substeps of
 /// theirs alone from there, in force fields as these: exact parabolas, for nothing else moves them.
-void mspringi_floor_keep_alone(const mspring_network *network);
-void mspringi_floor_fly_alone(mspring_network *network, float h, mspringi_field base, uint32_t count);
+void mspringi_floor_save_isolated(const mspring_network *network);
+void mspringi_floor_step_isolated(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
-/* collide.c */
+/* floor_implicit.c */
 
 /// Let the surface act on a body that an implicit substep of h seconds has moved.
-void mspringi_floor_collide(const mspringi_floor *floor, mspringi_body *body, double h);
+void mspringi_floor_collide(const mspringi_floor *floor, mspringi_moved_particle *body, double h);
 
 /// Keep the positions before an implicit substep of h, and let the surface act after it on particles with springs.
-void mspringi_floor_keep(mspring_network *network, float h);
-void mspringi_floor_touch_all(mspring_network *network, float h);
+void mspringi_floor_save_positions(mspring_network *network, float h);
+void mspringi_floor_apply_all(mspring_network *network, float h);
 
 /// Let silt act on them after that.
-void mspringi_floor_brake_all(const mspring_network *network, float h);
+void mspringi_floor_apply_silt(const mspring_network *network, float h);
 
 #endif

@@ -12,11 +12,13 @@
 
 /* --------------------------------------------------------------------------------------------------------- law */
 
-mspringi_aim mspringi_grip_aim(const mspring_network *network, const mspringi_grip *grip, double share) {
+mspringi_grip_target mspringi_grip_target_at(const mspring_network *network, const mspringi_grip *grip,
+                                             double share) {
     const double way_x = grip->x - grip->from_x, way_y = grip->y - grip->from_y;
     const double seconds = (double)network->grips.h / network->grips.share;
-    return (mspringi_aim){(grip->from_x + share * way_x) - network->origin_x,
-                          (grip->from_y + share * way_y) - network->origin_y, way_x / seconds, way_y / seconds};
+    return (mspringi_grip_target){(grip->from_x + share * way_x) - network->origin_x,
+                                  (grip->from_y + share * way_y) - network->origin_y, way_x / seconds,
+                                  way_y / seconds};
 }
 
 bool mspringi_grip_bound(const mspringi_grip *grip, double *force_x, double *force_y) {
@@ -28,12 +30,12 @@ bool mspringi_grip_bound(const mspringi_grip *grip, double *force_x, double *for
     return true;
 }
 
-bool mspringi_grip_acts(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot) {
+bool mspringi_grip_is_active(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot) {
     *slot = network->topology.slot_of_particle[grip->particle];
-    return mspringi_free_mass(network)[*slot] > 0.0f;
+    return mspringi_active_inverse_mass(network)[*slot] > 0.0f;
 }
 
-void mspringi_grips_arrive(mspring_network *network) {
+void mspringi_grips_finish_step(mspring_network *network) {
     for (uint32_t i = 0; i < network->grips.count; ++i) {
         mspringi_grip *grip = &network->grips.list[i];
         grip->from_x = grip->x;
@@ -82,7 +84,7 @@ void mspringi_grips_forget(mspring_network *network, mspring_id particle) {
 #define NO_GRIP "there is no grip %s"
 
 static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspringi_grip **found) {
-    const mspring_result result = mspringi_enter(network);
+    const mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     *found = find(&network->grips, id);
@@ -127,7 +129,7 @@ static mspring_result check_grip(mspring_network *network, const mspring_grip_de
 
 // Tell that the force on a grip's particle is another from now on.
 static void tell(mspring_network *network, const mspringi_grip *grip) {
-    mspringi_changed(network, MSPRINGI_CHANGED_GRIP, network->topology.slot_of_particle[grip->particle]);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_GRIP, network->topology.slot_of_particle[grip->particle]);
 }
 
 static mspringi_grip made_of(const mspring_grip_def *def, mspring_id id) {
@@ -143,7 +145,7 @@ static mspringi_grip made_of(const mspring_grip_def *def, mspring_id id) {
 }
 
 mspring_result mspring_network_add_grip(mspring_network *network, const mspring_grip_def *def, mspring_id *grip) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = check_grip(network, def);
     if (result != MSPRING_OK)

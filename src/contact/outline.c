@@ -7,9 +7,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/forest.h"
-#include "contact/pairs.h"
-#include "store/growth.h"
+#include "base/union_find.h"
+#include "contact/contacts.h"
+#include "store/id_pool.h"
 #include "store/springs.h"
 
 /// A triangle is on neither side if it is thinner than this share of the spring.
@@ -18,16 +18,16 @@
 void mspringi_outline_ends(const mspring_network *network, mspring_id spring, mspring_id ends[2]) {
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
-    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
     ends[0] = t->particle_of_slot[base];
     ends[1] = t->particle_of_slot[tip];
 }
 
 // The next live spring at a particle, and its other end.
-static mspring_id next_live(const mspring_network *network, mspringi_around *around, mspring_id p,
+static mspring_id next_live(const mspring_network *network, mspringi_incident_springs *around, mspring_id p,
                             mspring_id *other) {
     mspring_id spring, ends[2];
-    while ((spring = mspringi_around_next(network, around)) != MSPRING_NONE) {
+    while ((spring = mspringi_incident_springs_next(network, around)) != MSPRING_NONE) {
         if (!mspringi_spring_is_live(network, spring))
             continue;
         mspringi_outline_ends(network, spring, ends);
@@ -44,7 +44,7 @@ static uint32_t springs_laid_at(const mspring_network *network, mspring_id p) {
 static bool is_linked(const mspring_network *network, mspring_id p, mspring_id q) {
     const bool is_fewer = springs_laid_at(network, p) <= springs_laid_at(network, q);
     const mspring_id from = is_fewer ? p : q, to = is_fewer ? q : p;
-    mspringi_around around = mspringi_around_begin(network, from);
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, from);
     mspring_id other;
     while (next_live(network, &around, from, &other) != MSPRING_NONE)
         if (other == to)
@@ -52,8 +52,8 @@ static bool is_linked(const mspring_network *network, mspring_id p, mspring_id q
     return false;
 }
 
-bool mspringi_outline_is_joined(const mspring_network *network, mspring_id p, mspring_id q) {
-    mspringi_around around = mspringi_around_begin(network, p);
+bool mspringi_outline_are_neighbours(const mspring_network *network, mspring_id p, mspring_id q) {
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
     mspring_id other;
     if (p == q)
         return true;
@@ -63,16 +63,16 @@ bool mspringi_outline_is_joined(const mspring_network *network, mspring_id p, ms
     return false;
 }
 
-void mspringi_outline_stamp(const mspring_network *network, mspringi_pairs *pairs, mspring_id p) {
-    mspringi_around around = mspringi_around_begin(network, p);
+void mspringi_outline_mark_neighbours(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
     mspring_id next, after;
     const uint32_t stamp = p + 1;
-    pairs->stamp[p] = stamp;
+    contacts->stamp[p] = stamp;
     while (next_live(network, &around, p, &next) != MSPRING_NONE) {
-        mspringi_around beyond = mspringi_around_begin(network, next);
-        pairs->stamp[next] = stamp;
+        mspringi_incident_springs beyond = mspringi_incident_springs_begin(network, next);
+        contacts->stamp[next] = stamp;
         while (next_live(network, &beyond, next, &after) != MSPRING_NONE)
-            pairs->stamp[after] = stamp;
+            contacts->stamp[after] = stamp;
     }
 }
 
@@ -87,7 +87,7 @@ static bool is_inside(const mspring_network *network, const mspringi_outline *o,
     const double ex = o->shape_x[b] - o->shape_x[a], ey = o->shape_y[b] - o->shape_y[a];
     const double thin = THIN * (ex * ex + ey * ey);
     bool left = false, right = false;
-    mspringi_around around = mspringi_around_begin(network, a);
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, a);
     while (!(left && right) && next_live(network, &around, a, &other) != MSPRING_NONE) {
         if (other == b || !is_linked(network, other, b))
             continue;
@@ -101,10 +101,10 @@ static bool is_inside(const mspring_network *network, const mspringi_outline *o,
 // Whether another live spring that joins the same particles stands for both.
 static bool lies_beside(const mspring_network *network, mspring_id spring) {
     mspring_id ends[2], beside, other;
-    if (network->topology.second_count == 0)
+    if (network->topology.parallel_count == 0)
         return false;
     mspringi_outline_ends(network, spring, ends);
-    mspringi_around around = mspringi_around_begin(network, ends[0]);
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, ends[0]);
     while ((beside = next_live(network, &around, ends[0], &other)) != MSPRING_NONE)
         if (other == ends[1] && beside < spring)
             return true;
@@ -127,7 +127,7 @@ static void judge_around(const mspring_network *network, mspringi_outline *o, ms
     mspringi_outline_ends(network, spring, ends);
     judge(network, o, spring);
     for (int i = 0; i < 2; ++i) {
-        mspringi_around around = mspringi_around_begin(network, ends[i]);
+        mspringi_incident_springs around = mspringi_incident_springs_begin(network, ends[i]);
         mspring_id beside;
         while ((beside = next_live(network, &around, ends[i], &other)) != MSPRING_NONE)
             judge(network, o, beside);
@@ -139,7 +139,7 @@ static void judge_around(const mspring_network *network, mspringi_outline *o, ms
 void mspringi_outline_clear_slot(const mspring_network *network, uint32_t slot) {
     const mspring_id p = network->topology.particle_of_slot[slot];
     if (p != MSPRING_NONE)
-        network->pairs->outline.is_known[p] = 0;
+        network->contacts->outline.is_known[p] = 0;
 }
 
 // What has been added takes part in the shape as it is now.
@@ -165,19 +165,19 @@ static void list_side(mspringi_outline *o, mspring_id a, mspring_id b) {
 }
 
 // A collider of one point has an edge of length 0.
-static void list_sides(mspringi_pairs *pairs) {
-    mspringi_outline *o = &pairs->outline;
+static void list_sides(mspringi_contacts *contacts) {
+    mspringi_outline *o = &contacts->outline;
     const uint32_t before = o->edge_count;
-    for (uint32_t i = 0; i < pairs->colliders.count; ++i) {
-        const mspringi_collider *c = &pairs->colliders.list[i];
-        const mspring_id first = pairs->particles + c->first;
+    for (uint32_t i = 0; i < contacts->colliders.count; ++i) {
+        const mspringi_collider *c = &contacts->colliders.list[i];
+        const mspring_id first = contacts->particles + c->first;
         for (uint32_t k = 0; k < c->sides; ++k)
             list_side(o, first + k, first + (k + 1) % c->count);
         for (uint32_t k = 0; k < c->count; ++k)
             o->body[first + k] = first + k;
     }
-    pairs->colliders.listed_points = pairs->colliders.point_count;
-    pairs->colliders.listed_sides = o->edge_count - before;
+    contacts->colliders.listed_points = contacts->colliders.point_count;
+    contacts->colliders.listed_sides = o->edge_count - before;
 }
 
 static void list_edges(const mspring_network *network, mspringi_outline *o, uint32_t nodes) {
@@ -197,7 +197,7 @@ static void list_edges(const mspring_network *network, mspringi_outline *o, uint
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         if (o->first[p] > 0 || !mspringi_particle_exists(network, p))
             continue;
-        mspringi_around around = mspringi_around_begin(network, p);
+        mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
         if (next_live(network, &around, p, &other) != MSPRING_NONE)
             continue;
         o->a[o->edge_count] = o->b[o->edge_count] = p;
@@ -231,10 +231,10 @@ static void find_bodies(const mspring_network *network, uint32_t *body) {
         if (!mspringi_spring_exists(network, s) || !mspringi_spring_is_live(network, s))
             continue;
         mspringi_outline_ends(network, s, ends);
-        mspringi_forest_join(body, ends[0], ends[1]);
+        mspringi_union_find_join(body, ends[0], ends[1]);
     }
     for (mspring_id p = 0; p < t->particle_count; ++p)
-        body[p] = mspringi_forest_root(body, p);
+        body[p] = mspringi_union_find_root(body, p);
 }
 
 // What edits have changed of the springs that are edges.
@@ -251,32 +251,33 @@ static void judge_anew(const mspring_network *network, mspringi_outline *o) {
 }
 
 // Who asks which body a particle is of: contact that leaves bodies alone with themselves, and events.
-static void follow_bodies(const mspring_network *network, mspringi_pairs *pairs) {
-    if (pairs->outline.are_bodies_found || (pairs->touches_itself && pairs->meetings.capacity == 0))
+static void follow_bodies(const mspring_network *network, mspringi_contacts *contacts) {
+    if (contacts->outline.are_bodies_found || (contacts->touches_itself && contacts->events.capacity == 0))
         return;
-    find_bodies(network, pairs->outline.body);
-    pairs->outline.are_bodies_found = true;
+    find_bodies(network, contacts->outline.body);
+    contacts->outline.are_bodies_found = true;
 }
 
-void mspringi_outline_follow(const mspring_network *network, mspringi_pairs *pairs) {
-    mspringi_outline *o = &pairs->outline;
+void mspringi_outline_update(const mspring_network *network, mspringi_contacts *contacts) {
+    mspringi_outline *o = &contacts->outline;
     const mspringi_edits *edits = &network->edits;
-    const uint32_t nodes = pairs->particles + pairs->colliders.point_count;
-    if (o->is_found && o->links == edits->links && o->growth == edits->growth && !pairs->colliders.are_new) {
-        follow_bodies(network, pairs);
+    const uint32_t nodes = contacts->particles + contacts->colliders.point_count;
+    if (o->is_found && o->links == edits->links && o->growth == edits->growth && !contacts->colliders.are_new) {
+        follow_bodies(network, contacts);
         return;
     }
     judge_anew(network, o);
     list_edges(network, o, nodes);
-    list_sides(pairs);
+    list_sides(contacts);
     list_points(o, nodes);
     o->are_bodies_found = false;
-    memset(pairs->stamp, 0, pairs->particles * sizeof *pairs->stamp);
+    memset(contacts->stamp, 0, contacts->particles * sizeof *contacts->stamp);
     o->is_found = true;
     o->links = edits->links;
     o->growth = edits->growth;
-    memset(pairs->apart, 0xff, MSPRINGI_KNOWN_APART * (size_t)pairs->particles * sizeof *pairs->apart);
-    pairs->colliders.are_new = false;
-    pairs->is_listed = pairs->is_fresh = false;
-    follow_bodies(network, pairs);
+    memset(contacts->excluded_edges, 0xff,
+           MSPRINGI_EXCLUDED_EDGES * (size_t)contacts->particles * sizeof *contacts->excluded_edges);
+    contacts->colliders.are_new = false;
+    contacts->is_listed = contacts->is_fresh = false;
+    follow_bodies(network, contacts);
 }

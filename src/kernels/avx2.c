@@ -118,6 +118,6 @@ static inline vec larger_size(vec a, vec b) {
 
 #define MSPRINGI_TABLE mspringi_kernels_avx2
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX2
-#include "kernels/table.h"
+#include "kernels/kernel_table.h"
 
 #endif

@@ -146,6 +146,6 @@ static inline part_vec part_mul(part_vec a, part_vec b) {
 
 #define MSPRINGI_TABLE mspringi_kernels_avx512
 #define MSPRINGI_LEVEL MSPRING_SIMD_AVX512
-#include "kernels/table.h"
+#include "kernels/kernel_table.h"
 
 #endif

@@ -24,8 +24,8 @@ static inline float largest_watched(const float *lanes) {
     return largest_lane(value);
 }
 
-static mspringi_extrema extrema_of(const mspringi_watch *watch) {
-    return (mspringi_extrema){largest_watched(watch->place), largest_watched(watch->speed),
+static mspringi_extrema extrema_of(const mspringi_extrema_lanes *watch) {
+    return (mspringi_extrema){largest_watched(watch->coordinate), largest_watched(watch->speed),
                             largest_watched(watch->change)};
 }
 

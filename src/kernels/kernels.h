@@ -9,7 +9,7 @@
 #define MSPRINGI_KERNELS_H
 
 #include "base/target.h"
-#include "kernels/alike.h"
+#include "kernels/shared_records.h"
 #include "kernels/system.h"
 #include "kernels/yield_law.h"
 #include "layout/topology.h"
@@ -32,15 +32,15 @@ typedef enum mspringi_part { MSPRINGI_REST_LENGTH = 0, MSPRINGI_STIFFNESS = 1, M
 
 /// Of each lane the largest absolute coordinate, speed and change of a velocity of the slots that have been moved,
 /// as mspringi_largest has them.
-typedef struct mspringi_watch {
-    float place[MSPRINGI_WIDTH], speed[MSPRINGI_WIDTH], change[MSPRINGI_WIDTH];
-} mspringi_watch;
+typedef struct mspringi_extrema_lanes {
+    float coordinate[MSPRINGI_WIDTH], speed[MSPRINGI_WIDTH], change[MSPRINGI_WIDTH];
+} mspringi_extrema_lanes;
 
 /// The same of all lanes.
 typedef struct mspringi_extrema {
-    float place, speed, change;
+    float coordinate, speed, change;
 } mspringi_extrema;
-typedef mspringi_extrema (*mspringi_extrema_fn)(const mspringi_watch *watch);
+typedef mspringi_extrema (*mspringi_extrema_fn)(const mspringi_extrema_lanes *watch);
 
 /// Substeps from one look for warm springs to the next, counted from the first of a step.
 #define MSPRINGI_YIELD_PERIOD 4u
@@ -58,8 +58,8 @@ typedef struct mspringi_yield_test {
     float *lattice_rests;                                                   ///< [lattice places]
     float *chain_springs;                                                   ///< records: [block][part][lane]
     const uint16_t *live;                                                   ///< [places / MSPRINGI_WIDTH] bits
-    size_t chain_place;                                                     ///< first place of a chain
-    mspringi_alike alike; ///< blocks with the same rest lengths and bounds
+    size_t first_chain_slot;                                                ///< first place of a chain
+    mspringi_shared_records shared_records; ///< blocks with the same rest lengths and bounds
     uint32_t block_count;
     float *heat;          ///< what flow has dissipated in the step, J
     float *before;        ///< rest lengths before the step of those that have flowed in it
@@ -76,9 +76,10 @@ static inline void mspringi_yield_note(const mspringi_yield_test *test, size_t w
 // Rest lengths and bounds of a word are about to change.
 static inline void mspringi_yield_part(const mspringi_yield_test *test, size_t word) {
     const uint32_t block = (uint32_t)(word / MSPRINGI_DIRECTIONS);
-    mspringi_alike alike = test->alike;
-    if (word * MSPRINGI_WIDTH < test->chain_place && (alike.of_block[block] != block || alike.readers[block] > 0))
-        mspringi_alike_part_block(&alike, block, test->block_count);
+    mspringi_shared_records shared = test->shared_records;
+    if (word * MSPRINGI_WIDTH < test->first_chain_slot &&
+        (shared.of_block[block] != block || shared.readers[block] > 0))
+        mspringi_shared_records_unshare_block(&shared, block, test->block_count);
 }
 
 /// Keep the rest lengths of springs of a word that flow, if they have not in this step.
@@ -107,26 +108,26 @@ typedef struct mspringi_sweep {
     const float *cells; ///< [block][2][lane] half the force of an area per distance at area 0, and by how much it
                         ///< falls with the cross product of the diagonals; 0 where no cell is; read with areas only
     const float *chain_springs; ///< records: [block][part][lane]
-    const mspringi_web *web;
-    const float *web_springs;       ///< records: [rung][part][lane]
-    const float *gathered;          ///< [node][4] x, y, vx, vy of the web's nodes at the start of the substep; of
-                                    ///< precise kernels x, y, low_x, low_y and, with damping, at
-                                    ///< mspringi_gathered_half() vx and vy, with something behind
-    uint32_t parts;                 ///< parts in a record: 2 or, with damping, 3
-    float h;                        ///< substep, s
-    float decay;                    ///< what global damping leaves of a velocity
+    const mspringi_sell *irregular;
+    const float *irregular_springs; ///< records: [slice column][part][lane]
+    const float *gathered; ///< [node][4] x, y, vx, vy of the irregular part's nodes at the start of the substep; of
+                           ///< precise kernels x, y, low_x, low_y and, with damping, at
+                           ///< mspringi_gathered_half() vx and vy, with something behind
+    uint32_t parts;        ///< parts in a record: 2 or, with damping, 3
+    float h;               ///< substep, s
+    float decay;           ///< what global damping leaves of a velocity
     float gravity_h_x, gravity_h_y; ///< gravity times h
     float *keep; ///< [6][slots] where the state goes that is found, as x, y, vx, vy, low_x, low_y lie; or NULL
-    mspringi_watch *watch; ///< what is seen of the state that is made, or NULL
-    const float *before;   ///< vx of before the step, vy behind, to watch changes by, which is where keep has them
-                           ///< put if there is both; or NULL
-    bool watches_place, watches_speed; ///< whether coordinates and speeds are watched
-    const mspringi_yield_test *test;   ///< read by the kernels that test only
+    mspringi_extrema_lanes *watch; ///< what is seen of the state that is made, or NULL
+    const float *before; ///< vx of before the step, vy behind, to watch changes by, which is where keep has them
+                         ///< put if there is both; or NULL
+    bool watches_coordinate, watches_speed; ///< whether coordinates and speeds are watched
+    const mspringi_yield_test *test;        ///< read by the kernels that test only
 } mspringi_sweep;
 
-/// Floats that four values of each of a web's nodes take.
-static inline size_t mspringi_gathered_half(const mspringi_web *web) {
-    return (size_t)4 * web->group_count * MSPRINGI_WIDTH;
+/// Floats that four values of each of an irregular part's nodes take.
+static inline size_t mspringi_gathered_half(const mspringi_sell *irregular) {
+    return (size_t)4 * irregular->slice_count * MSPRINGI_WIDTH;
 }
 
 /// Compute the forces of the springs of one or more rows and move their particles, in place. In lattice rows and
@@ -142,20 +143,20 @@ typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span
 ///     v_n = keep v + gain c,   x_n = x + (reach v + fall c)
 /// with keep = d^n, gain = d + d^2 + ... + d^n, reach = h gain and fall = h times the sum of the gains of 1 to n. A
 /// pinned one keeps its velocity and moves by drift v, with drift = h n.
-typedef struct mspringi_glide {
+typedef struct mspringi_free_motion {
     float keep, gain, reach, fall, drift;
-} mspringi_glide;
+} mspringi_free_motion;
 
 /// Move the particles of a span that have no springs, all substeps of a glide at once.
 typedef void (*mspringi_loose_fn)(const mspringi_sweep *sweep, const mspringi_span *span,
-                                  const mspringi_glide *glide);
+                                  const mspringi_free_motion *glide);
 
 /// Copy position and velocity of block_count blocks of slots behind one another into packed.
 typedef void (*mspringi_pack_fn)(const mspringi_sweep *sweep, size_t first_block, size_t block_count,
                                  float *gathered);
 
-/// Compute the forces of the web on the attached nodes first (a multiple of MSPRINGI_WIDTH) to first + count - 1,
-/// and perhaps on some more of the last one's group, into x and y by number of the attached node.
+/// Compute the forces of the irregular part on the attached nodes first (a multiple of MSPRINGI_WIDTH) to first +
+/// count - 1, and perhaps on some more of the last one's group, into x and y by number of the attached node.
 typedef void (*mspringi_attached_fn)(const mspringi_sweep *sweep, uint32_t first, uint32_t count, float *x,
                                      float *y);
 
@@ -184,7 +185,7 @@ typedef struct mspringi_line {
 } mspringi_line;
 
 /// A floor, and the particles that it acts on, by slot.
-typedef struct mspringi_ground {
+typedef struct mspringi_floor_args {
     const mspringi_line *lines;
     uint32_t line_count;
     uint32_t height_count; ///< 0: there are none
@@ -204,17 +205,17 @@ typedef struct mspringi_ground {
     double silt_depth, silt_rate;
     double undamped; ///< times a velocity: what it would be without global damping in the substep
     float *impulse_x, *impulse_y;
-    const float *inverse_mass, *free_mass;
-} mspringi_ground;
+    const float *inverse_mass, *active_inverse_mass;
+} mspringi_floor_args;
 
 /// Let a floor act on the particles of the block of slots that begins with slot, after a substep of symplectic
 /// Euler: on those with springs, or on those without.
 /// @return a bit for each that nothing has been done to, as it has come from one straight part of the heights to
-///         another or is in a corner: mspringi_floor_bounce() and mspringi_floor_fly() are for them
-typedef uint32_t (*mspringi_touch_fn)(const mspringi_ground *ground, size_t slot);
+///         another or is in a corner: mspringi_floor_bounce() and mspringi_floor_move_free_particle() are for them
+typedef uint32_t (*mspringi_floor_fn)(const mspringi_floor_args *args, size_t slot);
 
 /// Let silt brake the particles of that block, before a floor acts on them.
-typedef void (*mspringi_brake_fn)(const mspringi_ground *ground, size_t slot);
+typedef void (*mspringi_silt_fn)(const mspringi_floor_args *args, size_t slot);
 
 /// What a strain pass works on: arrays by slot and, by place, the least strain that anything happens at.
 typedef struct mspringi_strain_sweep {
@@ -260,8 +261,9 @@ typedef struct mspringi_yield_sweep {
 typedef uint32_t (*mspringi_yield_fn)(const mspringi_yield_sweep *sweep, uint32_t first, uint32_t end,
                                       mspringi_strain_hit *hits);
 
-/// What every spring adds to the stability border: see border.h. Arrays by slot, and springs as in mspringi_sweep.
-typedef struct mspringi_border {
+/// What every spring adds to the stability limit: see limit_kernel.h. Arrays by slot, and springs as in
+/// mspringi_sweep.
+typedef struct mspringi_stability_limit {
     const float *x, *y, *inverse_mass;
     const float *lattice_springs, *rest_lengths, *chain_springs;
     const uint32_t *springs_of_block, *rests_of_block;
@@ -271,8 +273,8 @@ typedef struct mspringi_border {
     float stiffness, damping; ///< what a spring's are multiplied by at the substep
     const float *in[2];       ///< to be read of both ends: weights, or a displacement
     float *out[3];            ///< what is added to
-} mspringi_border;
-typedef void (*mspringi_border_fn)(const mspringi_border *border);
+} mspringi_stability_limit;
+typedef void (*mspringi_stability_limit_fn)(const mspringi_stability_limit *border);
 
 /// The checksum of a snapshot, of what has been looked at so far, in whole units: 64-bit words, little-endian.
 #define MSPRINGI_CHECKSUM_UNIT 64
@@ -287,7 +289,7 @@ typedef void (*mspringi_checksum_fn)(uint8_t *to, const uint8_t *from, size_t un
 /// Those in which low words count. They look for themselves whether there are dampers (parts) and forces (force_x
 /// not NULL): all of them take 50 kB in the four levels of x86, a copy of each of the others 104.
 typedef struct mspringi_precise_kernels {
-    mspringi_row_fn lattice, cells, chain, web, herd;
+    mspringi_row_fn lattice, cells, chain, irregular, bundle;
     mspringi_attached_fn attached;
 } mspringi_precise_kernels;
 
@@ -297,8 +299,9 @@ typedef struct mspringi_kernels {
     mspringi_row_fn lattice[2][2]; ///< [with damping][with forces]
     mspringi_row_fn cells[2][2];   ///< lattices with areas
     mspringi_row_fn chain[2][2];
-    mspringi_row_fn web[2][2];
-    mspringi_row_fn herd[2][2]; ///< of spans of whole herds, with a carry row for the forces of all rungs
+    mspringi_row_fn irregular[2][2];
+    mspringi_row_fn bundle[2]
+                          [2];  ///< of spans of whole bundles, with a carry row for the forces of all slice columns
     mspringi_loose_fn loose[2]; ///< [with forces]
     mspringi_pack_fn pack;
     mspringi_attached_fn attached[2]; ///< [with damping]
@@ -307,11 +310,11 @@ typedef struct mspringi_kernels {
     mspringi_largest_fn largest;
     mspringi_extrema_fn extrema_of;
     mspringi_beyond_fn beyond;
-    mspringi_touch_fn touch, fly_past; ///< of particles with and without springs
-    mspringi_brake_fn brake;
+    mspringi_floor_fn touch, fly_past; ///< of particles with and without springs
+    mspringi_silt_fn brake;
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_yield_fn lattice_yield, chain_yield;
-    mspringi_border_fn bound_lattice, bound_chain, image_lattice, image_chain;
+    mspringi_stability_limit_fn bound_lattice, bound_chain, image_lattice, image_chain;
     mspringi_checksum_fn checksum;
     mspringi_system_kernels system;
 } mspringi_kernels;

@@ -101,6 +101,6 @@ static inline float largest_lane(vec a) {
 
 #define MSPRINGI_TABLE mspringi_kernels_neon
 #define MSPRINGI_LEVEL MSPRING_SIMD_NEON
-#include "kernels/table.h"
+#include "kernels/kernel_table.h"
 
 #endif

@@ -79,9 +79,9 @@ static inline void keep_motion(const mspringi_sweep *s, size_t slot) {
 }
 
 static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
-    mspringi_watch *seen = s->watch;
-    if (s->watches_place)
-        seen->place[0] = larger_size(larger_size(seen->place[0], s->x[slot]), s->y[slot]);
+    mspringi_extrema_lanes *seen = s->watch;
+    if (s->watches_coordinate)
+        seen->coordinate[0] = larger_size(larger_size(seen->coordinate[0], s->x[slot]), s->y[slot]);
     if (s->watches_speed)
         seen->speed[0] = larger_size(larger_size(seen->speed[0], s->vx[slot]), s->vy[slot]);
     if (s->before) {
@@ -148,52 +148,54 @@ static inline lattice_springs springs_of(const mspringi_sweep *s, const mspringi
                              s->lattice_springs + s->springs_of_block[block] * places * (s->parts - 1) + lane};
 }
 
-static inline mspringi_yield_values yield_values(const mspringi_yield_test *t, size_t place) {
-    return (mspringi_yield_values){t->nominal[place], t->yield_strain[place], t->hardening[place],
-                                   t->plastic_limit[place], t->gain[place]};
+static inline mspringi_yield_values yield_values(const mspringi_yield_test *t, size_t spring_slot) {
+    return (mspringi_yield_values){t->nominal[spring_slot], t->yield_strain[spring_slot], t->hardening[spring_slot],
+                                   t->plastic_limit[spring_slot], t->gain[spring_slot]};
 }
 
 // Look at a spring that is warm, and map it if it flows. What is broken has no stiffness.
-static void let_yield(const mspringi_yield_test *t, size_t place, float square, float *rest, float stiffness) {
-    const mspringi_yield_bounds bounds = {t->low[place], t->high[place], t->flow_low[place], t->flow_high[place]};
-    const uint32_t lane = place % MSPRINGI_WIDTH, bit = 1u << lane;
+static void let_yield(const mspringi_yield_test *t, size_t spring_slot, float square, float *rest,
+                      float stiffness) {
+    const mspringi_yield_bounds bounds = {t->low[spring_slot], t->high[spring_slot], t->flow_low[spring_slot],
+                                          t->flow_high[spring_slot]};
+    const uint32_t lane = spring_slot % MSPRINGI_WIDTH, bit = 1u << lane;
     const float length = sqrtf(square);
     if (square > bounds.high || bounds.low > square)
-        mspringi_yield_note(t, place / MSPRINGI_WIDTH, bit);
+        mspringi_yield_note(t, spring_slot / MSPRINGI_WIDTH, bit);
     if (!t->maps || !(stiffness > 0.0f))
         return;
-    const mspringi_yield_values values = yield_values(t, place);
+    const mspringi_yield_values values = yield_values(t, spring_slot);
     const float to = mspringi_yield_rest(values, bounds, square, length, *rest);
     if (!(to > *rest || *rest > to))
         return;
-    mspringi_yield_keep(t, place / MSPRINGI_WIDTH, bit, rest - lane);
-    t->heat[place] = t->heat[place] + mspringi_yield_heat(values, stiffness, length, *rest, to);
+    mspringi_yield_keep(t, spring_slot / MSPRINGI_WIDTH, bit, rest - lane);
+    t->heat[spring_slot] = t->heat[spring_slot] + mspringi_yield_heat(values, stiffness, length, *rest, to);
     *rest = to;
     const mspringi_yield_bounds renewed = mspringi_yield_bounds_of(values, to);
-    t->low[place] = renewed.low;
-    t->high[place] = renewed.high;
-    t->flow_low[place] = renewed.flow_low;
-    t->flow_high[place] = renewed.flow_high;
+    t->low[spring_slot] = renewed.low;
+    t->high[spring_slot] = renewed.high;
+    t->flow_low[spring_slot] = renewed.flow_low;
+    t->flow_high[spring_slot] = renewed.flow_high;
 }
 
 // A spring is looked at before the force that its rest length gives.
-static inline void test_spring(const mspringi_yield_test *t, size_t place, motion base, motion tip, float *rest,
-                               float stiffness, mspringi_variant of) {
+static inline void test_spring(const mspringi_yield_test *t, size_t spring_slot, motion base, motion tip,
+                               float *rest, float stiffness, mspringi_variant of) {
     float dx = base.x - tip.x, dy = base.y - tip.y;
     if (of & MSPRINGI_PRECISE) {
         dx = dx + (base.low_x - tip.low_x);
         dy = dy + (base.low_y - tip.low_y);
     }
     const float square = dx * dx + dy * dy;
-    if (square > t->test_high[place] || t->test_low[place] > square)
-        let_yield(t, place, square, rest, stiffness);
+    if (square > t->test_high[spring_slot] || t->test_low[spring_slot] > square)
+        let_yield(t, spring_slot, square, rest, stiffness);
 }
 
 static inline void test_in_lattice(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
                                    mspringi_direction direction, motion base, motion tip, mspringi_variant of) {
-    const size_t place = place_in_lattice(span, slot) + (size_t)direction * MSPRINGI_WIDTH;
+    const size_t spring_slot = place_in_lattice(span, slot) + (size_t)direction * MSPRINGI_WIDTH;
     const float *records = springs_of(s, span, slot).records;
-    test_spring(s->test, place, base, tip, s->test->lattice_rests + place,
+    test_spring(s->test, spring_slot, base, tip, s->test->lattice_rests + spring_slot,
                 records[direction * (s->parts - 1) * MSPRINGI_WIDTH], of);
 }
 
@@ -264,7 +266,7 @@ static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *s
     const size_t at_record = block * s->parts * MSPRINGI_WIDTH + lane;
     const float *record = s->chain_springs + at_record;
     if (of & MSPRINGI_TESTED)
-        test_spring(s->test, s->test->chain_place + block * MSPRINGI_WIDTH + lane, here, next,
+        test_spring(s->test, s->test->first_chain_slot + block * MSPRINGI_WIDTH + lane, here, next,
                     s->test->chain_springs + at_record, record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH], of);
     return spring_force(here, next, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
@@ -292,21 +294,21 @@ static inline motion node_at(const mspringi_sweep *s, size_t node, mspringi_vari
     if (!(of & MSPRINGI_PRECISE))
         return (motion){gathered[0], gathered[1], gathered[2], gathered[3], 0.0f, 0.0f};
     if (of & MSPRINGI_DAMPED)
-        half += mspringi_gathered_half(s->web);
+        half += mspringi_gathered_half(s->irregular);
     return (motion){gathered[0], gathered[1], half[0], half[1], gathered[2], gathered[3]};
 }
 
-// The force of the web on one of its nodes: the sum over the rungs of its group, in their order, from a first one
-// on.
-static inline vector web_force(const mspringi_sweep *s, size_t node, motion here, uint32_t rungs,
-                               mspringi_variant of) {
-    const mspringi_web *web = s->web;
+// The force of the irregular part on one of its nodes: the sum over the slice columns of its group, in their order,
+// from a first one on.
+static inline vector irregular_force(const mspringi_sweep *s, size_t node, motion here, uint32_t slice_columns,
+                                     mspringi_variant of) {
+    const mspringi_sell *irregular = s->irregular;
     const size_t lane = node % MSPRINGI_WIDTH;
     vector sum = {0.0f, 0.0f};
-    for (size_t rung = web->first_rung[node / MSPRINGI_WIDTH] + rungs;
-         rung < web->first_rung[node / MSPRINGI_WIDTH + 1]; ++rung) {
-        const motion there = node_at(s, web->neighbour[rung * MSPRINGI_WIDTH + lane], of);
-        const float *record = s->web_springs + rung * s->parts * MSPRINGI_WIDTH + lane;
+    for (size_t slice_column = irregular->first_slice_column[node / MSPRINGI_WIDTH] + slice_columns;
+         slice_column < irregular->first_slice_column[node / MSPRINGI_WIDTH + 1]; ++slice_column) {
+        const motion there = node_at(s, irregular->neighbour[slice_column * MSPRINGI_WIDTH + lane], of);
+        const float *record = s->irregular_springs + slice_column * s->parts * MSPRINGI_WIDTH + lane;
         const vector force = spring_force(there, here, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
                                           record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
         sum.x = sum.x + force.x;
@@ -315,25 +317,27 @@ static inline vector web_force(const mspringi_sweep *s, size_t node, motion here
     return sum;
 }
 
-// The force of the first rung of a node's group, if that is upright, to the node in the same lane of the next one.
+// The force of the first slice column of a node's group, if that is upright, to the node in the same lane of the
+// next one.
 static inline vector upright_force(const mspringi_sweep *s, size_t slot, size_t node, mspringi_variant of) {
-    const float *record = s->web_springs +
-                          (size_t)s->web->first_rung[node / MSPRINGI_WIDTH] * s->parts * MSPRINGI_WIDTH +
-                          node % MSPRINGI_WIDTH;
+    const float *record =
+        s->irregular_springs +
+        (size_t)s->irregular->first_slice_column[node / MSPRINGI_WIDTH] * s->parts * MSPRINGI_WIDTH +
+        node % MSPRINGI_WIDTH;
     return spring_force(at(s, slot + MSPRINGI_WIDTH), at(s, slot), record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }
 
-MSPRINGI_INLINE void sweep_web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
-                               mspringi_variant of) {
-    const uint8_t *is_upright = s->web->is_upright;
+MSPRINGI_INLINE void sweep_irregular(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
+                                     mspringi_variant of) {
+    const uint8_t *is_upright = s->irregular->is_interleaved;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         vector handed[MSPRINGI_WIDTH] = {{0.0f, 0.0f}}; // by the group before
         size_t node = (size_t)span->first_record * MSPRINGI_WIDTH;
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot, ++node) {
             const bool has_upright = is_upright && is_upright[node / MSPRINGI_WIDTH];
             vector *below = &handed[slot % MSPRINGI_WIDTH];
-            vector force = web_force(s, node, at(s, slot), has_upright, of);
+            vector force = irregular_force(s, node, at(s, slot), has_upright, of);
             force = (vector){force.x + below->x, force.y + below->y};
             *below = (vector){0.0f, 0.0f};
             if (has_upright) {
@@ -346,37 +350,39 @@ MSPRINGI_INLINE void sweep_web(const mspringi_sweep *s, const mspringi_span *spa
     }
 }
 
-// The force of a spring from a herd's group to one below, at both ends.
-MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, size_t slot, const mspringi_link *link, size_t first_rung,
-                               mspringi_variant of) {
-    const float *record = s->web_springs + (size_t)link->rung * s->parts * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+// The force of a spring from a bundle's group to one below, at both ends.
+MSPRINGI_INLINE void pull_bundle(const mspringi_sweep *s, size_t slot, const mspringi_bundle_link *link,
+                                 size_t first_slice_column, mspringi_variant of) {
+    const float *record =
+        s->irregular_springs + (size_t)link->slice_column * s->parts * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
     const vector pull =
         spring_force(at(s, slot + link->below), at(s, slot), record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
                      record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
-    s->carry_x[link->rung - first_rung] = pull.x;
-    s->carry_y[link->rung - first_rung] = pull.y;
-    s->carry_x[link->back - first_rung] = 0.0f - pull.x;
-    s->carry_y[link->back - first_rung] = 0.0f - pull.y;
+    s->carry_x[link->slice_column - first_slice_column] = pull.x;
+    s->carry_y[link->slice_column - first_slice_column] = pull.y;
+    s->carry_x[link->back - first_slice_column] = 0.0f - pull.x;
+    s->carry_y[link->back - first_slice_column] = 0.0f - pull.y;
 }
 
-// The same forces as those of web(), each computed once, and summed up in the same order. The carry row holds them
-// by rung.
-MSPRINGI_INLINE void sweep_herd(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
-                                mspringi_variant of) {
-    const mspringi_web *web = s->web;
+// The same forces as those of irregular part(), each computed once, and summed up in the same order. The carry row
+// holds them by slice column.
+MSPRINGI_INLINE void sweep_bundle(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
+                                  mspringi_variant of) {
+    const mspringi_sell *irregular = s->irregular;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         const size_t groups = (span->end_slot - span->first_slot) / MSPRINGI_WIDTH;
-        const size_t first_rung = web->first_rung[span->first_record];
+        const size_t first_slice_column = irregular->first_slice_column[span->first_record];
         for (size_t i = 0; i < groups * MSPRINGI_WIDTH; ++i) { // lane after lane
             const size_t group = span->first_record + i % groups;
             const size_t slot = span->first_slot + i % groups * MSPRINGI_WIDTH + i / groups;
-            const uint32_t *first_link = web->first_link + (group - web->first_herd);
+            const uint32_t *first_link = irregular->first_link + (group - irregular->first_bundle);
             for (uint32_t link = first_link[0]; link < first_link[1]; ++link)
-                pull_herd(s, slot, &web->links[link], first_rung, of);
+                pull_bundle(s, slot, &irregular->links[link], first_slice_column, of);
             vector force = {0.0f, 0.0f};
-            for (size_t rung = web->first_rung[group]; rung < web->first_rung[group + 1]; ++rung) {
-                force.x = force.x + s->carry_x[rung - first_rung];
-                force.y = force.y + s->carry_y[rung - first_rung];
+            for (size_t slice_column = irregular->first_slice_column[group];
+                 slice_column < irregular->first_slice_column[group + 1]; ++slice_column) {
+                force.x = force.x + s->carry_x[slice_column - first_slice_column];
+                force.y = force.y + s->carry_y[slice_column - first_slice_column];
             }
             move(s, slot, force, of);
         }
@@ -399,24 +405,25 @@ SHARED void chain(const mspringi_sweep *s, const mspringi_span *spans, uint32_t 
         sweep_chain(s, spans, count, BUT_PRECISE(of));
 }
 
-SHARED void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
+SHARED void irregular(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
     if (of & MSPRINGI_PRECISE)
-        sweep_web(s, spans, count, of | MSPRINGI_PRECISE);
+        sweep_irregular(s, spans, count, of | MSPRINGI_PRECISE);
     else
-        sweep_web(s, spans, count, BUT_PRECISE(of));
+        sweep_irregular(s, spans, count, BUT_PRECISE(of));
 }
 
-SHARED void herd(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
+SHARED void bundle(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
     if (of & MSPRINGI_PRECISE)
-        sweep_herd(s, spans, count, of | MSPRINGI_PRECISE);
+        sweep_bundle(s, spans, count, of | MSPRINGI_PRECISE);
     else
-        sweep_herd(s, spans, count, BUT_PRECISE(of));
+        sweep_bundle(s, spans, count, BUT_PRECISE(of));
 }
 
 static inline void attached(const mspringi_sweep *s, uint32_t first, uint32_t count, float *x, float *y,
                             mspringi_variant of) {
     for (size_t i = first; i < (size_t)first + count; ++i) {
-        const vector force = web_force(s, s->web->own_count + i, node_at(s, s->web->own_count + i, of), 0, of);
+        const vector force =
+            irregular_force(s, s->irregular->own_count + i, node_at(s, s->irregular->own_count + i, of), 0, of);
         x[i] = force.x;
         y[i] = force.y;
     }
@@ -433,7 +440,7 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
 }
 
 // As move(), with the particle in registers.
-static inline void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_glide *glide,
+static inline void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_free_motion *glide,
                          bool forced) {
     for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
         const float inverse_mass = s->inverse_mass[slot], inverse_mass_h = inverse_mass * s->h;
@@ -455,6 +462,6 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *span, con
 
 #define MSPRINGI_TABLE mspringi_kernels_scalar
 #define MSPRINGI_LEVEL MSPRING_SIMD_SCALAR
-#include "kernels/table.h"
+#include "kernels/kernel_table.h"
 
 #endif

@@ -107,6 +107,6 @@ static inline vec larger_size(vec a, vec b) {
 
 #define MSPRINGI_TABLE mspringi_kernels_sse2
 #define MSPRINGI_LEVEL MSPRING_SIMD_SSE2
-#include "kernels/table.h"
+#include "kernels/kernel_table.h"
 
 #endif

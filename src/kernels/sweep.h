@@ -13,8 +13,8 @@
 #include "base/cpu.h"
 #include "kernels/spring_law.h"
 
-/// Springs of a herd's group that are computed together.
-#define HERD_BATCH 2
+/// Springs of a bundle's group that are computed together.
+#define BUNDLE_BATCH 2
 
 typedef struct vector {
     vec x, y;
@@ -118,9 +118,9 @@ MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, ve
 
 // found: velocities before the substep; if that is the first of the step, nothing has to be loaded again.
 MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, motion made, vector found) {
-    mspringi_watch *seen = s->watch;
-    if (s->watches_place)
-        store(seen->place, larger_size(larger_size(load(seen->place), made.x), made.y));
+    mspringi_extrema_lanes *seen = s->watch;
+    if (s->watches_coordinate)
+        store(seen->coordinate, larger_size(larger_size(load(seen->coordinate), made.x), made.y));
     if (s->watches_speed)
         store(seen->speed, larger_size(larger_size(load(seen->speed), made.vx), made.vy));
     if (s->before) {
@@ -231,9 +231,9 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                                                            to_north_east.square, to_south_east.square)) {
                     const vec squares[] = {to_east.square, to_north.square, to_north_east.square,
                                            to_south_east.square};
-                    const size_t place = block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
-                    let_yield(s->test, place, MSPRINGI_DIRECTIONS, squares, s->test->lattice_rests + place, springs,
-                              part);
+                    const size_t spring_slot = block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+                    let_yield(s->test, spring_slot, MSPRINGI_DIRECTIONS, squares,
+                              s->test->lattice_rests + spring_slot, springs, part);
                     rests = s->rest_lengths +
                             (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH +
                             slot % MSPRINGI_WIDTH;
@@ -284,8 +284,8 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
     }
 }
 
-// Outside of lattices precise kernels are to be small: they share one copy of move(), as of web_force(), and take
-// herds' springs one by one, which is 8 kB less in three levels.
+// Outside of lattices precise kernels are to be small: they share one copy of move(), as of irregular_force(), and
+// take bundles' springs one by one, which is 8 kB less in three levels.
 static MSPRINGI_NOINLINE void precise_move(const mspringi_sweep *s, size_t slot, const motion *here,
                                            const vector *force, mspringi_variant of) {
     move(s, slot, *here, *force, of | MSPRINGI_PRECISE);
@@ -324,12 +324,13 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
             const extent to_east = spring_extent(here, next, of);
             if (of & MSPRINGI_TESTED) {
                 const mspringi_yield_test *t = s->test;
-                const size_t place = is_chain ? t->chain_place + block * MSPRINGI_WIDTH + lane
-                                              : block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + lane;
-                float *own = is_chain ? t->chain_springs + (rests - s->chain_springs) : t->lattice_rests + place;
+                const size_t spring_slot = is_chain ? t->first_chain_slot + block * MSPRINGI_WIDTH + lane
+                                                    : block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + lane;
+                float *own =
+                    is_chain ? t->chain_springs + (rests - s->chain_springs) : t->lattice_rests + spring_slot;
                 const vec square = to_east.square;
-                if (bits_outside(square, t->test_low + place, t->test_high + place)) {
-                    let_yield(t, place, 1, &square, own, record, 0);
+                if (bits_outside(square, t->test_low + spring_slot, t->test_high + spring_slot)) {
+                    let_yield(t, spring_slot, 1, &square, own, record, 0);
                     rests = own;
                 }
             }
@@ -345,14 +346,14 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
     }
 }
 
-/// What the forces of LANES springs of the web on their tips follow from.
+/// What the forces of LANES springs of the irregular part on their tips follow from.
 typedef struct gap {
     vec dx, dy; ///< from the tips to the bases
     vec square; ///< of the length
     vec change; ///< of the length, times the length
 } gap;
 
-// What a variant reads of LANES of the web's nodes.
+// What a variant reads of LANES of the irregular part's nodes.
 MSPRINGI_INLINE motion load_nodes(const mspringi_sweep *s, const uint32_t *nodes, mspringi_variant of) {
     motion m;
     if (!(of & MSPRINGI_PRECISE)) {
@@ -364,7 +365,7 @@ MSPRINGI_INLINE motion load_nodes(const mspringi_sweep *s, const uint32_t *nodes
     load_gathered(s->gathered, nodes, &m.x, &m.y, &m.low_x, &m.low_y);
     m.vx = m.vy = zero();
     if (of & MSPRINGI_DAMPED)
-        load_gathered(s->gathered + mspringi_gathered_half(s->web), nodes, &m.vx, &m.vy, &low_x, &low_y);
+        load_gathered(s->gathered + mspringi_gathered_half(s->irregular), nodes, &m.vx, &m.vy, &low_x, &low_y);
     return m;
 }
 
@@ -389,20 +390,21 @@ MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, mspring
     return sum;
 }
 
-// The force of the web on LANES of its nodes, by the rungs of their group from that number on. Each rung's
-// neighbours are loaded before the forces of the one before are computed, so that a processor that looks ahead a
-// hundred operations or three has both under way: 7 to 11 % less time at SSE2, AVX2 and AVX-512.
-MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t group, size_t lane, uint32_t rungs,
-                                 mspringi_variant of) {
+// The force of the irregular part on LANES of its nodes, by the slice columns of their group from that number on.
+// Each slice column's neighbours are loaded before the forces of the one before are computed, so that a processor
+// that looks ahead a hundred operations or three has both under way: 7 to 11 % less time at SSE2, AVX2 and AVX-512.
+MSPRINGI_INLINE vector irregular_force(const mspringi_sweep *s, motion here, size_t group, size_t lane,
+                                       uint32_t slice_columns, mspringi_variant of) {
     const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
-    const uint32_t first = s->web->first_rung[group] + rungs, end = s->web->first_rung[group + 1];
-    const uint32_t *neighbour = s->web->neighbour + (size_t)first * MSPRINGI_WIDTH + lane;
-    const float *record = s->web_springs + first * stride + lane;
+    const uint32_t first = s->irregular->first_slice_column[group] + slice_columns,
+                   end = s->irregular->first_slice_column[group + 1];
+    const uint32_t *neighbour = s->irregular->neighbour + (size_t)first * MSPRINGI_WIDTH + lane;
+    const float *record = s->irregular_springs + first * stride + lane;
     vector sum = {zero(), zero()};
     if (first == end)
         return sum;
     gap next = gap_to(s, here, neighbour, of);
-    for (uint32_t rung = first + 1; rung < end; ++rung) {
+    for (uint32_t slice_column = first + 1; slice_column < end; ++slice_column) {
         const gap now = next;
         neighbour += MSPRINGI_WIDTH;
         next = gap_to(s, here, neighbour, of);
@@ -412,41 +414,43 @@ MSPRINGI_INLINE vector web_force(const mspringi_sweep *s, motion here, size_t gr
     return add_pull(sum, next, record, of);
 }
 
-// The same, once for all precise kernels of a level: in each of them it would take 3 kB. (With a look at every rung
-// whether there are dampers, a web takes 5 % more instructions.)
-static MSPRINGI_NOINLINE vector precise_web_force(const mspringi_sweep *s, const motion *here, size_t group,
-                                                  size_t lane, uint32_t rungs, mspringi_variant of) {
-    return of & MSPRINGI_DAMPED ? web_force(s, *here, group, lane, rungs, MSPRINGI_PRECISE | MSPRINGI_DAMPED)
-                                : web_force(s, *here, group, lane, rungs, MSPRINGI_PRECISE);
+// The same, once for all precise kernels of a level: in each of them it would take 3 kB. (With a look at every
+// slice column whether there are dampers, an irregular part takes 5 % more instructions.)
+static MSPRINGI_NOINLINE vector precise_irregular_force(const mspringi_sweep *s, const motion *here, size_t group,
+                                                        size_t lane, uint32_t slice_columns, mspringi_variant of) {
+    return of & MSPRINGI_DAMPED
+               ? irregular_force(s, *here, group, lane, slice_columns, MSPRINGI_PRECISE | MSPRINGI_DAMPED)
+               : irregular_force(s, *here, group, lane, slice_columns, MSPRINGI_PRECISE);
 }
 
-MSPRINGI_INLINE vector find_web_force(const mspringi_sweep *s, motion here, size_t group, size_t lane,
-                                      uint32_t rungs, mspringi_variant of) {
-    return of & MSPRINGI_PRECISE ? precise_web_force(s, &here, group, lane, rungs, of)
-                                 : web_force(s, here, group, lane, rungs, of);
+MSPRINGI_INLINE vector find_irregular_force(const mspringi_sweep *s, motion here, size_t group, size_t lane,
+                                            uint32_t slice_columns, mspringi_variant of) {
+    return of & MSPRINGI_PRECISE ? precise_irregular_force(s, &here, group, lane, slice_columns, of)
+                                 : irregular_force(s, here, group, lane, slice_columns, of);
 }
 
-// The forces of a group's upright rung on LANES of its nodes; those on the next group's are the opposite.
+// The forces of a group's upright slice column on LANES of its nodes; those on the next group's are the opposite.
 MSPRINGI_INLINE vector upright_force(const mspringi_sweep *s, size_t slot, motion here, size_t group, size_t lane,
                                      mspringi_variant of) {
     const float *record =
-        s->web_springs + (size_t)s->web->first_rung[group] * (of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH + lane;
+        s->irregular_springs +
+        (size_t)s->irregular->first_slice_column[group] * (of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH + lane;
     const motion above = load_motion(s, slot + MSPRINGI_WIDTH, of);
     const extent to = spring_extent(above, here, of);
     return spring_force(to, inverse_or_zero(to.square), above, here, record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }
 
-// A web that ropes stand in, one column of LANES nodes after the other.
-MSPRINGI_INLINE void standing_web(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_variant of) {
+// An irregular part that ropes stand in, one column of LANES nodes after the other.
+MSPRINGI_INLINE void interleaved_part(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_variant of) {
     const mspringi_sweep copy = *sweep, *const s = &copy;
-    const uint8_t *is_upright = s->web->is_upright;
+    const uint8_t *is_upright = s->irregular->is_interleaved;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
         vector handed = {zero(), zero()};
         size_t group = span->first_record;
         for (size_t slot = span->first_slot + lane; slot < end_of(span); slot += MSPRINGI_WIDTH, ++group) {
             const motion here = load_motion(s, slot, of);
-            vector force = find_web_force(s, here, group, lane, is_upright[group], of);
+            vector force = find_irregular_force(s, here, group, lane, is_upright[group], of);
             force.x = add(force.x, handed.x);
             force.y = add(force.y, handed.y);
             handed.x = handed.y = zero();
@@ -462,35 +466,38 @@ MSPRINGI_INLINE void standing_web(const mspringi_sweep *sweep, const mspringi_sp
     }
 }
 
-MSPRINGI_INLINE void web(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count, mspringi_variant of) {
+MSPRINGI_INLINE void irregular(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
+                               mspringi_variant of) {
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        if (s->web->is_upright) {
-            standing_web(s, span, of);
+        if (s->irregular->is_interleaved) {
+            interleaved_part(s, span, of);
             continue;
         }
         for (size_t slot = span->first_slot; slot < end_of(span); slot += LANES) {
             const size_t node = (size_t)span->first_record * MSPRINGI_WIDTH + (slot - span->first_slot);
             const motion here = load_motion(s, slot, of);
-            const vector force = find_web_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, 0, of);
+            const vector force = find_irregular_force(s, here, node / MSPRINGI_WIDTH, node % MSPRINGI_WIDTH, 0, of);
             move_apart(s, slot, here, force, of);
         }
     }
 }
 
-// Where a herd's forces are summed up from: those of each rung, LANES of them, in the order of rungs.
+// Where a bundle's forces are summed up from: those of each slice column, LANES of them, in the order of slice
+// columns.
 typedef struct pulls {
     float *x, *y;
-    size_t first; ///< rung
+    size_t first; ///< slice column
 } pulls;
 
-// Compute the forces of some springs from a herd's group to those below, for both rungs. All roots and divisions
-// come before any force, so that more of them are under way at a time than a processor would look ahead for.
-MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, size_t slot, motion here, const mspringi_link *links,
-                               size_t count, pulls to, mspringi_variant of) {
+// Compute the forces of some springs from a bundle's group to those below, for both slice columns. All roots and
+// divisions come before any force, so that more of them are under way at a time than a processor would look ahead
+// for.
+MSPRINGI_INLINE void pull_bundle(const mspringi_sweep *s, size_t slot, motion here,
+                                 const mspringi_bundle_link *links, size_t count, pulls to, mspringi_variant of) {
     const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
-    motion below[HERD_BATCH];
-    extent between[HERD_BATCH];
-    vec inverse[HERD_BATCH];
+    motion below[BUNDLE_BATCH];
+    extent between[BUNDLE_BATCH];
+    vec inverse[BUNDLE_BATCH];
     for (size_t i = 0; i < count; ++i) {
         below[i] = load_motion(s, slot + links[i].below, of);
         between[i] = spring_extent(below[i], here, of);
@@ -498,13 +505,14 @@ MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, size_t slot, motion here
     for (size_t i = 0; i < count; ++i)
         inverse[i] = inverse_or_zero(between[i].square);
     for (size_t i = 0; i < count; ++i) {
-        const float *record = s->web_springs + links[i].rung * stride + slot % MSPRINGI_WIDTH;
-        const size_t rung = (links[i].rung - to.first) * LANES, back = (links[i].back - to.first) * LANES;
+        const float *record = s->irregular_springs + links[i].slice_column * stride + slot % MSPRINGI_WIDTH;
+        const size_t slice_column = (links[i].slice_column - to.first) * LANES,
+                     back = (links[i].back - to.first) * LANES;
         const vector pull =
             spring_force(between[i], inverse[i], below[i], here, record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
                          record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
-        store(to.x + rung, pull.x);
-        store(to.y + rung, pull.y);
+        store(to.x + slice_column, pull.x);
+        store(to.y + slice_column, pull.y);
         store(to.x + back, sub(zero(), pull.x));
         store(to.y + back, sub(zero(), pull.y));
     }
@@ -514,30 +522,31 @@ MSPRINGI_INLINE void pull_herd(const mspringi_sweep *s, size_t slot, motion here
 MSPRINGI_INLINE void sweep_group(const mspringi_sweep *s, size_t group, size_t slot, pulls to,
                                  mspringi_variant of) {
     const motion here = load_motion(s, slot, of);
-    const uint32_t *first_link = s->web->first_link + (group - s->web->first_herd);
-    const mspringi_link *links = s->web->links + first_link[0];
+    const uint32_t *first_link = s->irregular->first_link + (group - s->irregular->first_bundle);
+    const mspringi_bundle_link *links = s->irregular->links + first_link[0];
     size_t left = first_link[1] - first_link[0];
-    for (; !(of & MSPRINGI_PRECISE) && left >= HERD_BATCH; left -= HERD_BATCH, links += HERD_BATCH)
-        pull_herd(s, slot, here, links, HERD_BATCH, to, of);
+    for (; !(of & MSPRINGI_PRECISE) && left >= BUNDLE_BATCH; left -= BUNDLE_BATCH, links += BUNDLE_BATCH)
+        pull_bundle(s, slot, here, links, BUNDLE_BATCH, to, of);
     for (; left > 0; --left, ++links)
-        pull_herd(s, slot, here, links, 1, to, of);
+        pull_bundle(s, slot, here, links, 1, to, of);
     vector force = {zero(), zero()};
-    const size_t end = (s->web->first_rung[group + 1] - to.first) * LANES;
-    for (size_t rung = (s->web->first_rung[group] - to.first) * LANES; rung < end; rung += LANES) {
-        force.x = add(force.x, load(to.x + rung));
-        force.y = add(force.y, load(to.y + rung));
+    const size_t end = (s->irregular->first_slice_column[group + 1] - to.first) * LANES;
+    for (size_t slice_column = (s->irregular->first_slice_column[group] - to.first) * LANES; slice_column < end;
+         slice_column += LANES) {
+        force.x = add(force.x, load(to.x + slice_column));
+        force.y = add(force.y, load(to.y + slice_column));
     }
     move_apart(s, slot, here, force, of);
 }
 
-MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count,
-                          mspringi_variant of) {
+MSPRINGI_INLINE void bundle(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count,
+                            mspringi_variant of) {
     mspringi_sweep copy = *sweep;
-    copy.keep = NULL; // herds are kept and looked at apart
+    copy.keep = NULL; // bundles are kept and looked at apart
     copy.watch = NULL;
     const mspringi_sweep *const s = &copy;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        const pulls to = {s->carry_x, s->carry_y, s->web->first_rung[span->first_record]};
+        const pulls to = {s->carry_x, s->carry_y, s->irregular->first_slice_column[span->first_record]};
         for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
             size_t group = span->first_record;
             for (size_t slot = span->first_slot + lane; slot < end_of(span); slot += MSPRINGI_WIDTH)
@@ -548,13 +557,13 @@ MSPRINGI_INLINE void herd(const mspringi_sweep *sweep, const mspringi_span *span
 
 MSPRINGI_INLINE void attached(const mspringi_sweep *s, uint32_t first_attached, uint32_t count, float *x, float *y,
                               mspringi_variant of) {
-    const size_t first = s->web->own_count;
+    const size_t first = s->irregular->own_count;
     for (size_t i = first_attached; i < (size_t)first_attached + count; i += LANES) {
         uint32_t nodes[LANES];
         for (size_t lane = 0; lane < LANES; ++lane)
             nodes[lane] = (uint32_t)(first + i + lane);
         const motion here = load_nodes(s, nodes, of);
-        const vector force = find_web_force(s, here, (first + i) / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, 0, of);
+        const vector force = find_irregular_force(s, here, (first + i) / MSPRINGI_WIDTH, i % MSPRINGI_WIDTH, 0, of);
         store(x + i, force.x);
         store(y + i, force.y);
     }
@@ -570,8 +579,8 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-// As so many of move(), at once: see mspringi_glide.
-MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_glide *glide,
+// As so many of move(), at once: see mspringi_free_motion.
+MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_free_motion *glide,
                            bool forced) {
     const mspringi_variant all = MSPRINGI_DAMPED;
     const vec h = set(s->h), keep = set(glide->keep), gain = set(glide->gain), reach = set(glide->reach),

@@ -16,7 +16,8 @@
 
 #include "layout/topology.h"
 
-/// Keeps gcc from writing out a loop over the lanes of a block: four times the code, for nothing that a step notices.
+/// Keeps gcc from writing out a loop over the lanes of a block: four times the code, for nothing that a step
+/// notices.
 #if defined(__GNUC__) && !defined(__clang__)
 #define MSPRINGI_ROLLED _Pragma("GCC unroll 1")
 #else
@@ -72,9 +73,9 @@ typedef void (*mspringi_assemble_fn)(const mspringi_system *system, const msprin
 
 /// Only leave in the carry row what these rows hand on to the row above, as assembling or multiplying them does.
 /// Nothing is taken from the carry row.
-typedef void (*mspringi_hand_on_forces_fn)(const mspringi_system *system, const mspringi_span *spans,
+typedef void (*mspringi_carry_forces_fn)(const mspringi_system *system, const mspringi_span *spans,
                                            uint32_t count);
-typedef void (*mspringi_hand_on_product_fn)(const mspringi_system *system, const mspringi_span *spans,
+typedef void (*mspringi_carry_product_fn)(const mspringi_system *system, const mspringi_span *spans,
                                             uint32_t count, const float *from_x, const float *from_y);
 
 /// Compute to = A from for one or more rows, all of one kind: x and y are (from_x, from_y). Returns from . to of
@@ -126,28 +127,28 @@ typedef void (*mspringi_restrict_fn)(const mspringi_iterate *iterate, const mspr
                                      double *to);
 
 /// What there is to add up in a new direction.
-typedef enum mspringi_turn {
-    MSPRINGI_TURN_BODIES,  ///< the motion of the tiles as rigid bodies
-    MSPRINGI_TURN_AFRESH,  ///< that and D^-1 r
-    MSPRINGI_TURN_FURTHER, ///< both and beta times the direction before
-    MSPRINGI_TURNS
-} mspringi_turn;
+typedef enum mspringi_search_update {
+    MSPRINGI_SEARCH_COARSE_ONLY,  ///< the motion of the tiles as rigid bodies
+    MSPRINGI_SEARCH_RESTART,  ///< that and D^-1 r
+    MSPRINGI_SEARCH_CONTINUE, ///< both and beta times the direction before
+    MSPRINGI_SEARCH_UPDATES
+} mspringi_search_update;
 
 /// Compute the direction at these parts, which are sorted by slot; slots that are in none of them have none.
-typedef void (*mspringi_turn_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
+typedef void (*mspringi_search_update_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
                                  const double (*bodies)[3], float beta);
 
 /* --------------------------------------------------------------------------------- before and after the system */
 
 /// How a tile flies on as a rigid body: a point in it, its mass centre from there, and the rotation less what h v
 /// makes of it.
-typedef struct mspringi_tile_flight {
+typedef struct mspringi_tile_motion {
     float origin_x, origin_y, origin_vx, origin_vy;
     float x, y, hvx, hvy, inward, sideways;
-} mspringi_tile_flight;
+} mspringi_tile_motion;
 
-/// The state that a substep begins with, and what is predicted of it: see solvers/implicit/scheme.c.
-typedef struct mspringi_flight {
+/// The state that a substep begins with, and what is predicted of it: see solvers/implicit/integrator.c.
+typedef struct mspringi_prediction {
     const float *x, *y, *vx, *vy, *low_x, *low_y;
     const float *first_x, *first_y; ///< history
     const float *inverse_mass, *mass;
@@ -158,21 +159,21 @@ typedef struct mspringi_flight {
     float *arm_x, *arm_y;       ///< from the tile's mass centre to the predicted position
     double *to_x, *to_y;        ///< predicted position
     float *start_vx, *start_vy; ///< velocity if d were 0
-} mspringi_flight;
+} mspringi_prediction;
 
 /// mass = scale / inverse mass, or 0.
-typedef void (*mspringi_weigh_fn)(const float *inverse_mass, float scale, float *mass, size_t first, size_t end);
+typedef void (*mspringi_scale_masses_fn)(const float *inverse_mass, float scale, float *mass, size_t first, size_t end);
 
 /// Find how the tile that has these parts flies on.
-typedef void (*mspringi_aim_fn)(const mspringi_flight *flight, const mspringi_tile_part *parts, size_t count,
-                                mspringi_tile_flight *to);
+typedef void (*mspringi_tile_motion_fn)(const mspringi_prediction *flight, const mspringi_tile_part *parts, size_t count,
+                                mspringi_tile_motion *to);
 
 /// Compute turned and arm at these parts, which are sorted by slot.
-typedef void (*mspringi_fly_fn)(const mspringi_flight *flight, const mspringi_tile_part *parts, size_t count,
-                                const mspringi_tile_flight *tiles);
+typedef void (*mspringi_rotate_tiles_fn)(const mspringi_prediction *flight, const mspringi_tile_part *parts, size_t count,
+                                const mspringi_tile_motion *tiles);
 
 /// Predict positions, and the velocity if d were 0.
-typedef void (*mspringi_predict_fn)(const mspringi_flight *flight, size_t first, size_t end);
+typedef void (*mspringi_predict_fn)(const mspringi_prediction *flight, size_t first, size_t end);
 
 /// What comes on the springs' force, in a coordinate.
 typedef struct mspringi_outside {
@@ -189,7 +190,7 @@ typedef struct mspringi_outside {
 typedef void (*mspringi_outside_fn)(const mspringi_outside *outside, float *residual, size_t first, size_t end);
 
 /// The end of a substep, in a coordinate.
-typedef struct mspringi_landing {
+typedef struct mspringi_correction {
     const double *predicted;
     const float *start; ///< velocity if d were 0
     const float *inverse_mass;
@@ -200,18 +201,18 @@ typedef struct mspringi_landing {
     float *to_low, *to_first, *to_second; ///< may be the same arrays
     float alpha;
     float h, rate;
-} mspringi_landing;
+} mspringi_correction;
 
 /// The history that is kept.
-typedef enum mspringi_memory_of {
-    MSPRINGI_REMEMBER_NOTHING,      ///< of implicit Euler
-    MSPRINGI_REMEMBER_CHANGE,       ///< of the first step of GA0
-    MSPRINGI_REMEMBER_ACCELERATION, ///< of GA0
-    MSPRINGI_REMEMBER_BOTH,         ///< of BDF2
-    MSPRINGI_REMEMBERS
-} mspringi_memory_of;
+typedef enum mspringi_history_kind {
+    MSPRINGI_HISTORY_NONE,      ///< of implicit Euler
+    MSPRINGI_HISTORY_VELOCITY_CHANGE,       ///< of the first step of GA0
+    MSPRINGI_HISTORY_ACCELERATION, ///< of GA0
+    MSPRINGI_HISTORY_BDF2,         ///< of BDF2
+    MSPRINGI_HISTORY_KINDS
+} mspringi_history_kind;
 
-typedef void (*mspringi_land_fn)(const mspringi_landing *landing, size_t first, size_t end);
+typedef void (*mspringi_correct_fn)(const mspringi_correction *landing, size_t first, size_t end);
 
 /* ------------------------------------------------------------------------------------- momenta and energies */
 
@@ -269,21 +270,21 @@ typedef void (*mspringi_edges_fn)(const mspringi_edge_block *block, const float 
                                   const mspringi_blocks_double *edges, const mspringi_blocks_double *nodes);
 
 typedef struct mspringi_system_kernels {
-    mspringi_weigh_fn weigh;
-    mspringi_aim_fn aim_tile;
-    mspringi_fly_fn fly;
+    mspringi_scale_masses_fn scale_masses;
+    mspringi_tile_motion_fn find_tile_motion;
+    mspringi_rotate_tiles_fn rotate_tiles;
     mspringi_predict_fn predict;
     mspringi_assemble_fn assemble_lattice[2], assemble_chain[2]; ///< [with damping]
-    mspringi_hand_on_forces_fn hand_on_forces[2];                ///< of lattice rows, [with damping]
+    mspringi_carry_forces_fn carry_forces[2];                ///< of lattice rows, [with damping]
     mspringi_outside_fn add_outside;
     mspringi_invert_fn invert;
     mspringi_multiply_fn multiply_lattice, multiply_chain;
-    mspringi_hand_on_product_fn hand_on_product; ///< of lattice rows
+    mspringi_carry_product_fn carry_product; ///< of lattice rows
     mspringi_advance_fn advance;
     mspringi_inertia_fn inertia_of_tile;
     mspringi_restrict_fn restrict_to_tile;
-    mspringi_turn_fn turn[MSPRINGI_TURNS];
-    mspringi_land_fn land[MSPRINGI_REMEMBERS];
+    mspringi_search_update_fn update_search[MSPRINGI_SEARCH_UPDATES];
+    mspringi_correct_fn correct[MSPRINGI_HISTORY_KINDS];
     mspringi_moments_fn moments;
     mspringi_elastic_fn elastic;
     mspringi_edges_fn add_edges;

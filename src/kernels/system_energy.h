@@ -1,7 +1,7 @@
 /// @file system_energy.h
-/// Momenta and energies before and after an implicit substep: see solvers/implicit/budget.h. Plain C in blocks of
-/// MSPRINGI_WIDTH lanes, as in system_assemble.h. All in double precision: beside the stiffness of iron, lengths
-/// that are rounded to floats would make more energy than a body at rest has.
+/// Momenta and energies before and after an implicit substep: see solvers/implicit/energy_budget.h. Plain C in
+/// blocks of MSPRINGI_WIDTH lanes, as in system_assemble.h. All in double precision: beside the stiffness of iron,
+/// lengths that are rounded to floats would make more energy than a body at rest has.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_ENERGY_H

@@ -169,7 +169,7 @@ static inline bool begins_group(const mspringi_tile_part *parts, size_t p) {
 // The slots of a tile's part get its body's motion; those of other tiles at the same slots theirs, when their turn
 // comes.
 MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                          const double (*bodies)[3], float beta, mspringi_turn what) {
+                          const double (*bodies)[3], float beta, mspringi_search_update what) {
     const part_vec betas = part_set(beta);
     for (size_t p = 0; p < count; ++p) {
         const double *body = bodies[parts[p].tile];
@@ -184,11 +184,11 @@ MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *p
             if (!begins) {
                 x = part_add(part_load(n->direction_x + slot), x);
                 y = part_add(part_load(n->direction_y + slot), y);
-            } else if (what != MSPRINGI_TURN_BODIES) {
+            } else if (what != MSPRINGI_SEARCH_COARSE_ONLY) {
                 x = part_add(part_load(n->scaled_x + slot), x);
                 y = part_add(part_load(n->scaled_y + slot), y);
             }
-            if (begins && what == MSPRINGI_TURN_FURTHER) {
+            if (begins && what == MSPRINGI_SEARCH_CONTINUE) {
                 x = part_add(x, part_mul(betas, part_load(n->direction_x + slot)));
                 y = part_add(y, part_mul(betas, part_load(n->direction_y + slot)));
             }
@@ -200,17 +200,17 @@ MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *p
 
 static void turn_bodies(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
                         const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_TURN_BODIES);
+    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_COARSE_ONLY);
 }
 
 static void turn_afresh(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
                         const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_TURN_AFRESH);
+    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_RESTART);
 }
 
 static void turn_further(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
                          const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_TURN_FURTHER);
+    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_CONTINUE);
 }
 
 #endif

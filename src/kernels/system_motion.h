@@ -1,5 +1,5 @@
 /// @file system_motion.h
-/// What an implicit substep does before and after its linear system: see solvers/implicit/scheme.c for the
+/// What an implicit substep does before and after its linear system: see solvers/implicit/integrator.c for the
 /// formulas. Plain C by slot, or vectors within the parts of a tile, as in system_iterate.h.
 ///
 /// SPDX-License-Identifier: MIT
@@ -23,8 +23,8 @@ typedef struct tile_moments {
     part_vec sums[7][PART_VECTORS];
 } tile_moments;
 
-MSPRINGI_INLINE void add_moments(tile_moments *to, const mspringi_flight *f, const mspringi_tile_part *part,
-                                 const mspringi_tile_flight *t) {
+MSPRINGI_INLINE void add_moments(tile_moments *to, const mspringi_prediction *f, const mspringi_tile_part *part,
+                                 const mspringi_tile_motion *t) {
     for (size_t v = 0; v < PART_VECTORS; ++v) {
         const size_t at = part->first_slot + v * PART_LANES;
         const part_vec m =
@@ -45,8 +45,8 @@ MSPRINGI_INLINE void add_moments(tile_moments *to, const mspringi_flight *f, con
     }
 }
 
-static void aim_tile(const mspringi_flight *f, const mspringi_tile_part *parts, size_t count,
-                     mspringi_tile_flight *to) {
+static void aim_tile(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
+                     mspringi_tile_motion *to) {
     tile_moments moments;
     for (size_t i = 0; i < 7; ++i)
         for (size_t v = 0; v < PART_VECTORS; ++v)
@@ -83,11 +83,11 @@ MSPRINGI_INLINE void put_part(float *to, part_vec weight, part_vec value, bool b
     part_store(to, begins ? own : part_add(part_load(to), own));
 }
 
-static void fly(const mspringi_flight *f, const mspringi_tile_part *parts, size_t count,
-                const mspringi_tile_flight *tiles) {
+static void fly(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
+                const mspringi_tile_motion *tiles) {
     const part_vec h = part_set(f->h);
     for (size_t p = 0; p < count; ++p) {
-        const mspringi_tile_flight *t = &tiles[parts[p].tile];
+        const mspringi_tile_motion *t = &tiles[parts[p].tile];
         const bool begins = begins_group(parts, p);
         const part_vec inward = part_set(t->inward), sideways = part_set(t->sideways);
         for (size_t v = 0; v < PART_VECTORS; ++v) {
@@ -124,7 +124,7 @@ static void predict_coordinate(size_t first, size_t end, const float *restrict p
     }
 }
 
-static void predict(const mspringi_flight *f, size_t first, size_t end) {
+static void predict(const mspringi_prediction *f, size_t first, size_t end) {
     predict_coordinate(first, end, f->x, f->low_x, f->vx, f->first_x, f->turned_x, f->inverse_mass, f->h,
                        f->first_share, f->rate, f->to_x, f->start_vx);
     predict_coordinate(first, end, f->y, f->low_y, f->vy, f->first_y, f->turned_y, f->inverse_mass, f->h,
@@ -165,7 +165,7 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
                           const float *restrict direction, const float *from, const float *low,
                           const float *history, float alpha, float h, float rate, float *restrict position,
                           float *restrict velocity, float *restrict to_low, float *restrict to_first,
-                          float *restrict to_second, mspringi_memory_of memory) {
+                          float *restrict to_second, mspringi_history_kind memory) {
     const float per_h = 1.0f / h;
     for (size_t i = 0; i < count; ++i) {
         const float d = solution[i] + alpha * direction[i], v = velocity[i];
@@ -177,13 +177,13 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
         velocity[i] = after;
         to_low[i] = (float)(end - (double)rounded);
         switch (memory) {
-        case MSPRINGI_REMEMBER_CHANGE:
+        case MSPRINGI_HISTORY_VELOCITY_CHANGE:
             to_first[i] = change * per_h;
             break;
-        case MSPRINGI_REMEMBER_ACCELERATION:
+        case MSPRINGI_HISTORY_ACCELERATION:
             to_first[i] = beyond * per_h * per_h + 0.5f * history[i];
             break;
-        case MSPRINGI_REMEMBER_BOTH:
+        case MSPRINGI_HISTORY_BDF2:
             to_first[i] = beyond - h * change; // (h v + d) - h v(t+h)
             to_second[i] = change;
             break;
@@ -193,10 +193,10 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
     }
 }
 
-// In whole blocks and by way of the stack, so that the history may be written to where it was read. Positions go that
-// way, too, because V8 11.3 (node 20) reads one that it converts to double after it has been written.
-#define MSPRINGI_LAND(name, memory)                                                                                \
-    static void land_##name(const mspringi_landing *l, size_t first, size_t end) {                                 \
+// In whole blocks and by way of the stack, so that the history may be written to where it was read. Positions go
+// that way, too, because V8 11.3 (node 20) reads one that it converts to double after it has been written.
+#define MSPRINGI_CORRECT(name, memory)                                                                                \
+    static void land_##name(const mspringi_correction *l, size_t first, size_t end) {                                 \
         for (size_t i = first; i < end; i += MSPRINGI_WIDTH) {                                                     \
             float from[MSPRINGI_WIDTH], low[MSPRINGI_WIDTH], history[MSPRINGI_WIDTH], unused[MSPRINGI_WIDTH];      \
             for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {                                                 \
@@ -206,17 +206,17 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
             }                                                                                                      \
             land(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,             \
                  l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->position + i, l->velocity + i,  \
-                 l->to_low + i, l->to_first + i, memory == MSPRINGI_REMEMBER_BOTH ? l->to_second + i : unused,     \
+                 l->to_low + i, l->to_first + i, memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused,     \
                  memory);                                                                                          \
         }                                                                                                          \
     }
 
-MSPRINGI_LAND(nothing, MSPRINGI_REMEMBER_NOTHING)
-MSPRINGI_LAND(change, MSPRINGI_REMEMBER_CHANGE)
-MSPRINGI_LAND(acceleration, MSPRINGI_REMEMBER_ACCELERATION)
-MSPRINGI_LAND(both, MSPRINGI_REMEMBER_BOTH)
+MSPRINGI_CORRECT(nothing, MSPRINGI_HISTORY_NONE)
+MSPRINGI_CORRECT(change, MSPRINGI_HISTORY_VELOCITY_CHANGE)
+MSPRINGI_CORRECT(acceleration, MSPRINGI_HISTORY_ACCELERATION)
+MSPRINGI_CORRECT(both, MSPRINGI_HISTORY_BDF2)
 
-#undef MSPRINGI_LAND
+#undef MSPRINGI_CORRECT
 #undef PART_VECTORS
 
 #endif

@@ -17,20 +17,20 @@
 
 #define MSPRINGI_SYSTEM_TABLE                                                                                      \
     {                                                                                                              \
-        .weigh = weigh, .aim_tile = aim_tile, .fly = fly, .predict = predict,                                      \
+        .scale_masses = weigh, .find_tile_motion = aim_tile, .rotate_tiles = fly, .predict = predict,              \
         .assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},                                     \
         .assemble_chain = {assemble_chain_plain, assemble_chain_damped},                                           \
-        .hand_on_forces = {hand_on_forces_plain, hand_on_forces_damped}, .add_outside = add_outside,               \
+        .carry_forces = {hand_on_forces_plain, hand_on_forces_damped}, .add_outside = add_outside,                 \
         .invert = invert, .multiply_lattice = multiply_lattice, .multiply_chain = multiply_chain,                  \
-        .hand_on_product = hand_on_product, .advance = advance, .inertia_of_tile = inertia_of_tile,                \
+        .carry_product = hand_on_product, .advance = advance, .inertia_of_tile = inertia_of_tile,                  \
         .restrict_to_tile = restrict_to_tile,                                                                      \
-        .turn = {[MSPRINGI_TURN_BODIES] = turn_bodies,                                                             \
-                 [MSPRINGI_TURN_AFRESH] = turn_afresh,                                                             \
-                 [MSPRINGI_TURN_FURTHER] = turn_further},                                                          \
-        .land = {[MSPRINGI_REMEMBER_NOTHING] = land_nothing,                                                       \
-                 [MSPRINGI_REMEMBER_CHANGE] = land_change,                                                         \
-                 [MSPRINGI_REMEMBER_ACCELERATION] = land_acceleration,                                             \
-                 [MSPRINGI_REMEMBER_BOTH] = land_both},                                                            \
+        .update_search = {[MSPRINGI_SEARCH_COARSE_ONLY] = turn_bodies,                                             \
+                          [MSPRINGI_SEARCH_RESTART] = turn_afresh,                                                 \
+                          [MSPRINGI_SEARCH_CONTINUE] = turn_further},                                              \
+        .correct = {[MSPRINGI_HISTORY_NONE] = land_nothing,                                                        \
+                    [MSPRINGI_HISTORY_VELOCITY_CHANGE] = land_change,                                              \
+                    [MSPRINGI_HISTORY_ACCELERATION] = land_acceleration,                                           \
+                    [MSPRINGI_HISTORY_BDF2] = land_both},                                                          \
         .moments = sum_moments, .elastic = sum_elastic, .add_edges = add_edges                                     \
     }
 

@@ -105,6 +105,6 @@ static inline vec larger_size(vec a, vec b) {
 
 #define MSPRINGI_TABLE mspringi_kernels_wasm
 #define MSPRINGI_LEVEL MSPRING_SIMD_WASM
-#include "kernels/table.h"
+#include "kernels/kernel_table.h"
 
 #endif

@@ -15,15 +15,17 @@ MSPRINGI_INLINE uint32_t bits_outside(vec square, const float *low, const float 
 }
 
 // mspringi_yield_bounds_of() of the springs whose rest length has moved.
-static inline void renew_bounds(const mspringi_yield_test *t, size_t place, vec moved, vec to) {
-    const vec nominal = load(t->nominal + place), hardening = load(t->hardening + place), one = set(1.0f);
-    const vec limit = load(t->plastic_limit + place), zeros = zero(), none = set(-1.0f), all = set(INFINITY);
+static inline void renew_bounds(const mspringi_yield_test *t, size_t spring_slot, vec moved, vec to) {
+    const vec nominal = load(t->nominal + spring_slot), hardening = load(t->hardening + spring_slot),
+              one = set(1.0f);
+    const vec limit = load(t->plastic_limit + spring_slot), zeros = zero(), none = set(-1.0f), all = set(INFINITY);
     const vec most = mul(nominal, add(one, limit)), least = mul(nominal, sub(one, limit));
     const vec centre = sub(mul(add(one, hardening), to), mul(hardening, nominal));
-    const vec half = mul(load(t->yield_strain + place), nominal), warm = mul(set(MSPRINGI_WARM_SHARE), half);
+    const vec half = mul(load(t->yield_strain + spring_slot), nominal), warm = mul(set(MSPRINGI_WARM_SHARE), half);
     const vec halves[2] = {warm, half}, back = sub(zeros, moved);
-    float *const lows[2] = {t->low + place, t->flow_low + place}, *const highs[2] = {t->high + place,
-                                                                                     t->flow_high + place};
+    float *const lows[2] = {t->low + spring_slot, t->flow_low + spring_slot}, *const highs[2] = {
+                                                                                  t->high + spring_slot,
+                                                                                  t->flow_high + spring_slot};
     for (int i = 0; i < 2; ++i) {
         const vec low = sub(centre, halves[i]), high = add(centre, halves[i]);
         const vec new_low = choose_positive(sub(to, least), choose_positive(low, mul(low, low), none), none);
@@ -35,44 +37,47 @@ static inline void renew_bounds(const mspringi_yield_test *t, size_t place, vec 
 }
 
 // mspringi_yield_rest() and mspringi_yield_heat() of LANES springs. What is broken has no stiffness.
-static inline void flow(const mspringi_yield_test *t, size_t place, vec square, float *rests,
+static inline void flow(const mspringi_yield_test *t, size_t spring_slot, vec square, float *rests,
                         const float *stiffnesses) {
-    const vec nominal = load(t->nominal + place), yield = load(t->yield_strain + place);
-    const vec hardening = load(t->hardening + place), limit = load(t->plastic_limit + place);
-    const vec gain = load(t->gain + place), one = set(1.0f), stiffness = load(stiffnesses), rest = load(rests);
+    const vec nominal = load(t->nominal + spring_slot), yield = load(t->yield_strain + spring_slot);
+    const vec hardening = load(t->hardening + spring_slot), limit = load(t->plastic_limit + spring_slot);
+    const vec gain = load(t->gain + spring_slot), one = set(1.0f), stiffness = load(stiffnesses),
+              rest = load(rests);
     const vec length = square_root(square), slope = mul(gain, length), whole = add(one, hardening);
     const vec most = mul(nominal, add(one, limit)), least = mul(nominal, sub(one, limit));
     vec up = add(slope, mul(mul(sub(hardening, yield), nominal), gain));
     vec down = add(slope, mul(mul(add(hardening, yield), nominal), gain));
     up = choose_positive(sub(up, most), most, up);
     down = choose_positive(sub(least, down), least, down);
-    vec to =
-        choose_positive(sub(square, load(t->flow_high + place)), choose_positive(sub(up, rest), up, rest), rest);
-    to = choose_positive(sub(load(t->flow_low + place), square), choose_positive(sub(rest, down), down, rest), to);
+    vec to = choose_positive(sub(square, load(t->flow_high + spring_slot)),
+                             choose_positive(sub(up, rest), up, rest), rest);
+    to = choose_positive(sub(load(t->flow_low + spring_slot), square), choose_positive(sub(rest, down), down, rest),
+                         to);
     to = choose_positive(stiffness, to, rest);
     const vec moved = sub(to, rest), zeros = zero();
-    const uint32_t bits = bits_greater(moved, zeros) | bits_greater(zeros, moved), lane = place % MSPRINGI_WIDTH;
+    const uint32_t bits = bits_greater(moved, zeros) | bits_greater(zeros, moved),
+                   lane = spring_slot % MSPRINGI_WIDTH;
     if (!bits)
         return;
-    mspringi_yield_keep(t, place / MSPRINGI_WIDTH, bits << lane, rests - lane);
+    mspringi_yield_keep(t, spring_slot / MSPRINGI_WIDTH, bits << lane, rests - lane);
     const vec excess = sub(add(length, mul(hardening, nominal)), mul(whole, rest));
     const vec heat = mul(stiffness, mul(moved, sub(excess, mul(mul(set(0.5f), whole), moved))));
-    const vec sum = load(t->heat + place), more = add(sum, heat), back = sub(zeros, moved);
-    store(t->heat + place, choose_positive(moved, more, choose_positive(back, more, sum)));
+    const vec sum = load(t->heat + spring_slot), more = add(sum, heat), back = sub(zeros, moved);
+    store(t->heat + spring_slot, choose_positive(moved, more, choose_positive(back, more, sum)));
     store(rests, to);
-    renew_bounds(t, place, moved, to);
+    renew_bounds(t, spring_slot, moved, to);
 }
 
 // Rarely called: of these springs some are warm, or flow. Rest lengths are another then, positions are not.
-static MSPRINGI_NOINLINE void let_yield(const mspringi_yield_test *t, size_t place, uint32_t directions,
+static MSPRINGI_NOINLINE void let_yield(const mspringi_yield_test *t, size_t spring_slot, uint32_t directions,
                                         const vec *squares, float *rests, const float *stiffnesses, size_t part) {
-    for (uint32_t d = 0; d < directions; ++d, place += MSPRINGI_WIDTH) {
+    for (uint32_t d = 0; d < directions; ++d, spring_slot += MSPRINGI_WIDTH) {
         if (t->looks) {
-            const uint32_t warm = bits_outside(squares[d], t->low + place, t->high + place);
-            mspringi_yield_note(t, place / MSPRINGI_WIDTH, warm << place % MSPRINGI_WIDTH);
+            const uint32_t warm = bits_outside(squares[d], t->low + spring_slot, t->high + spring_slot);
+            mspringi_yield_note(t, spring_slot / MSPRINGI_WIDTH, warm << spring_slot % MSPRINGI_WIDTH);
         }
-        if (t->maps && bits_outside(squares[d], t->flow_low + place, t->flow_high + place))
-            flow(t, place, squares[d], rests + d * MSPRINGI_WIDTH, stiffnesses + d * part);
+        if (t->maps && bits_outside(squares[d], t->flow_low + spring_slot, t->flow_high + spring_slot))
+            flow(t, spring_slot, squares[d], rests + d * MSPRINGI_WIDTH, stiffnesses + d * part);
     }
 }
 

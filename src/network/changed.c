@@ -1,9 +1,9 @@
 /// Who is told of a change.
 #include "store/changed.h"
 
-#include "base/mix.h"
+#include "base/hash.h"
+#include "contact/contacts.h"
 #include "contact/floor.h"
-#include "contact/pairs.h"
 #include "network/job.h"
 #include "sleep/sleep.h"
 #include "store/springs.h"
@@ -36,7 +36,7 @@ static void log_spring(mspring_network *network, mspring_id spring) {
 static void free_ends(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
-    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
     mspringi_solvers_clear_slot(network, base);
     mspringi_solvers_clear_slot(network, tip);
 }
@@ -45,7 +45,7 @@ static void free_slot(const mspring_network *network, uint32_t slot) {
     mspringi_solvers_clear_slot(network, slot);
     if (network->floor)
         mspringi_floor_clear_slot(network->floor, slot);
-    if (network->pairs)
+    if (network->contacts)
         mspringi_outline_clear_slot(network, slot);
 }
 
@@ -56,11 +56,11 @@ static void tell_of_floor(const mspring_network *network) {
 
 #define COUNT(counter) network->edits.counter++;
 #define LOG log_spring(network, index);
-#define COPY mspringi_job_follow(network, index);
-#define COPY_ALL mspringi_job_follow_all(network);
+#define COPY mspringi_job_track(network, index);
+#define COPY_ALL mspringi_job_track_all(network);
 #define SLEEP_ANEW mspringi_sleep_anew(network);
 #define FREE_SLOT free_slot(network, index);
-#define COPY_SPRING mspringi_job_follow(network, mspringi_place_of(&network->topology, index));
+#define COPY_SPRING mspringi_job_track(network, mspringi_slot_of_spring(&network->topology, index));
 #define WAKE mspringi_wake(network);
 #define WAKE_SPRING mspringi_wake_spring(network, index);
 #define WAKE_SLOT mspringi_wake_slot(network, index);
@@ -93,9 +93,9 @@ void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t inde
 #undef FLOOR
 
 void mspringi_fingerprint(mspring_network *network, uint32_t edit, mspring_id id) {
-    network->parameter_fingerprint = mspringi_mix(network->parameter_fingerprint, (uint64_t)edit << 32 | id);
+    network->parameter_fingerprint = mspringi_hash(network->parameter_fingerprint, (uint64_t)edit << 32 | id);
 }
 
 void mspringi_fingerprint_floats(mspring_network *network, float a, float b) {
-    network->parameter_fingerprint = mspringi_mix_floats(network->parameter_fingerprint, a, b);
+    network->parameter_fingerprint = mspringi_hash_floats(network->parameter_fingerprint, a, b);
 }

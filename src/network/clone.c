@@ -1,10 +1,10 @@
 /// A copy of a network: all its blocks of memory, and then every pointer from one block into another.
 ///
 /// Those of the network are in store/network.def, those of topologies and solvers in tables beside their functions
-/// that destroy, those of contact in contact/pairs.c, of floor and hooks here. One that is forgotten leads back
+/// that destroy, those of contact in contact/contacts.c, of floor and hooks here. One that is forgotten leads back
 /// into the original, which test_clone finds by looking at every word of a clone.
+#include "contact/contacts.h"
 #include "contact/floor.h"
-#include "contact/pairs.h"
 #include "store/network.h"
 #include "store/store.h"
 
@@ -44,21 +44,21 @@ static void move_floor(const moving *m, mspringi_floor *floor) {
     move_field(m, &floor->start);
     move_state(m, &floor->before);
     move_field(m, &floor->impulse);
-    move_field(m, &floor->former);
+    move_field(m, &floor->previous_impulse);
 }
 
 static void move_network(const moving *m, mspring_network *n) {
-    mspringi_columns_relocate(mspringi_topology_columns, &n->topology, m->from, m->to);
-    mspringi_columns_relocate(mspringi_topology_columns, &n->whole, m->from, m->to);
+    mspringi_array_table_relocate(mspringi_topology_columns, &n->topology, m->from, m->to);
+    mspringi_array_table_relocate(mspringi_topology_columns, &n->whole, m->from, m->to);
     mspringi_store_relocate(n, m->from, m->to);
     for (size_t i = 0; i < n->hook_count; ++i)
         move_field(m, &n->hooks[i].held);
     MOVE(n->floor);
     if (n->floor)
         move_floor(m, n->floor);
-    MOVE(n->pairs);
-    if (n->pairs)
-        mspringi_pairs_relocate(n->pairs, m->from, m->to);
+    MOVE(n->contacts);
+    if (n->contacts)
+        mspringi_contacts_relocate(n->contacts, m->from, m->to);
     mspringi_solvers_relocate(n, m->from, m->to);
 }
 

@@ -10,7 +10,7 @@
 /// Whether no step sweeps this spring until the network is expanded.
 static inline bool mspringi_spring_is_inactive(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
-    return mspringi_place_is_inactive(t, mspringi_place_of(t, spring));
+    return mspringi_spring_slot_is_inactive(t, mspringi_slot_of_spring(t, spring));
 }
 
 /// Go back to the plan that the network was created with. On error nothing has changed.

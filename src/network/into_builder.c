@@ -89,22 +89,22 @@ static mspring_result append_particle(mspring_builder *builder, const mspring_ne
 }
 
 static mspringi_limits limits_of(const mspring_network *network, mspring_id s) {
-    const mspringi_place place = mspringi_place_of(&network->topology, s);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
     const float *nominal = network->plastic.nominal;
-    const bool is_bent = nominal && nominal[place] != mspringi_place_own_length(network, place);
+    const bool is_bent = nominal && nominal[spring_slot] != mspringi_spring_slot_own_length(network, spring_slot);
     return (mspringi_limits){.break_strain = mspringi_spring_property(network, MSPRING_BREAK_STRAIN, s),
                              .stress_strain = mspringi_spring_property(network, MSPRING_STRESS_STRAIN, s),
                              .relax_strain = mspringi_spring_property(network, MSPRING_RELAX_STRAIN, s),
                              .yield_strain = mspringi_spring_property(network, MSPRING_YIELD_STRAIN, s),
                              .hardening = mspringi_spring_property(network, MSPRING_HARDENING, s),
                              .plastic_limit = mspringi_spring_property(network, MSPRING_PLASTIC_LIMIT, s),
-                             .nominal_length = is_bent ? nominal[place] : 0.0f};
+                             .nominal_length = is_bent ? nominal[spring_slot] : 0.0f};
 }
 
 static void append_spring(mspring_builder *builder, const mspring_network *network, const id_maps *maps,
                           mspring_id s) {
-    const mspringi_place place = mspringi_place_of(&network->topology, s);
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, s, place);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, s, spring_slot);
     const mspringi_limits limits = limits_of(network, s);
     mspring_id a, b;
     find_ends(network, s, &a, &b);
@@ -113,7 +113,7 @@ static void append_spring(mspring_builder *builder, const mspring_network *netwo
         .b = maps->particles[b],
         .stiffness = nominal.stiffness,
         .damping = nominal.damping,
-        .rest_length = mspringi_place_get(network, place).rest_length,
+        .rest_length = mspringi_spring_slot_get(network, spring_slot).rest_length,
         .flags = (mspringi_spring_is_relative(network, s) ? MSPRING_SPRING_RELATIVE : 0u) |
                  mspringi_side_flags(network, s),
     };

@@ -13,20 +13,20 @@ mspring_result mspringi_job_no_memory(mspring_job *job) {
 
 /* -------------------------------------------------------------------------------------------- edits meanwhile */
 
-void mspringi_job_follow(const mspring_network *network, mspringi_place place) {
+void mspringi_job_track(const mspring_network *network, mspringi_spring_slot spring_slot) {
     mspring_job *job = network->job;
     if (!job || !job->changed) // it was begun with nothing to do (run writes is_needless, on any thread)
         return;
-    job->changed[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    job->changed[spring_slot / MSPRINGI_WIDTH] |= (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     job->has_changed = true;
 }
 
-void mspringi_job_follow_all(const mspring_network *network) {
+void mspringi_job_track_all(const mspring_network *network) {
     if (network->job)
         network->job->has_all_changed = true;
 }
 
-void mspringi_job_lose(mspring_network *network) {
+void mspringi_job_invalidate(mspring_network *network) {
     if (network->job)
         network->job->network = NULL;
     network->job = NULL;
@@ -35,7 +35,7 @@ void mspringi_job_lose(mspring_network *network) {
 // Whether a spring that is live is in the layout.
 static bool has_spring(const mspring_job *job, const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &job->to.topology;
-    return !mspringi_place_is_inactive(t, mspringi_place_of(t, spring)) ||
+    return !mspringi_spring_slot_is_inactive(t, mspringi_slot_of_spring(t, spring)) ||
            !mspringi_spring_is_live(network, spring);
 }
 
@@ -61,15 +61,15 @@ static bool copy_topologies(mspring_job *job, const mspring_network *network) {
     job->from.topology = network->topology;
     if (network->is_compact)
         job->first = network->whole;
-    return mspringi_columns_duplicate(mspringi_topology_columns, &job->from.topology, &job->memory) &&
-           mspringi_columns_duplicate(mspringi_topology_columns, &job->first, &job->memory);
+    return mspringi_array_table_duplicate(mspringi_topology_columns, &job->from.topology, &job->memory) &&
+           mspringi_array_table_duplicate(mspringi_topology_columns, &job->first, &job->memory);
 }
 
 // What springs are, and what tells which there are; for a solver also what particles are.
 static bool copy_arrays(mspring_job *job, const mspring_network *network) {
-    static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,    MSPRINGI_STORE_WEB,      MSPRINGI_STORE_RESTS,
-                                            MSPRINGI_STORE_STRAIN,  MSPRINGI_STORE_STRESS,   MSPRINGI_STORE_RELAX,
-                                            MSPRINGI_STORE_PLASTIC, MSPRINGI_STORE_MARKS,    MSPRINGI_STORE_ENDS,
+    static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,    MSPRINGI_STORE_IRREGULAR, MSPRINGI_STORE_RESTS,
+                                            MSPRINGI_STORE_STRAIN,  MSPRINGI_STORE_STRESS,    MSPRINGI_STORE_RELAX,
+                                            MSPRINGI_STORE_PLASTIC, MSPRINGI_STORE_MARKS,     MSPRINGI_STORE_ENDS,
                                             MSPRINGI_STORE_MASS,    MSPRINGI_STORE_FRACTIONS};
     mspring_network *from = &job->from;
     const bool has_solver = network->solver.object || network->fallback.object;
@@ -77,7 +77,8 @@ static bool copy_arrays(mspring_job *job, const mspring_network *network) {
         if (!mspringi_store_duplicate(from, network, groups[i], &job->memory))
             return false;
     from->inverse_mass = has_solver ? mspringi_memory_duplicate(&job->memory, network->inverse_mass) : NULL;
-    job->changed = mspringi_alloc(&job->memory, mspringi_place_words(&network->topology), sizeof *job->changed);
+    job->changed =
+        mspringi_alloc(&job->memory, mspringi_spring_slot_words(&network->topology), sizeof *job->changed);
     return job->changed && (from->inverse_mass || !has_solver);
 }
 
@@ -96,7 +97,7 @@ static bool is_seen_compact(const mspring_network *network) {
 
 static bool copy_all(mspring_job *job, const mspring_network *network) {
     const bool is_whole = job->layout == MSPRING_LAYOUT_WHOLE;
-    job->to = mspringi_move_shell(network);
+    job->to = mspringi_relayout_shell(network);
     job->to.memory = (mspringi_memory){.allocator = network->memory.allocator};
     job->to.tasks = NULL; // they are the network's; what more workers need, it reserves at the finish
     job->to.message = (mspringi_message){0};
@@ -105,8 +106,8 @@ static bool copy_all(mspring_job *job, const mspring_network *network) {
     mspringi_store_forget(&job->to);
     job->to.whole = (mspringi_topology){0};
     job->from = job->to;
-    job->from.rests = network->rests;
-    job->workers = mspringi_tasks_shares(network->tasks);
+    job->from.rest_lengths = network->rest_lengths;
+    job->workers = mspringi_tasks_partition_size(network->tasks);
     job->links = network->edits.links;
     job->growth = network->edits.growth;
     job->is_needless = is_whole ? !network->is_compact : is_seen_compact(network);
@@ -140,7 +141,7 @@ static mspring_result begin(mspring_network *network, mspring_layout layout, msp
 }
 
 mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout, mspring_job **job) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (!job || (layout != MSPRING_LAYOUT_COMPACT && layout != MSPRING_LAYOUT_WHOLE))
@@ -162,7 +163,7 @@ static mspring_result take_whole(mspring_job *job) {
     job->to.topology = job->first;
     job->fingerprint = job->from.whole_fingerprint;
     // What is made belongs to to's memory, of which there is nothing yet.
-    return mspringi_columns_duplicate(mspringi_topology_columns, &job->to.topology, &job->to.memory)
+    return mspringi_array_table_duplicate(mspringi_topology_columns, &job->to.topology, &job->to.memory)
                ? MSPRING_OK
                : mspringi_job_no_memory(job);
 }
@@ -181,26 +182,27 @@ static uint32_t rows_of(const mspring_job *job) {
 
 MSPRINGI_PASSES(job, mspring_job)
 #define MOVE                                                                                                       \
-    MSPRINGI_ONCE(mspringi_move_begin), MSPRINGI_EACH(mspringi_move_note_rests, springs_of, 16000),                \
-        MSPRINGI_ONCE(mspringi_move_reserve_springs),                                                              \
-        MSPRINGI_EACH(mspringi_move_copy_springs, springs_of, 16000), MSPRINGI_ONCE(mspringi_move_reserve_others), \
-        MSPRINGI_ONCE(mspringi_move_make_solver), MSPRINGI_ONCE(mspringi_move_make_fallback)
+    MSPRINGI_ONCE(mspringi_relayout_begin), MSPRINGI_EACH(mspringi_relayout_note_rest_lengths, springs_of, 16000), \
+        MSPRINGI_ONCE(mspringi_relayout_reserve_springs),                                                          \
+        MSPRINGI_EACH(mspringi_relayout_copy_springs, springs_of, 16000),                                          \
+        MSPRINGI_ONCE(mspringi_relayout_reserve_others), MSPRINGI_ONCE(mspringi_relayout_make_solver),             \
+        MSPRINGI_ONCE(mspringi_relayout_make_fallback)
 
 static const job_pass compact_passes[] = {
-    MSPRINGI_ONCE(mspringi_left_begin),
-    MSPRINGI_EACH(mspringi_left_look, springs_of, 64000),
-    MSPRINGI_ONCE(mspringi_left_reserve),
-    MSPRINGI_EACH(mspringi_left_place_on_diagonal, particles_of, 64000),
-    MSPRINGI_EACH(mspringi_left_place_in_grids, rows_of, 64),
-    MSPRINGI_EACH(mspringi_left_list, springs_of, 32000),
-    MSPRINGI_ONCE(mspringi_left_begin_layout),
-    MSPRINGI_ONCE(mspringi_left_lay_out),
-    MSPRINGI_ONCE(mspringi_left_finish_layout),
-    MSPRINGI_EACH(mspringi_left_number_places, springs_of, 64000),
-    MSPRINGI_EACH(mspringi_left_note_ends, springs_of, 32000),
-    MSPRINGI_ONCE(mspringi_left_keep_spare),
-    MSPRINGI_EACH(mspringi_left_fingerprint_slots, particles_of, 64000),
-    MSPRINGI_EACH(mspringi_left_fingerprint_places, springs_of, 64000),
+    MSPRINGI_ONCE(mspringi_survivors_begin),
+    MSPRINGI_EACH(mspringi_survivors_look, springs_of, 64000),
+    MSPRINGI_ONCE(mspringi_survivors_reserve),
+    MSPRINGI_EACH(mspringi_survivors_place_on_diagonal, particles_of, 64000),
+    MSPRINGI_EACH(mspringi_survivors_place_in_grids, rows_of, 64),
+    MSPRINGI_EACH(mspringi_survivors_list, springs_of, 32000),
+    MSPRINGI_ONCE(mspringi_survivors_begin_layout),
+    MSPRINGI_ONCE(mspringi_survivors_lay_out),
+    MSPRINGI_ONCE(mspringi_survivors_finish_layout),
+    MSPRINGI_EACH(mspringi_survivors_number_spring_slots, springs_of, 64000),
+    MSPRINGI_EACH(mspringi_survivors_note_ends, springs_of, 32000),
+    MSPRINGI_ONCE(mspringi_survivors_keep_spare),
+    MSPRINGI_EACH(mspringi_survivors_fingerprint_slots, particles_of, 64000),
+    MSPRINGI_EACH(mspringi_survivors_fingerprint_spring_slots, springs_of, 64000),
     MOVE,
 };
 
@@ -253,7 +255,7 @@ static mspring_result exchange(mspring_network *network, mspring_job *job) {
     const uint32_t tile_size = mspringi_solver_get_basis(&network->solver).tile_size;
     const uint32_t fallback_size = mspringi_solver_get_basis(&network->fallback).tile_size;
     mspringi_topology before = network->topology, whole = network->whole;
-    mspring_result result = mspringi_move_network(network, job);
+    mspring_result result = mspringi_relayout_network(network, job);
     if (result != MSPRING_OK)
         return result;
     network->topology_fingerprint = job->fingerprint;
@@ -297,7 +299,7 @@ static mspring_result finish(mspring_network *network, mspring_job *job) {
 }
 
 mspring_result mspring_job_finish(mspring_network *network, mspring_job *job) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (job && job->failure != MSPRING_OK) {
@@ -313,7 +315,7 @@ mspring_result mspring_job_finish(mspring_network *network, mspring_job *job) {
     if (!job->network)
         return mspringi_fail(&network->message, MSPRING_ERROR_OUTDATED,
                              "the job was begun for a layout that is no more");
-    mspringi_job_lose(network);
+    mspringi_job_invalidate(network);
     const mspringi_fp_state before = mspringi_fp_enter();
     result = finish(network, job);
     mspringi_fp_leave(before);
@@ -342,7 +344,7 @@ static mspring_result change_layout(mspring_network *network, mspring_layout lay
     if (result != MSPRING_OK)
         network->message = job->to.message;
     else if (!job->is_needless)
-        mspringi_job_lose(network);
+        mspringi_job_invalidate(network);
     if (result == MSPRING_OK)
         result = finish(network, job);
     mspring_job_destroy(job);
@@ -357,7 +359,7 @@ mspring_result mspringi_expand(mspring_network *network) {
 }
 
 mspring_result mspring_network_compact(mspring_network *network) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
@@ -367,6 +369,6 @@ mspring_result mspring_network_compact(mspring_network *network) {
 }
 
 mspring_result mspring_network_expand(mspring_network *network) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     return result == MSPRING_OK ? mspringi_expand(network) : result;
 }

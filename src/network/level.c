@@ -14,8 +14,9 @@
 // How many registers a substep fills.
 static uint64_t registers(const mspringi_topology *t, uint32_t lanes) {
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
-    const uint64_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
-    uint64_t count = (t->chain_blocks + rungs) * (MSPRINGI_WIDTH / lanes);
+    const uint64_t slice_columns =
+        t->irregular.slice_count > 0 ? t->irregular.first_slice_column[t->irregular.slice_count] : 0;
+    uint64_t count = (t->chain_blocks + slice_columns) * (MSPRINGI_WIDTH / lanes);
     for (const mspringi_span *span = t->spans; span < t->spans + t->span_count; ++span)
         if (span->first_slot < lattice_end)
             count +=

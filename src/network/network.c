@@ -5,23 +5,23 @@
 
 #include "base/cpu.h"
 #include "base/definitions.h"
-#include "base/mix.h"
+#include "base/hash.h"
 #include "network/job.h"
 #include "network/level.h"
 #include "sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
 #include "solvers/explicit/halo.h"
-#include "stability/border.h"
 #include "stability/guard.h"
+#include "stability/stability_limit.h"
 #include "step/origin.h"
 #include "step/plastic.h"
 #include "step/strain.h"
-#include "store/alike.h"
 #include "store/areas.h"
 #include "store/fractions.h"
-#include "store/growth.h"
+#include "store/id_pool.h"
 #include "store/one_way.h"
-#include "store/rests.h"
+#include "store/record_sharing.h"
+#include "store/rest_lengths.h"
 #include "store/springs.h"
 #include "store/store.h"
 
@@ -29,7 +29,7 @@
 
 #define IN_HOOK "called from inside a hook, where only functions marked as shared are allowed"
 
-mspring_result mspringi_enter(mspring_network *network) {
+mspring_result mspringi_check_call(mspring_network *network) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     if (network->in_hook == MSPRINGI_IN_HOOKS)
@@ -109,7 +109,7 @@ void mspringi_field_clear(const mspring_network *network, mspringi_field field) 
 }
 
 mspring_result mspringi_carry_reserve(mspring_network *network) {
-    const uint32_t rows = mspringi_explicit_carries(network) * mspringi_tasks_shares(network->tasks);
+    const uint32_t rows = mspringi_explicit_carry_rows(network) * mspringi_tasks_partition_size(network->tasks);
     if (network->carry && network->carry_rows >= rows)
         return mspringi_halos_reserve(network);
     const size_t values = (size_t)2 * rows * network->topology.carry_blocks * MSPRINGI_WIDTH;
@@ -133,14 +133,14 @@ static void look_at_springs(const mspring_builder *builder, bool *damped, bool *
 
 mspring_result mspringi_layout_reserve(mspring_network *network) {
     static const mspringi_group groups[] = {MSPRINGI_STORE_PARTICLES, MSPRINGI_STORE_BACKUP, MSPRINGI_STORE_ROWS,
-                                            MSPRINGI_STORE_WEB};
+                                            MSPRINGI_STORE_IRREGULAR};
     const mspringi_topology *t = &network->topology;
     for (size_t i = 0; i < sizeof groups / sizeof groups[0]; ++i)
         if (!mspringi_store_reserve(network, groups[i]))
             return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                                  "no memory for a network of %u particles and %u springs",
                                  (unsigned)t->particle_count, (unsigned)t->spring_count);
-    mspringi_alike_begin(&network->alike, t->lattice_blocks);
+    mspringi_shared_records_clear(&network->shared_records, t->lattice_blocks);
     network->depth = mspringi_explicit_depth(t, network->parts);
     return mspringi_carry_reserve(network);
 }
@@ -189,34 +189,36 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
 }
 
 // What tells this network's snapshots from those of others.
-static void take_fingerprints(mspring_network *network, const mspringi_spring *spring, mspringi_place place) {
+static void take_fingerprints(mspring_network *network, const mspringi_spring *spring,
+                              mspringi_spring_slot spring_slot) {
     uint64_t fingerprint = network->topology_fingerprint;
-    fingerprint = mspringi_mix(fingerprint, (uint64_t)spring->a << 32 | spring->b);
-    fingerprint = mspringi_mix(fingerprint, (uint64_t)place << 32 | spring->flags);
+    fingerprint = mspringi_hash(fingerprint, (uint64_t)spring->a << 32 | spring->b);
+    fingerprint = mspringi_hash(fingerprint, (uint64_t)spring_slot << 32 | spring->flags);
     network->topology_fingerprint = fingerprint;
-    fingerprint = mspringi_mix_floats(network->parameter_fingerprint, spring->stiffness, spring->damping);
-    network->parameter_fingerprint = mspringi_mix_floats(fingerprint, spring->rest_length, 0.0f);
+    fingerprint = mspringi_hash_floats(network->parameter_fingerprint, spring->stiffness, spring->damping);
+    network->parameter_fingerprint = mspringi_hash_floats(fingerprint, spring->rest_length, 0.0f);
 }
 
 static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
     network->shortest = INFINITY;
-    network->topology_fingerprint = network->parameter_fingerprint = MSPRINGI_MIX_START;
+    network->topology_fingerprint = network->parameter_fingerprint = MSPRINGI_HASH_START;
     if (t->reserve.particle_end > t->particle_count || t->reserve.spring_end > t->spring_count)
-        network->topology_fingerprint = mspringi_mix(
+        network->topology_fingerprint = mspringi_hash(
             network->topology_fingerprint, (uint64_t)t->reserve.particle_end << 32 | t->reserve.spring_end);
     for (mspring_id p = 0; p < t->particle_count; ++p)
-        network->topology_fingerprint = mspringi_mix(network->topology_fingerprint, t->slot_of_particle[p]);
+        network->topology_fingerprint = mspringi_hash(network->topology_fingerprint, t->slot_of_particle[p]);
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring *spring = &builder->springs[s];
         if (spring->rest_length != MSPRINGI_WELD)
             network->shortest = fmin(network->shortest, (double)spring->rest_length);
-        const mspringi_place place = t->place_of_spring[s];
+        const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
-        mspringi_place_set_rest_length(network, place, spring->rest_length);
-        mspringi_place_set(network, place, relative ? 0.0f : spring->stiffness, relative ? 0.0f : spring->damping);
-        take_fingerprints(network, spring, place);
-        network->live[place / MSPRINGI_WIDTH] |= (uint16_t)(1u << place % MSPRINGI_WIDTH);
+        mspringi_spring_slot_set_rest_length(network, spring_slot, spring->rest_length);
+        mspringi_spring_slot_set(network, spring_slot, relative ? 0.0f : spring->stiffness,
+                                 relative ? 0.0f : spring->damping);
+        take_fingerprints(network, spring, spring_slot);
+        network->live[spring_slot / MSPRINGI_WIDTH] |= (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     }
 }
 
@@ -228,7 +230,7 @@ static mspring_result note_turned(mspring_network *network, const mspring_builde
         if (!mspringi_store_reserve(network, MSPRINGI_STORE_TURNED))
             return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the ends of %u springs",
                                  (unsigned)network->topology.spring_count);
-        network->turned[s / 8] |= (uint8_t)(1u << s % 8);
+        network->is_reversed[s / 8] |= (uint8_t)(1u << s % 8);
     }
     return MSPRING_OK;
 }
@@ -255,7 +257,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     bool damped, relative;
     mspringi_reserve reserve = {0};
     const mspringi_solver_ops *const solver_ops = mspringi_solver_ops_of(def->solver); // NULL: is refused below
-    const bool has_herds = solver_ops && solver_ops->has_herds;
+    const bool has_bundles = solver_ops && solver_ops->has_bundles;
     network->solver.ops = mspringi_solver_ops_of(MSPRING_SOLVER_EXPLICIT);
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     mspring_result result = mspringi_shared_reserve(network);
@@ -266,8 +268,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
-        result = mspringi_topology_create(&network->topology, builder, &reserve, has_herds ? true : false,
-                                          mspringi_tasks_shares(network->tasks), network->kernels->lanes,
+        result = mspringi_topology_create(&network->topology, builder, &reserve, has_bundles ? true : false,
+                                          mspringi_tasks_partition_size(network->tasks), network->kernels->lanes,
                                           &network->memory, &network->message);
     if (result != MSPRING_OK)
         return result;
@@ -283,8 +285,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = mspringi_fractions_create(&network->fractions, builder, reserve.spring_end, &network->memory,
                                            &network->message);
     if (result == MSPRING_OK)
-        result = mspringi_rests_create(&network->rests, &network->topology, builder, &network->memory,
-                                       &network->message);
+        result = mspringi_rest_lengths_create(&network->rest_lengths, &network->topology, builder, &network->memory,
+                                              &network->message);
     if (result != MSPRING_OK)
         return result;
     network->settings = mspringi_settings_of(def);
@@ -294,14 +296,14 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = note_turned(network, builder);
     if (result != MSPRING_OK)
         return result;
-    network->guard.speed = network->guard.place = INFINITY; // are not known
+    network->guard.speed = network->guard.coordinate = INFINITY; // are not known
     network->steps.outcome = mspringi_outcome_none();
     fill_particles(network, builder);
     fill_springs(network, builder);
     for (mspring_id p = network->topology.particle_count; p < network->topology.reserve.particle_end; ++p)
         network->mass[p] = 1.0f;
     if (def->spare_particles > 0 || def->spare_springs > 0)
-        result = mspringi_growth_reserve(network);
+        result = mspringi_id_pool_reserve(network);
     if (result != MSPRING_OK)
         return result;
     const mspring_solver_def solver = mspringi_solver_of(def);
@@ -312,8 +314,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = set_limits(network, builder);
     if (result == MSPRING_OK)
         result = mspringi_areas_of_builder(network, builder);
-    if (result == MSPRING_OK && network->looks && network->solver.ops->has_border)
-        mspringi_border_learn(network);
+    if (result == MSPRING_OK && network->guard_scratch && network->solver.ops->has_stability_limit)
+        mspringi_stability_limit_learn(network);
     return result;
 }
 
@@ -362,6 +364,6 @@ void mspring_network_destroy(mspring_network *network) {
     mspringi_memory memory = network->memory, tasks_memory = network->tasks_memory;
     mspringi_tasks_destroy(network->tasks, &tasks_memory);
     mspringi_free_all(&tasks_memory);
-    mspringi_job_lose(network);
+    mspringi_job_invalidate(network);
     mspringi_free_all(&memory);
 }

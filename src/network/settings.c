@@ -3,11 +3,11 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "contact/pairs.h"
+#include "contact/contacts.h"
 #include "sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
-#include "step/groups.h"
+#include "step/held_groups.h"
 #include "store/changed.h"
 #include "store/network.h"
 
@@ -89,7 +89,7 @@ static mspring_result change_solver(mspring_network *network, const mspring_solv
 }
 
 mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = mspringi_check_solver(def, &network->message);
     if (result == MSPRING_OK)
@@ -105,7 +105,7 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     const bool is_same = object == network->solver.object && memcmp(&before, &now, sizeof now) == 0;
     if (is_same && def->substeps == now.substeps && def->max_substeps == now.max_substeps)
         return MSPRING_OK;
-    mspringi_changed(network, MSPRINGI_CHANGED_SOLVER, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_SOLVER, 0);
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
     network->auto_substeps = automatic;
     network->substeps = automatic ? 1 : def->substeps;
@@ -162,7 +162,7 @@ static mspring_result reserve_for(mspring_network *network, const mspring_settin
 }
 
 mspring_result mspring_network_set_settings(mspring_network *network, const mspring_settings *settings) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (!settings)
@@ -184,10 +184,10 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
         network->guard.fallback_steps = 0;
     }
     if (settings->gravity_x != old.gravity_x || settings->gravity_y != old.gravity_y)
-        mspringi_changed(network, MSPRINGI_CHANGED_GRAVITY, 0);
+        mspringi_notify_change(network, MSPRINGI_CHANGED_GRAVITY, 0);
     if (settings->relax_fraction != old.relax_fraction)
-        mspringi_changed(network, MSPRINGI_CHANGED_RELAX, 0);
+        mspringi_notify_change(network, MSPRINGI_CHANGED_RELAX, 0);
     if (settings->sleep_speed != old.sleep_speed || settings->sleep_time != old.sleep_time)
-        mspringi_changed(network, MSPRINGI_CHANGED_SLEEP, 0);
+        mspringi_notify_change(network, MSPRINGI_CHANGED_SLEEP, 0);
     return MSPRING_OK;
 }

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "base/mix.h"
+#include "base/hash.h"
 #include "step/origin.h"
 #include "store/changed.h"
 #include "store/network.h"
@@ -156,9 +156,9 @@ static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, 
     for (uint32_t i = 0; i < at->count; ++i)
         if (mspringi_particle_exists(network, mspringi_selected(at, i)))
             mspringi_set_position(network, mspringi_selected(at, i), x_of(to, i), y_of(to, i));
-    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
     if (all)
-        mspringi_changed(network, MSPRINGI_CHANGED_MOTION, 0);
+        mspringi_notify_change(network, MSPRINGI_CHANGED_MOTION, 0);
     return MSPRING_OK;
 }
 
@@ -222,7 +222,7 @@ static mspring_result set_velocities(mspring_network *network, const mspringi_se
         network->state.vx[slot] = vx[(size_t)i * stride];
         network->state.vy[slot] = vy[(size_t)i * stride];
     }
-    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
     return MSPRING_OK;
 }
 
@@ -247,10 +247,10 @@ mspring_result mspring_network_set_velocities_at(mspring_network *network, const
 static uint64_t hash_rest_lengths(const mspring_network *network, uint64_t sum) {
     const mspringi_topology *t = &network->topology;
     for (mspring_id s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = mspringi_place_of(t, s);
-        const float own = mspringi_place_own_length(network, place);
-        if (mspringi_spring_exists(network, s) && own != network->plastic.nominal[place])
-            sum = mspringi_mix_floats(mspringi_mix(sum, s), own, 0.0f);
+        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, s);
+        const float own = mspringi_spring_slot_own_length(network, spring_slot);
+        if (mspringi_spring_exists(network, s) && own != network->plastic.nominal[spring_slot])
+            sum = mspringi_hash_floats(mspringi_hash(sum, s), own, 0.0f);
     }
     return sum;
 }
@@ -262,19 +262,19 @@ mspring_result mspring_network_state_hash(const mspring_network *network, uint64
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the hash is NULL");
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
-    uint64_t sum = MSPRINGI_MIX_START;
-    sum = mspringi_mix_double(sum, network->origin_x);
-    sum = mspringi_mix_double(sum, network->origin_y);
+    uint64_t sum = MSPRINGI_HASH_START;
+    sum = mspringi_hash_double(sum, network->origin_x);
+    sum = mspringi_hash_double(sum, network->origin_y);
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         const uint32_t slot = t->slot_of_particle[p];
         if (mspringi_particle_exists(network, p)) {
-            sum = mspringi_mix_floats(sum, s->x[slot], s->y[slot]);
-            sum = mspringi_mix_floats(sum, s->vx[slot], s->vy[slot]);
-            sum = mspringi_mix_floats(sum, mspringi_low_of(s->x[slot], s->low_x[slot]),
-                                      mspringi_low_of(s->y[slot], s->low_y[slot]));
+            sum = mspringi_hash_floats(sum, s->x[slot], s->y[slot]);
+            sum = mspringi_hash_floats(sum, s->vx[slot], s->vy[slot]);
+            sum = mspringi_hash_floats(sum, mspringi_low_of(s->x[slot], s->low_x[slot]),
+                                       mspringi_low_of(s->y[slot], s->low_y[slot]));
         } else {
             for (int pair = 0; pair < 3; ++pair)
-                sum = mspringi_mix_floats(sum, 0.0f, 0.0f);
+                sum = mspringi_hash_floats(sum, 0.0f, 0.0f);
         }
     }
     *hash = network->plastic.is_bent ? hash_rest_lengths(network, sum) : sum;

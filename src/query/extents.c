@@ -15,16 +15,16 @@ typedef enum measure { LENGTHS, STRAINS, LENGTHS_AND_STRAINS, DIRECTIONS } measu
 enum { PLANE_COUNT = 2 };
 
 static size_t plane_size(const mspring_network *network) {
-    return mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
+    return mspringi_spring_slot_words(&network->topology) * MSPRINGI_WIDTH;
 }
 
 // Note whether the base of a spring is its second end.
 static void turn(mspring_network *network, mspring_id spring) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
-    uint16_t *bits = &network->extents.reversed[place / MSPRINGI_WIDTH];
-    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
+    uint16_t *bits = &network->extents.reversed[spring_slot / MSPRINGI_WIDTH];
+    const uint16_t bit = (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     uint32_t base, tip;
-    mspringi_topology_ends(&network->topology, place, &base, &tip);
+    mspringi_topology_ends(&network->topology, spring_slot, &base, &tip);
     *bits = mspringi_spring_ends(network, spring).b == base ? *bits | bit : *bits & (uint16_t)~bit;
 }
 
@@ -94,23 +94,24 @@ static inline void compute_word(const mspring_network *network, size_t word, con
         memcpy(extents->scratch + plane_size(network) + at, second, sizeof second);
 }
 
-// The springs of the web and the inactive ones, gathered sixteen at a time.
-static inline void compute_leftovers(const mspring_network *network, measure what) {
+// The springs of the irregular part and the inactive ones, gathered sixteen at a time.
+static inline void compute_irregular_springs(const mspring_network *network, measure what) {
     const mspringi_topology *t = &network->topology;
-    const uint32_t count = t->leftover_capacity + t->inactive_count;
+    const uint32_t count = t->irregular_capacity + t->inactive_count;
     const mspringi_state *s = &network->state;
     for (uint32_t first = 0; first < count; first += MSPRINGI_WIDTH) {
         float x[2 * MSPRINGI_WIDTH] = {0}, y[2 * MSPRINGI_WIDTH] = {0}, rest_lengths[MSPRINGI_WIDTH] = {0};
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH && first + lane < count; ++lane) {
-            const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + first + lane);
+            const mspringi_spring_values values =
+                mspringi_spring_slot_get(network, t->chain_spring_slots + first + lane);
             x[lane] = s->x[values.base];
             y[lane] = s->y[values.base];
             x[MSPRINGI_WIDTH + lane] = s->x[values.tip];
             y[MSPRINGI_WIDTH + lane] = s->y[values.tip];
             rest_lengths[lane] = values.rest_length;
         }
-        compute_word(network, (t->chain_places + first) / MSPRINGI_WIDTH, x, y, 0, MSPRINGI_WIDTH, rest_lengths,
-                     what);
+        compute_word(network, (t->chain_spring_slots + first) / MSPRINGI_WIDTH, x, y, 0, MSPRINGI_WIDTH,
+                     rest_lengths, what);
     }
 }
 
@@ -122,8 +123,8 @@ static inline void compute(const mspring_network *network, measure what) {
     for (size_t block = 0; block < t->lattice_blocks; ++block, word += MSPRINGI_DIRECTIONS) {
         const size_t here = (t->lattice_first + block) * MSPRINGI_WIDTH;
         const size_t up = (size_t)t->up_of_block[block] * MSPRINGI_WIDTH;
-        const float *rest_lengths =
-            network->rests.lengths + (size_t)network->rests.of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+        const float *rest_lengths = network->rest_lengths.lengths + (size_t)network->rest_lengths.of_block[block] *
+                                                                        MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
         compute_word(network, word + MSPRINGI_EAST, x, y, here, here + 1,
                      rest_lengths + MSPRINGI_EAST * MSPRINGI_WIDTH, what);
         compute_word(network, word + MSPRINGI_NORTH, x, y, here, up, rest_lengths + MSPRINGI_NORTH * MSPRINGI_WIDTH,
@@ -137,7 +138,7 @@ static inline void compute(const mspring_network *network, measure what) {
         const size_t here = (t->chain_first + block) * MSPRINGI_WIDTH;
         compute_word(network, word, x, y, here, here + 1, network->chain_springs + block * record, what);
     }
-    compute_leftovers(network, what);
+    compute_irregular_springs(network, what);
 }
 
 /* ------------------------------------------------------------------------------------------------ reading out */
@@ -152,20 +153,20 @@ static void leave_out_what_is_gone(const mspring_network *network, float *of_spr
 // From the two planes; either place to write to may be NULL.
 static void read_out(const mspring_network *network, float *restrict first, float *restrict second) {
     const mspring_id springs = network->topology.spring_count;
-    const mspringi_place *restrict place = network->topology.place_of_spring;
+    const mspringi_spring_slot *restrict spring_slot = network->topology.slot_of_spring;
     const float *restrict planes[PLANE_COUNT] = {network->extents.scratch,
                                                  network->extents.scratch + plane_size(network)};
     if (first && second)
         for (mspring_id s = 0; s < springs; ++s) {
-            first[s] = planes[0][place[s]];
-            second[s] = planes[1][place[s]];
+            first[s] = planes[0][spring_slot[s]];
+            second[s] = planes[1][spring_slot[s]];
         }
     else if (first)
         for (mspring_id s = 0; s < springs; ++s)
-            first[s] = planes[0][place[s]];
+            first[s] = planes[0][spring_slot[s]];
     else if (second)
         for (mspring_id s = 0; s < springs; ++s)
-            second[s] = planes[1][place[s]];
+            second[s] = planes[1][spring_slot[s]];
     if (first)
         leave_out_what_is_gone(network, first);
     if (second)
@@ -189,7 +190,7 @@ static MSPRINGI_NOINLINE void measure_all(const mspring_network *network, float 
 
 mspring_result mspring_network_get_extents(mspring_network *network, float *length, float *direction_x,
                                            float *direction_y, float *strain) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK && !direction_x != !direction_y)
         result =
             mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "one of x and y of the directions is NULL");

@@ -4,16 +4,16 @@
 
 #include "base/cpu.h"
 #include "query/measure.h"
-#include "store/rests.h"
+#include "store/rest_lengths.h"
 #include "store/springs.h"
 
 /// Places that are compared at once.
-#define PIECE ((mspringi_place)1024)
+#define PIECE ((mspringi_spring_slot)1024)
 
 /// The largest strain, and the places that may have it.
 typedef struct peak {
     float strain;
-    mspringi_place first, end;
+    mspringi_spring_slot first, end;
 } peak;
 
 static inline float low_of(float coordinate, float low, bool may_be_stale) {
@@ -22,10 +22,10 @@ static inline float low_of(float coordinate, float low, bool may_be_stale) {
 
 // Raise the largest strain of each lane to that of sixteen places of a lattice: as mspringi_measure() has them, but
 // in a loop for vectors.
-MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi_place first, bool may_be_stale,
-                                        bool has_welds, float *restrict most) {
+MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi_spring_slot first,
+                                        bool may_be_stale, bool has_welds, float *restrict most) {
     const mspringi_state s = network->state;
-    const float *rest_lengths = mspringi_rests_at(&network->rests, first);
+    const float *rest_lengths = mspringi_rest_lengths_at(&network->rest_lengths, first);
     const uint32_t live = network->live[first / MSPRINGI_WIDTH];
     float strains[MSPRINGI_WIDTH];
     uint32_t base, tip;
@@ -47,7 +47,7 @@ MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi
         most[lane] = strains[lane] > most[lane] ? strains[lane] : most[lane];
 }
 
-static float largest_in(const mspring_network *network, mspringi_place first, mspringi_place end) {
+static float largest_in(const mspring_network *network, mspringi_spring_slot first, mspringi_spring_slot end) {
     float most[MSPRINGI_WIDTH] = {0.0f}, all = 0.0f;
     for (; first < end; first += MSPRINGI_WIDTH)
         if (network->has_welds)
@@ -61,7 +61,7 @@ static float largest_in(const mspring_network *network, mspringi_place first, ms
     return all;
 }
 
-static void include(peak *all, float strain, mspringi_place first, mspringi_place end) {
+static void include(peak *all, float strain, mspringi_spring_slot first, mspringi_spring_slot end) {
     if (strain > all->strain)
         *all = (peak){strain, first, end};
     else if (strain == all->strain)
@@ -70,15 +70,17 @@ static void include(peak *all, float strain, mspringi_place first, mspringi_plac
 
 static MSPRINGI_NOINLINE peak find_peak(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_place places = (mspringi_place)(mspringi_place_words(t) * MSPRINGI_WIDTH);
+    const mspringi_spring_slot spring_slots =
+        (mspringi_spring_slot)(mspringi_spring_slot_words(t) * MSPRINGI_WIDTH);
     peak all = {0.0f, 0, 0};
-    for (mspringi_place first = 0; first < t->lattice_places; first += PIECE) {
-        const mspringi_place left = t->lattice_places - first, end = first + (left < PIECE ? left : PIECE);
+    for (mspringi_spring_slot first = 0; first < t->lattice_spring_slots; first += PIECE) {
+        const mspringi_spring_slot left = t->lattice_spring_slots - first,
+                                   end = first + (left < PIECE ? left : PIECE);
         include(&all, largest_in(network, first, end), first, end);
     }
-    for (mspringi_place place = t->lattice_places; place < places; ++place)
-        if (mspringi_place_is_live(network, place))
-            include(&all, fabsf(mspringi_place_strain(network, place)), place, place + 1);
+    for (mspringi_spring_slot spring_slot = t->lattice_spring_slots; spring_slot < spring_slots; ++spring_slot)
+        if (mspringi_spring_slot_is_live(network, spring_slot))
+            include(&all, fabsf(mspringi_spring_slot_strain(network, spring_slot)), spring_slot, spring_slot + 1);
     return all;
 }
 
@@ -86,7 +88,7 @@ static MSPRINGI_NOINLINE mspring_id find_first(const mspring_network *network, c
     const mspringi_topology *t = &network->topology;
     for (mspring_id s = 0; all->strain > 0.0f && s < t->spring_count; ++s) {
         float strain;
-        if (t->place_of_spring[s] < all->first || t->place_of_spring[s] >= all->end)
+        if (t->slot_of_spring[s] < all->first || t->slot_of_spring[s] >= all->end)
             continue;
         mspringi_measure(network, MSPRING_STRAIN, &(mspringi_selection){.first = s, .count = 1}, &strain, 1);
         if (fabsf(strain) == all->strain)

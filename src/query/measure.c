@@ -23,16 +23,16 @@ static double spring_length(const mspring_network *network, const mspringi_sprin
     return length;
 }
 
-float mspringi_place_length(const mspring_network *network, mspringi_place place) {
-    const mspringi_spring_values r = mspringi_place_get(network, place);
+float mspringi_spring_slot_length(const mspring_network *network, mspringi_spring_slot spring_slot) {
+    const mspringi_spring_values r = mspringi_spring_slot_get(network, spring_slot);
     double rate;
     return (float)spring_length(network, &r, &rate);
 }
 
-float mspringi_place_strain(const mspring_network *network, mspringi_place place) {
-    if (!mspringi_place_is_live(network, place))
+float mspringi_spring_slot_strain(const mspring_network *network, mspringi_spring_slot spring_slot) {
+    if (!mspringi_spring_slot_is_live(network, spring_slot))
         return 0.0f;
-    const mspringi_spring_values r = mspringi_place_get(network, place);
+    const mspringi_spring_values r = mspringi_spring_slot_get(network, spring_slot);
     const double rest_length = (double)mspringi_read_length(r.rest_length);
     double rate;
     return (float)((spring_length(network, &r, &rate) - rest_length) /
@@ -40,7 +40,7 @@ float mspringi_place_strain(const mspring_network *network, mspringi_place place
 }
 
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring) {
-    return mspringi_place_strain(network, mspringi_place_of(&network->topology, spring));
+    return mspringi_spring_slot_strain(network, mspringi_slot_of_spring(&network->topology, spring));
 }
 
 float mspringi_spring_force(const mspring_network *network, mspring_id spring) {
@@ -58,9 +58,10 @@ float mspringi_spring_force(const mspring_network *network, mspring_id spring) {
 
 // What a spring that has flowed has stored by its hardening.
 static double hardening_energy(const mspring_network *network, mspring_id spring, double stiffness) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
-    const double flow = (double)mspringi_place_own_length(network, place) - (double)network->plastic.nominal[place];
-    return 0.5 * stiffness * (double)network->plastic.hardening[place] * flow * flow;
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
+    const double flow = (double)mspringi_spring_slot_own_length(network, spring_slot) -
+                        (double)network->plastic.nominal[spring_slot];
+    return 0.5 * stiffness * (double)network->plastic.hardening[spring_slot] * flow * flow;
 }
 
 mspring_result mspring_network_get_plasticity(const mspring_network *network, mspring_plasticity *report) {
@@ -70,9 +71,9 @@ mspring_result mspring_network_get_plasticity(const mspring_network *network, ms
     const mspringi_plastic *p = &network->plastic;
     mspring_plasticity made = {.yield_count = p->count, .dissipated = p->dissipated};
     for (mspring_id s = 0; p->is_bent && s < network->topology.spring_count; ++s) {
-        const mspringi_place place = mspringi_place_of(&network->topology, s);
-        made.bent_springs +=
-            mspringi_spring_exists(network, s) && mspringi_place_own_length(network, place) != p->nominal[place];
+        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
+        made.bent_springs += mspringi_spring_exists(network, s) &&
+                             mspringi_spring_slot_own_length(network, spring_slot) != p->nominal[spring_slot];
     }
     mspringi_put_struct(report, &made, sizeof made);
     return MSPRING_OK;
@@ -181,10 +182,10 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
     if (spring >= t->spring_count || !mspringi_spring_exists(network, spring))
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, "there is no spring %s",
                                     MSPRINGI_ID(spring));
-    const mspringi_place place = mspringi_place_of(t, spring);
-    const mspringi_spring_values r = mspringi_place_get(network, place);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, spring);
+    const mspringi_spring_values r = mspringi_spring_slot_get(network, spring_slot);
     const mspringi_ends ends = mspringi_spring_ends(network, spring);
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, spring_slot);
     const mspring_spring_info made = {
         .flags = mspringi_spring_flags(network, spring),
         .a = t->particle_of_slot[ends.a],
@@ -192,8 +193,8 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
         .stiffness = r.stiffness,
         .damping = r.damping,
         .rest_length = mspringi_read_length(r.rest_length),
-        .length = mspringi_place_length(network, place),
-        .strain = mspringi_place_strain(network, place),
+        .length = mspringi_spring_slot_length(network, spring_slot),
+        .strain = mspringi_spring_slot_strain(network, spring_slot),
         .force = mspringi_spring_force(network, spring),
         .nominal_stiffness = nominal.stiffness,
         .nominal_damping = nominal.damping,

@@ -8,8 +8,8 @@
 #include "store/selection.h"
 
 /// Length and strain of the spring in a place; of a broken one the strain is 0.
-float mspringi_place_length(const mspring_network *network, mspringi_place place);
-float mspringi_place_strain(const mspring_network *network, mspringi_place place);
+float mspringi_spring_slot_length(const mspring_network *network, mspringi_spring_slot spring_slot);
+float mspringi_spring_slot_strain(const mspring_network *network, mspringi_spring_slot spring_slot);
 
 /// The force along a spring: > 0 pulls its ends together.
 float mspringi_spring_force(const mspring_network *network, mspring_id spring);

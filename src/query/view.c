@@ -22,13 +22,13 @@ mspring_result mspring_network_view(const mspring_network *network, mspring_view
 }
 
 mspring_result mspring_network_view_mutable(mspring_network *network, mspring_mutable_view *view) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     result = mspringi_check_output(&network->message, "mspring_mutable_view", view, sizeof *view);
     if (result != MSPRING_OK)
         return result;
-    network->is_open = network->is_lent = true;
+    network->is_open = network->has_host_view = true;
     mspringi_put_struct(view, &(mspring_mutable_view)VIEW_OF(network), sizeof *view);
     return MSPRING_OK;
 }

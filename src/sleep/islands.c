@@ -99,7 +99,7 @@ static void map_block(const mspring_network *network, uint32_t block) {
         const bool sleeps = island != MSPRING_NONE && s->still[island] < 0.0;
         asleep |= (uint32_t)sleeps << lane;
         awake |= (uint32_t)(island != MSPRING_NONE && !sleeps) << lane;
-        s->free_mass[slot] = sleeps ? 0.0f : network->inverse_mass[slot];
+        s->active_inverse_mass[slot] = sleeps ? 0.0f : network->inverse_mass[slot];
     }
     s->sleepers[block] = (uint16_t)asleep;
     s->swept[block] = awake != 0;
@@ -143,8 +143,8 @@ static void map_strip(const mspring_network *network, uint32_t number) {
     bool all = true, any = false;
     for (uint32_t i = first->first_span; i < last->first_span + last->span_count; ++i)
         map_span(network, &t->spans[i], &all, &any);
-    if (strip->home_span != MSPRING_NONE)
-        map_span(network, &t->spans[strip->home_span], &all, &any);
+    if (strip->assigned_span != MSPRING_NONE)
+        map_span(network, &t->spans[strip->assigned_span], &all, &any);
     network->sleep.share[number] = (uint8_t)(all ? MSPRINGI_AWAKE : any ? MSPRINGI_PARTLY : MSPRINGI_ASLEEP);
 }
 
@@ -163,7 +163,8 @@ void mspringi_islands_weigh(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     for (size_t block = 0; block < network->topology.block_count; ++block)
         for (size_t slot = block * MSPRINGI_WIDTH; s->swept[block] && slot < (block + 1) * MSPRINGI_WIDTH; ++slot)
-            s->free_mass[slot] = mspringi_slot_is_asleep(network, slot) ? 0.0f : network->inverse_mass[slot];
+            s->active_inverse_mass[slot] =
+                mspringi_slot_is_asleep(network, slot) ? 0.0f : network->inverse_mass[slot];
     s->masses = network->edits.masses;
 }
 

@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "store/changed.h"
-#include "store/growth.h"
+#include "store/id_pool.h"
 #include "store/selection.h"
 #include "store/stages.h"
 #include "store/store.h"
@@ -109,7 +109,7 @@ static void set_awake(mspring_network *network, uint32_t island) {
     s->still[island] = 0.0;
     s->sleeping -= slept;
     if (slept)
-        mspringi_changed(network, MSPRINGI_CHANGED_NAPS, 0);
+        mspringi_notify_change(network, MSPRINGI_CHANGED_NAPS, 0);
 }
 
 static void set_all_awake(mspring_network *network) {
@@ -142,14 +142,14 @@ void mspringi_wake_spring(mspring_network *network, mspring_id spring) {
     uint32_t base, tip;
     if (network->sleep.count == 0)
         return;
-    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
     mspringi_wake_slot(network, base);
     mspringi_wake_slot(network, tip);
 }
 
 static void map_if_changed(mspring_network *network, uint64_t naps) {
     mspringi_sleep *s = &network->sleep;
-    if (s->sleeping > 0 && (!s->is_mapped || naps != network->edits.naps))
+    if (s->sleeping > 0 && (!s->is_mapped || naps != network->edits.sleep_changes))
         mspringi_islands_map(network);
     else if (s->sleeping > 0 && s->masses != network->edits.masses)
         mspringi_islands_weigh(network);
@@ -170,7 +170,7 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
     mspringi_sleep *s = &network->sleep;
     if (s->sleeping == 0)
         return;
-    const uint64_t naps = network->edits.naps;
+    const uint64_t naps = network->edits.sleep_changes;
     // A substep of another length changes relative springs, and how many there are may change by itself.
     const bool same_h = !network->fractions.values || attempt->h == network->relative_h;
     if (!same_h || network->origin_x != s->origin_x || network->origin_y != s->origin_y) {
@@ -203,7 +203,7 @@ bool mspringi_sleep_is_idle(const mspring_network *network) {
 
 // A change of force counts that would bring a particle to the speed that is no sleep any more within the time after
 // which it would have been asleep again.
-static uint32_t feel_block(const mspring_network *network, mspringi_field force, size_t first) {
+static uint32_t wake_block_by_forces(const mspring_network *network, mspringi_field force, size_t first) {
     const mspringi_sleep *s = &network->sleep;
     const float speed = network->settings.sleep_speed, time = network->settings.sleep_time;
     static const float none[MSPRINGI_WIDTH];
@@ -221,17 +221,17 @@ static uint32_t feel_block(const mspring_network *network, mspringi_field force,
 }
 
 // Once the forces from outside are known: wake what feels others than when it fell asleep.
-static void feel(mspring_network *network, mspringi_field force) {
+static void wake_by_forces(mspring_network *network, mspringi_field force) {
     mspringi_sleep *s = &network->sleep;
     s->in_force = force;
     if (s->sleeping == 0 || (!force.x && !s->has_force))
         return;
-    const uint64_t naps = network->edits.naps;
+    const uint64_t naps = network->edits.sleep_changes;
     for (size_t block = 0; block < network->topology.block_count; ++block) {
         if (s->sleepers[block] == 0)
             continue;
         const size_t first = block * MSPRINGI_WIDTH;
-        for (uint32_t bits = feel_block(network, force, first), lane = 0; bits >> lane != 0; ++lane) {
+        for (uint32_t bits = wake_block_by_forces(network, force, first), lane = 0; bits >> lane != 0; ++lane) {
             if (!(bits >> lane & 1))
                 continue;
             keep_stillness(s);
@@ -280,11 +280,11 @@ void mspringi_sleep_put_back(const mspring_network *network) {
 }
 
 // Wake what hooks have moved.
-static void notice(mspring_network *network, double dt) {
+static void update_sleep(mspring_network *network, double dt) {
     (void)dt;
     if (network->sleep.sleeping == 0 || network->hook_count == 0)
         return;
-    const uint64_t naps = network->edits.naps;
+    const uint64_t naps = network->edits.sleep_changes;
     wake_disturbed(network, true, false);
     map_if_changed(network, naps);
 }
@@ -306,7 +306,7 @@ void mspringi_sleep_undo(mspring_network *network) {
     s->sleeping = 0;
     for (uint32_t i = 0; i < s->count; ++i)
         s->sleeping += s->still[i] < 0.0;
-    mspringi_changed(network, MSPRINGI_CHANGED_NAPS, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_NAPS, 0);
     if (s->sleeping == 0)
         return;
     mspringi_islands_map(network);
@@ -316,7 +316,7 @@ void mspringi_sleep_undo(mspring_network *network) {
 /* ------------------------------------------------------------------------------------------- falling asleep */
 
 // Slots of a block that are faster than what is still, or pinned and on their way.
-static uint32_t loud_in_block(const mspring_network *network, size_t first) {
+static uint32_t moving_in_block(const mspring_network *network, size_t first) {
     const mspringi_state *state = &network->state;
     const float speed = network->settings.sleep_speed;
     uint32_t loud[MSPRINGI_WIDTH], bits = 0;
@@ -333,7 +333,7 @@ static uint32_t loud_in_block(const mspring_network *network, size_t first) {
 }
 
 // Mark the islands that are not still.
-static void mark_loud(const mspring_network *network) {
+static void mark_moving(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_sleep *s = &network->sleep;
     memset(s->mark, 0, s->count * sizeof *s->mark);
@@ -341,14 +341,14 @@ static void mark_loud(const mspring_network *network) {
         const uint32_t one = s->block_island[block], first = block * MSPRINGI_WIDTH;
         if ((s->sleeping > 0 && !s->swept[block]) || (one != MSPRING_NONE && s->mark[one]))
             continue;
-        const uint32_t bits = loud_in_block(network, first);
+        const uint32_t bits = moving_in_block(network, first);
         for (uint32_t lane = 0; bits >> lane != 0; ++lane)
             if (bits >> lane & 1 && s->island[first + lane] != MSPRING_NONE)
                 s->mark[s->island[first + lane]] = 1;
     }
     for (size_t i = 0; i < network->ramps.count; ++i) {
         uint32_t base, tip;
-        mspringi_topology_ends(t, mspringi_place_of(t, network->ramps.list[i].spring), &base, &tip);
+        mspringi_topology_ends(t, mspringi_slot_of_spring(t, network->ramps.list[i].spring), &base, &tip);
         s->mark[s->island[base]] = 1;
     }
 }
@@ -396,7 +396,7 @@ void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {
             continue;
         s->still[i] = -1.0;
         s->sleeping++;
-        mspringi_changed(network, MSPRINGI_CHANGED_NAPS, 0);
+        mspringi_notify_change(network, MSPRINGI_CHANGED_NAPS, 0);
     }
     s->has_force = (!is_first && s->has_force) || force.x;
     s->origin_x = network->origin_x;
@@ -428,12 +428,12 @@ static void fall_asleep(mspring_network *network, double dt) {
     if (mspringi_sleep_is_whole(network))
         return;
     mspringi_islands_find(network);
-    mark_loud(network);
+    mark_moving(network);
     if (!mark_sleepy(network, dt))
         return;
     mspringi_sleep_fall(network, force);
     if (mspringi_sleep_is_whole(network))
-        mspringi_changed(network, MSPRINGI_CHANGED_MOTION, 0);
+        mspringi_notify_change(network, MSPRINGI_CHANGED_MOTION, 0);
 }
 
 static void drop_force(mspring_network *network, const mspringi_attempt *attempt) {
@@ -445,8 +445,11 @@ static bool is_used(const mspring_network *network) {
     return network->sleep.state != NULL;
 }
 
-const mspringi_stage mspringi_stage_waking = {
-    .is_used = is_used, .forces_known = feel, .after_step = notice, .take_back = restore, .undo = drop_force};
+const mspringi_stage mspringi_stage_waking = {.is_used = is_used,
+                                              .forces_known = wake_by_forces,
+                                              .after_step = update_sleep,
+                                              .roll_back = restore,
+                                              .undo = drop_force};
 
 // The last of a step's stages: it sees what all others have done.
 const mspringi_stage mspringi_stage_falling_asleep = {.is_used = is_used, .after_step = fall_asleep};
@@ -492,7 +495,7 @@ void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
 /* ---------------------------------------------------------------------------------------------------- the host */
 
 mspring_result mspring_network_wake(mspring_network *network) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         mspringi_wake(network);
     return result;

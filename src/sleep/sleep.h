@@ -40,7 +40,8 @@ static inline bool mspringi_slot_is_asleep(const mspring_network *network, size_
     return sleep->sleeping > 0 && sleep->sleepers[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH & 1;
 }
 
-static inline mspringi_share mspringi_share_of_strip(const mspring_network *network, const mspringi_strip *strip) {
+static inline mspringi_share mspringi_sleep_state_of_strip(const mspring_network *network,
+                                                           const mspringi_strip *strip) {
     const mspringi_sleep *sleep = &network->sleep;
     return sleep->sleeping > 0 ? (mspringi_share)sleep->share[strip - network->topology.strips] : MSPRINGI_AWAKE;
 }

@@ -249,7 +249,7 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
             result = sections[i]->check(network, in.from[i], in.size[i]);
     if (result != MSPRING_OK)
         return result;
-    mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
     mspringi_ramps_clear(network);
     for (int i = 0; i < SECTIONS; ++i)
         if (concerns(sections[i], &header))
@@ -260,7 +260,7 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
 }
 
 mspring_result mspring_network_load(mspring_network *network, const void *snapshot, size_t size) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (!snapshot)

@@ -1,7 +1,7 @@
 /// The solvers that there are, and what is done to any of them.
 #include "store/solver.h"
 
-#include "contact/pairs.h"
+#include "contact/contacts.h"
 #include "store/network.h"
 
 const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name) {
@@ -27,8 +27,8 @@ mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *ne
                                     const mspring_solver_def *def, uint32_t tile_size) {
     const mspringi_solver_ops *ops = solver->ops;
     mspring_result result = ops->create ? ops->create(network, def, tile_size, &solver->object) : MSPRING_OK;
-    if (result == MSPRING_OK && ops->holds_bodies)
-        result = mspringi_pairs_reserve_holds(network);
+    if (result == MSPRING_OK && ops->has_implicit_contact)
+        result = mspringi_contacts_reserve_implicit(network);
     for (bool is_done = !ops->build; result == MSPRING_OK && !is_done;)
         result = ops->build(solver->object, &is_done);
     if (result != MSPRING_OK && solver->object)
@@ -85,11 +85,11 @@ void mspringi_solvers_clear_slot(const mspring_network *network, uint32_t slot) 
             both[i]->ops->clear_slot(network, both[i]->object, slot);
 }
 
-void mspringi_solvers_clear_spring(const mspring_network *network, mspringi_place place) {
+void mspringi_solvers_clear_spring(const mspring_network *network, mspringi_spring_slot spring_slot) {
     const mspringi_solver *const both[] = {&network->solver, &network->fallback};
     for (size_t i = 0; i < 2; ++i)
         if (both[i]->ops && both[i]->ops->clear_spring)
-            both[i]->ops->clear_spring(network, both[i]->object, place);
+            both[i]->ops->clear_spring(network, both[i]->object, spring_slot);
 }
 
 mspring_result mspringi_solvers_reserve(mspring_network *network) {

@@ -10,20 +10,21 @@
 #include <math.h>
 #include <string.h>
 
-#include "stability/border.h"
 #include "stability/pencil.h"
+#include "stability/stability_limit.h"
 #include "store/one_way.h"
 #include "store/springs.h"
 
-mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place) {
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
+mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
+                                       mspringi_spring_slot spring_slot) {
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, spring_slot);
     const double share = mspringi_side_of(network, spring) == 0 ? 1.0 : MSPRINGI_ONE_WAY_SHARE;
     const double stiffness = share * (double)nominal.stiffness, damping = (double)nominal.damping;
     if (!mspringi_spring_is_relative(network, spring))
         return (mspringi_strength){.stiffness = stiffness, .damping = damping};
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
-    mspringi_topology_ends(t, place, &base, &tip);
+    mspringi_topology_ends(t, spring_slot, &base, &tip);
     const float *mass = mspringi_spring_masses(network);
     const double ma = (double)mass[t->particle_of_slot[base]];
     const double mb = (double)mass[t->particle_of_slot[tip]];
@@ -34,24 +35,24 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
 
 // Where sums by slot may be written: where looks work, or else in the backup.
 static mspringi_state find_room(const mspring_network *network) {
-    if (!network->looks)
+    if (!network->guard_scratch)
         return network->backup;
-    return (mspringi_state){.x = mspringi_border_room(network, 0),
-                            .y = mspringi_border_room(network, 1),
-                            .vx = mspringi_border_room(network, 2),
-                            .vy = mspringi_border_room(network, 3)};
+    return (mspringi_state){.x = mspringi_stability_limit_scratch(network, 0),
+                            .y = mspringi_stability_limit_scratch(network, 1),
+                            .vx = mspringi_stability_limit_scratch(network, 2),
+                            .vy = mspringi_stability_limit_scratch(network, 3)};
 }
 
 // Sums over the springs at each slot, per mass: stiffness in x, damping in y, the relative springs' in vx.
 static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const mspringi_place place = network->topology.place_of_spring[i];
+        const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[i];
         if (!mspringi_spring_exists(network, i))
             continue;
-        const mspringi_strength strength = mspringi_strength_of(network, i, place);
+        const mspringi_strength strength = mspringi_strength_of(network, i, spring_slot);
         uint32_t ends[2];
-        mspringi_topology_ends(&network->topology, place, &ends[0], &ends[1]);
+        mspringi_topology_ends(&network->topology, spring_slot, &ends[0], &ends[1]);
         for (int end = 0; end < 2; ++end) {
             const double inverse_mass = (double)network->inverse_mass[ends[end]];
             sums->x[ends[end]] += (float)strength.stiffness;
@@ -74,7 +75,7 @@ static double find(mspring_network *network, double most_relative, mspring_id *s
     *spring = MSPRING_NONE;
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         uint32_t a, b;
-        mspringi_topology_ends(&network->topology, network->topology.place_of_spring[i], &a, &b);
+        mspringi_topology_ends(&network->topology, network->topology.slot_of_spring[i], &a, &b);
         if (!mspringi_spring_exists(network, i))
             continue;
         const double per_a = (double)network->inverse_mass[a], per_b = (double)network->inverse_mass[b];
@@ -138,15 +139,15 @@ mspring_id mspringi_tightest_spring(mspring_network *network, double h) {
     if (named == MSPRING_NONE)
         return named;
     uint32_t base, tip;
-    mspringi_topology_ends(t, mspringi_place_of(t, named), &base, &tip);
+    mspringi_topology_ends(t, mspringi_slot_of_spring(t, named), &base, &tip);
     double most = 0.0;
     for (mspring_id i = 0; i < t->spring_count; ++i) {
-        const mspringi_place place = t->place_of_spring[i];
+        const mspringi_spring_slot spring_slot = t->slot_of_spring[i];
         uint32_t a, b;
-        mspringi_topology_ends(t, place, &a, &b);
+        mspringi_topology_ends(t, spring_slot, &a, &b);
         if (!mspringi_spring_exists(network, i) || !(a == base || a == tip || b == base || b == tip))
             continue;
-        const mspringi_strength s = mspringi_strength_of(network, i, place);
+        const mspringi_strength s = mspringi_strength_of(network, i, spring_slot);
         const double weight =
             h * (h * s.stiffness + 2.0 * s.damping) + s.relative_stiffness + 2.0 * s.relative_damping;
         const double rate = weight * ((double)network->inverse_mass[a] + (double)network->inverse_mass[b]);

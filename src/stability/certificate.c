@@ -1,4 +1,4 @@
-/// A bound of the border (see pencil.h) that a sweep over the springs is enough for.
+/// A bound of the limit (see pencil.h) that a sweep over the springs is enough for.
 ///
 /// With y the displacement divided by the root p of the inverse mass, a spring of direction n and tangent t between
 /// the particles a and b adds
@@ -15,26 +15,27 @@
 #include <math.h>
 #include <string.h>
 
-#include "stability/border.h"
 #include "stability/stability.h"
+#include "stability/stability_limit.h"
 
 /// Rounds of a network that has just been made; a look takes one more. (Of 200 x 200 with holes, three masses and
-/// four stiffnesses, 6 prove 0.94 of the border, 12 0.95 and 50 0.965.)
+/// four stiffnesses, 6 prove 0.94 of the limit, 12 0.95 and 50 0.965.)
 #define ROUNDS_TO_LEARN 12
 
 /// Smallest weight; the largest is about 1.
 #define LEAST_WEIGHT 1e-3f
 
-mspring_result mspringi_border_reserve(mspring_network *network) {
-    if (network->looks)
+mspring_result mspringi_stability_limit_reserve(mspring_network *network) {
+    if (network->guard_scratch)
         return MSPRING_OK;
     const size_t slots = mspringi_slot_count(network);
-    network->looks = mspringi_alloc(&network->memory, (1 + MSPRINGI_BORDER_ROOM) * slots, sizeof *network->looks);
-    if (!network->looks)
+    network->guard_scratch = mspringi_alloc(&network->memory, (1 + MSPRINGI_STABILITY_LIMIT_SCRATCH) * slots,
+                                            sizeof *network->guard_scratch);
+    if (!network->guard_scratch)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory to look at the stability of %zu slots", slots);
     for (size_t slot = 0; slot < slots; ++slot)
-        network->looks[slot] = 1.0f;
+        network->guard_scratch[slot] = 1.0f;
     return MSPRING_OK;
 }
 
@@ -52,8 +53,9 @@ static float largest_lane(const float *lanes) {
 }
 
 // The largest eigenvalue of each block, from its sums: half the trace, and what eigenvalues are off it.
-static void find_values(const float *restrict inverse_mass, const float *restrict weights, const mspringi_border *b,
-                        size_t slot, float *restrict values, extremes *restrict found) {
+static void find_values(const float *restrict inverse_mass, const float *restrict weights,
+                        const mspringi_stability_limit *b, size_t slot, float *restrict values,
+                        extremes *restrict found) {
     const float *restrict half = b->out[0] + slot, *restrict off = b->out[1] + slot;
     const float *restrict beside = b->out[2] + slot;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
@@ -68,7 +70,7 @@ static void find_values(const float *restrict inverse_mass, const float *restric
 // What makes all blocks alike, with the largest weight at about 1.
 static void weigh(mspring_network *network, const float *restrict values, const extremes *found) {
     const float per_value = 1.0f / largest_lane(found->value), per_weight = 1.0f / largest_lane(found->weight);
-    float *restrict weights = network->looks;
+    float *restrict weights = network->guard_scratch;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         const float weight = weights[slot] * per_weight * sqrtf(values[slot] * per_value);
         weights[slot] = weight > LEAST_WEIGHT ? weight : LEAST_WEIGHT;
@@ -78,15 +80,15 @@ static void weigh(mspring_network *network, const float *restrict values, const 
 // One sweep: bound the eigenvalues, and give all blocks the same share of that. NaN if anything overflows.
 static float take_round(mspring_network *network, const float *inverse_mass, double h) {
     const size_t slots = mspringi_slot_count(network);
-    float *const weights = network->looks, *const room = mspringi_border_room(network, 0);
-    mspringi_border b = mspringi_border_at(network, h);
+    float *const weights = network->guard_scratch, *const room = mspringi_stability_limit_scratch(network, 0);
+    mspringi_stability_limit b = mspringi_stability_limit_at(network, h);
     for (size_t slot = 0; slot < slots; ++slot)
         room[slot] = sqrtf(inverse_mass[slot]) * weights[slot];
     b.in[0] = room;
     for (size_t sum = 0; sum < 3; ++sum)
-        b.out[sum] = mspringi_border_room(network, 1 + sum);
+        b.out[sum] = mspringi_stability_limit_scratch(network, 1 + sum);
     memset(b.out[0], 0, 3 * slots * sizeof *b.out[0]);
-    mspringi_border_bound(network, &b);
+    mspringi_stability_limit_bound(network, &b);
     extremes found = {{0.0f}, {0.0f}, {0.0f}};
     for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH)
         find_values(inverse_mass + slot, weights + slot, &b, slot, room + slot, &found);
@@ -98,11 +100,11 @@ static float take_round(mspring_network *network, const float *inverse_mass, dou
     return largest + found.doubt[0];
 }
 
-bool mspringi_border_is_below(mspring_network *network, double h, double bound) {
+bool mspringi_stability_limit_is_below(mspring_network *network, double h, double bound) {
     return (double)take_round(network, network->inverse_mass, h) <= bound;
 }
 
-void mspringi_border_learn(mspring_network *network) {
+void mspringi_stability_limit_learn(mspring_network *network) {
     mspring_id spring;
     const double h = mspringi_stable_in_any_shape(network, &spring);
     for (int round = 0; h > 0.0 && h < INFINITY && round < ROUNDS_TO_LEARN; ++round)

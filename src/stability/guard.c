@@ -1,22 +1,22 @@
-/// What goes wrong, before it is to be seen: substeps above the border (see pencil.h), and numbers out of bounds.
+/// What goes wrong, before it is to be seen: substeps above the limit (see pencil.h), and numbers out of bounds.
 ///
-/// Up to the substep that is stable in any shape nothing needs to be looked at. Above it, the border of the shape
+/// Up to the substep that is stable in any shape nothing needs to be looked at. Above it, the limit of the shape
 /// that the network has is: before a step whose substep is another one, and after one that has changed a particle's
 /// velocity twice as much as one had at the last look. A bound tells first whether it can be near at all
-/// (certificate.c). If it can, a search tells with certainty that it is not (search.c), if it finds that: so a step
-/// of a network that is below the border is never refused. A look is as short as a few substeps, so that no frame
-/// is late for it. What a short search overlooks grows, changes velocities more, and is looked for again in the
-/// same motion, which has more of it each time; the step in which it is found is the one that is taken back.
+/// (certificate.c). If it can, a search tells with certainty that it is not (limit_search.c), if it finds that: so
+/// a step of a network that is below the limit is never refused. A look is as short as a few substeps, so that no
+/// frame is late for it. What a short search overlooks grows, changes velocities more, and is looked for again in
+/// the same motion, which has more of it each time; the step in which it is found is the one that is taken back.
 #include "stability/guard.h"
 
 #include <math.h>
 
 #include "base/decay.h"
 #include "contact/floor.h"
-#include "stability/border.h"
 #include "stability/stability.h"
+#include "stability/stability_limit.h"
 
-/// Growth of the largest change of a velocity, from look to look at the border.
+/// Growth of the largest change of a velocity, from look to look at the limit.
 #define SUSPICIOUS 2.0f
 
 /// What is left of that in each step without a look: half in 2839 steps, so that looks are rare where nothing
@@ -82,7 +82,7 @@ static bool is_finite_in(const mspringi_state *s, uint32_t slot) {
     return isfinite(s->x[slot]) && isfinite(s->y[slot]) && isfinite(s->vx[slot]) && isfinite(s->vy[slot]);
 }
 
-void mspringi_guard_put_back(mspring_network *network, const mspringi_state *before) {
+void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *before) {
     const mspringi_state *s = &network->state;
     const mspringi_topology *t = &network->topology;
     for (mspring_id p = 0; p < t->particle_count; ++p) {
@@ -104,12 +104,12 @@ void mspringi_guard_put_back(mspring_network *network, const mspringi_state *bef
 
 // The same at the end of a step.
 static mspringi_extrema put_back(mspring_network *network) {
-    mspringi_guard_put_back(network, &network->backup);
-    mspringi_floor_take_back(network->floor);
-    return mspringi_guard_look(network, 0, mspringi_used_slots(network));
+    mspringi_guard_clamp_state(network, &network->backup);
+    mspringi_floor_roll_back(network->floor);
+    return mspringi_guard_extrema(network, 0, mspringi_used_slots(network));
 }
 
-/* --------------------------------------------------------------------------------------------------- the border */
+/* --------------------------------------------------------------------------------------------------- the limit */
 
 // Name the tightest spring, and the end of it that is more easily moved.
 static mspring_result explain_border(mspring_network *network, const mspringi_attempt *attempt) {
@@ -122,7 +122,7 @@ static mspring_result explain_border(mspring_network *network, const mspringi_at
             "dt, more substeps, or less stiffness or pressure.",
             (double)attempt->h);
     uint32_t base, tip;
-    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
     const float at_base = network->inverse_mass[base], at_tip = network->inverse_mass[tip];
     const mspring_id a = t->particle_of_slot[base], b = t->particle_of_slot[tip];
     const mspring_id moved = at_base > at_tip || (at_base == at_tip && a < b) ? a : b;
@@ -149,12 +149,12 @@ static mspring_result look_at_border(mspring_network *network, const mspringi_at
     const double decay = (double)mspringi_decay(network->settings.global_damping, h);
     // Vectors are floats: room for their rounding.
     const double sharp = 2.0 * (1.0 + 1.0 / decay), bound = sharp * (1.0 + 1e-4);
-    if (mspringi_border_is_below(network, (double)h, sharp))
+    if (mspringi_stability_limit_is_below(network, (double)h, sharp))
         return MSPRING_OK;
     const int iterations =
         affordable_iterations(network, attempt->substeps, from_motion ? ITERATIONS_FROM_MOTION : ITERATIONS);
     const uint32_t moved = from_motion ? attempt->substeps : 0;
-    if (!(mspringi_border_search(network, (double)h, moved, bound, iterations) > bound))
+    if (!(mspringi_stability_limit_search(network, (double)h, moved, bound, iterations) > bound))
         return MSPRING_OK;
     return explain_border(network, attempt);
 }
@@ -168,19 +168,19 @@ mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *mess
                                             : MSPRING_OK;
 }
 
-bool mspringi_guard_looks(mspring_guard policy) {
+bool mspringi_guard_checks_limit(mspring_guard policy) {
     return policy != MSPRING_GUARD_BOUNDS && policy != MSPRING_GUARD_CLAMP_BOUNDS;
 }
 
 mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard policy) {
     mspring_result result = MSPRING_OK;
-    if (mspringi_guard_looks(policy))
-        result = mspringi_border_reserve(network);
+    if (mspringi_guard_checks_limit(policy))
+        result = mspringi_stability_limit_reserve(network);
     return result == MSPRING_OK && policy == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network, 0)
                                                                     : result;
 }
 
-// Solvers without a border have forces of areas without springs all around from the start of a substep; but one
+// Solvers without a limit have forces of areas without springs all around from the start of a substep; but one
 // whose speeds are clamped takes any step.
 static mspring_result check_areas(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_areas *areas = &network->areas;
@@ -201,14 +201,15 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
     guard->watches = false;
     const bool is_same = guard->state == network->edits.state && !network->is_open;
     guard->knows_speed = is_same && guard->speed <= network->settings.max_speed;
-    guard->knows_place = is_same && guard->place <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
-    if (!attempt->solver->ops->has_border)
+    guard->knows_coordinate =
+        is_same && guard->coordinate <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
+    if (!attempt->solver->ops->has_stability_limit)
         return check_areas(network, attempt);
-    if (!mspringi_guard_looks(network->settings.guard))
+    if (!mspringi_guard_checks_limit(network->settings.guard))
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
     if (same && (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
-        guard->watches = true; // edits cost nothing here; what they do to the border is seen in the velocities
+        guard->watches = true; // edits cost nothing here; what they do to the limit is seen in the velocities
         return MSPRING_OK;
     }
     mspring_id spring;
@@ -224,10 +225,11 @@ static float larger(float a, float b) {
 }
 
 mspringi_extrema mspringi_extrema_join(mspringi_extrema a, mspringi_extrema b) {
-    return (mspringi_extrema){larger(a.place, b.place), larger(a.speed, b.speed), larger(a.change, b.change)};
+    return (mspringi_extrema){larger(a.coordinate, b.coordinate), larger(a.speed, b.speed),
+                              larger(a.change, b.change)};
 }
 
-mspringi_extrema mspringi_guard_look(const mspring_network *network, size_t first, size_t end) {
+mspringi_extrema mspringi_guard_extrema(const mspring_network *network, size_t first, size_t end) {
     const mspringi_largest_fn largest = network->kernels->largest;
     const mspringi_state *s = &network->state, *b = &network->backup;
     const bool watches = network->guard.watches;
@@ -252,14 +254,14 @@ static void look_at_share(void *argument, uint32_t index, uint32_t worker) {
     look *all = argument;
     const size_t blocks = mspringi_used_slots(all->network) / MSPRINGI_WIDTH;
     (void)worker;
-    all->seen[index] = mspringi_guard_look(all->network, blocks * index / all->workers * MSPRINGI_WIDTH,
-                                           blocks * (index + 1) / all->workers * MSPRINGI_WIDTH);
+    all->seen[index] = mspringi_guard_extrema(all->network, blocks * index / all->workers * MSPRINGI_WIDTH,
+                                              blocks * (index + 1) / all->workers * MSPRINGI_WIDTH);
 }
 
-mspringi_extrema mspringi_guard_look_at_all(const mspring_network *network) {
+mspringi_extrema mspringi_guard_extrema_of_all(const mspring_network *network) {
     look all = {.network = network, .workers = mspringi_tasks_workers(network->tasks)};
     if (mspringi_used_slots(network) < SMALLEST_SHARED_LOOK)
-        return mspringi_guard_look(network, 0, mspringi_used_slots(network));
+        return mspringi_guard_extrema(network, 0, mspringi_used_slots(network));
     mspringi_tasks_run(network->tasks, all.workers, look_at_share, &all);
     for (uint32_t i = 1; i < all.workers; ++i)
         all.seen[0] = mspringi_extrema_join(all.seen[0], all.seen[i]);
@@ -290,24 +292,24 @@ static float bound_speed(const mspring_network *network, mspringi_extrema extrem
     const float bound = (guard->speed + extrema.change) * (1.0f + 1e-6f);
     return bound <= network->settings.max_speed
                ? bound
-               : mspringi_guard_look(network, 0, mspringi_used_slots(network)).speed;
+               : mspringi_guard_extrema(network, 0, mspringi_used_slots(network)).speed;
 }
 
 // What no coordinate is above after a step. One substep takes none further than by the speed at its end, unless
 // a floor does: then all of it has been looked at.
-static float bound_place(const mspring_network *network, float h, float speed, mspringi_extrema extrema) {
+static float bound_coordinate(const mspring_network *network, float h, float speed, mspringi_extrema extrema) {
     const mspringi_guard *guard = &network->guard;
-    if (!guard->knows_place)
-        return extrema.place;
-    const float bound = larger(extrema.place, (guard->place + h * speed) * (1.0f + 1e-6f));
+    if (!guard->knows_coordinate)
+        return extrema.coordinate;
+    const float bound = larger(extrema.coordinate, (guard->coordinate + h * speed) * (1.0f + 1e-6f));
     return bound <= (float)MSPRING_MAX_COORDINATE
                ? bound
-               : mspringi_guard_look(network, 0, mspringi_used_slots(network)).place;
+               : mspringi_guard_extrema(network, 0, mspringi_used_slots(network)).coordinate;
 }
 
 mspringi_extrema mspringi_guard_bound(const mspring_network *network, float h, mspringi_extrema extrema) {
     extrema.speed = bound_speed(network, extrema);
-    extrema.place = bound_place(network, h, extrema.speed, extrema);
+    extrema.coordinate = bound_coordinate(network, h, extrema.speed, extrema);
     return extrema;
 }
 
@@ -316,12 +318,12 @@ mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attem
     const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
     const mspringi_extrema bounds = mspringi_guard_bound(network, h, extrema);
-    float speed = bounds.speed, place = bounds.place;
-    const bool is_out = !(place <= (float)MSPRING_MAX_COORDINATE && speed <= network->settings.max_speed);
+    float speed = bounds.speed, coordinate = bounds.coordinate;
+    const bool is_out = !(coordinate <= (float)MSPRING_MAX_COORDINATE && speed <= network->settings.max_speed);
     if (is_out && network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS) {
         extrema = put_back(network);
         speed = extrema.speed;
-        place = extrema.place;
+        coordinate = extrema.coordinate;
     } else if (is_out) {
         const mspring_result result = check_bounds(network, attempt);
         if (result != MSPRING_OK)
@@ -333,9 +335,9 @@ mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attem
             return result;
     }
     // What sleeps is not seen, and the bounds of the next step hold only after one of the same kind.
-    const bool is_known = attempt->solver->ops->has_border;
+    const bool is_known = attempt->solver->ops->has_stability_limit;
     guard->speed = is_known ? larger(speed, network->settings.sleep_speed) : INFINITY;
-    guard->place = is_known && network->sleep.sleeping == 0 ? place : INFINITY;
+    guard->coordinate = is_known && network->sleep.sleeping == 0 ? coordinate : INFINITY;
     guard->state = network->edits.state;
     return MSPRING_OK;
 }

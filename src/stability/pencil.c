@@ -27,17 +27,18 @@ double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping)
     return h;
 }
 
-mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring, mspringi_place place) {
+mspringi_linear_spring mspringi_linearise_spring(const mspring_network *network, mspring_id spring,
+                                                 mspringi_spring_slot spring_slot) {
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
-    const mspringi_spring_values values = mspringi_place_get(network, place);
+    const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     const double dx = (double)s->x[values.tip] - (double)s->x[values.base];
     const double dy = (double)s->y[values.tip] - (double)s->y[values.base];
     const double length = sqrt(dx * dx + dy * dy);
-    mspringi_seen seen = {
+    mspringi_linear_spring seen = {
         .a = t->particle_of_slot[values.base], .b = t->particle_of_slot[values.tip], .directed = length > 0.0};
-    if (mspringi_place_is_live(network, place))
-        seen.strength = mspringi_strength_of(network, spring, place);
+    if (mspringi_spring_slot_is_live(network, spring_slot))
+        seen.strength = mspringi_strength_of(network, spring, spring_slot);
     if (seen.directed) {
         seen.nx = dx / length;
         seen.ny = dy / length;
@@ -46,7 +47,7 @@ mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spr
     return seen;
 }
 
-void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_seen *s, double dx, double dy) {
+void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_linear_spring *s, double dx, double dy) {
     const double along = s->nx * dx + s->ny * dy, across = s->ny * dx - s->nx * dy;
     const double stretch = along * along + s->across * across * across, speed = along * along;
     quotient->stiffness += s->strength.stiffness * stretch;
@@ -54,9 +55,10 @@ void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_seen *s, 
     quotient->relative += s->strength.relative_stiffness * stretch + 2.0 * s->strength.relative_damping * speed;
 }
 
-// The spring as the border takes it, on the safe side: see mspringi_pencil_set().
-static mspringi_seen see_safely(const mspring_network *network, mspring_id spring, mspringi_place place) {
-    mspringi_seen seen = mspringi_see_spring(network, spring, place);
+// The spring as the limit takes it, on the safe side: see mspringi_pencil_set().
+static mspringi_linear_spring see_safely(const mspring_network *network, mspring_id spring,
+                                         mspringi_spring_slot spring_slot) {
+    mspringi_linear_spring seen = mspringi_linearise_spring(network, spring, spring_slot);
     if (!seen.directed)
         seen.across = 1.0;
     else if (!(seen.across > 0.0))
@@ -70,11 +72,11 @@ void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
         pencil->root[p] = sqrt((double)network->inverse_mass[network->topology.slot_of_particle[p]]);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        const mspringi_place place = network->topology.place_of_spring[i];
+        const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[i];
         pencil->terms[i] = (struct mspringi_pencil_term){0};
         if (!mspringi_spring_exists(network, i))
             continue;
-        const mspringi_seen s = see_safely(network, i, place);
+        const mspringi_linear_spring s = see_safely(network, i, spring_slot);
         const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
         const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
         const double all = s.directed ? stiffness * s.across : stiffness + damping;
@@ -108,10 +110,10 @@ void mspringi_pencil_apply(const void *context, const double *in, double *out) {
 mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const double *vector) {
     mspringi_quotient sum = {0.0, 0.0, 0.0};
     for (mspring_id i = 0; i < pencil->network->topology.spring_count; ++i) {
-        const mspringi_place place = pencil->network->topology.place_of_spring[i];
+        const mspringi_spring_slot spring_slot = pencil->network->topology.slot_of_spring[i];
         if (!mspringi_spring_exists(pencil->network, i))
             continue;
-        mspringi_seen s = see_safely(pencil->network, i, place);
+        mspringi_linear_spring s = see_safely(pencil->network, i, spring_slot);
         const double *const at_a = vector + 2 * (size_t)s.a, *const at_b = vector + 2 * (size_t)s.b;
         const double dx = pencil->root[s.b] * at_b[0] - pencil->root[s.a] * at_a[0];
         const double dy = pencil->root[s.b] * at_b[1] - pencil->root[s.a] * at_a[1];

@@ -33,17 +33,18 @@ typedef struct mspringi_quotient {
 double mspringi_quotient_limit(const mspringi_quotient *quotient, float global_damping);
 
 /// A live spring as the matrices see it.
-typedef struct mspringi_seen {
+typedef struct mspringi_linear_spring {
     uint32_t a, b; ///< particles
     bool directed; ///< its length is not 0
     double nx, ny; ///< direction
     double across; ///< tangent stiffness across its direction, as a part of that along it; below 0 if it is short
     mspringi_strength strength;
-} mspringi_seen;
-mspringi_seen mspringi_see_spring(const mspring_network *network, mspring_id spring, mspringi_place place);
+} mspringi_linear_spring;
+mspringi_linear_spring mspringi_linearise_spring(const mspring_network *network, mspring_id spring,
+                                                 mspringi_spring_slot spring_slot);
 
 /// Add a spring's share for a displacement of b against a.
-void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_seen *seen, double dx, double dy);
+void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_linear_spring *seen, double dx, double dy);
 
 /// The springs' share in the matrices.
 typedef struct mspringi_pencil {
@@ -56,7 +57,7 @@ typedef struct mspringi_pencil {
     } * terms; ///< [springs] for A + 2 D at some h
 } mspringi_pencil;
 
-/// What areas add (stability/areas.c) to the image of a vector, and to its quotient.
+/// What areas add (stability/stability_areas.c) to the image of a vector, and to its quotient.
 void mspringi_areas_apply(const mspringi_pencil *pencil, const double *in, double *out);
 void mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector, mspringi_quotient *sum);
 

@@ -14,14 +14,15 @@ typedef struct mspringi_strength {
     double relative_stiffness, relative_damping;
 } mspringi_strength;
 /// Those that only pull or only push count with so much of their stiffness. Where they begin to act, motion is not
-/// linear, and gains energy in substeps of a third, a quarter or a fifth of a period (chains at 0.9 of the border
-/// of a linear motion were strained 75 times as much as in short substeps). At half of that border a period has
+/// linear, and gains energy in substeps of a third, a quarter or a fifth of a period (chains at 0.9 of the limit
+/// of a linear motion were strained 75 times as much as in short substeps). At half of that limit a period has
 /// six.
 #define MSPRINGI_ONE_WAY_SHARE 4.0
-mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring, mspringi_place place);
+mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
+                                       mspringi_spring_slot spring_slot);
 
-/// What areas add to the sums of springs' stiffness and damping by slot (areas.c), in the shape that they were
-/// added in, and the largest quotient of these sums that one of them takes part in.
+/// What areas add to the sums of springs' stiffness and damping by slot (stability_areas.c), in the shape that they
+/// were added in, and the largest quotient of these sums that one of them takes part in.
 void mspringi_areas_sum(const mspring_network *network, float *sums, float *dampings);
 double mspringi_areas_largest(const mspring_network *network, const float *sums);
 

@@ -1,14 +1,14 @@
-/// The stability border as the host asks for it.
+/// The stability limit as the host asks for it.
 #include <math.h>
 
 #include "base/cpu.h"
 #include "stability/pencil.h"
 #include "stability/stability.h"
 
-/// Residual at which the eigenvalue is good enough, as a part of it. The border is its square root.
+/// Residual at which the eigenvalue is good enough, as a part of it. The limit is its square root.
 #define TOLERANCE 2e-3
 
-/// Change of the border at which it is found, as a part of it.
+/// Change of the limit at which it is found, as a part of it.
 #define SETTLED 5e-4
 
 typedef struct workspace {
@@ -51,7 +51,7 @@ static void shake(double *vector, size_t size, double amount) {
         vector[i] += amount * mspringi_noise(i);
 }
 
-// Every vector gives an upper bound of the border, and at the border that of the eigenvector is sharp: take the
+// Every vector gives an upper bound of the limit, and at the limit that of the eigenvector is sharp: take the
 // eigenvector at the last bound, its bound, and so on. The bounds fall, and so fast that few turns are enough.
 static double find_border(const mspring_network *network, workspace *work, double start) {
     const size_t size = work->lanczos.size;
@@ -93,7 +93,7 @@ static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, doubl
 }
 
 mspring_result mspring_network_stable_dt(mspring_network *network, double *now, double *any_shape) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
@@ -108,7 +108,7 @@ mspring_result mspring_network_stable_dt(mspring_network *network, double *now, 
 
 mspring_result mspring_network_suggest_substeps(mspring_network *network, double dt, double safety,
                                                 uint32_t *substeps) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (!(dt > 0.0 && dt < INFINITY) || !(safety > 0.0 && safety <= 1.0) || !substeps)

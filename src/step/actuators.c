@@ -4,7 +4,7 @@
 #include "step/actuators.h"
 
 #include "step/plastic.h"
-#include "store/rests.h"
+#include "store/rest_lengths.h"
 #include "store/springs.h"
 #include "store/stages.h"
 
@@ -13,39 +13,41 @@ float mspringi_actuator_length(const mspring_network *network, uint32_t actuator
 }
 
 void mspringi_actuator_set_length(mspring_network *network, uint32_t actuator, float length) {
-    const mspringi_place place = mspringi_place_of(&network->topology, network->actuators.spring[actuator]);
-    const float had = mspringi_place_get(network, place).rest_length;
+    const mspringi_spring_slot spring_slot =
+        mspringi_slot_of_spring(&network->topology, network->actuators.spring[actuator]);
+    const float had = mspringi_spring_slot_get(network, spring_slot).rest_length;
     if (had == length)
         return;
-    mspringi_place_set_rest_length(network, place, length);
+    mspringi_spring_slot_set_rest_length(network, spring_slot, length);
     if (network->plastic.nominal)
-        mspringi_plastic_follow(network, place, had);
+        mspringi_plastic_follow(network, spring_slot, had);
 }
 
 /* ----------------------------------------------------------------------------------------------- all at once */
 
 // Rest lengths of lattices by place, if they may be set there.
-static mspringi_place plain_end(const mspring_network *network) {
-    return mspringi_actuators_are_plain(network) ? network->topology.lattice_places : 0;
+static mspringi_spring_slot plain_end(const mspring_network *network) {
+    return mspringi_actuators_are_plain(network) ? network->topology.lattice_spring_slots : 0;
 }
 
 static void keep_lengths(mspring_network *network) {
     const mspringi_actuators a = network->actuators;
-    const mspringi_place *places = network->topology.place_of_spring, end = plain_end(network);
-    const float *lengths = network->rests.lengths;
+    const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring, end = plain_end(network);
+    const float *lengths = network->rest_lengths.lengths;
     for (uint32_t i = 0; i < a.count; ++i)
-        a.from[i] = places[a.spring[i]] < end ? lengths[places[a.spring[i]]] : mspringi_actuator_length(network, i);
+        a.from[i] = spring_slots[a.spring[i]] < end ? lengths[spring_slots[a.spring[i]]]
+                                                    : mspringi_actuator_length(network, i);
     for (uint32_t i = 0; network->plastic.nominal && i < a.count; ++i)
-        a.unbent_from[i] = network->plastic.nominal[places[a.spring[i]]];
+        a.unbent_from[i] = network->plastic.nominal[spring_slots[a.spring[i]]];
 }
 
 static void set_lengths(mspring_network *network, const float *to) {
     const mspringi_actuators a = network->actuators;
-    const mspringi_place *places = network->topology.place_of_spring, end = plain_end(network);
-    float *lengths = network->rests.lengths;
+    const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring, end = plain_end(network);
+    float *lengths = network->rest_lengths.lengths;
     for (uint32_t i = 0; i < a.count; ++i) {
-        if (places[a.spring[i]] < end)
-            lengths[places[a.spring[i]]] = to[i];
+        if (spring_slots[a.spring[i]] < end)
+            lengths[spring_slots[a.spring[i]]] = to[i];
         else
             mspringi_actuator_set_length(network, i, to[i]);
     }
@@ -54,12 +56,12 @@ static void set_lengths(mspring_network *network, const float *to) {
 // Set the lengths of a share of the way.
 static void set_between(mspring_network *network, float share) {
     const mspringi_actuators a = network->actuators;
-    const mspringi_place *places = network->topology.place_of_spring, end = plain_end(network);
-    float *lengths = network->rests.lengths;
+    const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring, end = plain_end(network);
+    float *lengths = network->rest_lengths.lengths;
     for (uint32_t i = 0; i < a.count; ++i) {
         const float length = a.from[i] + (a.to[i] - a.from[i]) * share;
-        if (places[a.spring[i]] < end)
-            lengths[places[a.spring[i]]] = length;
+        if (spring_slots[a.spring[i]] < end)
+            lengths[spring_slots[a.spring[i]]] = length;
         else
             mspringi_actuator_set_length(network, i, length);
     }
@@ -71,11 +73,11 @@ static void go_back(mspring_network *network) {
     float *nominal = network->plastic.nominal;
     set_lengths(network, a.from);
     for (uint32_t i = 0; nominal && i < a.count; ++i) {
-        const mspringi_place place = mspringi_place_of(&network->topology, a.spring[i]);
-        if (nominal[place] == a.unbent_from[i])
+        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, a.spring[i]);
+        if (nominal[spring_slot] == a.unbent_from[i])
             continue;
-        nominal[place] = a.unbent_from[i];
-        mspringi_plastic_renew(network, place);
+        nominal[spring_slot] = a.unbent_from[i];
+        mspringi_plastic_renew(network, spring_slot);
     }
 }
 
@@ -130,7 +132,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
     return base;
 }
 
-static void take_back(mspring_network *network) {
+static void roll_back(mspring_network *network) {
     if (are_gradual(network))
         go_back(network);
 }
@@ -150,6 +152,6 @@ const mspringi_stage mspringi_stage_actuators = {.is_used = is_used,
                                                  .is_quiet = is_quiet,
                                                  .free_substeps = free_substeps,
                                                  .before_substep = before_substep,
-                                                 .take_back = take_back,
+                                                 .roll_back = roll_back,
                                                  .after_step = after_step,
                                                  .undo = undo};

@@ -23,38 +23,38 @@ mspring_result mspringi_breaking_reserve(mspring_network *network) {
     return network->kept || !any_absolute ? mspringi_changed_reserve_log(network) : fail_for_memory(network);
 }
 
-static void toggle(mspring_network *network, mspringi_place place) {
-    network->live[place / MSPRINGI_WIDTH] ^= (uint16_t)(1u << place % MSPRINGI_WIDTH);
+static void toggle(mspring_network *network, mspringi_spring_slot spring_slot) {
+    network->live[spring_slot / MSPRINGI_WIDTH] ^= (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
 }
 
 void mspringi_spring_come_live(mspring_network *network, mspring_id spring) {
-    toggle(network, mspringi_place_of(&network->topology, spring));
-    mspringi_changed(network, MSPRINGI_CHANGED_LIVE_SPRING, spring);
+    toggle(network, mspringi_slot_of_spring(&network->topology, spring));
+    mspringi_notify_change(network, MSPRINGI_CHANGED_LIVE_SPRING, spring);
 }
 
 bool mspringi_spring_break(mspring_network *network, mspring_id spring) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
-    if (!mspringi_place_is_live(network, place))
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
+    if (!mspringi_spring_slot_is_live(network, spring_slot))
         return false;
     mspringi_ramp_drop(network, spring);
-    const mspringi_spring_values values = mspringi_place_get(network, place);
+    const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     MSPRINGI_ASSERT(network->kept || network->keeps_none);
     if (!mspringi_spring_is_relative(network, spring))
         network->kept[spring] = (mspringi_relative){values.stiffness, values.damping};
-    mspringi_place_set(network, place, 0.0f, 0.0f);
-    toggle(network, place);
+    mspringi_spring_slot_set(network, spring_slot, 0.0f, 0.0f);
+    toggle(network, spring_slot);
     if (network->strain.stressed)
-        network->strain.stressed[place / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << place % MSPRINGI_WIDTH);
-    mspringi_changed(network, MSPRINGI_CHANGED_BROKEN_SPRING, spring);
+        network->strain.stressed[spring_slot / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << spring_slot % MSPRINGI_WIDTH);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_BROKEN_SPRING, spring);
     return true;
 }
 
 bool mspringi_spring_restore(mspring_network *network, mspring_id spring) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
-    if (mspringi_place_is_live(network, place))
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
+    if (mspringi_spring_slot_is_live(network, spring_slot))
         return false;
-    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, place);
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, spring_slot);
     mspringi_spring_come_live(network, spring);
-    mspringi_spring_set_nominal(network, spring, place, nominal);
+    mspringi_spring_set_nominal(network, spring, spring_slot, nominal);
     return true;
 }

@@ -50,7 +50,7 @@ static mspring_result reserve_fields(mspring_network *network, const mspring_hoo
 }
 
 mspring_result mspring_network_add_hook(mspring_network *network, const mspring_hook_def *def, mspring_id *hook) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = check_hook(network, def);
     if (result != MSPRING_OK)
@@ -74,7 +74,7 @@ mspring_result mspring_network_add_hook(mspring_network *network, const mspring_
 }
 
 mspring_result mspring_network_remove_hook(mspring_network *network, mspring_id hook) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     size_t i = 0;
@@ -149,7 +149,7 @@ static void call_hook(mspring_network *network, const mspringi_attempt *attempt,
     if (mspringi_has_reach(def) && !mspringi_next_below(network, def, 0, slot_count, &lowest))
         return;
     network->is_open = network->was_in_hook = true;
-    network->guard.knows_speed = network->guard.knows_place = false;
+    network->guard.knows_speed = network->guard.knows_coordinate = false;
     hook_call call = {
         .network = network,
         .def = def,
@@ -302,16 +302,16 @@ static void begin(mspring_network *network, const mspringi_attempt *attempt) {
         network->hooks[i].distance = MSPRINGI_UNKNOWN;
 }
 
-static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
+static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     bool any = false;
     for (size_t i = 0; i < network->hook_count; ++i)
         any |= network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP &&
-               mspringi_hook_was_missed(network, &network->hooks[i], attempt->dt);
+               mspringi_hook_must_repeat(network, &network->hooks[i], attempt->dt);
     return any;
 }
 
 // A step that is repeated is looked at in every substep.
-static void take_back(mspring_network *network) {
+static void roll_back(mspring_network *network) {
     for (size_t i = 0; i < network->hook_count; ++i)
         if (network->hooks[i].distance == MSPRINGI_AWAY)
             network->hooks[i].distance = MSPRINGI_CLOSE;
@@ -363,7 +363,7 @@ const mspringi_stage mspringi_stage_hooks_before_step = {.is_used = has_before_s
                                                          .is_quiet = is_before_step_quiet,
                                                          .is_needed = is_before_step_needed,
                                                          .forces = before_step,
-                                                         .take_back = take_back};
+                                                         .roll_back = roll_back};
 const mspringi_stage mspringi_stage_hooks_before_substep = {.is_used = has_before_substep,
                                                             .writes_state = true,
                                                             .before_step = begin,
@@ -371,8 +371,8 @@ const mspringi_stage mspringi_stage_hooks_before_substep = {.is_used = has_befor
                                                             .is_needed = is_before_substep_needed,
                                                             .free_substeps = free_before,
                                                             .before_substep = before_substep,
-                                                            .has_missed = has_missed,
-                                                            .take_back = take_back};
+                                                            .must_repeat = must_repeat,
+                                                            .roll_back = roll_back};
 const mspringi_stage mspringi_stage_hooks_after_substep = {.is_used = has_after_substep,
                                                            .writes_state = true,
                                                            .before_step = begin,
@@ -380,5 +380,5 @@ const mspringi_stage mspringi_stage_hooks_after_substep = {.is_used = has_after_
                                                            .is_needed = is_after_substep_needed,
                                                            .free_substeps = free_after,
                                                            .after_substep = after_substep,
-                                                           .has_missed = has_missed,
-                                                           .take_back = take_back};
+                                                           .must_repeat = must_repeat,
+                                                           .roll_back = roll_back};

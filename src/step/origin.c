@@ -30,7 +30,7 @@ void mspringi_origin_set(mspring_network *network, double x, double y) {
         return;
     network->origin_x = x;
     network->origin_y = y;
-    mspringi_changed(network, MSPRINGI_CHANGED_ORIGIN, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_ORIGIN, 0);
 }
 
 void mspringi_origin_choose(mspring_network *network, const mspringi_box *box) {

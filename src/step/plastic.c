@@ -5,11 +5,11 @@
 
 #include "step/breaking.h"
 #include "step/strain.h"
-#include "store/alike.h"
 #include "store/changed.h"
-#include "store/growth.h"
+#include "store/id_pool.h"
 #include "store/properties.h"
-#include "store/rests.h"
+#include "store/record_sharing.h"
+#include "store/rest_lengths.h"
 #include "store/springs.h"
 #include "store/store.h"
 
@@ -24,16 +24,16 @@ static bool reserve_layout(mspring_network *network) {
                             (unsigned)network->topology.spring_count);
         return false;
     }
-    const size_t places = mspringi_place_words(&network->topology) * MSPRINGI_WIDTH;
-    for (size_t place = 0; place < places; ++place) {
-        p->yield_strain[place] = p->high[place] = p->flow_high[place] = INFINITY;
-        p->low[place] = p->flow_low[place] = -1.0f;
-        p->hardening[place] = MSPRING_HARDENING_DEFAULT;
-        p->plastic_limit[place] = MSPRING_PLASTIC_LIMIT_DEFAULT;
-        p->nominal[place] = p->gain[place] = 1.0f;
+    const size_t spring_slots = mspringi_spring_slot_words(&network->topology) * MSPRINGI_WIDTH;
+    for (size_t spring_slot = 0; spring_slot < spring_slots; ++spring_slot) {
+        p->yield_strain[spring_slot] = p->high[spring_slot] = p->flow_high[spring_slot] = INFINITY;
+        p->low[spring_slot] = p->flow_low[spring_slot] = -1.0f;
+        p->hardening[spring_slot] = MSPRING_HARDENING_DEFAULT;
+        p->plastic_limit[spring_slot] = MSPRING_PLASTIC_LIMIT_DEFAULT;
+        p->nominal[spring_slot] = p->gain[spring_slot] = 1.0f;
     }
-    mspringi_alike_begin(&p->alike, network->topology.lattice_blocks);
-    p->alike.changes = network->topology.lattice_springs;
+    mspringi_shared_records_clear(&p->shared_records, network->topology.lattice_blocks);
+    p->shared_records.changes = network->topology.lattice_springs;
     return true;
 }
 
@@ -47,7 +47,7 @@ mspring_result mspringi_plastic_match_layout(mspring_network *to, const mspring_
 mspring_result mspringi_plastic_reserve(mspring_network *network) {
     if (network->plastic.nominal)
         return MSPRING_OK;
-    mspring_result result = mspringi_rests_separate(network);
+    mspring_result result = mspringi_rest_lengths_unshare(network);
     if (result == MSPRING_OK)
         result = mspringi_incidence_reserve(network);
     if (result == MSPRING_OK && network->strain.break_strain)
@@ -57,40 +57,40 @@ mspring_result mspringi_plastic_reserve(mspring_network *network) {
     if (result != MSPRING_OK)
         return result;
     for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring) {
-        const mspringi_place place = mspringi_place_of(&network->topology, spring);
-        network->plastic.nominal[place] = mspringi_place_own_length(network, place);
+        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
+        network->plastic.nominal[spring_slot] = mspringi_spring_slot_own_length(network, spring_slot);
     }
-    mspringi_changed(network, MSPRINGI_CHANGED_PLACES, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
     return MSPRING_OK;
 }
 
 /* ----------------------------------------------------------------------------------------------------- bounds */
 
-mspringi_yield_values mspringi_yield_values_of(const mspring_network *network, mspringi_place place) {
+mspringi_yield_values mspringi_yield_values_of(const mspring_network *network, mspringi_spring_slot spring_slot) {
     const mspringi_plastic *p = &network->plastic;
-    return (mspringi_yield_values){.nominal = p->nominal[place],
-                                   .yield_strain = p->yield_strain[place],
-                                   .hardening = p->hardening[place],
-                                   .plastic_limit = p->plastic_limit[place],
-                                   .gain = p->gain[place]};
+    return (mspringi_yield_values){.nominal = p->nominal[spring_slot],
+                                   .yield_strain = p->yield_strain[spring_slot],
+                                   .hardening = p->hardening[spring_slot],
+                                   .plastic_limit = p->plastic_limit[spring_slot],
+                                   .gain = p->gain[spring_slot]};
 }
 
 // One on a ramp does not flow: that sets its rest length.
-void mspringi_plastic_renew(mspring_network *network, mspringi_place place) {
+void mspringi_plastic_renew(mspring_network *network, mspringi_spring_slot spring_slot) {
     const mspringi_plastic *p = &network->plastic;
-    const float rest = mspringi_place_own_length(network, place);
-    p->gain[place] = 1.0f / (1.0f + p->hardening[place]);
-    mspringi_yield_values values = mspringi_yield_values_of(network, place);
-    if (rest == MSPRINGI_WELD || mspringi_place_ramp(network, place))
+    const float rest = mspringi_spring_slot_own_length(network, spring_slot);
+    p->gain[spring_slot] = 1.0f / (1.0f + p->hardening[spring_slot]);
+    mspringi_yield_values values = mspringi_yield_values_of(network, spring_slot);
+    if (rest == MSPRINGI_WELD || mspringi_spring_slot_ramp(network, spring_slot))
         values.yield_strain = INFINITY;
     const mspringi_yield_bounds bounds = mspringi_yield_bounds_of(values, rest);
-    mspringi_alike_part_yielding(network, place);
-    p->low[place] = bounds.low;
-    p->high[place] = bounds.high;
-    p->flow_low[place] = bounds.flow_low;
-    p->flow_high[place] = bounds.flow_high;
+    mspringi_shared_records_unshare_yielding(network, spring_slot);
+    p->low[spring_slot] = bounds.low;
+    p->high[spring_slot] = bounds.high;
+    p->flow_low[spring_slot] = bounds.flow_low;
+    p->flow_high[spring_slot] = bounds.flow_high;
     if (network->strain.break_strain)
-        mspringi_strain_renew_least(network, place);
+        mspringi_strain_renew_least(network, spring_slot);
 }
 
 /* ----------------------------------------------------------------------------------------------------- values */
@@ -100,42 +100,42 @@ static float bent(float nominal, float strain) {
     return nominal == MSPRINGI_WELD ? nominal : (float)((double)nominal * (1.0 + (double)strain));
 }
 
-void mspringi_plastic_store(mspring_network *network, mspringi_place place, mspring_property property,
+void mspringi_plastic_store(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
                             float value) {
     mspringi_plastic *p = &network->plastic;
     MSPRINGI_ASSERT(p->nominal);
     if (property == MSPRING_YIELD_STRAIN)
-        p->yield_strain[place] = value;
+        p->yield_strain[spring_slot] = value;
     else if (property == MSPRING_HARDENING)
-        p->hardening[place] = value;
+        p->hardening[spring_slot] = value;
     else if (property == MSPRING_PLASTIC_LIMIT)
-        p->plastic_limit[place] = value;
+        p->plastic_limit[spring_slot] = value;
     else
-        mspringi_place_set_rest_length(network, place, bent(p->nominal[place], value));
+        mspringi_spring_slot_set_rest_length(network, spring_slot, bent(p->nominal[spring_slot], value));
     p->yields = true;
     p->is_bent |= property == MSPRING_PLASTIC_STRAIN && value != 0.0f;
-    mspringi_plastic_renew(network, place);
-    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+    mspringi_plastic_renew(network, spring_slot);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 
-void mspringi_plastic_follow(mspring_network *network, mspringi_place place, float had) {
-    float *nominal = &network->plastic.nominal[place];
-    const float rest = mspringi_place_get(network, place).rest_length;
+void mspringi_plastic_follow(mspring_network *network, mspringi_spring_slot spring_slot, float had) {
+    float *nominal = &network->plastic.nominal[spring_slot];
+    const float rest = mspringi_spring_slot_get(network, spring_slot).rest_length;
     const bool is_whole = *nominal == had || rest == MSPRINGI_WELD || had == MSPRINGI_WELD;
     *nominal = is_whole ? rest : (float)((double)rest * ((double)*nominal / (double)had));
-    mspringi_plastic_renew(network, place);
+    mspringi_plastic_renew(network, spring_slot);
 }
 
 void mspringi_plastic_forget(mspring_network *network, mspring_id spring) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     mspringi_plastic *p = &network->plastic;
     if (!p->nominal)
         return;
-    p->nominal[place] = mspringi_place_own_length(network, place);
-    p->yield_strain[place] = INFINITY;
-    p->hardening[place] = MSPRING_HARDENING_DEFAULT;
-    p->plastic_limit[place] = MSPRING_PLASTIC_LIMIT_DEFAULT;
-    mspringi_plastic_renew(network, place);
+    p->nominal[spring_slot] = mspringi_spring_slot_own_length(network, spring_slot);
+    p->yield_strain[spring_slot] = INFINITY;
+    p->hardening[spring_slot] = MSPRING_HARDENING_DEFAULT;
+    p->plastic_limit[spring_slot] = MSPRING_PLASTIC_LIMIT_DEFAULT;
+    mspringi_plastic_renew(network, spring_slot);
 }
 
 /* ------------------------------------------------------------------------------------------------ definitions */
@@ -145,19 +145,19 @@ mspring_result mspringi_plastic_reserve_limits(mspring_network *network, mspring
 }
 
 void mspringi_plastic_put_limits(mspring_network *network, mspring_id spring, mspringi_limits limits) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     mspringi_plastic *p = &network->plastic;
     if (!mspringi_has_plasticity(limits))
         return;
-    p->yield_strain[place] = mspringi_kept_value(limits.yield_strain);
-    p->hardening[place] = limits.hardening;
-    p->plastic_limit[place] = limits.plastic_limit;
+    p->yield_strain[spring_slot] = mspringi_broken_value(limits.yield_strain);
+    p->hardening[spring_slot] = limits.hardening;
+    p->plastic_limit[spring_slot] = limits.plastic_limit;
     p->yields = true;
     if (limits.nominal_length > 0.0f) {
-        p->is_bent |= p->nominal[place] != limits.nominal_length;
-        p->nominal[place] = limits.nominal_length;
+        p->is_bent |= p->nominal[spring_slot] != limits.nominal_length;
+        p->nominal[spring_slot] = limits.nominal_length;
     }
-    mspringi_plastic_renew(network, place);
+    mspringi_plastic_renew(network, spring_slot);
     mspringi_fingerprint_floats(network, mspringi_read_value(limits.yield_strain), limits.hardening);
-    mspringi_fingerprint_floats(network, limits.plastic_limit, p->nominal[place]);
+    mspringi_fingerprint_floats(network, limits.plastic_limit, p->nominal[spring_slot]);
 }

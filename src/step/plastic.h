@@ -24,16 +24,17 @@ mspring_result mspringi_plastic_match_layout(mspring_network *to, const mspring_
 
 /// Set MSPRING_YIELD_STRAIN, MSPRING_HARDENING, MSPRING_PLASTIC_LIMIT or MSPRING_PLASTIC_STRAIN of a spring, of the
 /// last after its ramp has been ended; after mspringi_plastic_reserve().
-void mspringi_plastic_store(mspring_network *network, mspringi_place place, mspring_property property, float value);
+void mspringi_plastic_store(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
+                            float value);
 
 /// Follow a rest length that was set: the plastic strain that the spring has, had being its rest length, stays.
-void mspringi_plastic_follow(mspring_network *network, mspringi_place place, float had);
+void mspringi_plastic_follow(mspring_network *network, mspringi_spring_slot spring_slot, float had);
 
 /// What a spring yields at.
-mspringi_yield_values mspringi_yield_values_of(const mspring_network *network, mspringi_place place);
+mspringi_yield_values mspringi_yield_values_of(const mspring_network *network, mspringi_spring_slot spring_slot);
 
 /// Compute the bounds between which a spring is cold, and the strain that anything happens at.
-void mspringi_plastic_renew(mspring_network *network, mspringi_place place);
+void mspringi_plastic_renew(mspring_network *network, mspringi_spring_slot spring_slot);
 
 /// Give a spring of which nothing is known what its definition has; let another not yield.
 mspring_result mspringi_plastic_reserve_limits(mspring_network *network, mspringi_limits limits);

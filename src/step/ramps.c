@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "step/plastic.h"
-#include "store/rests.h"
+#include "store/rest_lengths.h"
 #include "store/springs.h"
 #include "store/stages.h"
 
@@ -14,12 +14,12 @@
 // A spring yields again, or no more.
 static void follow(mspring_network *network, mspring_id spring) {
     if (network->plastic.nominal)
-        mspringi_plastic_renew(network, mspringi_place_of(&network->topology, spring));
+        mspringi_plastic_renew(network, mspringi_slot_of_spring(&network->topology, spring));
 }
 
 mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
     mspringi_ramps *ramps = &network->ramps;
-    mspring_result result = mspringi_rests_separate(network);
+    mspring_result result = mspringi_rest_lengths_unshare(network);
     if (result != MSPRING_OK)
         return result;
     void *list = ramps->list;
@@ -49,7 +49,8 @@ void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double sec
                                 .to = values.rest_length,
                                 .seconds = seconds};
     mspringi_ramp_add(network, &ramp);
-    mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, spring), (float)ramp.from);
+    mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, spring),
+                                         (float)ramp.from);
 }
 
 bool mspringi_has_ramp(const mspring_network *network, mspring_id spring) {
@@ -65,7 +66,8 @@ void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
     for (size_t i = 0; i < ramps->count; ++i) {
         if (ramps->list[i].spring != spring)
             continue;
-        mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, spring), ramps->list[i].to);
+        mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, spring),
+                                             ramps->list[i].to);
         ramps->list[i] = ramps->list[--ramps->count];
         follow(network, spring);
         return;
@@ -76,8 +78,8 @@ void mspringi_ramps_clear(mspring_network *network) {
     mspringi_ramps *ramps = &network->ramps;
     const size_t count = ramps->count;
     for (size_t i = 0; i < count; ++i)
-        mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, ramps->list[i].spring),
-                                       ramps->list[i].to);
+        mspringi_spring_slot_set_rest_length(
+            network, mspringi_slot_of_spring(&network->topology, ramps->list[i].spring), ramps->list[i].to);
     ramps->count = 0;
     for (size_t i = 0; i < count; ++i)
         follow(network, ramps->list[i].spring);
@@ -88,8 +90,8 @@ void mspringi_ramps_apply(mspring_network *network, double dt) {
         const mspringi_ramp *ramp = &network->ramps.list[i];
         const double passed = (ramp->passed + dt) / ramp->seconds;
         const double rest_length = ramp->from + ((double)ramp->to - ramp->from) * passed;
-        mspringi_place_set_rest_length(network, mspringi_place_of(&network->topology, ramp->spring),
-                                       passed < 1.0 ? (float)rest_length : ramp->to);
+        mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, ramp->spring),
+                                             passed < 1.0 ? (float)rest_length : ramp->to);
     }
 }
 

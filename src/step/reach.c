@@ -34,13 +34,13 @@ bool mspringi_hook_is_away(const mspring_network *network, mspringi_hook *hook, 
     if (hook->distance == MSPRINGI_UNKNOWN) {
         const mspringi_floor height = {.lines = {{.ny = 1.0, .offset = -local_height(network, &hook->def)}},
                                        .plane_count = 1};
-        const bool is_away = mspringi_room_is_enough(network, &height, &hook->room, seconds);
+        const bool is_away = mspringi_safe_box_suffices(network, &height, &hook->room, seconds);
         hook->distance = is_away ? MSPRINGI_AWAY : MSPRINGI_CLOSE;
     }
     return hook->distance == MSPRINGI_AWAY;
 }
 
-bool mspringi_hook_was_missed(const mspring_network *network, const mspringi_hook *hook, double seconds) {
+bool mspringi_hook_must_repeat(const mspring_network *network, const mspringi_hook *hook, double seconds) {
     return hook->distance == MSPRINGI_AWAY &&
-           !mspringi_room_was_enough(network, &hook->room, seconds * (double)network->seen.speed, network->seen);
+           !mspringi_safe_box_sufficed(network, &hook->room, seconds * (double)network->seen.speed, network->seen);
 }

@@ -21,13 +21,13 @@ mspringi_stages mspringi_stages_of(const mspring_network *network) {
         stages.give_forces |= all[i]->forces && !is_optional;
         stages.move |= all[i]->moves && all[i]->moves(network);
         stages.cut_substeps |= cuts_substeps(all[i]) && !is_optional;
-        stages.can_be_quiet |= all[i]->is_quiet != NULL || all[i]->has_missed != NULL;
+        stages.can_be_quiet |= all[i]->is_quiet != NULL || all[i]->must_repeat != NULL;
         stages.follow_substeps |= all[i]->after_substep != NULL;
     }
     return stages;
 }
 
-bool mspringi_stages_cut(const mspring_network *network, const mspringi_attempt *attempt) {
+bool mspringi_stages_split_step(const mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_stages *stages = attempt->stages;
     bool cut = stages->cut_substeps;
     for (size_t i = 0; stages->can_be_quiet && i < stages->count && !cut; ++i)
@@ -102,11 +102,12 @@ mspringi_field mspringi_stages_before_substep(mspring_network *network, const ms
     return base;
 }
 
-uint32_t mspringi_stages_shares(mspring_network *network, const mspringi_attempt *attempt, uint32_t left) {
+uint32_t mspringi_stages_max_parts(mspring_network *network, const mspringi_attempt *attempt, uint32_t left) {
     const mspringi_stages *stages = attempt->stages;
     uint32_t least = left;
     for (size_t i = 0; i < stages->count; ++i) {
-        const uint32_t most = stages->used[i]->shares ? stages->used[i]->shares(network, attempt, left) : left;
+        const uint32_t most =
+            stages->used[i]->max_parts ? stages->used[i]->max_parts(network, attempt, left) : left;
         least = most < least ? most : least;
     }
     return least;
@@ -119,20 +120,20 @@ void mspringi_stages_after_substep(mspring_network *network, const mspringi_atte
             stages->used[i]->after_substep(network, attempt, substep);
 }
 
-bool mspringi_stages_have_missed(mspring_network *network, const mspringi_attempt *attempt) {
+bool mspringi_stages_must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_stages *stages = attempt->stages;
     bool missed = false;
     for (size_t i = 0; stages->can_be_quiet && i < stages->count; ++i)
-        missed |= stages->used[i]->has_missed && stages->used[i]->has_missed(network, attempt);
+        missed |= stages->used[i]->must_repeat && stages->used[i]->must_repeat(network, attempt);
     return missed;
 }
 
-mspring_result mspringi_stages_judge(mspring_network *network, const mspringi_attempt *attempt) {
+mspring_result mspringi_stages_verify(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_stages *stages = attempt->stages;
     mspring_result result = MSPRING_OK;
     for (size_t i = 0; stages->can_be_quiet && i < stages->count && result == MSPRING_OK; ++i)
-        if (stages->used[i]->judge)
-            result = stages->used[i]->judge(network);
+        if (stages->used[i]->verify)
+            result = stages->used[i]->verify(network);
     return result;
 }
 
@@ -142,11 +143,11 @@ void mspringi_stages_after_step(mspring_network *network, const mspringi_stages 
             stages->used[i]->after_step(network, dt);
 }
 
-void mspringi_stages_take_back(mspring_network *network, const mspringi_attempt *attempt) {
+void mspringi_stages_roll_back(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_stages *stages = attempt->stages;
     for (size_t i = stages->count; i-- > 0;)
-        if (stages->used[i]->take_back)
-            stages->used[i]->take_back(network);
+        if (stages->used[i]->roll_back)
+            stages->used[i]->roll_back(network);
 }
 
 void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt) {

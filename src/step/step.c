@@ -7,8 +7,8 @@
 #include "sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
-#include "step/groups.h"
-#include "store/growth.h"
+#include "step/held_groups.h"
+#include "store/id_pool.h"
 #include "store/network.h"
 #include "store/stages.h"
 
@@ -36,9 +36,9 @@ static void copy_state(const mspring_network *network, const mspringi_state *fro
 static void run_solver(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force,
                        uint32_t count) {
     const mspringi_solver *solver = attempt->solver;
-    for (uint32_t left = MSPRINGI_SHARES, shares; left > 0; left -= shares) {
-        shares = count > 1 ? left : mspringi_stages_shares(network, attempt, left);
-        const float h = attempt->h * ((float)shares / (float)MSPRINGI_SHARES);
+    for (uint32_t left = MSPRINGI_SUBSTEP_PARTS, shares; left > 0; left -= shares) {
+        shares = count > 1 ? left : mspringi_stages_max_parts(network, attempt, left);
+        const float h = attempt->h * ((float)shares / (float)MSPRINGI_SUBSTEP_PARTS);
         network->added_substeps += shares < left;
         solver->ops->substeps(network, solver->object, h, force, count);
     }
@@ -83,7 +83,7 @@ void mspringi_clear_unused_slots(const mspring_network *network) {
 static void tidy(const mspring_network *network) {
     if (!network->is_open)
         return;
-    if (network->is_lent)
+    if (network->has_host_view)
         mspringi_clear_unused_slots(network);
     mspringi_clear_empty_slots(network);
     mspringi_drop_stale_lows(network);
@@ -92,7 +92,7 @@ static void tidy(const mspring_network *network) {
 // Keep the state in the backup, run all substeps, and look at what they have led to.
 static mspringi_extrema run_once(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
-    const bool is_cut = mspringi_stages_cut(network, attempt);
+    const bool is_cut = mspringi_stages_split_step(network, attempt);
     mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
@@ -102,10 +102,10 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
     if (!is_cut) {
         base = mspringi_stages_forces(network, attempt);
         mspringi_stages_forces_known(network, attempt, base);
-        if (mspringi_sleep_is_whole(network) || (ops->whole && ops->whole(network, attempt, base, &extrema)))
+        if (mspringi_sleep_is_whole(network) || (ops->run_step && ops->run_step(network, attempt, base, &extrema)))
             return extrema;
         if (network->plastic.yields) // in substeps that were undone, as they met the floor
-            mspringi_stage_yielding.take_back(network);
+            mspringi_stage_yielding.roll_back(network);
     }
     copy_state(network, &network->state, &network->backup);
     network->backup_is_start = !is_cut && network->sleep.sleeping == 0;
@@ -118,9 +118,9 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
         mspringi_clear_empty_slots(network);
     if (ops->end)
         ops->end(network);
-    if (!ops->has_border) // the explicit solver sweeps rows, others all slots
+    if (!ops->has_stability_limit) // the explicit solver sweeps rows, others all slots
         mspringi_clear_unused_slots(network);
-    return mspringi_guard_look_at_all(network);
+    return mspringi_guard_extrema_of_all(network);
 }
 
 /* ------------------------------------------------------------------------------------------------- the step */
@@ -133,7 +133,7 @@ void mspringi_clear_empty_slots(const mspring_network *network) {
         for (uint32_t run = 0; run < t->empty_run_count; ++run)
             memset(arrays[i] + t->empty_runs[run].first_slot, 0, t->empty_runs[run].slot_count * sizeof *arrays[i]);
     if (network->growth.particles)
-        mspringi_growth_clear_slots(network);
+        mspringi_id_pool_clear_slots(network);
 }
 
 // Choose the substeps of a step where that is left to the library.
@@ -169,7 +169,7 @@ static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
     copy_state(network, &network->backup, &network->state);
     if (solver->ops->restore)
         solver->ops->restore(network, solver->object);
-    mspringi_stages_take_back(network, attempt);
+    mspringi_stages_roll_back(network, attempt);
     mspringi_clear_unused_slots(network);
     mspringi_clear_empty_slots(network);
 }
@@ -185,7 +185,7 @@ static mspring_result check_given_speeds(mspring_network *network, double dt) {
     if (!network->is_open || !((double)network->settings.global_damping * dt > STRONG_DAMPING))
         return MSPRING_OK;
     if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS) {
-        mspringi_guard_put_back(network, NULL);
+        mspringi_guard_clamp_state(network, NULL);
         return MSPRING_OK;
     }
     const mspringi_state *s = &network->state;
@@ -214,7 +214,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
         const mspringi_extrema extrema = run_once(network, attempt);
         if (network->hook_count > 0)
             network->seen = mspringi_guard_bound(network, attempt->h, extrema);
-        if (!mspringi_stages_have_missed(network, attempt) || repeats == attempt->stages->count)
+        if (!mspringi_stages_must_repeat(network, attempt) || repeats == attempt->stages->count)
             return extrema;
         go_back(network, attempt);
     }
@@ -234,7 +234,7 @@ static mspring_result try_once(mspring_network *network, const mspringi_attempt 
     mspring_result result = mspringi_guard_begin(network, attempt);
     if (result == MSPRING_OK) {
         const mspringi_extrema extrema = run(network, attempt);
-        result = mspringi_stages_judge(network, attempt);
+        result = mspringi_stages_verify(network, attempt);
         if (result == MSPRING_OK)
             result = mspringi_guard_end(network, attempt, extrema);
         if (result == MSPRING_OK)
@@ -326,13 +326,14 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
 static const mspringi_solver *fallback_of(const mspring_network *network) {
     if (network->settings.guard == MSPRING_GUARD_CLAMP)
         return &mspringi_clamped;
-    return network->settings.guard == MSPRING_GUARD_IMPLICIT && network->solver.ops->has_border ? &network->fallback
-                                                                                                : NULL;
+    return network->settings.guard == MSPRING_GUARD_IMPLICIT && network->solver.ops->has_stability_limit
+               ? &network->fallback
+               : NULL;
 }
 
 // The substeps of a fallback that takes as many as the host has chosen, or would have been given.
 static uint32_t substeps_of_fallback(mspring_network *network, double dt) {
-    if (!mspringi_picks_substeps(network) || choose_substeps(network, dt) == MSPRING_OK)
+    if (!mspringi_can_choose_substeps(network) || choose_substeps(network, dt) == MSPRING_OK)
         return network->substeps;
     const uint32_t fewer = network->max_substeps / COST_OF_CLAMPED_SUBSTEP;
     return fewer > 0 ? fewer : 1;
@@ -343,7 +344,7 @@ static uint32_t substeps_of_fallback(mspring_network *network, double dt) {
 static mspring_result attempt_otherwise(mspring_network *network, const request *asked,
                                         const mspringi_solver *fallback) {
     const uint32_t own = substeps_of_fallback(network, asked->dt);
-    const bool takes_one = fallback->ops->takes_one;
+    const bool takes_one = fallback->ops->takes_one_substep;
     mspringi_solver_forget(fallback);
     const mspring_result result = attempt(network, asked, fallback, takes_one ? 1 : own);
     if (result != MSPRING_OK)
@@ -357,20 +358,20 @@ static mspring_result attempt_otherwise(mspring_network *network, const request 
 // Take the step that the solver cannot take, or will not be asked to.
 static mspring_result fall_back(mspring_network *network, const request *asked, const mspringi_solver *fallback) {
     const uint32_t fallback_steps = network->guard.fallback_steps,
-                   next = network->solver.ops->has_border ? FALLBACK_STEPS : 0;
+                   next = network->solver.ops->has_stability_limit ? FALLBACK_STEPS : 0;
     const mspring_result result = attempt_otherwise(network, asked, fallback);
     const bool took_it = result == MSPRING_OK && !is_idle(network, asked->stages);
     if (took_it)
         network->guard.h = 0.0f; // before the solver is asked again, it is looked whether it can be
     network->guard.fallback_steps = !took_it ? fallback_steps : fallback_steps > 0 ? fallback_steps - 1 : next;
     if (took_it)
-        network->outcome.flags |= fallback->ops->takes_one ? MSPRING_STEP_FALLBACK : MSPRING_STEP_CLAMPED;
+        network->outcome.flags |= fallback->ops->takes_one_substep ? MSPRING_STEP_FALLBACK : MSPRING_STEP_CLAMPED;
     return result;
 }
 
 static mspring_result attempt_as_chosen(mspring_network *network, const request *asked) {
     const mspring_result result =
-        mspringi_picks_substeps(network) ? choose_substeps(network, asked->dt) : MSPRING_OK;
+        mspringi_can_choose_substeps(network) ? choose_substeps(network, asked->dt) : MSPRING_OK;
     return result == MSPRING_OK ? attempt(network, asked, &network->solver, network->substeps) : result;
 }
 
@@ -413,7 +414,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         return result;
     }
     network->is_open = network->was_in_hook;
-    network->is_lent = false;
+    network->has_host_view = false;
     if (is_idle(network, &stages)) {
         network->outcome.flags |= MSPRING_STEP_ASLEEP;
         return MSPRING_OK;
@@ -445,12 +446,12 @@ static void note(mspring_network *network, double dt, mspring_result result) {
 }
 
 mspring_result mspring_network_step(mspring_network *network, double dt) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     network->outcome = mspringi_outcome_none();
     network->added_substeps = 0;
-    result = mspringi_tasks_follow(network->tasks, &network->message);
+    result = mspringi_tasks_restart_after_fork(network->tasks, &network->message);
     if (result == MSPRING_OK) {
         const size_t used = network->memory.used;
         const mspringi_fp_state before = mspringi_fp_enter();

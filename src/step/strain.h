@@ -20,7 +20,8 @@ mspring_result mspringi_strain_reserve_for(mspring_network *network, mspring_pro
 mspring_result mspringi_strain_match_layout(mspring_network *to, const mspring_network *from);
 
 /// Set one of these of a spring; after that.
-void mspringi_strain_store(mspring_network *network, mspringi_place place, mspring_property property, float value);
+void mspringi_strain_store(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
+                           float value);
 
 /// Allocate what it takes to give a spring the strains at which something happens to it, as its definition has
 /// them; give them to one of which nothing is known yet.
@@ -28,7 +29,7 @@ mspring_result mspringi_strain_reserve_limits(mspring_network *network, mspringi
 void mspringi_strain_put_limits(mspring_network *network, mspring_id spring, mspringi_limits limits);
 
 /// Find the least strain that anything happens at, after what it follows from has changed.
-void mspringi_strain_renew_least(mspring_network *network, mspringi_place place);
+void mspringi_strain_renew_least(mspring_network *network, mspringi_spring_slot spring_slot);
 
 /// Let nothing happen to a spring by its strain.
 void mspringi_strain_forget(mspring_network *network, mspring_id spring);

@@ -8,11 +8,11 @@
 /// In the explicit solver the sweeps of lattice and chain rows look and test, strip by strip: see test_lattice() in
 /// kernels/sweep.h. With several workers they first take a step in which they only look. If any spring was warm,
 /// that step is taken once more with one worker, who maps as well. The next step begins with that, as it is likely
-/// to be warm, too: both have the same bits where nothing is. Springs of the web, and those of all other solvers,
-/// are looked at and mapped here, between substeps.
+/// to be warm, too: both have the same bits where nothing is. Springs of the irregular part, and those of all other
+/// solvers, are looked at and mapped here, between substeps.
 ///
-/// Longer periods than 4 lose yields: with 20, a blow of 8 ms left a dent 13 % too small. Without a border of
-/// stability substeps are long, and each of them begins with a look. Implicit ones are cut into pieces where they
+/// Longer periods than 4 lose yields: with 20, a blow of 8 ms left a dent 13 % too small. Without a stability
+/// limit substeps are long, and each of them begins with a look. Implicit ones are cut into pieces where they
 /// would stretch warm springs too far: those that are warm, and those that will be by their end.
 #include <math.h>
 #include <string.h>
@@ -20,17 +20,17 @@
 #include "sleep/sleep.h"
 #include "step/plastic.h"
 #include "step/strain.h"
-#include "store/alike.h"
 #include "store/changed.h"
 #include "store/events.h"
-#include "store/growth.h"
+#include "store/id_pool.h"
 #include "store/one_way.h"
+#include "store/record_sharing.h"
 #include "store/springs.h"
 #include "store/stages.h"
 #include "tasks/tasks.h"
 
 static uint32_t period_of(const mspringi_attempt *attempt) {
-    return attempt->solver->ops->has_border ? MSPRINGI_YIELD_PERIOD : 1u;
+    return attempt->solver->ops->has_stability_limit ? MSPRINGI_YIELD_PERIOD : 1u;
 }
 
 static bool is_used(const mspring_network *network) {
@@ -39,26 +39,26 @@ static bool is_used(const mspring_network *network) {
 
 static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    return mspringi_sleep_is_whole(network) || (network->plastic.is_swept && !network->plastic.web_yields);
+    return mspringi_sleep_is_whole(network) || (network->plastic.is_swept && !network->plastic.irregular_yields);
 }
 
 /* ------------------------------------------------------------------------------------------------------- a look */
 
-static uint32_t look_at_leftover(const mspring_network *network, const float *x, const float *y,
-                                 mspringi_strain_hit *hits) {
+static uint32_t look_at_irregular(const mspring_network *network, const float *x, const float *y,
+                                  mspringi_strain_hit *hits) {
     const mspringi_topology *t = &network->topology;
     const mspringi_plastic *p = &network->plastic;
     uint32_t count = 0;
-    for (uint32_t first = 0; first < t->leftover_count; first += MSPRINGI_WIDTH) {
-        const uint32_t word = (t->chain_places + first) / MSPRINGI_WIDTH;
+    for (uint32_t first = 0; first < t->irregular_count; first += MSPRINGI_WIDTH) {
+        const uint32_t word = (t->chain_spring_slots + first) / MSPRINGI_WIDTH;
         uint32_t bits = 0;
-        for (uint32_t i = first; i < first + MSPRINGI_WIDTH && i < t->leftover_count; ++i) {
-            const mspringi_place place = t->chain_places + i;
-            const float dx = x[t->leftover_b[i]] - x[t->leftover_a[i]];
-            const float dy = y[t->leftover_b[i]] - y[t->leftover_a[i]], square = dx * dx + dy * dy;
-            const bool is_out = square > p->high[place] || p->low[place] > square;
-            if (is_out && mspringi_place_is_live(network, place) &&
-                !mspringi_slot_is_asleep(network, t->leftover_a[i]))
+        for (uint32_t i = first; i < first + MSPRINGI_WIDTH && i < t->irregular_count; ++i) {
+            const mspringi_spring_slot spring_slot = t->chain_spring_slots + i;
+            const float dx = x[t->irregular_b[i]] - x[t->irregular_a[i]];
+            const float dy = y[t->irregular_b[i]] - y[t->irregular_a[i]], square = dx * dx + dy * dy;
+            const bool is_out = square > p->high[spring_slot] || p->low[spring_slot] > square;
+            if (is_out && mspringi_spring_slot_is_live(network, spring_slot) &&
+                !mspringi_slot_is_asleep(network, t->irregular_a[i]))
                 bits |= 1u << (i - first);
         }
         if (bits)
@@ -76,12 +76,12 @@ static void look_at(mspring_network *network, const float *x, const float *y) {
                                         .up_of_block = t->up_of_block,
                                         .lattice_first = t->lattice_first,
                                         .chain_first = t->chain_first,
-                                        .chain_word = t->lattice_places / MSPRINGI_WIDTH,
+                                        .chain_word = t->lattice_spring_slots / MSPRINGI_WIDTH,
                                         .low = p->low,
                                         .high = p->high,
                                         .live = network->live};
     mspringi_strain_hit *hits = p->hits;
-    p->hit_count = p->is_swept ? look_at_leftover(network, x, y, hits) : 0;
+    p->hit_count = p->is_swept ? look_at_irregular(network, x, y, hits) : 0;
     if (p->is_swept)
         return;
     for (uint32_t first = 0, end; mspringi_next_awake(network, t->lattice_first, t->lattice_blocks, &first, &end);
@@ -90,7 +90,7 @@ static void look_at(mspring_network *network, const float *x, const float *y) {
     for (uint32_t first = 0, end; mspringi_next_awake(network, t->chain_first, t->chain_blocks, &first, &end);
          first = end)
         hits += network->kernels->chain_yield(&sweep, first, end, hits);
-    hits += look_at_leftover(network, x, y, hits);
+    hits += look_at_irregular(network, x, y, hits);
     p->hit_count = (uint32_t)(hits - p->hits);
 }
 
@@ -112,46 +112,48 @@ static void look_ahead(mspring_network *network, float time) {
 
 /* ---------------------------------------------------------------------------------------------------- the flow */
 
-static void keep(mspringi_plastic *p, mspringi_place place, float rest_length) {
-    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
-    uint16_t *word = &p->has_flowed[place / MSPRINGI_WIDTH];
+static void keep(mspringi_plastic *p, mspringi_spring_slot spring_slot, float rest_length) {
+    const uint16_t bit = (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
+    uint16_t *word = &p->has_flowed[spring_slot / MSPRINGI_WIDTH];
     if (*word & bit)
         return;
-    p->before[place] = rest_length;
+    p->before[spring_slot] = rest_length;
     *word |= bit;
     p->flows = p->is_bent = true;
 }
 
 // Whether a spring that is expected to act at the end of an implicit substep does not yet.
-static bool is_slack(const mspring_network *network, mspringi_place place, const mspringi_spring_values *spring,
-                     float length) {
+static bool is_slack(const mspring_network *network, mspringi_spring_slot spring_slot,
+                     const mspringi_spring_values *spring, float length) {
     if (!network->one_way.side)
         return false;
-    const mspring_id id = mspringi_around_find(network, network->topology.particle_of_slot[spring->base], place);
+    const mspring_id id =
+        mspringi_incident_springs_find(network, network->topology.particle_of_slot[spring->base], spring_slot);
     return mspringi_is_slack(mspringi_side_of(network, id), (double)length - (double)spring->rest_length);
 }
 
 // Map one spring back onto its yield surface, as the sweeps of rows do.
-static void map(mspring_network *network, mspringi_place place) {
+static void map(mspring_network *network, mspringi_spring_slot spring_slot) {
     const mspringi_plastic *p = &network->plastic;
     const mspringi_state *s = &network->state;
-    const mspringi_spring_values spring = mspringi_place_get(network, place);
-    const mspringi_yield_values values = mspringi_yield_values_of(network, place);
-    const mspringi_yield_bounds bounds = {p->low[place], p->high[place], p->flow_low[place], p->flow_high[place]};
+    const mspringi_spring_values spring = mspringi_spring_slot_get(network, spring_slot);
+    const mspringi_yield_values values = mspringi_yield_values_of(network, spring_slot);
+    const mspringi_yield_bounds bounds = {p->low[spring_slot], p->high[spring_slot], p->flow_low[spring_slot],
+                                          p->flow_high[spring_slot]};
     const double dx = mspringi_x_of(s, spring.tip) - mspringi_x_of(s, spring.base);
     const double dy = mspringi_y_of(s, spring.tip) - mspringi_y_of(s, spring.base);
     const double square = dx * dx + dy * dy;
     const float length = (float)sqrt(square);
-    if (!(spring.stiffness > 0.0f) || is_slack(network, place, &spring, length))
+    if (!(spring.stiffness > 0.0f) || is_slack(network, spring_slot, &spring, length))
         return;
     const float to = mspringi_yield_rest(values, bounds, (float)square, length, spring.rest_length);
     if (to == spring.rest_length)
         return;
-    keep(&network->plastic, place, spring.rest_length);
-    p->heat[place] += mspringi_yield_heat(values, spring.stiffness, length, spring.rest_length, to);
+    keep(&network->plastic, spring_slot, spring.rest_length);
+    p->heat[spring_slot] += mspringi_yield_heat(values, spring.stiffness, length, spring.rest_length, to);
     network->plastic.flows_seen++;
-    mspringi_place_set_rest_length(network, place, to);
-    mspringi_plastic_renew(network, place);
+    mspringi_spring_slot_set_rest_length(network, spring_slot, to);
+    mspringi_plastic_renew(network, spring_slot);
 }
 
 static void map_warm(mspring_network *network) {
@@ -178,11 +180,12 @@ static float fastest_stretch(const mspring_network *network, float time) {
         for (uint32_t bits = hit->bits, lane = 0; bits; bits >>= 1, ++lane) {
             if (!(bits & 1))
                 continue;
-            const mspringi_place place = hit->word * MSPRINGI_WIDTH + lane;
-            const mspringi_spring_values spring = mspringi_place_get(network, place);
+            const mspringi_spring_slot spring_slot = hit->word * MSPRINGI_WIDTH + lane;
+            const mspringi_spring_values spring = mspringi_spring_slot_get(network, spring_slot);
             const float dx = s->x[spring.tip] - s->x[spring.base], dy = s->y[spring.tip] - s->y[spring.base];
             const float vx = s->vx[spring.tip] - s->vx[spring.base], vy = s->vy[spring.tip] - s->vy[spring.base];
-            const float length = sqrtf(dx * dx + dy * dy), border = p->yield_strain[place] * p->nominal[place];
+            const float length = sqrtf(dx * dx + dy * dy),
+                        border = p->yield_strain[spring_slot] * p->nominal[spring_slot];
             const float stretch = fabsf(dx * vx + dy * vy) / length * time / border;
             fastest = stretch > fastest ? stretch : fastest;
         }
@@ -190,10 +193,10 @@ static float fastest_stretch(const mspring_network *network, float time) {
 }
 
 // Long substeps damp a blow before it can dent, so those in which warm springs are stretched fast are cut.
-static uint32_t shares(mspring_network *network, const mspringi_attempt *attempt, uint32_t left) {
-    if (!attempt->solver->ops->takes_one)
+static uint32_t max_parts(mspring_network *network, const mspringi_attempt *attempt, uint32_t left) {
+    if (!attempt->solver->ops->takes_one_substep)
         return left;
-    if (left < MSPRINGI_SHARES) {
+    if (left < MSPRINGI_SUBSTEP_PARTS) {
         look(network);
         map_warm(network);
     }
@@ -201,7 +204,7 @@ static uint32_t shares(mspring_network *network, const mspringi_attempt *attempt
     look_ahead(network, attempt->h);
     const float ahead = fastest_stretch(network, attempt->h);
     float stretch = now > ahead ? now : ahead;
-    uint32_t most = MSPRINGI_SHARES;
+    uint32_t most = MSPRINGI_SUBSTEP_PARTS;
     for (; most > 1 && stretch > STRETCH_OF_PIECE; stretch *= 0.5f)
         most /= 2;
     return most < left ? most : left;
@@ -209,11 +212,12 @@ static uint32_t shares(mspring_network *network, const mspringi_attempt *attempt
 
 /* -------------------------------------------------------------------------------------------------- the stage */
 
-static bool does_web_yield(const mspring_network *network) {
+static bool irregular_part_yields(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_plastic *p = &network->plastic;
-    for (mspringi_place place = t->chain_places, end = place + t->leftover_count; place < end; ++place)
-        if (p->high[place] < INFINITY || p->low[place] >= 0.0f)
+    for (mspringi_spring_slot spring_slot = t->chain_spring_slots, end = spring_slot + t->irregular_count;
+         spring_slot < end; ++spring_slot)
+        if (p->high[spring_slot] < INFINITY || p->low[spring_slot] >= 0.0f)
             return true;
     return false;
 }
@@ -222,11 +226,11 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     mspringi_plastic *p = &network->plastic;
     p->hit_count = 0;
     p->substep = 0;
-    p->is_swept = attempt->solver->ops->has_border;
-    p->maps = p->is_swept && (p->was_warm || mspringi_tasks_shares(network->tasks) == 1);
-    p->web_yields = p->is_swept && does_web_yield(network);
+    p->is_swept = attempt->solver->ops->has_stability_limit;
+    p->maps = p->is_swept && (p->was_warm || mspringi_tasks_partition_size(network->tasks) == 1);
+    p->irregular_yields = p->is_swept && irregular_part_yields(network);
     if (p->is_swept)
-        mspringi_alike_renew_yielding(network);
+        mspringi_shared_records_find_yielding(network);
     memset(p->warmth, 0, network->topology.strip_count);
 }
 
@@ -237,7 +241,7 @@ static uint32_t warmth_of_all(const mspring_network *network) {
     return warmth;
 }
 
-static bool has_missed(mspring_network *network, const mspringi_attempt *attempt) {
+static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_plastic *p = &network->plastic;
     (void)attempt;
     if (!p->is_swept || p->maps || !(warmth_of_all(network) & MSPRINGI_WAS_WARM))
@@ -250,7 +254,7 @@ static bool has_missed(mspring_network *network, const mspringi_attempt *attempt
 static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
     const mspringi_plastic *p = &network->plastic;
     const uint32_t period = period_of(attempt), left = attempt->substeps - substep;
-    if (p->is_swept && !p->web_yields)
+    if (p->is_swept && !p->irregular_yields)
         return left;
     const uint32_t most = substep == 0 || p->hit_count > 0 ? 1 : period - substep % period;
     return most < left ? most : left;
@@ -260,7 +264,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
                                      mspringi_field base) {
     mspringi_plastic *p = &network->plastic;
     p->substep = substep;
-    if (p->is_swept && !p->web_yields)
+    if (p->is_swept && !p->irregular_yields)
         return base;
     if (substep == 0)
         look(network);
@@ -270,24 +274,25 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 }
 
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
-    if (network->plastic.is_swept && !network->plastic.web_yields)
+    if (network->plastic.is_swept && !network->plastic.irregular_yields)
         return;
     if ((substep + 1) % period_of(attempt) == 0 && substep + 1 < attempt->substeps)
         look(network);
 }
 
 // Go through the springs that have flowed in the step, and forget that they have.
-static void end_flow(mspring_network *network, void (*end)(mspring_network *network, mspringi_place place)) {
+static void end_flow(mspring_network *network,
+                     void (*end)(mspring_network *network, mspringi_spring_slot spring_slot)) {
     mspringi_plastic *p = &network->plastic;
     const bool flows = p->flows || warmth_of_all(network) & MSPRINGI_HAS_FLOWED;
-    const size_t words = flows ? mspringi_place_words(&network->topology) : 0;
+    const size_t words = flows ? mspringi_spring_slot_words(&network->topology) : 0;
     for (size_t word = 0; word < words; ++word) {
         for (uint32_t bits = p->has_flowed[word], lane = 0; bits; bits >>= 1, ++lane) {
-            const mspringi_place place = (mspringi_place)(word * MSPRINGI_WIDTH + lane);
+            const mspringi_spring_slot spring_slot = (mspringi_spring_slot)(word * MSPRINGI_WIDTH + lane);
             if (!(bits & 1))
                 continue;
-            end(network, place);
-            p->heat[place] = 0.0f;
+            end(network, spring_slot);
+            p->heat[spring_slot] = 0.0f;
         }
         p->has_flowed[word] = 0;
     }
@@ -295,12 +300,12 @@ static void end_flow(mspring_network *network, void (*end)(mspring_network *netw
     p->flows_seen += flows;
 }
 
-static void straighten(mspring_network *network, mspringi_place place) {
-    mspringi_place_set_rest_length(network, place, network->plastic.before[place]);
-    mspringi_plastic_renew(network, place);
+static void straighten(mspring_network *network, mspringi_spring_slot spring_slot) {
+    mspringi_spring_slot_set_rest_length(network, spring_slot, network->plastic.before[spring_slot]);
+    mspringi_plastic_renew(network, spring_slot);
 }
 
-static void take_back(mspring_network *network) {
+static void roll_back(mspring_network *network) {
     mspringi_plastic *p = &network->plastic;
     end_flow(network, straighten);
     p->hit_count = 0;
@@ -308,24 +313,24 @@ static void take_back(mspring_network *network) {
 }
 
 // Heat is summed place by place, so that no order of rows or lanes changes the sum.
-static void book(mspring_network *network, mspringi_place place) {
+static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
     mspringi_plastic *p = &network->plastic;
     p->count++;
-    p->dissipated += (double)p->heat[place];
+    p->dissipated += (double)p->heat[spring_slot];
     p->is_bent = true;
     if (network->strain.break_strain)
-        mspringi_strain_renew_least(network, place);
-    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+        mspringi_strain_renew_least(network, spring_slot);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
     if (network->events.capacity == 0)
         return;
-    const mspringi_spring_values values = mspringi_place_get(network, place);
-    const double nominal = (double)p->nominal[place];
-    mspringi_events_push(
-        network,
-        (mspring_event){.kind = MSPRING_EVENT_YIELDED,
-                        .id = mspringi_around_find(network, network->topology.particle_of_slot[values.base], place),
-                        .other = MSPRING_NONE,
-                        .strain = (float)(((double)values.rest_length - nominal) / nominal)});
+    const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
+    const double nominal = (double)p->nominal[spring_slot];
+    mspringi_events_push(network,
+                         (mspring_event){.kind = MSPRING_EVENT_YIELDED,
+                                         .id = mspringi_incident_springs_find(
+                                             network, network->topology.particle_of_slot[values.base], spring_slot),
+                                         .other = MSPRING_NONE,
+                                         .strain = (float)(((double)values.rest_length - nominal) / nominal)});
 }
 
 static void after_step(mspring_network *network, double dt) {
@@ -339,8 +344,8 @@ const mspringi_stage mspringi_stage_yielding = {.is_used = is_used,
                                                 .is_quiet = is_quiet,
                                                 .free_substeps = free_substeps,
                                                 .before_substep = before_substep,
-                                                .shares = shares,
+                                                .max_parts = max_parts,
                                                 .after_substep = after_substep,
-                                                .has_missed = has_missed,
-                                                .take_back = take_back,
+                                                .must_repeat = must_repeat,
+                                                .roll_back = roll_back,
                                                 .after_step = after_step};

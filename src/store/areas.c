@@ -5,7 +5,7 @@
 #include "builder/builder.h"
 #include "store/angles.h"
 #include "store/changed.h"
-#include "store/growth.h"
+#include "store/id_pool.h"
 #include "store/one_way.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -168,9 +168,9 @@ static bool is_ringed(const mspring_network *network, const mspringi_area *area)
 // The one that acts both ways, if there is one, else the first.
 static mspring_id spring_between(const mspring_network *network, mspring_id a, mspring_id b) {
     const uint32_t there = network->topology.slot_of_particle[b];
-    mspringi_around around = mspringi_around_begin(network, a);
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, a);
     mspring_id found = MSPRING_NONE;
-    for (mspring_id s; (s = mspringi_around_next(network, &around)) != MSPRING_NONE;) {
+    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;) {
         const mspringi_ends ends = mspringi_spring_ends(network, s);
         if (!mspringi_spring_is_live(network, s) || (ends.a != there && ends.b != there))
             continue;
@@ -310,9 +310,9 @@ bool mspringi_cell_at(const mspring_network *network, uint32_t slot, uint32_t co
         {slot, MSPRINGI_EAST}, {slot, MSPRINGI_NORTH}, {slot + 1, MSPRINGI_NORTH}, {up, MSPRINGI_EAST}};
     for (int i = 0; i < 4; ++i) {
         const uint32_t of = outline[i][0] / MSPRINGI_WIDTH - t->lattice_first;
-        const mspringi_place place =
+        const mspringi_spring_slot spring_slot =
             (of * MSPRINGI_DIRECTIONS + outline[i][1]) * MSPRINGI_WIDTH + outline[i][0] % MSPRINGI_WIDTH;
-        if (of >= t->lattice_blocks || !mspringi_place_is_live(network, place))
+        if (of >= t->lattice_blocks || !mspringi_spring_slot_is_live(network, spring_slot))
             return false;
     }
     const uint32_t next_block = (slot + 1) / MSPRINGI_WIDTH - t->lattice_first;
@@ -433,7 +433,7 @@ void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_
     mspringi_fingerprint(network, edit, area->id);
     mspringi_fingerprint_floats(network, area->stiffness, area->is_angle ? area->damping : area->pressure);
     mspringi_fingerprint_floats(network, area->fill, (float)(area->is_angle ? area->rest_angle : area->rest_area));
-    mspringi_changed(network, MSPRINGI_CHANGED_AREA, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_AREA, 0);
 }
 
 void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles) {

@@ -21,7 +21,7 @@ void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t inde
 mspring_result mspringi_changed_reserve_log(mspring_network *network);
 
 /// The same. (Springs are set by the million, and nobody listens but a compaction that is under way.)
-static inline void mspringi_changed(mspring_network *network, mspringi_change what, uint32_t index) {
+static inline void mspringi_notify_change(mspring_network *network, mspringi_change what, uint32_t index) {
     if (what != MSPRINGI_CHANGED_PLACE || network->job)
         mspringi_tell(network, what, index);
 }

@@ -6,7 +6,7 @@
 
 #include "base/cpu.h"
 #include "store/events.h"
-#include "store/growth.h"
+#include "store/id_pool.h"
 #include "store/roots.h"
 #include "store/selection.h"
 #include "store/store.h"
@@ -88,7 +88,7 @@ static void swap(uint32_t **a, uint32_t **b) {
 }
 
 mspring_result mspring_network_update_components(mspring_network *network, uint32_t *count, uint32_t *changed) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = reserve(network);
     if (result != MSPRING_OK)

@@ -15,7 +15,7 @@ void mspringi_events_push(mspring_network *network, mspring_event event) {
 }
 
 mspring_result mspring_network_reserve_events(mspring_network *network, uint32_t capacity) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (capacity > MSPRING_MAX_SPRINGS)
@@ -33,7 +33,7 @@ mspring_result mspring_network_reserve_events(mspring_network *network, uint32_t
 
 mspring_result mspring_network_read_events(mspring_network *network, mspring_event *events, uint32_t capacity,
                                            uint32_t *count, uint64_t *lost) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (!count || (capacity > 0 && !events))

@@ -30,16 +30,16 @@ enum {
 };
 
 typedef struct mspringi_groups {
-    uint32_t count;         ///< 0: there are none
-    uint32_t held;          ///< of these held
-    mspring_id *first;      ///< [count + 1] particles
-    uint32_t *first_spring; ///< [count + 1] of springs
-    mspring_id *springs;    ///< [springs] of each group
-    mspring_id *changing;   ///< [springs] room for those that a reset breaks or restores
-    uint32_t *of_particle;  ///< [particles] the group, or count
-    uint8_t *flags;         ///< [count]
-    float *velocity;        ///< [particles][2] of groups that are held newly, m/s
-    float *free_mass;       ///< [slots] inverse mass, 0 of what is held
+    uint32_t count;             ///< 0: there are none
+    uint32_t held;              ///< of these held
+    mspring_id *first;          ///< [count + 1] particles
+    uint32_t *first_spring;     ///< [count + 1] of springs
+    mspring_id *springs;        ///< [springs] of each group
+    mspring_id *changing;       ///< [springs] room for those that a reset breaks or restores
+    uint32_t *of_particle;      ///< [particles] the group, or count
+    uint8_t *flags;             ///< [count]
+    float *velocity;            ///< [particles][2] of groups that are held newly, m/s
+    float *active_inverse_mass; ///< [slots] inverse mass, 0 of what is held
     mspringi_mark start, mark;
 } mspringi_groups;
 

@@ -11,11 +11,11 @@
 #include <math.h>
 
 #include "base/assert.h"
-#include "builder/areas.h"
+#include "builder/builder_areas.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"
+#include "store/added_springs.h"
 #include "store/components.h"
-#include "store/graft.h"
 #include "store/groups.h"
 #include "store/solver.h"
 #include "tasks/tasks.h"
@@ -81,12 +81,12 @@ typedef struct mspringi_forces {
 #define MSPRINGI_MODEST_CALLS 1000000u
 
 /// A box that no surface is near.
-typedef struct mspringi_room {
+typedef struct mspringi_safe_box {
     mspringi_bounds box;
-    float place;               ///< coordinates of less than this size are in the box
+    float coordinate;          ///< coordinates of less than this size are in the box
     double reach;              ///< half as far from the box there is no surface; 0: there is no such box
     double origin_x, origin_y; ///< that it is relative to
-} mspringi_room;
+} mspringi_safe_box;
 
 /// Whether any particle may come below the height of a hook with MSPRING_HOOK_BELOW in a step.
 typedef enum mspringi_distance { MSPRINGI_UNKNOWN, MSPRINGI_AWAY, MSPRINGI_CLOSE } mspringi_distance;
@@ -96,7 +96,7 @@ typedef struct mspringi_hook {
     uint32_t number;
     mspringi_field held; ///< forces of a hook that is not called before every substep; else none
     mspringi_distance distance;
-    mspringi_room room; ///< above its height, that all of the network was in
+    mspringi_safe_box room; ///< above its height, that all of the network was in
 } mspringi_hook;
 
 typedef enum mspringi_in_hook {
@@ -122,16 +122,16 @@ typedef struct mspringi_fractions {
 /// which springs it was. Views may be written to without any counter knowing; what relative springs derive from a
 /// new substep is no edit either.
 typedef struct mspringi_edits {
-    uint64_t state;   ///< calls that set positions or velocities
-    uint64_t motion;  ///< calls that set the positions of all particles at once: a new motion begins
-    uint64_t masses;  ///< calls that changed inverse masses
-    uint64_t values;  ///< calls that changed stiffness, damping or rest lengths
-    uint64_t growth;  ///< calls that added or removed particles or springs
-    uint64_t grafts;  ///< those among them in which springs were added or removed
-    uint64_t links;   ///< springs that were broken or restored, added or removed, one by one
-    uint64_t naps;    ///< times that islands fell asleep or woke
-    uint64_t layouts; ///< times that all slots changed
-    uint64_t origins; ///< times that the local origin moved
+    uint64_t state;         ///< calls that set positions or velocities
+    uint64_t motion;        ///< calls that set the positions of all particles at once: a new motion begins
+    uint64_t masses;        ///< calls that changed inverse masses
+    uint64_t values;        ///< calls that changed stiffness, damping or rest lengths
+    uint64_t growth;        ///< calls that added or removed particles or springs
+    uint64_t grafts;        ///< those among them in which springs were added or removed
+    uint64_t links;         ///< springs that were broken or restored, added or removed, one by one
+    uint64_t sleep_changes; ///< times that islands fell asleep or woke
+    uint64_t layouts;       ///< times that all slots changed
+    uint64_t origins;       ///< times that the local origin moved
     mspring_id
         *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
     uint32_t link_mask;
@@ -181,7 +181,7 @@ typedef struct mspringi_grips {
     mspring_id next_id;
 
     // A step.
-    bool were_asked; ///< they could act in it
+    bool could_act; ///< they could act in it
     float h;
     double begin, share; ///< of the step that has passed before its substep, and that the substep is
     double passed;       ///< of the substep, where an implicit one is taken in pieces
@@ -207,7 +207,7 @@ typedef struct mspringi_strain {
 
 /// A spring that only pulls or only pushes, in a step.
 typedef struct mspringi_one_way_spring {
-    mspringi_place place;
+    mspringi_spring_slot spring_slot;
     uint32_t base, tip;       ///< slots
     float rest_length;        ///< as the host reads it
     float stiffness, damping; ///< where it acts
@@ -221,7 +221,7 @@ typedef struct mspringi_one_way {
     int8_t *side;                  ///< [reserve.first_spring] see mspringi_side_of()
     mspringi_one_way_spring *list; ///< [count] those of the step that are live
     uint32_t count, listed;
-    bool has_missed;  ///< one did not act in a substep in which it should have
+    bool must_repeat; ///< one did not act in a substep in which it should have
     bool is_repeated; ///< for that reason, the step is taken once more
 } mspringi_one_way;
 
@@ -234,24 +234,24 @@ typedef struct mspringi_plastic {
     float *before;               ///< rest length before the step, where it has changed in it
     float *gain;                 ///< 1 / (1 + hardening)
     float *heat;                 ///< what flow has dissipated in the step, J
-    mspringi_alike alike;        ///< lattice blocks with the same rest lengths and bounds
+    mspringi_shared_records shared_records; ///< lattice blocks with the same rest lengths and bounds
     uint16_t
         *has_flowed; ///< [places / MSPRINGI_WIDTH] a bit for each place: its rest length has changed in the step
     mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] springs that were warm at the last look
     uint32_t hit_count;
-    float *ahead;        ///< [2 slots] x and y where particles would be at the end of a substep
-    uint8_t *warmth;     ///< [strips] MSPRINGI_WARM, ...
-    uint32_t substep;    ///< of the step, the first of those that are being taken
-    bool is_swept;       ///< the sweeps of rows test their springs
-    bool maps;           ///< ... and map them; else they only find out whether any is warm
-    bool was_warm;       ///< some strip was in the last step; says only what is worth trying
-    bool web_yields;     ///< some spring of the web may yield in this step
-    bool yields;         ///< a yield strain has been finite: there is something to save
-    bool is_bent;        ///< some rest length may be another than the nominal one
-    bool flows;          ///< some bit of has_flowed is set, other than by rows that test
-    uint64_t flows_seen; ///< times that a rest length has changed by flow
-    uint64_t count;      ///< springs that flowed in a step, summed over the steps
-    double dissipated;   ///< J
+    float *ahead;          ///< [2 slots] x and y where particles would be at the end of a substep
+    uint8_t *warmth;       ///< [strips] MSPRINGI_WARM, ...
+    uint32_t substep;      ///< of the step, the first of those that are being taken
+    bool is_swept;         ///< the sweeps of rows test their springs
+    bool maps;             ///< ... and map them; else they only find out whether any is warm
+    bool was_warm;         ///< some strip was in the last step; says only what is worth trying
+    bool irregular_yields; ///< some spring of the irregular part may yield in this step
+    bool yields;           ///< a yield strain has been finite: there is something to save
+    bool is_bent;          ///< some rest length may be another than the nominal one
+    bool flows;            ///< some bit of has_flowed is set, other than by rows that test
+    uint64_t flows_seen;   ///< times that a rest length has changed by flow
+    uint64_t count;        ///< springs that flowed in a step, summed over the steps
+    double dissipated;     ///< J
 } mspringi_plastic;
 
 typedef struct mspringi_corner {
@@ -324,20 +324,20 @@ typedef struct mspringi_guard {
     uint32_t fallback_steps; ///< steps that the fallback still takes before the explicit solver is tried again
     float peak;              ///< largest change when the border was looked at last, fading, m/s
     bool knows_speed;        ///< speed is that of the state before this step
-    bool knows_place;        ///< place is, and how far it gets in this step follows from speeds at its end
+    bool knows_coordinate;   ///< place is, and how far it gets in this step follows from speeds at its end
     float speed;             ///< none was larger at the end of the last step, m/s; infinite if that is not known
-    float place;             ///< so with coordinates, m
+    float coordinate;        ///< so with coordinates, m
     uint64_t state;          ///< edits.state then
 } mspringi_guard;
 
 /// Rest lengths of the lattices' springs, in blocks of [direction][lane].
-typedef struct mspringi_rests {
+typedef struct mspringi_rest_lengths {
     float *lengths;     ///< [count] blocks: those that several lattice blocks share, then those of one each
     uint32_t *of_block; ///< [lattice blocks] which of them is whose
     uint32_t count, shared_count;
-} mspringi_rests;
+} mspringi_rest_lengths;
 
-/// What workers leave to each other where they share strips, see solvers/explicit/halo.h and shares.h; no arrays
+/// What workers leave to each other where they share strips, see solvers/explicit/halo.h and partition.h; no arrays
 /// for one.
 typedef struct mspringi_halos {
     uint32_t workers;     ///< that there is room for; 0: none
@@ -362,22 +362,22 @@ typedef struct mspringi_sleep {
     double *still;     ///< [particles] of each island, for how long it has been still, s; < 0: asleep
     double *kept;      ///< [particles] still before the step, if it woke any
     bool has_kept;
-    bool is_mapped;            ///< what follows is up to date
-    uint8_t *mark;             ///< [particles] of each island, while all are gone through
-    uint32_t *scratch;         ///< [slots]
-    uint32_t *block_island;    ///< [blocks] the island that all of a block is of, MSPRING_NONE if there are several
-    float *free_mass;          ///< [slots] inverse mass, 0 of what sleeps
-    uint16_t *sleepers;        ///< [blocks] a bit for each slot
-    uint8_t *swept;            ///< [blocks] 1 where a particle is awake, or springs are of one that is
-    uint8_t *share;            ///< [strips] mspringi_share
-    mspringi_span *runs;       ///< [spans] runs of blocks of a row while that is swept, from its first span on
-    bool has_force;            ///< force is not all zero
-    double origin_x, origin_y; ///< that state is relative to, m
-    float *state;              ///< [MSPRINGI_STATE_ARRAYS][slots]
-    float *inverse_mass;       ///< [slots]
-    float *held;               ///< [4][slots] positions and their low words, while substeps are taken
-    mspringi_field force;      ///< from outside
-    mspringi_field in_force;   ///< of the step that is being made; else NULL
+    bool is_mapped;         ///< what follows is up to date
+    uint8_t *mark;          ///< [particles] of each island, while all are gone through
+    uint32_t *scratch;      ///< [slots]
+    uint32_t *block_island; ///< [blocks] the island that all of a block is of, MSPRING_NONE if there are several
+    float *active_inverse_mass;    ///< [slots] inverse mass, 0 of what sleeps
+    uint16_t *sleepers;            ///< [blocks] a bit for each slot
+    uint8_t *swept;                ///< [blocks] 1 where a particle is awake, or springs are of one that is
+    uint8_t *share;                ///< [strips] mspringi_share
+    mspringi_span *runs;           ///< [spans] runs of blocks of a row while that is swept, from its first span on
+    bool has_force;                ///< force is not all zero
+    double origin_x, origin_y;     ///< that state is relative to, m
+    float *state;                  ///< [MSPRINGI_STATE_ARRAYS][slots]
+    float *inverse_mass;           ///< [slots]
+    float *held;                   ///< [4][slots] positions and their low words, while substeps are taken
+    mspringi_field force;          ///< from outside
+    mspringi_field in_force;       ///< of the step that is being made; else NULL
     uint64_t masses, links, moved; ///< edits that it has seen; the last is edits.state
 } mspringi_sleep;
 
@@ -393,13 +393,13 @@ enum {
 
 /// What has been added and removed. End e of the spare springs is that of the spare spring number e / 2; those at a
 /// particle are linked.
-typedef struct mspringi_growth {
+typedef struct mspringi_id_pool {
     uint8_t *particles, *springs; ///< [reserve.particle_end], [reserve.spring_end] NULL: all ids so far are there
     uint32_t *first_end;          ///< [reserve.particle_end] MSPRINGI_NO_END if there is none
     uint32_t *next_end;           ///< [2 * spare springs]
     mspring_id *particle_of_end;  ///< [2 * spare springs]
     mspring_id lowest_particle, lowest_spring; ///< no id below is spare
-} mspringi_growth;
+} mspringi_id_pool;
 
 /// The springs of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id. Spare springs are
 /// in none of these lists.
@@ -448,22 +448,23 @@ struct mspring_network {
     bool is_scaled, is_reweighed; ///< scales, or masses, have been given that these two are needed for
     uint32_t parts;               ///< values per spring in the records: 2, or 3 with damping
     bool is_precise;              ///< low words count in the lengths of springs
-    mspringi_rests rests;         ///< of lattice_springs, whose records have stiffness and damping only
+    mspringi_rest_lengths rest_lengths; ///< of lattice_springs, whose records have stiffness and damping only
     float *lattice_springs, *chain_springs;
-    mspringi_alike alike; ///< in stiffness and damping
-    float *web_springs;
-    float *gathered; ///< [2][nodes of the web][4] at the start of every other substep; see store/precise.h
+    mspringi_shared_records shared_records; ///< in stiffness and damping
+    float *irregular_springs;
+    float
+        *gathered; ///< [2][nodes of the irregular part][4] at the start of every other substep; see store/precise.h
     float *attached; ///< forces on the attached nodes, all x and then all y
     mspringi_fractions fractions;
     float relative_h;        ///< the substep that relative springs were derived for; 0: not yet
     uint16_t *live;          ///< [places / 16] a bit for each place: 1 where a spring is, and is not broken
     mspringi_relative *kept; ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
-    uint8_t *turned;     ///< [(reserve.first_spring + 7) / 8] a bit for each spring that was given with the higher
-                         ///< id first; NULL if none was
-    bool keeps_none;     ///< all springs were seen to be relative, and stay so
-    uint32_t depth;      ///< substeps that may be swept in one pass over the lattice rows
-    uint32_t carry_rows; ///< for each worker as many as there are substeps under way
-    float *carry;        ///< [carry_rows] forces on the row above, all x and then all y of each
+    uint8_t *is_reversed; ///< [(reserve.first_spring + 7) / 8] a bit for each spring that was given with the higher
+                          ///< id first; NULL if none was
+    bool keeps_none;      ///< all springs were seen to be relative, and stay so
+    uint32_t depth;       ///< substeps that may be swept in one pass over the lattice rows
+    uint32_t carry_rows;  ///< for each worker as many as there are substeps under way
+    float *carry;         ///< [carry_rows] forces on the row above, all x and then all y of each
     mspringi_halos halos;
 
     mspring_settings settings;
@@ -472,16 +473,17 @@ struct mspring_network {
     uint32_t added_substeps;  ///< by pieces of substeps in it
     uint32_t substeps;        ///< of the last step or, unless auto_substeps, of the next
     uint32_t max_substeps;
-    bool auto_substeps;             ///< each step chooses them, if its solver can
-    mspringi_solver solver;         ///< the one that the host chose
-    mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
-    const mspringi_solver *running; ///< the one that takes the step that is being made; else NULL
-    struct mspringi_floor *floor;   ///< NULL: there is none
-    struct mspringi_pairs *pairs;   ///< contact between bodies; NULL: there is none
+    bool auto_substeps;                 ///< each step chooses them, if its solver can
+    mspringi_solver solver;             ///< the one that the host chose
+    mspringi_solver fallback;           ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
+    const mspringi_solver *running;     ///< the one that takes the step that is being made; else NULL
+    struct mspringi_floor *floor;       ///< NULL: there is none
+    struct mspringi_contacts *contacts; ///< contact between bodies; NULL: there is none
     mspringi_guard guard;
-    float *looks;    ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
-    double shortest; ///< smallest rest length at first, m, but for welds
-    bool has_welds;  ///< there has been one
+    float
+        *guard_scratch; ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
+    double shortest;    ///< smallest rest length at first, m, but for welds
+    bool has_welds;     ///< there has been one
 
     mspringi_edits edits;
     mspringi_ramps ramps;
@@ -495,8 +497,8 @@ struct mspring_network {
     mspringi_extents extents;
     mspringi_sleep sleep;
     mspringi_incidence incidence; ///< made when it is needed first, of the springs that are not spare ones
-    mspringi_growth growth;
-    mspringi_graft graft;
+    mspringi_id_pool growth;
+    mspringi_added_springs added_springs;
     mspringi_groups groups;
     mspringi_actuators actuators;
     mspringi_any_shape any_shape;
@@ -512,7 +514,7 @@ struct mspring_network {
     mspringi_extrema seen; ///< of what the substeps have led to, with bounds for what was not watched
     bool is_open; ///< somebody outside may write to the state's arrays, or has done since the last step: a hook, or
                   ///< the host through a view
-    bool is_lent; ///< the latter, so also to slots that no step uses
+    bool has_host_view; ///< the latter, so also to slots that no step uses
 };
 
 static inline size_t mspringi_slot_count(const mspring_network *network) {
@@ -528,9 +530,9 @@ static inline size_t mspringi_used_slots(const mspring_network *network) {
 }
 
 /// Inverse masses as a step sees them, 0 of what sleeps or is held.
-static inline const float *mspringi_free_mass(const mspring_network *network) {
-    return network->sleep.sleeping > 0 ? network->sleep.free_mass
-           : network->groups.held > 0  ? network->groups.free_mass
+static inline const float *mspringi_active_inverse_mass(const mspring_network *network) {
+    return network->sleep.sleeping > 0 ? network->sleep.active_inverse_mass
+           : network->groups.held > 0  ? network->groups.active_inverse_mass
                                        : network->inverse_mass;
 }
 
@@ -560,15 +562,15 @@ mspring_result mspringi_check_report(const mspring_network *network, const char 
                                      size_t known);
 
 /// Refuse NULL, and calls from inside a hook.
-mspring_result mspringi_enter(mspring_network *network);
+mspring_result mspringi_check_call(mspring_network *network);
 
 /// Refuse ranges of ids that leave the network.
 mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
                                     uint32_t total);
 
 /// Whether the next step chooses its substeps.
-static inline bool mspringi_picks_substeps(const mspring_network *network) {
-    return network->auto_substeps && network->solver.ops->picks_substeps;
+static inline bool mspringi_can_choose_substeps(const mspring_network *network) {
+    return network->auto_substeps && network->solver.ops->can_choose_substeps;
 }
 
 /// Refuse settings that mspring_network_set_settings() would.

@@ -1,6 +1,6 @@
 /// @file precise.h
 /// Where the explicit solver goes apart for networks in whose springs' lengths low words count: other kernels, and
-/// more that is packed of a web's nodes for its springs to read.
+/// more that is packed of an irregular part's nodes for its springs to read.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_PRECISE_H
@@ -24,13 +24,13 @@ static inline mspringi_row_fn mspringi_row_kernel(const mspring_network *network
     case MSPRINGI_ROW_CHAIN:
         return network->is_precise ? k->precise.chain : k->chain[damped][forced];
     default:
-        return network->is_precise ? k->precise.web : k->web[damped][forced];
+        return network->is_precise ? k->precise.irregular : k->irregular[damped][forced];
     }
 }
 
-static inline mspringi_row_fn mspringi_herd_kernel(const mspring_network *network, bool forced) {
+static inline mspringi_row_fn mspringi_bundle_kernel(const mspring_network *network, bool forced) {
     const mspringi_kernels *k = network->kernels;
-    return network->is_precise ? k->precise.herd : k->herd[network->parts > MSPRINGI_DAMPING][forced];
+    return network->is_precise ? k->precise.bundle : k->bundle[network->parts > MSPRINGI_DAMPING][forced];
 }
 
 static inline mspringi_attached_fn mspringi_attached_kernel(const mspring_network *network) {
@@ -49,15 +49,15 @@ static inline uint32_t mspringi_gathered_values(const mspring_network *network) 
 }
 
 /// From a node's first half to its second; 0 if there is none.
-static inline size_t mspringi_gathered_distance(const mspring_network *network, const mspringi_web *web) {
-    return mspringi_packs_halves(network) ? mspringi_gathered_half(web) : 0;
+static inline size_t mspringi_gathered_distance(const mspring_network *network, const mspringi_sell *irregular) {
+    return mspringi_packs_halves(network) ? mspringi_gathered_half(irregular) : 0;
 }
 
 /// Pack what is in a slot.
-static inline void mspringi_pack_slot(const mspring_network *network, const mspringi_web *web, float *gathered,
-                                      uint32_t slot) {
+static inline void mspringi_pack_slot(const mspring_network *network, const mspringi_sell *irregular,
+                                      float *gathered, uint32_t slot) {
     const mspringi_state *s = &network->state;
-    float *half = gathered + mspringi_gathered_distance(network, web);
+    float *half = gathered + mspringi_gathered_distance(network, irregular);
     half[0] = s->vx[slot];
     half[1] = s->vy[slot];
     gathered[2] = network->is_precise ? s->low_x[slot] : s->vx[slot];

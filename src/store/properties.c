@@ -89,38 +89,38 @@ float mspringi_particle_property(const mspring_network *network, mspring_propert
 }
 
 // Of a weld it is 0, and of one on a ramp that which it will have.
-static float plastic_strain(const mspring_network *network, mspringi_place place) {
+static float plastic_strain(const mspring_network *network, mspringi_spring_slot spring_slot) {
     const float *nominal = network->plastic.nominal;
-    if (!nominal || nominal[place] == MSPRINGI_WELD)
+    if (!nominal || nominal[spring_slot] == MSPRINGI_WELD)
         return 0.0f;
-    const double own = (double)mspringi_place_own_length(network, place);
-    return (float)((own - (double)nominal[place]) / (double)nominal[place]);
+    const double own = (double)mspringi_spring_slot_own_length(network, spring_slot);
+    return (float)((own - (double)nominal[spring_slot]) / (double)nominal[spring_slot]);
 }
 
 float mspringi_spring_property(const mspring_network *network, mspring_property property, mspring_id spring) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     const mspringi_strain *strain = &network->strain;
     const mspringi_plastic *plastic = &network->plastic;
     switch (property) {
     case MSPRING_STIFFNESS:
-        return mspringi_spring_get_nominal(network, spring, place).stiffness;
+        return mspringi_spring_get_nominal(network, spring, spring_slot).stiffness;
     case MSPRING_DAMPING:
-        return mspringi_spring_get_nominal(network, spring, place).damping;
+        return mspringi_spring_get_nominal(network, spring, spring_slot).damping;
     case MSPRING_REST_LENGTH:
-        return mspringi_place_get(network, place).rest_length;
+        return mspringi_spring_slot_get(network, spring_slot).rest_length;
     case MSPRING_BREAK_STRAIN:
-        return strain->break_strain ? strain->break_strain[place] : INFINITY;
+        return strain->break_strain ? strain->break_strain[spring_slot] : INFINITY;
     case MSPRING_STRESS_STRAIN:
-        return strain->stress_strain ? strain->stress_strain[place] : INFINITY;
+        return strain->stress_strain ? strain->stress_strain[spring_slot] : INFINITY;
     case MSPRING_YIELD_STRAIN:
-        return plastic->nominal ? plastic->yield_strain[place] : INFINITY;
+        return plastic->nominal ? plastic->yield_strain[spring_slot] : INFINITY;
     case MSPRING_HARDENING:
-        return plastic->nominal ? plastic->hardening[place] : MSPRING_HARDENING_DEFAULT;
+        return plastic->nominal ? plastic->hardening[spring_slot] : MSPRING_HARDENING_DEFAULT;
     case MSPRING_PLASTIC_LIMIT:
-        return plastic->nominal ? plastic->plastic_limit[place] : MSPRING_PLASTIC_LIMIT_DEFAULT;
+        return plastic->nominal ? plastic->plastic_limit[spring_slot] : MSPRING_PLASTIC_LIMIT_DEFAULT;
     case MSPRING_PLASTIC_STRAIN:
-        return plastic_strain(network, place);
+        return plastic_strain(network, spring_slot);
     default:
-        return strain->relax_strain ? strain->relax_strain[place] : MSPRING_RELAX_STRAIN_DEFAULT;
+        return strain->relax_strain ? strain->relax_strain[spring_slot] : MSPRING_RELAX_STRAIN_DEFAULT;
     }
 }

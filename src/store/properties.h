@@ -29,7 +29,7 @@ static inline bool mspringi_is_spring_value(mspringi_part part, float value) {
 
 /// A threshold as networks keep it, and as the host reads it. Times a rest length, INFINITY alone is above all
 /// stretches. No other property may have such values, so these two may be used for all.
-static inline float mspringi_kept_value(float given) {
+static inline float mspringi_broken_value(float given) {
     return given >= MSPRING_NEVER ? INFINITY : given;
 }
 static inline float mspringi_read_value(float kept) {

@@ -6,8 +6,8 @@
 /// same root whatever the order of the links.
 #include "store/roots.h"
 
-#include "base/forest.h"
-#include "store/growth.h"
+#include "base/union_find.h"
+#include "store/id_pool.h"
 #include "store/springs.h"
 
 /// So many changes are looked at one by one, before finding everything anew costs less.
@@ -51,11 +51,11 @@ static void join_rows(const mspring_network *network, uint32_t *root, uint32_t b
     const uint32_t known = (north & east_above) | (north >> 1 & east),
                    known_down = (north & east) | (north >> 1 & east_above);
     for (uint32_t bits = uprights; bits; bits &= bits - 1)
-        mspringi_forest_join(root, here + lowest_bit(bits), up + lowest_bit(bits));
+        mspringi_union_find_join(root, here + lowest_bit(bits), up + lowest_bit(bits));
     for (uint32_t bits = live[MSPRINGI_NORTH_EAST] & ~known; bits; bits &= bits - 1)
-        mspringi_forest_join(root, here + lowest_bit(bits), up + lowest_bit(bits) + 1);
+        mspringi_union_find_join(root, here + lowest_bit(bits), up + lowest_bit(bits) + 1);
     for (uint32_t bits = live[MSPRINGI_SOUTH_EAST] & ~known_down; bits; bits &= bits - 1)
-        mspringi_forest_join(root, up + lowest_bit(bits), here + lowest_bit(bits) + 1);
+        mspringi_union_find_join(root, up + lowest_bit(bits), here + lowest_bit(bits) + 1);
 }
 
 void mspringi_find_roots(const mspring_network *network, uint32_t *root) {
@@ -64,13 +64,13 @@ void mspringi_find_roots(const mspring_network *network, uint32_t *root) {
     for (uint32_t slot = 0; slot < slots; ++slot)
         root[slot] = slot;
     join_runs(root, t->lattice_first, t->lattice_blocks, network->live + MSPRINGI_EAST, MSPRINGI_DIRECTIONS);
-    join_runs(root, t->chain_first, t->chain_blocks, network->live + t->lattice_places / MSPRINGI_WIDTH, 1);
+    join_runs(root, t->chain_first, t->chain_blocks, network->live + t->lattice_spring_slots / MSPRINGI_WIDTH, 1);
     for (uint32_t block = 0; block < t->lattice_blocks; ++block)
         join_rows(network, root, block);
-    for (uint32_t i = 0; i < t->leftover_count; ++i) {
-        const mspringi_place place = t->chain_places + i;
-        if (network->live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1)
-            mspringi_forest_join(root, t->leftover_a[i], t->leftover_b[i]);
+    for (uint32_t i = 0; i < t->irregular_count; ++i) {
+        const mspringi_spring_slot spring_slot = t->chain_spring_slots + i;
+        if (network->live[spring_slot / MSPRINGI_WIDTH] >> spring_slot % MSPRINGI_WIDTH & 1)
+            mspringi_union_find_join(root, t->irregular_a[i], t->irregular_b[i]);
     }
     for (uint32_t slot = 0; slot < slots; ++slot)
         root[slot] = root[root[slot]]; // no root is above its slot, so it has its own already
@@ -85,19 +85,19 @@ typedef struct pair {
 static pair ends_of(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
-    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
     return (pair){t->particle_of_slot[base], t->particle_of_slot[tip]};
 }
 
 static bool have_common_neighbour(const mspring_network *network, pair ends) {
-    mspringi_around around_a = mspringi_around_begin(network, ends.a);
-    for (mspring_id s; (s = mspringi_around_next(network, &around_a)) != MSPRING_NONE;) {
+    mspringi_incident_springs around_a = mspringi_incident_springs_begin(network, ends.a);
+    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around_a)) != MSPRING_NONE;) {
         if (!mspringi_spring_is_live(network, s))
             continue;
         const pair first = ends_of(network, s);
         const mspring_id between = first.a == ends.a ? first.b : first.a;
-        mspringi_around around_between = mspringi_around_begin(network, between);
-        for (mspring_id r; (r = mspringi_around_next(network, &around_between)) != MSPRING_NONE;) {
+        mspringi_incident_springs around_between = mspringi_incident_springs_begin(network, between);
+        for (mspring_id r; (r = mspringi_incident_springs_next(network, &around_between)) != MSPRING_NONE;) {
             const pair second = ends_of(network, r);
             if ((second.a == ends.b || second.b == ends.b) && mspringi_spring_is_live(network, r))
                 return true;

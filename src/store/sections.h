@@ -8,8 +8,8 @@
 #ifndef MSPRINGI_SNAPSHOT_SECTIONS_H
 #define MSPRINGI_SNAPSHOT_SECTIONS_H
 
-#include "store/format.h"
 #include "store/network.h"
+#include "store/snapshot_format.h"
 
 static inline mspringi_io mspringi_io_to(mspringi_writer *to) {
     return (mspringi_io){.to = to};
@@ -35,17 +35,17 @@ typedef struct mspringi_section {
     void (*load)(mspring_network *network, const uint8_t *from, size_t size);
 } mspringi_section;
 
-// In state.c.
+// In snapshot_state.c.
 extern const mspringi_section mspringi_section_settings;
 extern const mspringi_section mspringi_section_steps;
 extern const mspringi_section mspringi_section_motion;
 extern const mspringi_section mspringi_section_masses;
 extern const mspringi_section mspringi_section_forces;
 
-// In growth.c.
+// In id_pool.c.
 extern const mspringi_section mspringi_section_growth;
 
-// In contact.c.
+// In snapshot_contact.c.
 extern const mspringi_section mspringi_section_shape;
 
 // In grips.c.

@@ -61,7 +61,7 @@ static mspring_result check_list(const mspring_network *network, mspringi_kind k
 
 mspring_result mspringi_select_range(mspring_network *network, mspringi_kind kind, mspring_id first, uint32_t count,
                                      const void *values, const void *more, mspringi_selection *selection) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = check_arrays(count, values, more, &network->message);
     if (result == MSPRING_OK)
@@ -73,7 +73,7 @@ mspring_result mspringi_select_range(mspring_network *network, mspringi_kind kin
 
 mspring_result mspringi_select_one(mspring_network *network, mspringi_kind kind, const mspring_id *id,
                                    mspringi_selection *selection) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = check_id(network, kind, *id, &network->message);
     if (result == MSPRING_OK)
@@ -84,7 +84,7 @@ mspring_result mspringi_select_one(mspring_network *network, mspringi_kind kind,
 mspring_result mspringi_select_list(mspring_network *network, mspringi_kind kind, const mspring_id *list,
                                     uint32_t count, const void *values, const void *more,
                                     mspringi_selection *selection) {
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = check_arrays(count, values, more, &network->message);
     if (result == MSPRING_OK)

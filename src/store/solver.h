@@ -46,16 +46,16 @@ typedef struct mspringi_solver_basis {
 
 /// Operations that a solver does not need are NULL, unless it says otherwise.
 struct mspringi_solver_ops {
-    bool has_border;     ///< its substeps may be too long: the guard looks
-    bool picks_substeps; ///< the library may choose their number (MSPRING_SUBSTEPS_AUTO)
-    bool takes_one;      ///< as a fallback it takes a step in one substep
-    bool skips_sleepers; ///< leaves alone blocks in which nothing is to be swept
-    bool skews;          ///< velocities are those of half a substep before the positions, as of symplectic Euler
-    bool has_herds;      ///< sweeps small trees in herds
-    bool can_add;        ///< springs may be added
-    bool holds_grips;    ///< its substeps have grips in them, but for those of particles that are alone
-    bool holds_areas;    ///< its substeps have areas in them that springs are all around
-    bool holds_bodies;   ///< its substeps have contact between bodies in them
+    bool has_stability_limit; ///< its substeps may be too long: the guard looks
+    bool can_choose_substeps; ///< the library may choose their number (MSPRING_SUBSTEPS_AUTO)
+    bool takes_one_substep;   ///< as a fallback it takes a step in one substep
+    bool skips_sleepers;      ///< leaves alone blocks in which nothing is to be swept
+    bool is_staggered; ///< velocities are those of half a substep before the positions, as of symplectic Euler
+    bool has_bundles;  ///< sweeps small trees in bundles
+    bool can_add;      ///< springs may be added
+    bool has_implicit_grips;   ///< its substeps have grips in them, but for those of particles that are alone
+    bool has_implicit_areas;   ///< its substeps have areas in them that springs are all around
+    bool has_implicit_contact; ///< its substeps have contact between bodies in them
 
     // Life. create: for a network that is otherwise complete, or of which there are the layout and what springs and
     // masses are, which may be on another thread; tile_size is for one whose tiles go by plan, 0: by that of the
@@ -81,11 +81,11 @@ struct mspringi_solver_ops {
     void (*set_basis)(void *object, const mspring_network *network, const mspringi_solver_basis *basis);
 
     // A step. begin: before forces are known. whole: take all substeps at once, with the copy into the backup and
-    // the sight of what comes out; false: it cannot, and has done nothing. substeps (never NULL): count of them,
+    // the extrema of what comes out; false: it cannot, and has done nothing. substeps (never NULL): count of them,
     // with the same forces from outside (x NULL: none), and with the floor. end: after the last.
     void (*begin)(mspring_network *network);
-    bool (*whole)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
-                  mspringi_extrema *extrema);
+    bool (*run_step)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
+                     mspringi_extrema *extrema);
     void (*substeps)(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count);
     void (*end)(mspring_network *network);
 
@@ -95,14 +95,14 @@ struct mspringi_solver_ops {
     void (*forget)(void *object);
 
     // Edits. clear_slot: the particle falls freely. rest_slot: it has come to rest. clear_spring: no spring lies in
-    // the place any more. new_floor: it is another one, or none. is_alone (never NULL): whether no spring pulls at
-    // a particle; it may say so of those of the loose row alone, unless has_alone.
+    // the place any more. new_floor: it is another one, or none. is_isolated (never NULL): whether no spring pulls
+    // at a particle; it may say so of those of the loose row alone, unless has_isolated.
     void (*clear_slot)(const mspring_network *network, void *object, uint32_t slot);
     void (*rest_slot)(const mspring_network *network, void *object, size_t slot);
-    void (*clear_spring)(const mspring_network *network, void *object, mspringi_place place);
+    void (*clear_spring)(const mspring_network *network, void *object, mspringi_spring_slot spring_slot);
     void (*new_floor)(void *object);
-    bool (*is_alone)(const mspring_network *network, const void *object, size_t slot);
-    bool (*has_alone)(const void *object);
+    bool (*is_isolated)(const mspring_network *network, const void *object, size_t slot);
+    bool (*has_isolated)(const void *object);
 
     // describe: what a plan says of it. The others are those of a snapshot's section (store/sections.h).
     void (*describe)(const void *object, mspring_plan *plan);
@@ -141,7 +141,7 @@ void mspringi_solver_take_over(const mspring_network *to, const mspringi_solver 
 
 /// What both solvers of a network are told, the chosen one and the fallback.
 void mspringi_solvers_clear_slot(const mspring_network *network, uint32_t slot);
-void mspringi_solvers_clear_spring(const mspring_network *network, mspringi_place place);
+void mspringi_solvers_clear_spring(const mspring_network *network, mspringi_spring_slot spring_slot);
 mspring_result mspringi_solvers_reserve(mspring_network *network);
 void mspringi_solvers_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to);
 

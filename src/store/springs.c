@@ -1,10 +1,10 @@
 /// Where springs lie and what they are like.
 #include "store/springs.h"
 
-#include "store/alike.h"
 #include "store/changed.h"
 #include "store/one_way.h"
-#include "store/rests.h"
+#include "store/record_sharing.h"
+#include "store/rest_lengths.h"
 #include "store/stages.h"
 
 // Where a spring's values are: in one record, or in one at each of its ends.
@@ -26,56 +26,58 @@ static spring_record record_in(float *records, size_t index, uint32_t parts) {
                            parts > MSPRINGI_DAMPING ? first + MSPRINGI_DAMPING * MSPRINGI_WIDTH : NULL};
 }
 
-static spring_record lattice_record(const mspring_network *network, mspringi_place place) {
+static spring_record lattice_record(const mspring_network *network, mspringi_spring_slot spring_slot) {
     const uint32_t parts = network->parts - 1;
-    float *first = network->lattice_springs + (size_t)(place / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts +
-                   place % MSPRINGI_WIDTH;
-    return (spring_record){mspringi_rests_at(&network->rests, place), first,
+    float *first = network->lattice_springs + (size_t)(spring_slot / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts +
+                   spring_slot % MSPRINGI_WIDTH;
+    return (spring_record){mspringi_rest_lengths_at(&network->rest_lengths, spring_slot), first,
                            network->parts > MSPRINGI_DAMPING ? first + MSPRINGI_WIDTH : NULL};
 }
 
-static spring_records find_records(const mspring_network *network, mspringi_place place) {
+static spring_records find_records(const mspring_network *network, mspringi_spring_slot spring_slot) {
     const mspringi_topology *t = &network->topology;
     const uint32_t parts = network->parts;
-    if (place < t->lattice_places)
-        return (spring_records){{lattice_record(network, place), {NULL, NULL, NULL}}, 1};
-    if (place < t->chain_places)
+    if (spring_slot < t->lattice_spring_slots)
+        return (spring_records){{lattice_record(network, spring_slot), {NULL, NULL, NULL}}, 1};
+    if (spring_slot < t->chain_spring_slots)
         return (spring_records){
-            {record_in(network->chain_springs, place - t->lattice_places, parts), {NULL, NULL, NULL}}, 1};
-    const uint32_t *entry = t->web.entry + 2 * (size_t)(place - t->chain_places);
-    return (spring_records){
-        {record_in(network->web_springs, entry[0], parts), record_in(network->web_springs, entry[1], parts)}, 2};
+            {record_in(network->chain_springs, spring_slot - t->lattice_spring_slots, parts), {NULL, NULL, NULL}},
+            1};
+    const uint32_t *entry = t->irregular.entry + 2 * (size_t)(spring_slot - t->chain_spring_slots);
+    return (spring_records){{record_in(network->irregular_springs, entry[0], parts),
+                             record_in(network->irregular_springs, entry[1], parts)},
+                            2};
 }
 
-mspringi_spring_values mspringi_place_get(const mspring_network *network, mspringi_place place) {
-    const spring_record record = find_records(network, place).ends[0];
+mspringi_spring_values mspringi_spring_slot_get(const mspring_network *network, mspringi_spring_slot spring_slot) {
+    const spring_record record = find_records(network, spring_slot).ends[0];
     mspringi_spring_values values = {
         .rest_length = *record.rest_length,
         .stiffness = *record.stiffness,
         .damping = record.damping ? *record.damping : 0.0f,
     };
-    mspringi_topology_ends(&network->topology, place, &values.base, &values.tip);
+    mspringi_topology_ends(&network->topology, spring_slot, &values.base, &values.tip);
     return values;
 }
 
-const mspringi_ramp *mspringi_place_ramp(const mspring_network *network, mspringi_place place) {
+const mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network, mspringi_spring_slot spring_slot) {
     const mspringi_ramps *ramps = &network->ramps;
     for (size_t i = 0; i < ramps->count; ++i)
-        if (mspringi_place_of(&network->topology, ramps->list[i].spring) == place)
+        if (mspringi_slot_of_spring(&network->topology, ramps->list[i].spring) == spring_slot)
             return &ramps->list[i];
     return NULL;
 }
 
-float mspringi_place_own_length(const mspring_network *network, mspringi_place place) {
-    const mspringi_ramp *ramp = mspringi_place_ramp(network, place);
-    return ramp ? ramp->to : *find_records(network, place).ends[0].rest_length;
+float mspringi_spring_slot_own_length(const mspring_network *network, mspringi_spring_slot spring_slot) {
+    const mspringi_ramp *ramp = mspringi_spring_slot_ramp(network, spring_slot);
+    return ramp ? ramp->to : *find_records(network, spring_slot).ends[0].rest_length;
 }
 
 // Whether a spring was given with the higher id first.
 static bool is_turned(const mspring_network *network, mspring_id spring) {
     const uint32_t first_spare = network->topology.reserve.first_spring;
     if (spring < first_spare)
-        return network->turned && network->turned[spring / 8] >> spring % 8 & 1;
+        return network->is_reversed && network->is_reversed[spring / 8] >> spring % 8 & 1;
     const mspring_id *ends = network->growth.particle_of_end + 2 * (size_t)(spring - first_spare);
     return ends[0] > ends[1];
 }
@@ -83,56 +85,59 @@ static bool is_turned(const mspring_network *network, mspring_id spring) {
 mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
-    mspringi_topology_ends(t, mspringi_place_of(t, spring), &base, &tip);
+    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
     return (t->particle_of_slot[base] > t->particle_of_slot[tip]) == is_turned(network, spring)
                ? (mspringi_ends){base, tip}
                : (mspringi_ends){tip, base};
 }
 
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring) {
-    const mspringi_place place = mspringi_place_of(&network->topology, spring);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     return (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
            mspringi_side_flags(network, spring) |
-           (mspringi_place_is_live(network, place) ? 0u : MSPRING_SPRING_BROKEN) |
-           (mspringi_place_is_stressed(network, place) ? MSPRING_SPRING_STRESSED : 0u);
+           (mspringi_spring_slot_is_live(network, spring_slot) ? 0u : MSPRING_SPRING_BROKEN) |
+           (mspringi_spring_slot_is_stressed(network, spring_slot) ? MSPRING_SPRING_STRESSED : 0u);
 }
 
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
-    return mspringi_place_get(network, mspringi_place_of(&network->topology, spring));
+    return mspringi_spring_slot_get(network, mspringi_slot_of_spring(&network->topology, spring));
 }
 
-void mspringi_place_set(mspring_network *network, mspringi_place place, float stiffness, float damping) {
-    const spring_records records = find_records(network, place);
-    mspringi_alike_part(network, place);
+void mspringi_spring_slot_set(mspring_network *network, mspringi_spring_slot spring_slot, float stiffness,
+                              float damping) {
+    const spring_records records = find_records(network, spring_slot);
+    mspringi_shared_records_unshare(network, spring_slot);
     for (int i = 0; i < records.count; ++i) {
         MSPRINGI_ASSERT(records.ends[i].damping || damping == 0.0f);
         *records.ends[i].stiffness = stiffness;
         if (records.ends[i].damping)
             *records.ends[i].damping = damping;
     }
-    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 
-void mspringi_place_set_rest_length(mspring_network *network, mspringi_place place, float rest_length) {
-    const spring_records records = find_records(network, place);
-    MSPRINGI_ASSERT(place >= network->topology.lattice_places ||
-                    !mspringi_rests_are_shared(&network->rests, place) ||
+void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spring_slot spring_slot,
+                                          float rest_length) {
+    const spring_records records = find_records(network, spring_slot);
+    MSPRINGI_ASSERT(spring_slot >= network->topology.lattice_spring_slots ||
+                    !mspringi_rest_lengths_are_shared(&network->rest_lengths, spring_slot) ||
                     *records.ends[0].rest_length == rest_length);
-    mspringi_alike_part_yielding(network, place);
+    mspringi_shared_records_unshare_yielding(network, spring_slot);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
     network->has_welds |= rest_length == MSPRINGI_WELD;
-    mspringi_changed(network, MSPRINGI_CHANGED_PLACE, place);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 
-void mspringi_place_copy(const mspring_network *from, mspringi_place had_place, mspring_network *to,
-                         mspringi_place place) {
+void mspringi_spring_slot_copy(const mspring_network *from, mspringi_spring_slot had_place, mspring_network *to,
+                               mspringi_spring_slot spring_slot) {
     const spring_record had = find_records(from, had_place).ends[0];
-    const spring_records records = find_records(to, place);
+    const spring_records records = find_records(to, spring_slot);
     MSPRINGI_ASSERT(to->parts == from->parts);
-    MSPRINGI_ASSERT(place >= to->topology.lattice_places || !mspringi_rests_are_shared(&to->rests, place) ||
+    MSPRINGI_ASSERT(spring_slot >= to->topology.lattice_spring_slots ||
+                    !mspringi_rest_lengths_are_shared(&to->rest_lengths, spring_slot) ||
                     *records.ends[0].rest_length == *had.rest_length);
-    mspringi_alike_part(to, place);
+    mspringi_shared_records_unshare(to, spring_slot);
     for (int i = 0; i < records.count; ++i) {
         const spring_record *record = &records.ends[i];
         *record->rest_length = *had.rest_length;
@@ -156,40 +161,40 @@ static mspringi_relative derive(const mspring_network *network, const mspringi_s
 }
 
 mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,
-                                              mspringi_place place) {
+                                              mspringi_spring_slot spring_slot) {
     if (mspringi_spring_is_relative(network, spring))
         return mspringi_fractions_of(&network->fractions, spring);
-    if (!mspringi_place_is_live(network, place)) {
+    if (!mspringi_spring_slot_is_live(network, spring_slot)) {
         MSPRINGI_ASSERT(network->kept);
         return network->kept[spring];
     }
-    const mspringi_spring_values values = mspringi_place_get(network, place);
+    const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     return (mspringi_relative){values.stiffness, values.damping};
 }
 
-void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_place place,
+void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot,
                                  mspringi_relative nominal) {
     const bool relative = mspringi_spring_is_relative(network, spring);
     if (relative)
         mspringi_fractions_set(&network->fractions, spring, nominal);
-    if (!mspringi_place_is_live(network, place)) {
+    if (!mspringi_spring_slot_is_live(network, spring_slot)) {
         if (!relative)
             network->kept[spring] = nominal;
         return;
     }
-    const mspringi_spring_values values = mspringi_place_get(network, place);
+    const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     if (relative)
         nominal = derive(network, &values, nominal);
-    mspringi_place_set(network, place, nominal.stiffness, nominal.damping);
+    mspringi_spring_slot_set(network, spring_slot, nominal.stiffness, nominal.damping);
 }
 
 // While a snapshot is loaded, springs that are not there any more are live until its section of broken ones.
 void mspringi_renew_relative(mspring_network *network) {
     for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
-        const mspringi_place place = network->topology.place_of_spring[s];
+        const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
         if (mspringi_spring_exists(network, s) && mspringi_spring_is_relative(network, s) &&
-            mspringi_place_is_live(network, place))
-            mspringi_spring_set_nominal(network, s, place, mspringi_fractions_of(&network->fractions, s));
+            mspringi_spring_slot_is_live(network, spring_slot))
+            mspringi_spring_set_nominal(network, s, spring_slot, mspringi_fractions_of(&network->fractions, s));
     }
 }
 

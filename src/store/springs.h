@@ -12,14 +12,15 @@ typedef struct mspringi_spring_values {
     float rest_length, stiffness, damping;
     uint32_t base, tip;
 } mspringi_spring_values;
-mspringi_spring_values mspringi_place_get(const mspring_network *network, mspringi_place place);
+mspringi_spring_values mspringi_spring_slot_get(const mspring_network *network, mspringi_spring_slot spring_slot);
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring);
 /// Set stiffness and damping in force, wherever the spring has records.
-void mspringi_place_set(mspring_network *network, mspringi_place place, float stiffness, float damping);
+void mspringi_spring_slot_set(mspring_network *network, mspringi_spring_slot spring_slot, float stiffness,
+                              float damping);
 
 /// Give the spring in a place of another network what the one in a place of this one has.
-void mspringi_place_copy(const mspring_network *from, mspringi_place had, mspring_network *to,
-                         mspringi_place place);
+void mspringi_spring_slot_copy(const mspring_network *from, mspringi_spring_slot had, mspring_network *to,
+                               mspringi_spring_slot spring_slot);
 
 /// The slots of a spring's ends, in the order in which they were given.
 typedef struct mspringi_ends {
@@ -28,8 +29,8 @@ typedef struct mspringi_ends {
 mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring);
 
 /// The ramp of the spring in a place, or NULL; and its rest length once that has come to its end.
-const mspringi_ramp *mspringi_place_ramp(const mspring_network *network, mspringi_place place);
-float mspringi_place_own_length(const mspring_network *network, mspringi_place place);
+const mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network, mspringi_spring_slot spring_slot);
+float mspringi_spring_slot_own_length(const mspring_network *network, mspringi_spring_slot spring_slot);
 
 /// MSPRING_SPRING_RELATIVE, _BROKEN, _STRESSED.
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring);
@@ -40,17 +41,18 @@ void mspringi_extents_turn(mspring_network *network, mspring_id spring);
 /// (length - rest_length) / rest_length, now; of a broken spring 0.
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
 
-static inline bool mspringi_place_is_live(const mspring_network *network, mspringi_place place) {
-    return network->live[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+static inline bool mspringi_spring_slot_is_live(const mspring_network *network, mspringi_spring_slot spring_slot) {
+    return network->live[spring_slot / MSPRINGI_WIDTH] >> spring_slot % MSPRINGI_WIDTH & 1;
 }
 
 static inline bool mspringi_spring_is_live(const mspring_network *network, mspring_id spring) {
-    return mspringi_place_is_live(network, mspringi_place_of(&network->topology, spring));
+    return mspringi_spring_slot_is_live(network, mspringi_slot_of_spring(&network->topology, spring));
 }
 
-static inline bool mspringi_place_is_stressed(const mspring_network *network, mspringi_place place) {
+static inline bool mspringi_spring_slot_is_stressed(const mspring_network *network,
+                                                    mspringi_spring_slot spring_slot) {
     const uint16_t *stressed = network->strain.stressed;
-    return stressed && stressed[place / MSPRINGI_WIDTH] >> place % MSPRINGI_WIDTH & 1;
+    return stressed && stressed[spring_slot / MSPRINGI_WIDTH] >> spring_slot % MSPRINGI_WIDTH & 1;
 }
 
 static inline bool mspringi_spring_is_relative(const mspring_network *network, mspring_id spring) {
@@ -80,15 +82,16 @@ static inline float mspringi_derived_damping(float fraction, double reduced_mass
 /// Stiffness and damping that a spring, which lies in this place, has while it is not broken; fractions if it is
 /// relative.
 mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,
-                                              mspringi_place place);
+                                              mspringi_spring_slot spring_slot);
 /// Set these, of a relative spring after mspringi_fractions_separate() only, unless it is what it has. What a
 /// broken spring exerts stays 0.
-void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_place place,
+void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot,
                                  mspringi_relative nominal);
 
-/// Set the rest length in force: a ramp of the spring goes on from its own. After mspringi_rests_separate() only,
-/// unless it is what the spring has.
-void mspringi_place_set_rest_length(mspring_network *network, mspringi_place place, float rest_length);
+/// Set the rest length in force: a ramp of the spring goes on from its own. After mspringi_rest_lengths_unshare()
+/// only, unless it is what the spring has.
+void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spring_slot spring_slot,
+                                          float rest_length);
 
 /// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
 void mspringi_derive_relative(mspring_network *network, float h);

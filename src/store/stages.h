@@ -9,12 +9,12 @@
 ///   before_substep   each substep, or each free group of them; returns the forces that act in them
 ///   shares           before each piece of a substep that follows no other: how long it may be
 ///   after_substep    as before_substep
-///   has_missed       after the substeps: it counted on what did not hold, so they are undone and repeated. In the
+///   must_repeat       after the substeps: it counted on what did not hold, so they are undone and repeated. In the
 ///                    next run it does not count on that, so it says so once a step
 ///   judge            after the substeps, or what stands for them: whether it could do what it is for (only
 ///                    if some stage can be quiet or can miss something)
 ///   after_step       once the step is taken, and will not be undone
-///   take_back        the substeps were undone, and the state is that of before: in reverse order
+///   roll_back        the substeps were undone, and the state is that of before: in reverse order
 ///   undo             what before_step did is to be undone: in reverse order
 ///
 /// SPDX-License-Identifier: MIT
@@ -24,7 +24,7 @@
 #include "store/network.h"
 
 /// Parts of equal length that a substep has. A piece of it is some of them.
-#define MSPRINGI_SHARES 16u
+#define MSPRINGI_SUBSTEP_PARTS 16u
 
 /// Places where a stage does nothing are NULL.
 typedef struct mspringi_stage {
@@ -43,13 +43,14 @@ typedef struct mspringi_stage {
                               uint32_t substep); ///< that it lets follow each other; NULL: one
     mspringi_field (*before_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base);
-    uint32_t (*shares)(mspring_network *network, const mspringi_attempt *attempt,
-                       uint32_t left); ///< of MSPRINGI_SHARES, that may be taken at once; NULL: all that are left
+    uint32_t (*max_parts)(
+        mspring_network *network, const mspringi_attempt *attempt,
+        uint32_t left); ///< of MSPRINGI_SUBSTEP_PARTS, that may be taken at once; NULL: all that are left
     void (*after_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
-    bool (*has_missed)(mspring_network *network, const mspringi_attempt *attempt);
-    mspring_result (*judge)(mspring_network *network);
+    bool (*must_repeat)(mspring_network *network, const mspringi_attempt *attempt);
+    mspring_result (*verify)(mspring_network *network);
     void (*after_step)(mspring_network *network, double dt);
-    void (*take_back)(mspring_network *network);
+    void (*roll_back)(mspring_network *network);
     void (*undo)(mspring_network *network, const mspringi_attempt *attempt);
 } mspringi_stage;
 
@@ -79,7 +80,7 @@ typedef struct mspringi_stages {
 mspringi_stages mspringi_stages_of(const mspring_network *network);
 
 /// Whether the substeps of this step cannot be taken all at once.
-bool mspringi_stages_cut(const mspring_network *network, const mspringi_attempt *attempt);
+bool mspringi_stages_split_step(const mspring_network *network, const mspringi_attempt *attempt);
 
 /// The forces that all substeps have in common: what the host holds, with what stages add; x NULL: none.
 mspringi_field mspringi_stages_forces(mspring_network *network, const mspringi_attempt *attempt);
@@ -92,12 +93,12 @@ uint32_t mspringi_stages_free_substeps(const mspring_network *network, const msp
 mspringi_field mspringi_stages_before_substep(mspring_network *network, const mspringi_attempt *attempt,
                                               uint32_t substep, mspringi_field base,
                                               mspringi_field *outside); ///< outside: without those within bodies
-uint32_t mspringi_stages_shares(mspring_network *network, const mspringi_attempt *attempt, uint32_t left);
+uint32_t mspringi_stages_max_parts(mspring_network *network, const mspringi_attempt *attempt, uint32_t left);
 void mspringi_stages_after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
-bool mspringi_stages_have_missed(mspring_network *network, const mspringi_attempt *attempt);
-mspring_result mspringi_stages_judge(mspring_network *network, const mspringi_attempt *attempt);
+bool mspringi_stages_must_repeat(mspring_network *network, const mspringi_attempt *attempt);
+mspring_result mspringi_stages_verify(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_after_step(mspring_network *network, const mspringi_stages *stages, double dt);
-void mspringi_stages_take_back(mspring_network *network, const mspringi_attempt *attempt);
+void mspringi_stages_roll_back(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt);
 
 #endif

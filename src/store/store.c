@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "base/columns.h"
+#include "base/array_table.h"
 #include "base/cpu.h"
 #include "layout/emit/spare.h"
 #include "store/precise.h"
@@ -18,15 +18,15 @@
     VIEW(member.vy, 3 * slots)                                                                                     \
     VIEW(member.low_x, 4 * slots)                                                                                  \
     VIEW(member.low_y, 5 * slots)
-#define PLACES(member) ARRAY(member, places)
+#define PLACES(member) ARRAY(member, spring_slots)
 #define BITS(member) ARRAY(member, words)
 #define END(name)
 
 #define GROUP(name) {0, 0, MSPRINGI_GROUP},
-#define ARRAY(member, elements) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_ARRAY),
-#define LANES(member, planes) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_PLANES),
-#define VIEW(member, elements) MSPRINGI_COLUMN(mspring_network, member, MSPRINGI_VIEW),
-static const mspringi_column list[] = {
+#define ARRAY(member, elements) MSPRINGI_ARRAY_ENTRY(mspring_network, member, MSPRINGI_ARRAY),
+#define LANES(member, planes) MSPRINGI_ARRAY_ENTRY(mspring_network, member, MSPRINGI_PLANES),
+#define VIEW(member, elements) MSPRINGI_ARRAY_ENTRY(mspring_network, member, MSPRINGI_VIEW),
+static const mspringi_array_entry list[] = {
 #include "store/network.def"
 };
 #undef GROUP
@@ -38,9 +38,9 @@ static const mspringi_column list[] = {
 
 /* ---------------------------------------------------------------------------------------------------- elements */
 
-static size_t web_places(const mspringi_topology *t) {
-    const size_t own = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
-    const size_t others = (size_t)(t->leftover_capacity - t->woven_count) + t->inactive_count;
+static size_t irregular_record_slots(const mspringi_topology *t) {
+    const size_t own = t->irregular.slice_count > 0 ? t->irregular.first_slice_column[t->irregular.slice_count] : 0;
+    const size_t others = (size_t)(t->irregular_capacity - t->laid_out_count) + t->inactive_count;
     return (own + (others + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH) * MSPRINGI_WIDTH;
 }
 
@@ -55,7 +55,8 @@ static size_t graft_nodes(const mspringi_topology *t) {
 // Elements of each column; of a view those before it.
 static void count_elements(const mspring_network *n, size_t elements[COLUMN_COUNT]) {
     const mspringi_topology *t = &n->topology;
-    const size_t slots = mspringi_slot_count(n), words = mspringi_place_words(t), places = words * MSPRINGI_WIDTH;
+    const size_t slots = mspringi_slot_count(n), words = mspringi_spring_slot_words(t),
+                 spring_slots = words * MSPRINGI_WIDTH;
     const size_t particles = t->reserve.particle_end, springs = t->reserve.spring_end;
 #define GROUP(name) *elements++ = 0;
 #define ARRAY(member, count) *elements++ = (size_t)(count);
@@ -71,7 +72,7 @@ static void count_elements(const mspring_network *n, size_t elements[COLUMN_COUN
 /* ------------------------------------------------------------------------------------------------------- groups */
 
 // The rows of the groups first ... end - 1, with the heads of these.
-static mspringi_columns rows_of(uint32_t first, uint32_t end) {
+static mspringi_array_table rows_of(uint32_t first, uint32_t end) {
     size_t from = 0, to = COLUMN_COUNT;
     uint32_t group = 0;
     for (size_t i = 0; i < COLUMN_COUNT; ++i) {
@@ -83,15 +84,15 @@ static mspringi_columns rows_of(uint32_t first, uint32_t end) {
             to = i;
         group++;
     }
-    return (mspringi_columns){list + from, to - from};
+    return (mspringi_array_table){list + from, to - from};
 }
 
 bool mspringi_store_reserve(mspring_network *network, mspringi_group group) {
-    const mspringi_columns rows = rows_of(group, group + 1u);
+    const mspringi_array_table rows = rows_of(group, group + 1u);
     size_t elements[COLUMN_COUNT];
     char *array = NULL;
     count_elements(network, elements);
-    for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c) {
+    for (const mspringi_array_entry *c = rows.list; c < rows.list + rows.count; ++c) {
         const size_t count = elements[c - list];
         if (c->kind == MSPRINGI_GROUP || count == UNKNOWN)
             continue;
@@ -112,32 +113,32 @@ bool mspringi_store_reserve(mspring_network *network, mspringi_group group) {
 }
 
 void mspringi_store_free(mspring_network *network, mspringi_group group) {
-    mspringi_columns_free(rows_of(group, group + 1u), network, &network->memory);
+    mspringi_array_table_free(rows_of(group, group + 1u), network, &network->memory);
 }
 
 bool mspringi_store_duplicate(mspring_network *to, const mspring_network *from, mspringi_group group,
                               mspringi_memory *memory) {
-    const mspringi_columns rows = rows_of(group, group + 1u);
-    for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c)
+    const mspringi_array_table rows = rows_of(group, group + 1u);
+    for (const mspringi_array_entry *c = rows.list; c < rows.list + rows.count; ++c)
         if (c->kind != MSPRINGI_GROUP)
             mspringi_column_set(c, to, mspringi_column_get(c, from));
-    return mspringi_columns_duplicate(rows, to, memory);
+    return mspringi_array_table_duplicate(rows, to, memory);
 }
 
 void mspringi_store_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to) {
-    mspringi_columns_relocate(rows_of(0, MSPRINGI_STORE_GROUPS), network, from, to);
+    mspringi_array_table_relocate(rows_of(0, MSPRINGI_STORE_GROUPS), network, from, to);
 }
 
 /* ------------------------------------------------------------------------------------------------------ layouts */
 
 void mspringi_store_free_layout(mspring_network *network, mspringi_memory *memory) {
-    mspringi_columns_free(rows_of(0, MSPRINGI_LAYOUT_END), network, memory);
+    mspringi_array_table_free(rows_of(0, MSPRINGI_LAYOUT_END), network, memory);
 }
 
 // Where it is inlined, gcc 12 takes the network for its first field, and warns of writing beyond it (with all of
 // the library in one file, at -O2).
-static MSPRINGI_NOINLINE void forget(mspring_network *network, mspringi_columns rows) {
-    for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c)
+static MSPRINGI_NOINLINE void forget(mspring_network *network, mspringi_array_table rows) {
+    for (const mspringi_array_entry *c = rows.list; c < rows.list + rows.count; ++c)
         if (c->kind != MSPRINGI_GROUP)
             mspringi_column_set(c, network, NULL);
 }
@@ -151,15 +152,15 @@ void mspringi_store_forget(mspring_network *network) {
 }
 
 void mspringi_store_take_layout(mspring_network *to, const mspring_network *from) {
-    const mspringi_columns rows = rows_of(0, MSPRINGI_LAYOUT_END);
-    for (const mspringi_column *c = rows.list; c < rows.list + rows.count; ++c)
+    const mspringi_array_table rows = rows_of(0, MSPRINGI_LAYOUT_END);
+    for (const mspringi_array_entry *c = rows.list; c < rows.list + rows.count; ++c)
         if (c->kind != MSPRINGI_GROUP)
             mspringi_column_set(c, to, mspringi_column_get(c, from));
 }
 
 bool mspringi_store_match_layout(mspring_network *to, const mspring_network *from) {
     for (uint32_t group = 0; group < MSPRINGI_REMADE_END; ++group) {
-        const mspringi_column *first = rows_of(group, group + 1u).list + 1;
+        const mspringi_array_entry *first = rows_of(group, group + 1u).list + 1;
         const bool has = mspringi_column_get(first, to), needs = mspringi_column_get(first, from);
         if (has && !needs)
             mspringi_store_free(to, (mspringi_group)group);
@@ -216,16 +217,18 @@ void mspringi_store_move_slots(mspring_network *to, const mspring_network *from)
     move_planes(old, made, &from->topology, &to->topology);
 }
 
-static void copy_value(float *to, mspringi_place place, const float *from, mspringi_place before) {
+static void copy_value(float *to, mspringi_spring_slot spring_slot, const float *from,
+                       mspringi_spring_slot before) {
     if (to && from)
-        to[place] = from[before];
+        to[spring_slot] = from[before];
 }
 
-static void copy_bit(uint16_t *to, mspringi_place place, const uint16_t *from, mspringi_place before) {
-    const uint16_t bit = (uint16_t)(1u << place % MSPRINGI_WIDTH);
+static void copy_bit(uint16_t *to, mspringi_spring_slot spring_slot, const uint16_t *from,
+                     mspringi_spring_slot before) {
+    const uint16_t bit = (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     if (!to || !from)
         return;
-    to += place / MSPRINGI_WIDTH;
+    to += spring_slot / MSPRINGI_WIDTH;
     *to = (uint16_t)(from[before / MSPRINGI_WIDTH] >> before % MSPRINGI_WIDTH & 1 ? *to | bit : *to & ~bit);
 }
 
@@ -235,9 +238,9 @@ static void copy_bit(uint16_t *to, mspringi_place place, const uint16_t *from, m
 #define ARRAY(member, elements)
 #define LANES(member, planes)
 #define VIEW(member, elements)
-#define PLACES(member) copy_value(to->member, place, from->member, before);
-#define BITS(member) copy_bit(to->member, place, from->member, before);
-void mspringi_store_copy_spring(mspring_network *to, mspringi_place place, const mspring_network *from,
-                                mspringi_place before) {
+#define PLACES(member) copy_value(to->member, spring_slot, from->member, before);
+#define BITS(member) copy_bit(to->member, spring_slot, from->member, before);
+void mspringi_store_copy_spring(mspring_network *to, mspringi_spring_slot spring_slot, const mspring_network *from,
+                                mspringi_spring_slot before) {
 #include "store/network.def"
 }

@@ -53,7 +53,7 @@ bool mspringi_store_match_layout(mspring_network *to, const mspring_network *fro
 
 /// Move what lies by slot, or what lies by place of one spring but for its record, between layouts.
 void mspringi_store_move_slots(mspring_network *to, const mspring_network *from);
-void mspringi_store_copy_spring(mspring_network *to, mspringi_place place, const mspring_network *from,
-                                mspringi_place before);
+void mspringi_store_copy_spring(mspring_network *to, mspringi_spring_slot spring_slot, const mspring_network *from,
+                                mspringi_spring_slot before);
 
 #endif

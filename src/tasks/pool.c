@@ -103,7 +103,7 @@ mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memo
 
 // What the parent's threads have waited on stays as it was when the process forked: nobody wakes those sleepers, so
 // it can be neither used nor destroyed, and is made anew in place.
-mspring_result mspringi_pool_follow(mspringi_pool *pool, mspringi_message *message) {
+mspring_result mspringi_pool_restart_after_fork(mspringi_pool *pool, mspringi_message *message) {
     const uint64_t before = pool->process;
     if (before == mspringi_process())
         return MSPRING_OK;
@@ -148,7 +148,7 @@ mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memo
     return mspringi_fail(message, MSPRING_ERROR_THREAD, "this build of the library has no threads");
 }
 
-mspring_result mspringi_pool_follow(mspringi_pool *pool, mspringi_message *message) {
+mspring_result mspringi_pool_restart_after_fork(mspringi_pool *pool, mspringi_message *message) {
     (void)pool, (void)message;
     return MSPRING_OK;
 }

@@ -17,7 +17,7 @@ mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memo
 /// Start the threads again if this is a child that fork() has made since they were: the parent's are not in it.
 /// Nobody may be in mspringi_pool_run() when the process forks.
 /// @return MSPRING_OK; MSPRING_ERROR_THREAD, then nothing runs, and the next call tries again
-mspring_result mspringi_pool_follow(mspringi_pool *pool, mspringi_message *message);
+mspring_result mspringi_pool_restart_after_fork(mspringi_pool *pool, mspringi_message *message);
 
 /// End the threads; in a child that has not started them again there are none. NULL is allowed.
 void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory);

@@ -85,8 +85,8 @@ void mspringi_tasks_destroy(mspringi_tasks *tasks, mspringi_memory *memory) {
     mspringi_free(memory, tasks);
 }
 
-mspring_result mspringi_tasks_follow(mspringi_tasks *tasks, mspringi_message *message) {
-    return tasks && tasks->pool ? mspringi_pool_follow(tasks->pool, message) : MSPRING_OK;
+mspring_result mspringi_tasks_restart_after_fork(mspringi_tasks *tasks, mspringi_message *message) {
+    return tasks && tasks->pool ? mspringi_pool_restart_after_fork(tasks->pool, message) : MSPRING_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------- running */
@@ -116,7 +116,7 @@ bool mspringi_tasks_are_independent(const mspringi_tasks *tasks) {
     return tasks && tasks->concurrency == 1;
 }
 
-uint32_t mspringi_tasks_shares(const mspringi_tasks *tasks) {
+uint32_t mspringi_tasks_partition_size(const mspringi_tasks *tasks) {
     return mspringi_tasks_are_independent(tasks) ? tasks->worker_count : mspringi_tasks_concurrency(tasks);
 }
 

@@ -31,7 +31,7 @@ void mspringi_tasks_destroy(mspringi_tasks *tasks, mspringi_memory *memory);
 /// See that there are threads to run on: fork() leaves those of the library in the parent. Before the first run in
 /// each call of the host's, while nothing has changed yet.
 /// @return MSPRING_OK; MSPRING_ERROR_THREAD
-mspring_result mspringi_tasks_follow(mspringi_tasks *tasks, mspringi_message *message);
+mspring_result mspringi_tasks_restart_after_fork(mspringi_tasks *tasks, mspringi_message *message);
 
 /// Number of workers: what is indexed by worker has so many elements.
 uint32_t mspringi_tasks_workers(const mspringi_tasks *tasks);
@@ -44,7 +44,7 @@ bool mspringi_tasks_are_independent(const mspringi_tasks *tasks);
 
 /// How many shares to divide work into that can be done either way: the workers of independent bodies, else those
 /// that are sure to run at the same time.
-uint32_t mspringi_tasks_shares(const mspringi_tasks *tasks);
+uint32_t mspringi_tasks_partition_size(const mspringi_tasks *tasks);
 
 /// Run fn(argument, index, worker) for every index below count, in the floating-point environment of a step, and
 /// return when all are done: what they have written is seen by the caller, and what the caller has written before,

@@ -4,7 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 
-#include "base/turn.h"
+#include "base/rotation.h"
 #include "support.h"
 
 /// What the header promises, and what libm may err by. (Windows has pi to 66 bits: at an angle of 1e6 that is

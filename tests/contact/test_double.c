@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #include "bodies.h"
-#include "contact/pairs.h"
+#include "contact/contacts.h"
 
 #define THICKNESS 0.5
 #define DT (1.0 / 64)
@@ -86,32 +86,32 @@ static void show(const stepper *s) {
 
 /// What contact does to the velocities, and to the way of those that it looks at.
 static void touch(stepper *s) {
-    mspringi_pairs *pairs = s->network->pairs;
-    const mspringi_active *k = &pairs->active;
+    mspringi_contacts *contacts = s->network->contacts;
+    const mspringi_contact_nodes *k = &contacts->nodes;
     show(s);
-    pairs->is_fresh = false;
-    assert_true(mspringi_near_look(s->network, pairs));
-    mspringi_rows_begin(s->network, pairs);
-    for (uint32_t i = 0; i < k->own; i++) {
+    contacts->is_fresh = false;
+    assert_true(mspringi_pair_list_scan(s->network, contacts));
+    mspringi_contact_begin_substep(s->network, contacts);
+    for (uint32_t i = 0; i < k->particle_count; i++) {
         const mspring_id p = k->particles[i];
         k->x[i] = s->b->x[p];
         k->y[i] = s->b->y[p];
-        k->from[i].x = s->from_vx[p];
-        k->from[i].y = s->from_vy[p];
+        k->v_start[i].x = s->from_vx[p];
+        k->v_start[i].y = s->from_vy[p];
         k->v[i].x = s->vx[p];
         k->v[i].y = s->vy[p];
     }
-    if (!mspringi_rows_solve(s->network, pairs, s->h))
+    if (!mspringi_contact_solve_nodes(s->network, contacts, s->h))
         return;
-    for (uint32_t i = 0; i < k->own; i++) {
+    for (uint32_t i = 0; i < k->particle_count; i++) {
         const mspring_id p = k->particles[i];
         const uint32_t slot = s->network->topology.slot_of_particle[p]; // whose velocity it has compared with
-        s->way_x[p] = s->h * (double)s->network->state.vx[slot] + k->way_x[i];
-        s->way_y[p] = s->h * (double)s->network->state.vy[slot] + k->way_y[i];
+        s->way_x[p] = s->h * (double)s->network->state.vx[slot] + k->shift_x[i];
+        s->way_y[p] = s->h * (double)s->network->state.vy[slot] + k->shift_y[i];
         s->vx[p] = k->v[i].x;
         s->vy[p] = k->v[i].y;
     }
-    s->met |= pairs->touching > 0;
+    s->met |= contacts->touching > 0;
 }
 
 /// The scheme's energy amid a substep, when velocities have changed and positions have not, but for what is
@@ -170,11 +170,11 @@ static stepper *begin(uint64_t trial, const kind *of, double *speed) {
     s->network = bodies_network(s->b, &def);
     check_ok(bodies_touch(s->network, THICKNESS, 0.3f, of->restitution));
     support_steps(s->network, 1, 1e-9); // it finds the outline in a step
-    mspringi_pairs *pairs = s->network->pairs;
-    pairs->h = (float)s->h;
-    pairs->dt = DT;
-    pairs->is_strict = true; // looks in each substep, as if all had the speed of `thrown`
-    pairs->thrown = 3 * *speed;
+    mspringi_contacts *contacts = s->network->contacts;
+    contacts->h = (float)s->h;
+    contacts->dt = DT;
+    contacts->is_second_try = true; // looks in each substep, as if all had the speed of `thrown`
+    contacts->extra_speed = 3 * *speed;
     for (uint32_t p = 0; p < s->b->count; p++) {
         s->vx[p] = (double)s->b->vx[p];
         s->vy[p] = (double)s->b->vy[p];

@@ -46,7 +46,7 @@ static mspring_network *make_ground(uint32_t kind, uint32_t count) {
     floor.heights_x = -3.7;
     floor.spacing = 0.3;
     check_ok(mspring_network_set_floor(network, &floor));
-    mspringi_floor_follow(network->floor, network->origin_x, network->origin_y);
+    mspringi_floor_set_origin(network->floor, network->origin_x, network->origin_y);
     return network;
 }
 
@@ -58,8 +58,8 @@ static bool passes_below(const mspringi_heights *h, int64_t knot, const double f
 
 /// One knot after the other.
 static int64_t walk(const mspringi_heights *h, const double from[2], const double to[2]) {
-    const int64_t last = mspringi_heights_part_below(h, to[0]);
-    int64_t part = mspringi_heights_part_below(h, from[0]);
+    const int64_t last = mspringi_heights_segment_below(h, to[0]);
+    int64_t part = mspringi_heights_segment_below(h, from[0]);
     const int64_t onward = part < last ? 1 : -1;
     while (part != last && !passes_below(h, onward > 0 ? part + 1 : part, from, to)) {
         part += onward;
@@ -89,9 +89,9 @@ static void a_way_meets_what_a_walk_from_knot_to_knot_meets(void **state) {
             for (uint32_t i = 0; i < WAYS; i++) {
                 double from[2], to[2];
                 take_way(h, from, to);
-                const int64_t part = mspringi_heights_part_met(h, from[0], from[1], to[0], to[1]);
+                const int64_t part = mspringi_heights_first_hit(h, from[0], from[1], to[0], to[1]);
                 assert_int_equal(part, walk(h, from, to));
-                met += part != mspringi_heights_part_below(h, to[0]);
+                met += part != mspringi_heights_segment_below(h, to[0]);
             }
             mspring_network_destroy(network);
         }

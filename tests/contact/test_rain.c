@@ -8,7 +8,7 @@
 
 #include "bodies.h"
 
-#include "contact/pairs.h"
+#include "contact/contacts.h"
 
 #define THICKNESS 0.5
 #define DT (1.0 / 64)
@@ -67,26 +67,28 @@ static mspring_network *rain(uint32_t substeps, bool has_colliders) {
 
 /// Whether the list lacks no pair that was near when it was made, and has no other; by brute force.
 static void check_list(const mspring_network *network) {
-    const mspringi_pairs *pairs = network->pairs;
-    const mspringi_outline *o = &pairs->outline;
+    const mspringi_contacts *contacts = network->contacts;
+    const mspringi_outline *o = &contacts->outline;
     uint32_t listed = 0;
     for (uint32_t i = 0; i < o->point_count; i++)
         for (uint32_t edge = 0; edge < o->edge_count; edge++) {
             const mspring_id p = o->points[i], a = o->a[edge], b = o->b[edge];
-            const bool is_collider = mspringi_is_of_collider(pairs, a), is_apart = (p < BAR && a < BAR) || p == a;
-            if (is_apart || (mspringi_is_of_collider(pairs, p) && is_collider) ||
-                mspringi_is_counted_otherwise(o, p, edge))
+            const bool is_collider = mspringi_is_collider_point(contacts, a),
+                       is_apart = (p < BAR && a < BAR) || p == a;
+            if (is_apart || (mspringi_is_collider_point(contacts, p) && is_collider) ||
+                mspringi_is_duplicate_pair(o, p, edge))
                 continue;
-            const mspringi_nearest at = mspringi_nearest_on(pairs->seen_x[p], pairs->seen_y[p], pairs->seen_x[a],
-                                                            pairs->seen_y[a], pairs->seen_x[b], pairs->seen_y[b]);
-            const double distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_radius_of(pairs, p, edge);
-            if (!(distance < pairs->reach))
+            const mspringi_closest_point at =
+                mspringi_closest_point_on_edge(contacts->seen_x[p], contacts->seen_y[p], contacts->seen_x[a],
+                                               contacts->seen_y[a], contacts->seen_x[b], contacts->seen_y[b]);
+            const double distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_radius_of(contacts, p, edge);
+            if (!(distance < contacts->reach))
                 continue;
-            assert_true(listed < pairs->count);
-            assert_int_equal(pairs->list[listed].point, p);
-            assert_int_equal(pairs->list[listed++].edge, edge);
+            assert_true(listed < contacts->count);
+            assert_int_equal(contacts->list[listed].point, p);
+            assert_int_equal(contacts->list[listed++].edge, edge);
         }
-    assert_int_equal(listed, pairs->count);
+    assert_int_equal(listed, contacts->count);
 }
 
 /// Of two drops, m; by brute force.

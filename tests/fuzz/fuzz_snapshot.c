@@ -13,7 +13,7 @@
 #include <massspring/massspring_laws.h>
 
 #include "recipe.h"
-#include "store/format.h"
+#include "store/snapshot_format.h"
 #include "support.h"
 
 /// Of subjects; those from PLAIN on have material laws, too.

@@ -3,7 +3,7 @@
 /// at one by one in double precision add up to.
 ///
 /// SPDX-License-Identifier: MIT
-#include "stability/border.h"
+#include "stability/stability_limit.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,13 +45,13 @@ static mspring_network *make(uint64_t seed, bool damped, mspring_simd at) {
 }
 
 static float *array_of(const mspring_network *network, size_t which) {
-    return network->looks + which * mspringi_slot_count(network);
+    return network->guard_scratch + which * mspringi_slot_count(network);
 }
 
 /// Numbers at random to be read, and 0 to add to.
-static mspringi_border prepare(const mspring_network *network, bool is_image) {
+static mspringi_stability_limit prepare(const mspring_network *network, bool is_image) {
     const size_t slots = mspringi_slot_count(network);
-    mspringi_border border = mspringi_border_at(network, H);
+    mspringi_stability_limit border = mspringi_stability_limit_at(network, H);
     uint64_t seed = 9;
     for (size_t slot = 0; slot < slots; slot++) {
         for (size_t i = 0; i < 2; i++) {
@@ -70,11 +70,11 @@ static mspringi_border prepare(const mspring_network *network, bool is_image) {
 }
 
 static void pass(const mspring_network *network, bool is_image) {
-    const mspringi_border border = prepare(network, is_image);
+    const mspringi_stability_limit border = prepare(network, is_image);
     if (is_image) {
-        mspringi_border_image(network, &border);
+        mspringi_stability_limit_image(network, &border);
     } else {
-        mspringi_border_bound(network, &border);
+        mspringi_stability_limit_bound(network, &border);
     }
 }
 
@@ -86,15 +86,16 @@ static void levels_are_alike(void **state) {
         level_check(network, level);
         pass(network, seed / 2 % 2);
         pass(scalar, seed / 2 % 2);
-        assert_memory_equal(network->looks, scalar->looks,
-                            ARRAYS * mspringi_slot_count(network) * sizeof *network->looks);
+        assert_memory_equal(network->guard_scratch, scalar->guard_scratch,
+                            ARRAYS * mspringi_slot_count(network) * sizeof *network->guard_scratch);
         mspring_network_destroy(network);
         mspring_network_destroy(scalar);
     }
 }
 
 /// What a spring adds, by its formulas.
-static void add_spring(const mspring_network *network, const mspringi_seen *s, bool is_image, double *sums) {
+static void add_spring(const mspring_network *network, const mspringi_linear_spring *s, bool is_image,
+                       double *sums) {
     const uint32_t *slots = network->topology.slot_of_particle, a = slots[s->a], b = slots[s->b];
     const size_t count = mspringi_slot_count(network);
     const float *first = array_of(network, IN), *second = array_of(network, IN + 1);
@@ -133,7 +134,8 @@ static void it_is_what_springs_add_up_to(void **state) {
         double *sums = test_calloc(3 * slots, sizeof *sums), largest = 0;
         pass(network, is_image);
         for (mspring_id s = 0; s < network->topology.spring_count; s++) {
-            const mspringi_seen seen = mspringi_see_spring(network, s, mspringi_place_of(&network->topology, s));
+            const mspringi_linear_spring seen =
+                mspringi_linearise_spring(network, s, mspringi_slot_of_spring(&network->topology, s));
             add_spring(network, &seen, is_image, sums);
         }
         for (size_t i = 0; i < 3 * slots; i++) {

@@ -1,6 +1,6 @@
 /// @file test_contact_kernels.c
 /// What a level's kernels do to blocks of particles on a floor, against mspringi_floor_bounce() and
-/// mspringi_floor_fly() of each: byte for byte, and nothing to those that they leave. Silt likewise.
+/// mspringi_floor_move_free_particle() of each: byte for byte, and nothing to those that they leave. Silt likewise.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -29,7 +29,7 @@ typedef struct block {
     _Alignas(64) float impulse_x[W];
     _Alignas(64) float impulse_y[W];
     _Alignas(64) float inverse_mass[W];
-    _Alignas(64) float free_mass[W];
+    _Alignas(64) float active_inverse_mass[W];
 } block;
 
 static float heights[2 * HEIGHTS + 8]; // and the highest of 2, of 4 and so on
@@ -110,7 +110,7 @@ static block make_block(const mspringi_floor *floor, double h) {
         made.impulse_x[i] = (float)between(-1, 1);
         made.impulse_y[i] = (float)between(0, 1);
         made.inverse_mass[i] = i % 11 == 10 ? 0.0f : (float)between(0.1, 10);
-        made.free_mass[i] = i % 13 == 12 ? 0.0f : made.inverse_mass[i];
+        made.active_inverse_mass[i] = i % 13 == 12 ? 0.0f : made.inverse_mass[i];
         if (i % 6 == 5) { // on the first plane, to the last place or not quite
             made.y[i] = -0.25f + (float)((int)(support_random(&seed) % 5) - 2) * 0x1p-24f;
         }
@@ -122,36 +122,36 @@ static block make_block(const mspringi_floor *floor, double h) {
     return made;
 }
 
-static mspringi_ground ground_of(const mspringi_floor *floor, block *b, double h, double undamped,
-                                 mspringi_bounds clear) {
-    return (mspringi_ground){.lines = floor->lines,
-                             .line_count = floor->plane_count,
-                             .height_count = floor->heights.count,
-                             .heights = floor->heights.heights,
-                             .normals = floor->heights.normals,
-                             .left = floor->heights.local_x,
-                             .bottom = floor->heights.local_y,
-                             .spacing = floor->heights.spacing,
-                             .frictions = floor->heights.frictions,
-                             .restitutions = floor->heights.restitutions,
-                             .friction = floor->friction,
-                             .restitution = floor->restitution,
-                             .h = h,
-                             .per_length = 4.0 * h / 0.5,
-                             .clear = clear,
-                             .x = b->x,
-                             .y = b->y,
-                             .vx = b->vx,
-                             .vy = b->vy,
-                             .from_vx = b->from_vx,
-                             .from_vy = b->from_vy,
-                             .low_x = b->low_x,
-                             .low_y = b->low_y,
-                             .undamped = undamped,
-                             .impulse_x = b->impulse_x,
-                             .impulse_y = b->impulse_y,
-                             .inverse_mass = b->inverse_mass,
-                             .free_mass = b->free_mass};
+static mspringi_floor_args ground_of(const mspringi_floor *floor, block *b, double h, double undamped,
+                                     mspringi_bounds clear) {
+    return (mspringi_floor_args){.lines = floor->lines,
+                                 .line_count = floor->plane_count,
+                                 .height_count = floor->heights.count,
+                                 .heights = floor->heights.heights,
+                                 .normals = floor->heights.normals,
+                                 .left = floor->heights.local_x,
+                                 .bottom = floor->heights.local_y,
+                                 .spacing = floor->heights.spacing,
+                                 .frictions = floor->heights.frictions,
+                                 .restitutions = floor->heights.restitutions,
+                                 .friction = floor->friction,
+                                 .restitution = floor->restitution,
+                                 .h = h,
+                                 .per_length = 4.0 * h / 0.5,
+                                 .clear = clear,
+                                 .x = b->x,
+                                 .y = b->y,
+                                 .vx = b->vx,
+                                 .vy = b->vy,
+                                 .from_vx = b->from_vx,
+                                 .from_vy = b->from_vy,
+                                 .low_x = b->low_x,
+                                 .low_y = b->low_y,
+                                 .undamped = undamped,
+                                 .impulse_x = b->impulse_x,
+                                 .impulse_y = b->impulse_y,
+                                 .inverse_mass = b->inverse_mass,
+                                 .active_inverse_mass = b->active_inverse_mass};
 }
 
 static void put(block *b, uint32_t i, double x, double y, double vx, double vy) {
@@ -165,21 +165,23 @@ static void put(block *b, uint32_t i, double x, double y, double vx, double vy) 
 }
 
 /// One particle after the other.
-static void bounce(const mspringi_floor *floor, const mspringi_ground *g, block *b, uint32_t i) {
+static void bounce(const mspringi_floor *floor, const mspringi_floor_args *g, block *b, uint32_t i) {
     const double from_vx = (double)b->from_vx[i], from_vy = (double)b->from_vy[i];
-    mspringi_going p = mspringi_going_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
-                                           from_vx, from_vy, g->undamped, g->h, g->per_length);
+    mspringi_bouncing_particle p =
+        mspringi_bouncing_particle_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
+                                        from_vx, from_vy, g->undamped, g->h, g->per_length);
     if (mspringi_floor_bounce(floor, g->h, from_vx, from_vy, &p)) {
         put(b, i, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
     }
 }
 
-static void fly(const mspringi_floor *floor, const mspringi_ground *g, block *b, uint32_t i) {
-    const mspringi_turning how = {.h = g->h, .skew = 0.5 * g->h};
-    mspringi_flyer p = mspringi_flyer_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
-                                           (double)b->from_vx[i], (double)b->from_vy[i], g->undamped, g->h);
+static void fly(const mspringi_floor *floor, const mspringi_floor_args *g, block *b, uint32_t i) {
+    const mspringi_bounce_params how = {.h = g->h, .skew = 0.5 * g->h};
+    mspringi_free_particle p =
+        mspringi_free_particle_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
+                                    (double)b->from_vx[i], (double)b->from_vy[i], g->undamped, g->h);
     double vx, vy;
-    if (mspringi_floor_fly(floor, &how, &p, &vx, &vy)) {
+    if (mspringi_floor_move_free_particle(floor, &how, &p, &vx, &vy)) {
         put(b, i, p.x, p.y, vx, vy);
     }
 }
@@ -205,13 +207,13 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
         const mspringi_bounds clear = {-20, 20, n % 3 == 0 ? 0.2f : 20.0f, 20};
         const block before = make_block(&floor, h);
         block found = before;
-        const mspringi_ground ground = ground_of(&floor, &found, h, n % 4 == 0 ? 1.25 : 1.0, clear);
+        const mspringi_floor_args ground = ground_of(&floor, &found, h, n % 4 == 0 ? 1.25 : 1.0, clear);
         const uint32_t left = is_loose ? kernels->fly_past(&ground, 0) : kernels->touch(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {
             block expected = before;
             const bool is_left = left >> i & 1;
             left_count += is_left;
-            if (!is_left && !is_clear(&before, i, &clear) && before.free_mass[i] > 0.0f) {
+            if (!is_left && !is_clear(&before, i, &clear) && before.active_inverse_mass[i] > 0.0f) {
                 (is_loose ? fly : bounce)(&floor, &ground, &expected, i);
             }
             moved_count += expected.y[i] != before.y[i];
@@ -241,7 +243,7 @@ static void check_floor(uint32_t planes, bool has_heights) {
  */
 
 /// One coordinate of a particle, of whose velocity in step with its position silt takes a share.
-static void brake_one(const mspringi_ground *g, double taken, float *v, float *at, float *low, float *impulse,
+static void brake_one(const mspringi_floor_args *g, double taken, float *v, float *at, float *low, float *impulse,
                       float *from, float inverse_mass) {
     const double w = (double)*v - 0.5 * (g->undamped * (double)*v - (double)*from);
     const float change = (float)((double)*v - taken * w) - *v;
@@ -272,7 +274,7 @@ static void silt(void **state) {
         }
         block found = before;
         const bool is_seen = n % 2 == 0;
-        mspringi_ground ground = ground_of(&floor, &found, h, is_seen && n % 4 == 0 ? 1.25 : 1.0, clear);
+        mspringi_floor_args ground = ground_of(&floor, &found, h, is_seen && n % 4 == 0 ? 1.25 : 1.0, clear);
         ground.from_vx = is_seen ? found.from_vx : found.vx;
         ground.from_vy = is_seen ? found.from_vy : found.vy;
         ground.before_vx = is_seen ? found.from_vx : NULL;
@@ -282,9 +284,9 @@ static void silt(void **state) {
         kernels->brake(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {
             block to = before;
-            const double taken = mspringi_silt_taken(&floor.heights, (double)before.x[i], (double)before.y[i], h);
+            const double taken = mspringi_silt_damping(&floor.heights, (double)before.x[i], (double)before.y[i], h);
             float stays_vx = to.vx[i], stays_vy = to.vy[i];
-            if (!is_clear(&before, i, &clear) && before.free_mass[i] > 0.0f) {
+            if (!is_clear(&before, i, &clear) && before.active_inverse_mass[i] > 0.0f) {
                 brake_one(&ground, taken, &to.vx[i], &to.x[i], &to.low_x[i], &to.impulse_x[i],
                           is_seen ? &to.from_vx[i] : &stays_vx, before.inverse_mass[i]);
                 brake_one(&ground, taken, &to.vy[i], &to.y[i], &to.low_y[i], &to.impulse_y[i],

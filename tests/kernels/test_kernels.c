@@ -63,7 +63,7 @@ typedef struct arena {
     uint32_t back[GUARD];
     _Alignas(64) float kept[6 * STRIDE];
     uint32_t after_kept[GUARD];
-    mspringi_watch watch;
+    mspringi_extrema_lanes watch;
     mspringi_extrema extrema; ///< of the watch
 } arena;
 
@@ -108,7 +108,7 @@ typedef struct setup {
     bool has_above;  ///< there is a row above; else the row itself stands for it
     bool forced;     ///< there are forces from outside
     bool keeps;      ///< the state that is found; else it is there already, or something like it
-    bool watches_place, watches_speed, watches_change;
+    bool watches_coordinate, watches_speed, watches_change;
     uint32_t record_slots;
     uint64_t seed;
 } setup;
@@ -141,7 +141,7 @@ static void fill(arena *a, const setup *s) {
         const bool is_empty = i % STRIDE >= SLOTS || (a->x[i % STRIDE] == 0 && a->vx[i % STRIDE] == 0);
         a->kept[i] = is_empty || s->keeps ? 0 : random_float(&seed, -5, 5);
     }
-    a->watch = (mspringi_watch){{0}, {0}, {0}};
+    a->watch = (mspringi_extrema_lanes){{0}, {0}, {0}};
     a->extrema = (mspringi_extrema){0, 0, 0};
     for (uint32_t i = 0; i < CARRY; i++) {
         // Only where there are particles: the row below has no spring to an empty slot.
@@ -206,9 +206,9 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_extre
         .gravity_h_x = 0.015f,
         .gravity_h_y = -0.098f,
         .keep = s->keeps ? a->kept : NULL,
-        .watch = s->watches_place || s->watches_speed || s->watches_change ? &a->watch : NULL,
+        .watch = s->watches_coordinate || s->watches_speed || s->watches_change ? &a->watch : NULL,
         .before = s->watches_change ? a->kept + 2 * (size_t)STRIDE : NULL,
-        .watches_place = s->watches_place,
+        .watches_coordinate = s->watches_coordinate,
         .watches_speed = s->watches_speed,
     };
     // The last particle's springs reach one slot further.
@@ -233,15 +233,15 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_extre
     kernel(&sweep, spans, count);
     // Which lane has seen what is a level's own business.
     a->extrema = extrema_of(&a->watch);
-    a->watch = (mspringi_watch){{0}, {0}, {0}};
+    a->watch = (mspringi_extrema_lanes){{0}, {0}, {0}};
 }
 
 /// What a watch has to see of a row that has been moved.
 static mspringi_extrema expected_extrema(const arena *a, const setup *s) {
     mspringi_extrema extrema = {0, 0, 0};
     for (uint32_t i = FIRST * W; i < (FIRST + s->blocks) * W; i++) {
-        if (s->watches_place) {
-            extrema.place = fmaxf(extrema.place, fmaxf(fabsf(a->x[i]), fabsf(a->y[i])));
+        if (s->watches_coordinate) {
+            extrema.coordinate = fmaxf(extrema.coordinate, fmaxf(fabsf(a->x[i]), fabsf(a->y[i])));
         }
         if (s->watches_speed) {
             extrema.speed = fmaxf(extrema.speed, fmaxf(fabsf(a->vx[i]), fabsf(a->vy[i])));
@@ -318,7 +318,7 @@ static void compare_all(mspringi_row_kind kind, uint32_t parts, uint32_t record_
                     .split = (variant & 4) && blocks > 1 ? 1 + live % (blocks - 1) : 0,
                     .forced = forced,
                     .keeps = live % 3 == 1,
-                    .watches_place = live % 4 == 1 || variant % 5 == 1,
+                    .watches_coordinate = live % 4 == 1 || variant % 5 == 1,
                     .watches_speed = live % 3 == 2 || variant % 3 == 2,
                     .watches_change = live % 3 == 2 || variant % 3 == 1,
                     .record_slots = record_slots,
@@ -365,7 +365,7 @@ static void chain_kernels(void **state) {
 }
 
 // What three substeps do that leave nine tenths of a velocity.
-static const mspringi_glide glide = {
+static const mspringi_free_motion glide = {
     .keep = 0.729f, .gain = 2.439f, .reach = 0.02439f, .fall = 0.05049f, .drift = 0.03f};
 static int loose_forced;
 

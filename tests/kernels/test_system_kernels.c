@@ -46,7 +46,7 @@ typedef struct arena {
     GUARDED(double, force_carry, 2 * ROW * W);
     GUARDED(float, carry, 3 * ROW * W);
     GUARDED(float, sums, 4);
-    GUARDED(mspringi_tile_flight, flights, TILES);
+    GUARDED(mspringi_tile_motion, flights, TILES);
     GUARDED(double, bodies, 3 * TILES);
     GUARDED(double, results, 4 * TILES);
     uint32_t rests_of_block[2 * ROW];
@@ -167,7 +167,7 @@ static void fill(arena *a, uint32_t live, uint32_t parts, bool has_above, uint64
         a->bodies[i] = support_random_between(&seed, -1, 1);
     }
     for (uint32_t i = 0; i < TILES; i++) {
-        a->flights[i] = (mspringi_tile_flight){
+        a->flights[i] = (mspringi_tile_motion){
             1, 2, 0.5f, 0.25f, 0.125f, random_float(&seed, -1, 1), 0.1f, 0.2f, -0.01f, random_float(&seed, -1, 1)};
     }
     memset(a->sums, 0, sizeof a->sums);
@@ -306,7 +306,7 @@ static void run_assemble(arena *a, const setup *s, const mspringi_system_kernels
     const bool damped = s->parts > MSPRINGI_DAMPING;
     (s->variant == 0   ? k->assemble_lattice
      : s->variant == 1 ? k->assemble_chain
-                       : k->hand_on_forces)[damped](&system, spans, count);
+                       : k->carry_forces)[damped](&system, spans, count);
 }
 
 /// Nothing is in the quarters that a span leaves out in front; wide vectors go over them all the same.
@@ -329,7 +329,7 @@ static void run_multiply(arena *a, const setup *s, const mspringi_system_kernels
     const uint32_t count = spans_of(s, spans);
     clear_idle(a, s);
     if (s->variant == 2) {
-        k->hand_on_product(&system, spans, count, n.direction_x, n.direction_y);
+        k->carry_product(&system, spans, count, n.direction_x, n.direction_y);
         return;
     }
     a->sums[0] = (s->variant == 0 ? k->multiply_lattice : k->multiply_chain)(
@@ -392,8 +392,8 @@ static void what_is_handed_on(void **state) {
 
 /* ----------------------------------------------------------------------------------------------------- by slot */
 
-static mspringi_flight flight_of(arena *a) {
-    return (mspringi_flight){
+static mspringi_prediction flight_of(arena *a) {
+    return (mspringi_prediction){
         .x = a->by_slot[SOLUTION_X],
         .y = a->by_slot[SOLUTION_Y],
         .vx = a->by_slot[VX],
@@ -421,7 +421,7 @@ static mspringi_flight flight_of(arena *a) {
 static void run_by_slot(arena *a, const setup *s, const mspringi_system_kernels *k) {
     const size_t first = s->first * W, end = first + s->blocks * W;
     const mspringi_system system = system_of(a, 2);
-    const mspringi_flight flight = flight_of(a);
+    const mspringi_prediction flight = flight_of(a);
     mspringi_outside outside = {
         .mass = a->by_slot[MASS],
         .force = s->variant & 1 ? a->by_slot[FORCE_X] : NULL,
@@ -438,7 +438,7 @@ static void run_by_slot(arena *a, const setup *s, const mspringi_system_kernels 
     };
     // With the history written to other arrays and to where it was.
     const bool apart = s->variant & 4;
-    mspringi_landing landing = {
+    mspringi_correction landing = {
         .predicted = a->predicted_x,
         .start = a->by_slot[VX],
         .inverse_mass = a->by_slot[INVERSE_MASS],
@@ -455,11 +455,11 @@ static void run_by_slot(arena *a, const setup *s, const mspringi_system_kernels 
         .h = 0.015f,
         .rate = 90,
     };
-    k->weigh(a->by_slot[INVERSE_MASS], 3, a->by_slot[MASS], first, end);
+    k->scale_masses(a->by_slot[INVERSE_MASS], 3, a->by_slot[MASS], first, end);
     k->predict(&flight, first, end);
     k->add_outside(&outside, a->by_slot[RESIDUAL_X], first, end);
     k->invert(&system, first, end);
-    k->land[s->variant % MSPRINGI_REMEMBERS](&landing, first, end);
+    k->correct[s->variant % MSPRINGI_HISTORY_KINDS](&landing, first, end);
 }
 
 static void passes_by_slot(void **state) {
@@ -573,7 +573,7 @@ static void elastic(void **state) {
 
 static void run_by_parts(arena *a, const setup *s, const mspringi_system_kernels *k) {
     const mspringi_iterate n = iterate_of(a);
-    const mspringi_flight flight = flight_of(a);
+    const mspringi_prediction flight = flight_of(a);
     const size_t count = s->blocks < a->part_count ? s->blocks : a->part_count;
     double bodies[TILES][3];
     memcpy(bodies, a->bodies, sizeof bodies);
@@ -589,19 +589,19 @@ static void run_by_parts(arena *a, const setup *s, const mspringi_system_kernels
         k->inertia_of_tile(&n, a->by_slot[XX], own, own_count, a->results + (size_t)2 * tile);
         if (own_count > 0 && s->variant == 0) {
             // Masses of no weight would make infinities, whose signs are the compilers' own.
-            mspringi_flight heavy = flight;
+            mspringi_prediction heavy = flight;
             heavy.mass = a->by_slot[XX];
-            k->aim_tile(&heavy, own, own_count, &a->flights[tile]);
+            k->find_tile_motion(&heavy, own, own_count, &a->flights[tile]);
         }
     }
-    k->fly(&flight, a->parts, count, a->flights);
-    k->turn[s->variant](&n, a->parts, count, (const double(*)[3])bodies, 0.6f);
+    k->rotate_tiles(&flight, a->parts, count, a->flights);
+    k->update_search[s->variant](&n, a->parts, count, (const double(*)[3])bodies, 0.6f);
 }
 
 static void passes_by_part(void **state) {
     (void)state;
     for (uint32_t count = 0; count <= PARTS; count += count < 8 ? 1 : 8) {
-        for (int variant = 0; variant < MSPRINGI_TURNS; variant++) {
+        for (int variant = 0; variant < MSPRINGI_SEARCH_UPDATES; variant++) {
             for (uint64_t seed = 0; seed < ROUNDS(20); seed++) {
                 const setup s = {.blocks = count, .variant = variant, .parts = 2, .live = W, .seed = seed};
                 compare("by part", &s, run_by_parts, count > 0);

@@ -51,9 +51,9 @@ typedef struct arena {
     float inverse_mass[SLOTS], force_x[SLOTS], force_y[SLOTS];
     float records[GROUPS * RUNGS * 3 * W];
     uint32_t neighbour[GROUPS * RUNGS * W];
-    uint32_t first_rung[GROUPS + 1];
-    uint8_t is_upright[GROUPS];
-    mspringi_web web;
+    uint32_t first_slice_column[GROUPS + 1];
+    uint8_t is_interleaved[GROUPS];
+    mspringi_sell irregular;
 } arena;
 
 static void check_canaries(const arena *a) {
@@ -84,13 +84,14 @@ static void fill_web(arena *a, const setup *s, uint64_t *seed) {
     const uint32_t groups = s->own + s->attached, nodes = groups * W;
     memset(a->records, 0, sizeof a->records);
     memset(a->neighbour, 0, sizeof a->neighbour);
-    memset(a->first_rung, 0, sizeof a->first_rung);
-    memset(a->is_upright, 0, sizeof a->is_upright);
+    memset(a->first_slice_column, 0, sizeof a->first_slice_column);
+    memset(a->is_interleaved, 0, sizeof a->is_interleaved);
     for (uint32_t group = 0; group < groups; group++) {
         const uint32_t rungs = (uint32_t)(support_random(seed) % (RUNGS + 1));
-        a->first_rung[group + 1] = a->first_rung[group] + rungs;
-        a->is_upright[group] = s->stands && group + 1 < s->own && rungs > 0 && support_random(seed) % 4 > 0;
-        for (uint32_t place = a->first_rung[group] * W; place < a->first_rung[group + 1] * W; place++) {
+        a->first_slice_column[group + 1] = a->first_slice_column[group] + rungs;
+        a->is_interleaved[group] = s->stands && group + 1 < s->own && rungs > 0 && support_random(seed) % 4 > 0;
+        for (uint32_t place = a->first_slice_column[group] * W; place < a->first_slice_column[group + 1] * W;
+             place++) {
             const uint32_t lane = place % W, node = group * W + lane;
             float *record = a->records + (size_t)(place / W) * s->parts * W + lane;
             a->neighbour[place] = node;
@@ -105,12 +106,12 @@ static void fill_web(arena *a, const setup *s, uint64_t *seed) {
             }
         }
     }
-    a->web = (mspringi_web){.own_count = s->own * W,
-                            .attached_count = s->attached * W,
-                            .group_count = groups,
-                            .first_rung = a->first_rung,
-                            .neighbour = a->neighbour,
-                            .is_upright = s->stands ? a->is_upright : NULL};
+    a->irregular = (mspringi_sell){.own_count = s->own * W,
+                                   .attached_count = s->attached * W,
+                                   .slice_count = groups,
+                                   .first_slice_column = a->first_slice_column,
+                                   .neighbour = a->neighbour,
+                                   .is_interleaved = s->stands ? a->is_interleaved : NULL};
 }
 
 static arena *arena_new(const setup *s) {
@@ -160,8 +161,8 @@ static mspringi_sweep sweep_of(arena *a, const setup *s) {
         .inverse_mass = a->inverse_mass,
         .force_x = s->forced ? a->force_x : NULL,
         .force_y = s->forced ? a->force_y : NULL,
-        .web = &a->web,
-        .web_springs = a->records,
+        .irregular = &a->irregular,
+        .irregular_springs = a->records,
         .gathered = a->gathered,
         .parts = s->parts,
         .h = 0.01f,
@@ -182,14 +183,14 @@ static void run(arena *a, const setup *s, const mspringi_kernels *with) {
         mspringi_sweep half = sweep;
         half.x = sweep.vx;
         half.y = sweep.vy;
-        with->pack(&half, FIRST, s->own, a->gathered + mspringi_gathered_half(&a->web));
+        with->pack(&half, FIRST, s->own, a->gathered + mspringi_gathered_half(&a->irregular));
         half = sweep;
         half.vx = sweep.low_x;
         half.vy = sweep.low_y;
         with->pack(&half, FIRST, s->own, a->gathered);
     }
-    attached(&sweep, 0, a->web.attached_count, a->attached_x, a->attached_y);
-    (s->precise ? with->precise.web : with->web[damped][s->forced])(&sweep, &span, 1);
+    attached(&sweep, 0, a->irregular.attached_count, a->attached_x, a->attached_y);
+    (s->precise ? with->precise.irregular : with->irregular[damped][s->forced])(&sweep, &span, 1);
 }
 
 static void web_kernels(void **state) {
@@ -208,7 +209,7 @@ static void web_kernels(void **state) {
         check_canaries(mine);
         check_canaries(reference);
         // The web holds pointers, each run's own; all else is equal.
-        mine->web = reference->web = (mspringi_web){0};
+        mine->irregular = reference->irregular = (mspringi_sell){0};
         if (memcmp(mine, reference, sizeof *mine) != 0) {
             print_error("own %u, attached %u, parts %u, forced %d, precise %d, seed %u\n", s.own, s.attached,
                         s.parts, s.forced, s.precise, variant);

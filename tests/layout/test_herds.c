@@ -126,10 +126,10 @@ static mspring_network *compact_network(const recipe *made, const mspring_networ
 
 static uint32_t groups_of(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    if (t->herd_strip == MSPRING_NONE) {
+    if (t->bundle_strip == MSPRING_NONE) {
         return 0;
     }
-    const mspringi_row *row = &t->rows[t->strips[t->herd_strip].first_row];
+    const mspringi_row *row = &t->rows[t->strips[t->bundle_strip].first_row];
     const mspringi_span *first = &t->spans[row->first_span], *last = first + row->span_count - 1;
     return (last->end_slot - first->first_slot) / LANES;
 }
@@ -153,11 +153,11 @@ static void rungs_of_a_group_lead_to_one_group(void **state) {
     recipe made = make_trees(37, 2);
     const mspring_network_def def = support_def(-9.8f, 4);
     mspring_network *network = compact_network(&made, &def);
-    const mspringi_web *web = &network->topology.web;
+    const mspringi_sell *web = &network->topology.irregular;
     const uint32_t end = web->own_count / LANES;
     uint32_t springs = 0;
     for (uint32_t group = end - groups_of(network); group < end; group++) {
-        for (uint32_t rung = web->first_rung[group]; rung < web->first_rung[group + 1]; rung++) {
+        for (uint32_t rung = web->first_slice_column[group]; rung < web->first_slice_column[group + 1]; rung++) {
             const uint32_t *neighbour = web->neighbour + rung * LANES, other = neighbour[0] / LANES;
             for (uint32_t lane = 0; lane < LANES; lane++) {
                 assert_int_equal(neighbour[lane], other * LANES + lane);
@@ -167,7 +167,7 @@ static void rungs_of_a_group_lead_to_one_group(void **state) {
         }
     }
     assert_true(springs > 0);
-    assert_int_equal(springs, network->topology.herd_springs);
+    assert_int_equal(springs, network->topology.bundle_springs);
     mspring_network_destroy(network);
     recipe_free(&made);
 }
@@ -309,7 +309,7 @@ static void they_move_as_the_reference(void **state) {
 typedef struct way {
     mspring_simd level;
     uint32_t workers;
-    bool in_web; ///< the herds are swept as any web
+    bool in_irregular; ///< the herds are swept as any web
     bool has_floor, has_forces, has_dampers;
 } way;
 
@@ -332,8 +332,8 @@ static uint64_t hash_of(recipe *made, way with) {
     }
     mspring_network *network = compact_network(made, &def);
     assert_true(groups_of(network) > 0);
-    if (with.in_web) {
-        network->topology.herd_strip = MSPRING_NONE;
+    if (with.in_irregular) {
+        network->topology.bundle_strip = MSPRING_NONE;
     }
     if (with.has_floor) {
         add_floor(network);
@@ -359,9 +359,9 @@ static void any_way_gives_the_same_bits(void **state) {
                     .has_forces = scene >> 1 & 1,
                     .has_dampers = scene >> 2 & 1};
         with.workers = 1;
-        with.in_web = true;
+        with.in_irregular = true;
         const uint64_t expected = hash_of(&made, with);
-        with.in_web = false;
+        with.in_irregular = false;
         mspring_simd levels[MSPRING_SIMD_AVX512];
         const uint32_t count = support_levels(levels);
         for (uint32_t i = 0; i < count; i++) {
@@ -513,8 +513,8 @@ static void live_as(recipe *made, way with, uint64_t seed, uint64_t *hashes) {
         for (uint64_t i = support_random(&seed) % LIFE_EDITS; i > 0; i--) {
             edit(network, made->spring_count, &seed);
         }
-        if (with.in_web) {
-            network->topology.herd_strip = MSPRING_NONE;
+        if (with.in_irregular) {
+            network->topology.bundle_strip = MSPRING_NONE;
         }
         support_steps(network, 1, 1.0 / 64);
         hashes[step] = support_hash(network);
@@ -527,7 +527,7 @@ static void any_way_lives_the_same(void **state) {
     for (uint64_t life = 0; life < MOST_LIVES; life++) {
         recipe made = make_trees(24 + 8 * (uint32_t)(life % 3), life);
         uint64_t expected[LIFE_STEPS], hashes[LIFE_STEPS];
-        const way scalar_web = {.level = MSPRING_SIMD_SCALAR, .workers = 1, .in_web = true};
+        const way scalar_web = {.level = MSPRING_SIMD_SCALAR, .workers = 1, .in_irregular = true};
         live_as(&made, scalar_web, life, expected);
         mspring_simd levels[MSPRING_SIMD_AVX512];
         const uint32_t count = support_levels(levels);

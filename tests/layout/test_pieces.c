@@ -34,7 +34,7 @@ static laid_out lay_out_for(const mspring_builder *builder, uint32_t workers, ui
                                       .spring_end = (uint32_t)builder->spring_count + 9};
     laid_out out = {.parts = 0};
     mspringi_message message = {0};
-    mspringi_assembly *begun = NULL;
+    mspringi_layout_builder *begun = NULL;
     check_ok(mspringi_topology_begin(builder, &reserve, false, true, workers, lanes, memory,
                                      &message, &begun));
     for (bool is_done = false; !is_done; out.parts++) {
@@ -47,22 +47,22 @@ static laid_out lay_out_for(const mspring_builder *builder, uint32_t workers, ui
 static void check_same(const laid_out *a, const laid_out *b) {
     const mspringi_topology *s = &a->topology, *t = &b->topology;
     assert_int_equal(s->block_count, t->block_count);
-    assert_int_equal(s->chain_places, t->chain_places);
-    assert_int_equal(s->leftover_count, t->leftover_count);
+    assert_int_equal(s->chain_spring_slots, t->chain_spring_slots);
+    assert_int_equal(s->irregular_count, t->irregular_count);
     assert_int_equal(s->span_count, t->span_count);
     assert_int_equal(s->row_count, t->row_count);
     assert_int_equal(s->strip_count, t->strip_count);
     assert_int_equal(s->skew, t->skew);
     assert_int_equal(s->empty_run_count, t->empty_run_count);
-    assert_memory_equal(s->place_of_spring, t->place_of_spring, s->spring_count * sizeof *s->place_of_spring);
+    assert_memory_equal(s->slot_of_spring, t->slot_of_spring, s->spring_count * sizeof *s->slot_of_spring);
     assert_memory_equal(s->slot_of_particle, t->slot_of_particle,
                         s->reserve.particle_end * sizeof *s->slot_of_particle);
     assert_memory_equal(s->particle_of_slot, t->particle_of_slot,
                         (size_t)s->block_count * MSPRINGI_WIDTH * sizeof *s->particle_of_slot);
     assert_memory_equal(s->up_of_block, t->up_of_block, s->lattice_blocks * sizeof *s->up_of_block);
     assert_memory_equal(s->grid_of_row, t->grid_of_row, s->lattice_rows * sizeof *s->grid_of_row);
-    assert_memory_equal(s->leftover_a, t->leftover_a, s->leftover_count * sizeof *s->leftover_a);
-    assert_memory_equal(s->leftover_b, t->leftover_b, s->leftover_count * sizeof *s->leftover_b);
+    assert_memory_equal(s->irregular_a, t->irregular_a, s->irregular_count * sizeof *s->irregular_a);
+    assert_memory_equal(s->irregular_b, t->irregular_b, s->irregular_count * sizeof *s->irregular_b);
     for (uint32_t i = 0; i < s->span_count; i++) {
         assert_int_equal(s->spans[i].first_slot, t->spans[i].first_slot);
         assert_int_equal(s->spans[i].end_slot, t->spans[i].end_slot);
@@ -71,12 +71,12 @@ static void check_same(const laid_out *a, const laid_out *b) {
     }
     assert_memory_equal(s->strips, t->strips, s->strip_count * sizeof *s->strips);
     assert_memory_equal(s->empty_runs, t->empty_runs, s->empty_run_count * sizeof *s->empty_runs);
-    assert_int_equal(s->web.group_count, t->web.group_count);
-    assert_memory_equal(s->web.attached_slot, t->web.attached_slot,
-                        s->web.attached_count * sizeof *s->web.attached_slot);
-    assert_memory_equal(s->web.entry, t->web.entry, 2 * (size_t)s->leftover_count * sizeof *s->web.entry);
-    assert_memory_equal(s->web.neighbour, t->web.neighbour,
-                        (size_t)s->web.first_rung[s->web.group_count] * MSPRINGI_WIDTH * sizeof *s->web.neighbour);
+    assert_int_equal(s->irregular.slice_count, t->irregular.slice_count);
+    assert_memory_equal(s->irregular.attached_slot, t->irregular.attached_slot,
+                        s->irregular.attached_count * sizeof *s->irregular.attached_slot);
+    assert_memory_equal(s->irregular.entry, t->irregular.entry, 2 * (size_t)s->irregular_count * sizeof *s->irregular.entry);
+    assert_memory_equal(s->irregular.neighbour, t->irregular.neighbour,
+                        (size_t)s->irregular.first_slice_column[s->irregular.slice_count] * MSPRINGI_WIDTH * sizeof *s->irregular.neighbour);
 }
 
 /// When it is done must not depend on the number of workers, or networks that are compacted between steps on one
@@ -112,8 +112,8 @@ static void mark_busy(const laid_out *plan, uint8_t *busy) {
         busy[slot] = t->particle_of_slot[slot] != MSPRING_NONE;
     }
     for (uint32_t s = 0; s < t->spring_count; s++) {
-        const mspringi_place place = t->place_of_spring[s];
-        if (place < t->lattice_places) {
+        const mspringi_spring_slot place = t->slot_of_spring[s];
+        if (place < t->lattice_spring_slots) {
             const uint32_t row = place / MSPRINGI_WIDTH, direction = row % MSPRINGI_DIRECTIONS;
             const uint32_t slot =
                 (t->lattice_first + row / MSPRINGI_DIRECTIONS) * MSPRINGI_WIDTH + place % MSPRINGI_WIDTH;
@@ -126,10 +126,10 @@ static void mark_busy(const laid_out *plan, uint8_t *busy) {
 /// Registers of the lattices that hold nothing are not swept, all others once, at the places they have anyway.
 static void check_tight(const laid_out *plan, uint32_t lanes, const uint8_t *busy, uint8_t *swept) {
     const mspringi_topology *t = &plan->topology;
-    for (uint32_t s = 0; s < t->tightened_count; s++) {
+    for (uint32_t s = 0; s < t->trimmed_count; s++) {
         const mspringi_span *span = &t->spans[s];
-        for (uint32_t i = t->first_tight[s]; i < t->first_tight[s + 1]; i++) {
-            const mspringi_span *tight = &t->tight_spans[i];
+        for (uint32_t i = t->first_trimmed[s]; i < t->first_trimmed[s + 1]; i++) {
+            const mspringi_span *tight = &t->trimmed_spans[i];
             assert_true(tight->first_slot >= span->first_slot && tight->end_slot <= span->end_slot);
             assert_int_equal(tight->up, span->up);
             assert_int_equal(tight->carry, span->carry);
@@ -158,7 +158,7 @@ static void empty_registers_are_left_out(void **state) {
     mspringi_message message = {0};
     check_ok(mspringi_memory_init(&memory, NULL, &message));
     const laid_out whole = lay_out_for(builder, 1, MSPRINGI_WIDTH, &memory);
-    assert_null(whole.topology.tight_spans);
+    assert_null(whole.topology.trimmed_spans);
     const size_t slots = (size_t)whole.topology.block_count * MSPRINGI_WIDTH;
     uint8_t *busy = calloc(slots, 1);
     assert_non_null(busy);
@@ -169,7 +169,7 @@ static void empty_registers_are_left_out(void **state) {
         assert_non_null(swept);
         check_same(&whole, &plan);
         assert_int_equal(plan.parts, whole.parts);
-        assert_non_null(plan.topology.tight_spans);
+        assert_non_null(plan.topology.trimmed_spans);
         check_tight(&plan, lanes, busy, swept);
         free(swept);
     }

@@ -52,7 +52,7 @@ static robot add_robot(mspring_builder *b, double x) {
 typedef struct way {
     mspring_simd level;
     uint32_t workers, robots;
-    bool in_web; ///< the herd is swept as any web
+    bool in_irregular; ///< the herd is swept as any web
     bool has_contact;
     uint32_t changes; ///< of an actuator in a step
 } way;
@@ -74,9 +74,9 @@ static mspring_network *network_of(way with) {
     def.simd_level = with.level;
     def.worker_count = with.workers;
     mspring_network *network = support_network(builder, &def);
-    assert_int_equal(network->topology.herd_strip != MSPRING_NONE, with.robots == ROBOTS);
-    if (with.in_web) {
-        network->topology.herd_strip = MSPRING_NONE;
+    assert_int_equal(network->topology.bundle_strip != MSPRING_NONE, with.robots == ROBOTS);
+    if (with.in_irregular) {
+        network->topology.bundle_strip = MSPRING_NONE;
     }
     mspring_floor_def floor;
     const double plane[4] = {0, 0, 0, 1};
@@ -132,12 +132,12 @@ static void check_ways(bool has_contact, uint32_t changes) {
     way with = {.level = MSPRING_SIMD_SCALAR,
                 .workers = 1,
                 .robots = ROBOTS,
-                .in_web = true,
+                .in_irregular = true,
                 .has_contact = has_contact,
                 .changes = changes};
     const uint64_t expected = hash_after_steps(with, &touching);
     assert_int_equal(touching > 100, has_contact); // or the test does not show what it should
-    with.in_web = false;
+    with.in_irregular = false;
     for (uint32_t i = 0; i < count; i++) {
         with.level = levels[i];
         for (with.workers = 1; with.workers <= 3; with.workers += 2) {

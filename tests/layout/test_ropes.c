@@ -123,10 +123,10 @@ static void live(mspring_network *network, const rigging *r, uint32_t first, uin
 }
 
 static uint32_t upright_groups(const mspring_network *network) {
-    const mspringi_web *web = &network->topology.web;
+    const mspringi_sell *web = &network->topology.irregular;
     uint32_t count = 0;
-    for (uint32_t group = 0; web->is_upright && group < web->group_count; group++) {
-        count += web->is_upright[group];
+    for (uint32_t group = 0; web->is_interleaved && group < web->slice_count; group++) {
+        count += web->is_interleaved[group];
     }
     return count;
 }
@@ -156,7 +156,7 @@ static uint32_t strip_of(const mspringi_topology *t, uint32_t slot) {
         const mspringi_row *first = &t->rows[t->strips[s].first_row], *last = first + t->strips[s].row_count - 1;
         const mspringi_span *begin = &t->spans[first->first_span];
         const mspringi_span *end = &t->spans[last->first_span + last->span_count - 1];
-        const uint32_t home = t->strips[s].home_span;
+        const uint32_t home = t->strips[s].assigned_span;
         if ((slot >= begin->first_slot && slot < end->end_slot) ||
             (home != MSPRING_NONE && slot >= t->spans[home].first_slot && slot < t->spans[home].end_slot)) {
             return s;
@@ -172,17 +172,17 @@ static void ropes_stand_within_the_skew(void **state) {
     mspring_network *network = make(&r.made, &f);
     const mspringi_topology *t = &network->topology;
     uint32_t upright = 0;
-    for (uint32_t i = 0; i < t->woven_count; i++) {
-        const uint32_t a = strip_of(t, t->leftover_a[i]), b = strip_of(t, t->leftover_b[i]);
+    for (uint32_t i = 0; i < t->laid_out_count; i++) {
+        const uint32_t a = strip_of(t, t->irregular_a[i]), b = strip_of(t, t->irregular_b[i]);
         assert_true(a < t->wavefront_strips && b < t->wavefront_strips);
         assert_true((a > b ? a - b : b - a) <= t->skew);
-        if (t->web.entry[2 * i] == t->web.entry[2 * i + 1]) {
+        if (t->irregular.entry[2 * i] == t->irregular.entry[2 * i + 1]) {
             assert_int_equal(a, b);
             upright++;
         }
     }
     // In pieces of four, three springs of four could; the others climb from strip to strip, or there are too few.
-    assert_true(upright > t->woven_count / 3);
+    assert_true(upright > t->laid_out_count / 3);
     assert_int_equal(upright, 16 * upright_groups(network));
     mspring_network_destroy(network);
     recipe_free(&r.made);

@@ -9,7 +9,7 @@
 
 #include "recipe.h"
 #include "snapshots.h"
-#include "store/format.h"
+#include "store/snapshot_format.h"
 #include "support.h"
 
 /* ------------------------------------------------------------------------------------------------------ values */

@@ -10,7 +10,7 @@
 
 #include "recipe.h"
 #include "snapshots.h"
-#include "store/format.h"
+#include "store/snapshot_format.h"
 #include "support.h"
 
 static void damage_is_found(void **state) {

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "growth.h"
-#include "store/format.h"
+#include "store/snapshot_format.h"
 #include "support.h"
 
 typedef struct saved {

@@ -11,7 +11,7 @@
 #include "allocator.h"
 #include "recipe.h"
 #include "snapshots.h"
-#include "store/format.h"
+#include "store/snapshot_format.h"
 #include "support.h"
 
 enum { FRAMES = ROUNDS(50) + 10, BACK = 8 };

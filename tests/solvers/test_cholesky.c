@@ -10,7 +10,7 @@
 
 #include "allocator.h"
 #include "level.h"
-#include "solvers/sparse/plan.h"
+#include "solvers/sparse/symbolic.h"
 #include "support.h"
 
 static mspring_simd tested_level;
@@ -193,14 +193,14 @@ static void solve_at_once(const problem *p, mspringi_cholesky_float *single, msp
 static double solve_sparse(const problem *p, mspring_simd level, solution *s, solution *at_once) {
     mspringi_memory memory;
     mspringi_message message;
-    mspringi_cholesky_plan plan = {0};
+    mspringi_cholesky_symbolic plan = {0};
     mspringi_cholesky_float single = {0};
     mspringi_cholesky_double twice = {0};
     const mspringi_cholesky_graph graph = graph_of(p);
     const mspringi_cholesky_matrix_float matrix_float = float_matrix(p);
     const mspringi_cholesky_matrix_double matrix_double = double_matrix(p);
     check_ok(mspringi_memory_init(&memory, NULL, &message));
-    check_ok(mspringi_cholesky_plan_create(&plan, &graph, &memory, &message));
+    check_ok(mspringi_cholesky_symbolic_create(&plan, &graph, &memory, &message));
     check_ok(mspringi_cholesky_float_create(&single, &plan, level, &memory, &message));
     check_ok(mspringi_cholesky_double_create(&twice, &plan, level, &memory, &message));
     assert_int_equal(mspringi_cholesky_float_factor(&single, &matrix_float), MSPRING_NONE);
@@ -213,7 +213,7 @@ static double solve_sparse(const problem *p, mspring_simd level, solution *s, so
     const double products = plan.multiply_adds;
     mspringi_cholesky_float_destroy(&single, &memory);
     mspringi_cholesky_double_destroy(&twice, &memory);
-    mspringi_cholesky_plan_destroy(&plan, &memory);
+    mspringi_cholesky_symbolic_destroy(&plan, &memory);
     assert_int_equal(memory.used, 0);
     return products;
 }
@@ -355,12 +355,12 @@ static void bands(void **state) {
 static void check_groups(const problem *p, uint32_t groups) {
     mspringi_memory memory;
     mspringi_message message;
-    mspringi_cholesky_plan plan = {0};
+    mspringi_cholesky_symbolic plan = {0};
     const mspringi_cholesky_graph graph = graph_of(p);
     check_ok(mspringi_memory_init(&memory, NULL, &message));
-    check_ok(mspringi_cholesky_plan_create(&plan, &graph, &memory, &message));
+    check_ok(mspringi_cholesky_symbolic_create(&plan, &graph, &memory, &message));
     assert_int_equal(plan.band_groups, groups);
-    mspringi_cholesky_plan_destroy(&plan, &memory);
+    mspringi_cholesky_symbolic_destroy(&plan, &memory);
 }
 
 // What is thin takes a band, whichever way it lies and however it is bent, and what is not takes none.
@@ -490,7 +490,7 @@ static void order_is_good(void **state) {
 typedef struct solver {
     mspringi_memory memory;
     mspringi_message message;
-    mspringi_cholesky_plan plan;
+    mspringi_cholesky_symbolic plan;
     mspringi_cholesky_float single;
     mspringi_cholesky_double twice;
 } solver;
@@ -499,7 +499,7 @@ static mspring_result try_solver(solver *made, const problem *p, const mspring_a
     const mspringi_cholesky_graph graph = graph_of(p);
     memset(made, 0, sizeof *made);
     check_ok(mspringi_memory_init(&made->memory, allocator, &made->message));
-    mspring_result result = mspringi_cholesky_plan_create(&made->plan, &graph, &made->memory, &made->message);
+    mspring_result result = mspringi_cholesky_symbolic_create(&made->plan, &graph, &made->memory, &made->message);
     if (result == MSPRING_OK) {
         result =
             mspringi_cholesky_float_create(&made->single, &made->plan, tested_level, &made->memory, &made->message);
@@ -514,7 +514,7 @@ static mspring_result try_solver(solver *made, const problem *p, const mspring_a
 static void free_solver(solver *made) {
     mspringi_cholesky_float_destroy(&made->single, &made->memory);
     mspringi_cholesky_double_destroy(&made->twice, &made->memory);
-    mspringi_cholesky_plan_destroy(&made->plan, &made->memory);
+    mspringi_cholesky_symbolic_destroy(&made->plan, &made->memory);
     assert_int_equal(made->memory.used, 0);
 }
 
@@ -604,11 +604,11 @@ static void too_large_is_predicted(void **state) {
         check_count(p);
         mspringi_memory memory;
         mspringi_message message;
-        mspringi_cholesky_plan plan;
+        mspringi_cholesky_symbolic plan;
         mspringi_cholesky_graph graph = graph_of(p);
         graph.most_numbers = 4;
         check_ok(mspringi_memory_init(&memory, NULL, &message));
-        const mspring_result result = mspringi_cholesky_plan_create(&plan, &graph, &memory, &message);
+        const mspring_result result = mspringi_cholesky_symbolic_create(&plan, &graph, &memory, &message);
         // Bands are as small as can be.
         if (result != MSPRING_OK) {
             assert_int_equal(result, MSPRING_ERROR_LIMIT);

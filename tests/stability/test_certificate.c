@@ -3,7 +3,7 @@
 /// games are.
 ///
 /// SPDX-License-Identifier: MIT
-#include "stability/border.h"
+#include "stability/stability_limit.h"
 #include "store/network.h"
 
 #include <math.h>
@@ -19,7 +19,7 @@
 
 /// Whether the bound says that substeps of h are stable in the network's shape.
 static bool is_below(mspring_network *network, double h) {
-    return mspringi_border_is_below(network, h, 4.0);
+    return mspringi_stability_limit_is_below(network, h, 4.0);
 }
 
 /// The longest substep that the bound allows, as a part of the border.

@@ -34,7 +34,7 @@ static void edit(mspring_network *network, const edits *which) {
 }
 
 /// Blocks that read a record which is not their own; whose it is knows how many do.
-static uint32_t blocks_that_share(const mspring_network *network, const mspringi_alike *alike) {
+static uint32_t blocks_that_share(const mspring_network *network, const mspringi_shared_records *alike) {
     uint32_t shared = 0, readers = 0;
     for (uint32_t b = 0; b < network->topology.lattice_blocks; b++) {
         shared += alike->of_block[b] != b;
@@ -47,7 +47,7 @@ static uint32_t blocks_that_share(const mspring_network *network, const mspringi
 }
 
 static uint32_t shared_blocks(const mspring_network *network) {
-    return blocks_that_share(network, &network->alike);
+    return blocks_that_share(network, &network->shared_records);
 }
 
 /// The state after some steps of a network that is edited before or after its first step, which does not count.
@@ -166,14 +166,14 @@ static void a_copy_shares_too(void **state) {
 static uint32_t yielding_blocks_that_share(const mspring_network *network) {
     enum { PLACES = MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH };
     const mspringi_plastic *p = &network->plastic;
-    const float *const arrays[] = {network->rests.lengths, p->low, p->high, p->flow_low, p->flow_high};
+    const float *const arrays[] = {network->rest_lengths.lengths, p->low, p->high, p->flow_low, p->flow_high};
     for (size_t b = 0; b < network->topology.lattice_blocks; b++) {
         for (size_t i = 0; i < COUNT_OF(arrays); i++) {
-            assert_memory_equal(arrays[i] + b * PLACES, arrays[i] + p->alike.of_block[b] * (size_t)PLACES,
+            assert_memory_equal(arrays[i] + b * PLACES, arrays[i] + p->shared_records.of_block[b] * (size_t)PLACES,
                                 PLACES * sizeof(float));
         }
     }
-    return blocks_that_share(network, &p->alike);
+    return blocks_that_share(network, &p->shared_records);
 }
 
 /// Strike a particle so hard that its springs flow. Returns how many were bent.

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "store/format.h"
+#include "store/snapshot_format.h"
 #include "support.h"
 
 enum { MOST = 400 };

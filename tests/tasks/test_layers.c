@@ -101,7 +101,7 @@ typedef struct manner {
 /// Springs join particles of one layer or of two that follow each other, and each has its particles.
 static void check_layers(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    const uint32_t first_block = t->web_first + t->web_blocks - t->layer_blocks[t->layer_count];
+    const uint32_t first_block = t->irregular_first + t->irregular_blocks - t->layer_blocks[t->layer_count];
     uint32_t *layer_of_block = calloc(t->block_count, sizeof *layer_of_block);
     assert_non_null(layer_of_block);
     for (uint32_t layer = 0; layer < t->layer_count; layer++) {
@@ -110,9 +110,9 @@ static void check_layers(const mspring_network *network) {
             layer_of_block[first_block + i] = layer + 1;
         }
     }
-    for (uint32_t i = 0; i < t->leftover_count; i++) {
-        const int64_t a = layer_of_block[t->leftover_a[i] / MSPRINGI_WIDTH];
-        const int64_t b = layer_of_block[t->leftover_b[i] / MSPRINGI_WIDTH];
+    for (uint32_t i = 0; i < t->irregular_count; i++) {
+        const int64_t a = layer_of_block[t->irregular_a[i] / MSPRINGI_WIDTH];
+        const int64_t b = layer_of_block[t->irregular_b[i] / MSPRINGI_WIDTH];
         assert_true((a == 0) == (b == 0) && a - b <= 1 && b - a <= 1);
     }
     free(layer_of_block);
@@ -215,8 +215,8 @@ static void rungs_of_layers_are_filled(void **state) {
     mspring_network *network = recipe_network(&made, NULL);
     const mspringi_topology *t = &network->topology;
     assert_true(t->layer_count > 20);
-    const double places = (double)t->web.first_rung[t->web.group_count] * MSPRINGI_WIDTH;
-    const double filled = 2.0 * t->woven_count / places;
+    const double places = (double)t->irregular.first_slice_column[t->irregular.slice_count] * MSPRINGI_WIDTH;
+    const double filled = 2.0 * t->laid_out_count / places;
     print_message("%.3f of the places of rungs are filled\n", filled);
     assert_true(filled > 0.96);
     mspring_network_destroy(network);

@@ -92,7 +92,7 @@ static uint64_t hash_of_shared_steps(mspring_network *network) {
     uint64_t hash = support_hash(network);
     for (int step = 0; step < ROUNDS(3); step++) {
         check_ok(mspring_network_apply_force(network, 1000, 50, 100));
-        implicit_of(network)->alone = 0;
+        implicit_of(network)->solo_substeps = 0;
         support_steps(network, 1, 0.02);
         hash = hash * 31 + support_hash(network);
     }
@@ -149,11 +149,11 @@ static void workers_without_cores_are_left_alone(void **state) {
     def.worker_count = 2;
     mspring_network *shared = recipe_network(&made, &def);
     for (int step = 0; step < 4; step++) {
-        implicit_of(shared)->alone = step % 2 == 0 ? 0 : 3;
+        implicit_of(shared)->solo_substeps = step % 2 == 0 ? 0 : 3;
         support_steps(alone, 1, 0.02);
         support_steps(shared, 1, 0.02);
         assert_int_equal(support_hash(shared), support_hash(alone));
-        assert_true(step % 2 == 0 || implicit_of(shared)->alone == 2);
+        assert_true(step % 2 == 0 || implicit_of(shared)->solo_substeps == 2);
     }
     mspring_network_destroy(shared);
     mspring_network_destroy(alone);

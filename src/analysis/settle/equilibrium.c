@@ -48,7 +48,7 @@ bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count,
 
 void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory) {
     mspringi_cholesky_double_destroy(&statics->factor, memory);
-    mspringi_cholesky_plan_destroy(&statics->plan, memory);
+    mspringi_cholesky_symbolic_destroy(&statics->plan, memory);
     mspringi_free(memory, statics->fixed);
     mspringi_free(memory, statics->block);
     mspringi_free(memory, statics->spring_block);
@@ -67,7 +67,7 @@ mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd 
         .x = statics->start.x,
         .y = statics->start.y,
     };
-    const mspring_result result = mspringi_cholesky_plan_create(&statics->plan, &graph, memory, message);
+    const mspring_result result = mspringi_cholesky_symbolic_create(&statics->plan, &graph, memory, message);
     return result == MSPRING_OK
                ? mspringi_cholesky_double_create(&statics->factor, &statics->plan, level, memory, message)
                : result;

@@ -26,7 +26,7 @@ typedef struct mspringi_statics_springs {
     double *xx, *xy, *yy; ///< [edge_count] blocks of the stiffness matrix
 } mspringi_statics_springs;
 
-/// The areas that have a pressure, and the angles that have a torque (areas.c, angles.c).
+/// The areas that have a pressure, and the angles that have a torque (settle_areas.c, settle_angles.c).
 typedef struct mspringi_statics_areas {
     const mspringi_areas *of; ///< NULL: there are none
     uint32_t *sides;          ///< [corners] the spring of each side; of an angle the edges a b, b c, c a
@@ -50,7 +50,7 @@ typedef struct mspringi_statics {
     mspringi_watcher watcher; ///< asked before each iteration
     mspringi_statics_springs springs;
     mspringi_statics_areas areas;
-    mspringi_cholesky_plan plan;
+    mspringi_cholesky_symbolic plan;
     mspringi_cholesky_double factor;
 } mspringi_statics;
 

@@ -4,7 +4,7 @@
 
 #include "analysis/settle/equilibrium.h"
 #include "base/cpu.h"
-#include "base/forest.h"
+#include "base/union_find.h"
 #include "step/origin.h"
 #include "store/changed.h"
 #include "store/network.h"
@@ -71,12 +71,12 @@ static void join_parts(const mspringi_statics *statics, uint32_t *up) {
     for (uint32_t p = 0; p < statics->particle_count; ++p)
         up[p] = p;
     for (uint32_t i = 0; i < statics->springs.edge_count; ++i)
-        mspringi_forest_join(up, statics->springs.a[i], statics->springs.b[i]);
+        mspringi_union_find_join(up, statics->springs.a[i], statics->springs.b[i]);
 }
 
 static void sum_parts(const mspringi_statics *statics, uint32_t *up, part *parts) {
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
-        part *of = &parts[mspringi_forest_root(up, p)];
+        part *of = &parts[mspringi_union_find_root(up, p)];
         of->x += statics->outside.x[p];
         of->y += statics->outside.y[p];
         of->size += fabs(statics->outside.x[p]) + fabs(statics->outside.y[p]);
@@ -104,7 +104,7 @@ static mspring_result check_parts(mspringi_statics *statics, const mspring_settl
         sum_parts(statics, up, parts);
         *left_alone = 0;
         for (uint32_t p = 0; p < statics->particle_count && result == MSPRING_OK; ++p) {
-            const uint32_t lowest = mspringi_forest_root(up, p);
+            const uint32_t lowest = mspringi_union_find_root(up, p);
             if (!floats_away(&parts[lowest]))
                 continue;
             if (def->flags & MSPRING_SETTLE_LEAVE_FLOATING) {
@@ -161,22 +161,22 @@ static mspring_result check_rest(const mspringi_statics *statics, const mspringi
 static mspring_result check_yields(const mspringi_statics *statics, mspring_network *network) {
     const mspringi_plastic *p = &network->plastic;
     for (mspring_id spring = 0; p->yields && spring < network->topology.spring_count; ++spring) {
-        const mspringi_place place = mspringi_place_of(&network->topology, spring);
-        const mspringi_spring_values values = mspringi_place_get(network, place);
+        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
+        const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
         if (!(values.stiffness > 0.0f))
             continue;
         const uint32_t a = network->topology.particle_of_slot[values.base],
                        b = network->topology.particle_of_slot[values.tip];
         const double x = (statics->start.x[b] + statics->moved.x[b]) - (statics->start.x[a] + statics->moved.x[a]);
         const double y = (statics->start.y[b] + statics->moved.y[b]) - (statics->start.y[a] + statics->moved.y[a]);
-        const double rest = (double)values.rest_length, nominal = (double)p->nominal[place];
+        const double rest = (double)values.rest_length, nominal = (double)p->nominal[spring_slot];
         const double strain = (sqrt(x * x + y * y) - rest) / nominal,
-                     hardened = (double)p->hardening[place] * (rest - nominal) / nominal;
-        if (fabs(strain - hardened) > TOLERATED_YIELD * (double)p->yield_strain[place])
+                     hardened = (double)p->hardening[spring_slot] * (rest - nominal) / nominal;
+        if (fabs(strain - hardened) > TOLERATED_YIELD * (double)p->yield_strain[spring_slot])
             return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
                                  "at rest the strain of spring %u would be %g, so it would yield first (yield "
                                  "strain %g): let it come to rest in steps",
-                                 (unsigned)spring, strain, (double)p->yield_strain[place]);
+                                 (unsigned)spring, strain, (double)p->yield_strain[spring_slot]);
     }
     return MSPRING_OK;
 }
@@ -193,7 +193,7 @@ static double put_back(const mspringi_statics *statics, mspring_network *network
         network->state.vx[slot] = network->state.vy[slot] = 0.0f;
         farthest = fmax(farthest, sqrt(dx * dx + dy * dy));
     }
-    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
     mspringi_origin_follow(network);
     return farthest;
 }
@@ -278,7 +278,7 @@ mspring_result mspringi_settle_watched(mspring_network *network, const mspring_s
                                        mspring_settle_result *result, mspringi_watcher watcher) {
     mspring_settle_def defaults;
     mspring_settle_result out;
-    mspring_result outcome = mspringi_enter(network);
+    mspring_result outcome = mspringi_check_call(network);
     if (outcome != MSPRING_OK)
         return outcome;
     if (!def) {

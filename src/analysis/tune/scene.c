@@ -35,7 +35,7 @@ static void kick(mspring_network *network, uint32_t start, double most) {
         network->state.vx[slot] += (float)(most * mspringi_noise(number));
         network->state.vy[slot] += (float)(most * mspringi_noise(number + 1));
     }
-    mspringi_changed(network, MSPRINGI_CHANGED_STATE, 0);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
 }
 
 // A clone that has what the scene switches on, a little away from where the network is.
@@ -62,7 +62,8 @@ static mspring_result make_start(mspringi_tuning *tuning, uint32_t start, msprin
 static double count_live(const mspring_network *network) {
     double live = 0.0;
     for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring)
-        live += mspringi_place_is_live(network, mspringi_place_of(&network->topology, spring)) ? 1.0 : 0.0;
+        live +=
+            mspringi_spring_slot_is_live(network, mspringi_slot_of_spring(&network->topology, spring)) ? 1.0 : 0.0;
     return live;
 }
 

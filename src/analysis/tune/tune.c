@@ -142,7 +142,8 @@ void mspringi_tune_expose(mspring_network *clone) {
 
 void mspringi_tune_make_unbreakable(mspring_network *clone) {
     for (mspring_id spring = 0; clone->strain.break_strain && spring < clone->topology.spring_count; ++spring)
-        mspringi_strain_store(clone, mspringi_place_of(&clone->topology, spring), MSPRING_BREAK_STRAIN, INFINITY);
+        mspringi_strain_store(clone, mspringi_slot_of_spring(&clone->topology, spring), MSPRING_BREAK_STRAIN,
+                              INFINITY);
     clone->plastic.yields = false;
 }
 
@@ -303,7 +304,7 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
                                     uint32_t capacity, uint32_t *count) {
     mspring_tune_def defaults;
     mspring_solver_def usual[MSPRINGI_TUNE_USUAL_SETTINGS];
-    mspring_result result = mspringi_enter(network);
+    mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (!rows || !count)

@@ -1,15 +1,16 @@
-/// Layers: a large web in pieces of which each has springs to the one before and the one behind alone.
+/// Layers: a large irregular part in pieces of which each has springs to the one before and the one behind alone.
 ///
-/// A web that does not fit the cache is read from memory once for each substep, unless several are taken in one
-/// pass over its layers, each substep one layer behind the one before (a wavefront, as over the strips of
-/// lattices). Layers are whole levels of a search in breadth, from a particle that is as far away as a first such
-/// search could find. A spring or rope from anywhere to anywhere is searched along like any other: there are fewer
-/// layers then.
+/// An irregular part that does not fit the cache is read from memory once for each substep, unless several are
+/// taken in one pass over its layers, each substep one layer behind the one before (a wavefront, as over the strips
+/// of lattices). Layers are whole levels of a search in breadth, from a particle that is as far away as a first
+/// such search could find. A spring or rope from anywhere to anywhere is searched along like any other: there are
+/// fewer layers then.
 #include <string.h>
 
 #include "layout/analysis.h"
 
-/// Particles in a layer, or more: fewer make more calls, and levels of webs that have so many particles are wider.
+/// Particles in a layer, or more: fewer make more calls, and levels of irregular parts that have so many particles
+/// are wider.
 #define LAYER_PARTICLES 1024
 
 /// With fewer layers than these a wavefront is no more than its front.
@@ -84,11 +85,11 @@ static void sort(mspringi_layers *layers) {
     memcpy(layers->particles, layers->queue, layers->particle_count * sizeof *layers->particles);
 }
 
-mspring_result mspringi_layers_find(mspringi_layers *layers, const mspringi_web_list *list,
+mspring_result mspringi_layers_find(mspringi_layers *layers, const mspringi_irregular_list *list,
                                     const mspringi_graph *graph, mspringi_memory *memory,
                                     mspringi_message *message) {
-    layers->particle_count = list->count - list->homed_count;
-    layers->particles = list->particles + list->homed_count;
+    layers->particle_count = list->count - list->assigned_count;
+    layers->particles = list->particles + list->assigned_count;
     if (layers->particle_count < MSPRINGI_FEWEST_LAYERED)
         return MSPRING_OK;
     mspring_result result = reserve(layers, graph->builder->particle_count, memory, message);

@@ -1,29 +1,30 @@
 /// Ropes that hang on lattices: with which strip each of their particles is swept, and where in it.
 ///
 /// Springs between particles that lie one above the other, sixteen ropes side by side, are computed once and gather
-/// nothing (see layout/emit/web.h). So a rope goes from the strip that one of its ends hangs on to near the other's
-/// in as few particles as the skew allows, and stays there with all others. What stays is cut into pieces of two
-/// lengths: sixteen of the same length begin and end together, and only springs between pieces, at the first and
-/// the last row, are computed at both ends.
+/// nothing (see layout/emit/sell.h). So a rope goes from the strip that one of its ends hangs on to near the
+/// other's in as few particles as the skew allows, and stays there with all others. What stays is cut into pieces
+/// of two lengths: sixteen of the same length begin and end together, and only springs between pieces, at the first
+/// and the last row, are computed at both ends.
 #include "layout/arrange/ropes.h"
 
 /// Particles in pieces.
 #define LONG_PIECE 8
 #define SHORT_PIECE 4
 
-static uint32_t strip_of(const mspringi_homes *homes, const mspringi_grids *grids, uint32_t particle) {
+static uint32_t strip_of(const mspringi_strip_assignment *assignment, const mspringi_grids *grids,
+                         uint32_t particle) {
     const uint32_t grid = grids->grid_of[particle];
-    return grid == MSPRING_NONE ? homes->home[particle]
-                                : (homes->first_row[grid] + grids->row[particle]) / homes->strip_rows;
+    return grid == MSPRING_NONE ? assignment->assigned_strip[particle]
+                                : (assignment->first_row[grid] + grids->row[particle]) / assignment->strip_rows;
 }
 
-// The strip of what a strand's first or last particle hangs on by a spring that is not the strand's own;
+// The strip of what a chain's first or last particle hangs on by a spring that is not the chain's own;
 // MSPRING_NONE if there is no such spring.
 static uint32_t strip_at_end(const mspringi_ropes *ropes, uint32_t particle, uint32_t own_spring) {
     const mspringi_graph *graph = ropes->graph;
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i)
         if (graph->springs[i] != own_spring)
-            return strip_of(ropes->homes, ropes->grids,
+            return strip_of(ropes->assignment, ropes->grids,
                             mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle));
     return MSPRING_NONE;
 }
@@ -32,10 +33,11 @@ static int64_t clamp(int64_t value, int64_t low, int64_t high) {
     return value < low ? low : value > high ? high : value;
 }
 
-// Give a strand's particles homes that are no more than the skew from each other and from what its ends hang on.
+// Give a chain's particles assigned strips that are no more than the skew from each other and from what its ends
+// hang on.
 static void settle(const mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
-    const uint32_t *particles = ropes->strands->particles, *springs = ropes->strands->springs;
-    const int64_t skew = ropes->homes->skew;
+    const uint32_t *particles = ropes->chains->particles, *springs = ropes->chains->springs;
+    const int64_t skew = ropes->assignment->skew;
     uint32_t from = strip_at_end(ropes, particles[begin], springs[begin]);
     uint32_t to = strip_at_end(ropes, particles[end - 1], end - begin > 1 ? springs[end - 2] : MSPRING_NONE);
     from = from == MSPRING_NONE ? to : from;
@@ -46,20 +48,20 @@ static void settle(const mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
         const int64_t since = skew * (i + 1 - begin), left = skew * (end - i);
         const int64_t low = from - since > to - left ? from - since : to - left;
         const int64_t high = from + since < to + left ? from + since : to + left;
-        ropes->homes->home[particles[i]] = (uint32_t)clamp(stay, low, high);
+        ropes->assignment->assigned_strip[particles[i]] = (uint32_t)clamp(stay, low, high);
     }
 }
 
 static uint32_t note_piece(mspringi_ropes *ropes, uint32_t *counts, uint32_t begin, uint32_t length) {
-    const uint32_t home = ropes->homes->home[ropes->strands->particles[begin]];
+    const uint32_t assigned_strip = ropes->assignment->assigned_strip[ropes->chains->particles[begin]];
     for (uint32_t row = 0; row < length; ++row)
-        ropes->piece[ropes->strands->particles[begin + row]] =
-            1 + counts[home] * 2 * LONG_PIECE + (length == LONG_PIECE) * LONG_PIECE + row;
-    counts[home]++;
+        ropes->piece[ropes->chains->particles[begin + row]] =
+            1 + counts[assigned_strip] * 2 * LONG_PIECE + (length == LONG_PIECE) * LONG_PIECE + row;
+    counts[assigned_strip]++;
     return length;
 }
 
-// Cut what lies in one home into pieces.
+// Cut what lies in one assigned strip into pieces.
 static void cut(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     while (end - begin >= LONG_PIECE)
         begin += note_piece(ropes, ropes->long_count, begin, LONG_PIECE);
@@ -67,48 +69,49 @@ static void cut(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
         begin += note_piece(ropes, ropes->short_count, begin, SHORT_PIECE);
 }
 
-static void cut_strand(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
-    const uint32_t *particles = ropes->strands->particles, *home = ropes->homes->home;
+static void cut_chain(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
+    const uint32_t *particles = ropes->chains->particles, *assigned_strip = ropes->assignment->assigned_strip;
     for (uint32_t last; begin < end; begin = last) {
-        for (last = begin + 1; last < end && home[particles[last]] == home[particles[begin]];)
+        for (last = begin + 1; last < end && assigned_strip[particles[last]] == assigned_strip[particles[begin]];)
             ++last;
         cut(ropes, begin, last);
     }
 }
 
 mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph *graph,
-                                     const mspringi_grids *grids, const mspringi_strands *strands,
-                                     mspringi_homes *homes, mspringi_memory *memory, mspringi_message *message) {
-    *ropes = (mspringi_ropes){.graph = graph, .grids = grids, .strands = strands, .homes = homes};
-    if (strands->count == 0 || homes->row_count == 0)
+                                     const mspringi_grids *grids, const mspringi_chains *chains,
+                                     mspringi_strip_assignment *assignment, mspringi_memory *memory,
+                                     mspringi_message *message) {
+    *ropes = (mspringi_ropes){.graph = graph, .grids = grids, .chains = chains, .assignment = assignment};
+    if (chains->count == 0 || assignment->row_count == 0)
         return MSPRING_OK;
-    const size_t strips = ((size_t)homes->row_count + homes->strip_rows - 1) / homes->strip_rows;
+    const size_t strips = ((size_t)assignment->row_count + assignment->strip_rows - 1) / assignment->strip_rows;
     ropes->strip_count = (uint32_t)strips;
     ropes->piece = mspringi_alloc(memory, graph->builder->particle_count, sizeof *ropes->piece);
     ropes->long_count = mspringi_alloc(memory, strips, sizeof *ropes->long_count);
     ropes->short_count = mspringi_alloc(memory, strips, sizeof *ropes->short_count);
     if (!ropes->piece || !ropes->long_count || !ropes->short_count)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for ropes of %u particles",
-                             (unsigned)strands->count);
-    for (uint32_t begin = 0, end; begin < strands->count; begin = end) {
-        for (end = begin + 1; strands->springs[end - 1] != MSPRING_NONE;)
+                             (unsigned)chains->count);
+    for (uint32_t begin = 0, end; begin < chains->count; begin = end) {
+        for (end = begin + 1; chains->springs[end - 1] != MSPRING_NONE;)
             ++end;
-        if (homes->home[strands->particles[begin]] == MSPRING_NONE)
+        if (assignment->assigned_strip[chains->particles[begin]] == MSPRING_NONE)
             continue;
         settle(ropes, begin, end);
-        cut_strand(ropes, begin, end);
+        cut_chain(ropes, begin, end);
     }
     return MSPRING_OK;
 }
 
-// Where a particle of a piece goes among those of its home, or MSPRING_NONE if it stands nowhere. Long pieces that
-// do not fill all lanes are two short ones each.
-static uint32_t standing_place(const mspringi_ropes *ropes, uint32_t home, uint32_t particle) {
+// Where a particle of a piece goes among those of its assigned strip, or MSPRING_NONE if it stands nowhere. Long
+// pieces that do not fill all lanes are two short ones each.
+static uint32_t standing_place(const mspringi_ropes *ropes, uint32_t assigned_strip, uint32_t particle) {
     if (ropes->piece[particle] == 0)
         return MSPRING_NONE;
     const uint32_t piece = ropes->piece[particle] - 1;
-    const uint32_t full = ropes->long_count[home] / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
-    const uint32_t left_over = ropes->long_count[home] - full;
+    const uint32_t full = ropes->long_count[assigned_strip] / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    const uint32_t left_over = ropes->long_count[assigned_strip] - full;
     uint32_t number = piece / (2 * LONG_PIECE), row = piece % LONG_PIECE;
     if (piece / LONG_PIECE % 2 == 1) {
         if (number < full)
@@ -118,28 +121,31 @@ static uint32_t standing_place(const mspringi_ropes *ropes, uint32_t home, uint3
     } else {
         number += LONG_PIECE / SHORT_PIECE * left_over;
     }
-    const uint32_t shorts = ropes->short_count[home] + LONG_PIECE / SHORT_PIECE * left_over;
+    const uint32_t shorts = ropes->short_count[assigned_strip] + LONG_PIECE / SHORT_PIECE * left_over;
     if (number >= shorts / MSPRINGI_WIDTH * MSPRINGI_WIDTH)
         return MSPRING_NONE;
     return full * LONG_PIECE + (number / MSPRINGI_WIDTH * SHORT_PIECE + row) * MSPRINGI_WIDTH +
            number % MSPRINGI_WIDTH;
 }
 
-static uint32_t standing_count(const mspringi_ropes *ropes, uint32_t home) {
-    const uint32_t full = ropes->long_count[home] / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
-    const uint32_t shorts = ropes->short_count[home] + LONG_PIECE / SHORT_PIECE * (ropes->long_count[home] - full);
+static uint32_t standing_count(const mspringi_ropes *ropes, uint32_t assigned_strip) {
+    const uint32_t full = ropes->long_count[assigned_strip] / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    const uint32_t shorts =
+        ropes->short_count[assigned_strip] + LONG_PIECE / SHORT_PIECE * (ropes->long_count[assigned_strip] - full);
     return full * LONG_PIECE + shorts / MSPRINGI_WIDTH * MSPRINGI_WIDTH * SHORT_PIECE;
 }
 
-// Home by home.
-void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_web_list *list) {
+// Assigned strip by assigned strip.
+void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_irregular_list *list) {
     if (!ropes->piece)
         return;
-    for (uint32_t begin = 0, end; begin < list->homed_count; begin = end) {
-        const uint32_t home = ropes->homes->home[list->particles[begin]];
-        uint32_t lying = begin + standing_count(ropes, home);
-        for (end = begin; end < list->homed_count && ropes->homes->home[list->particles[end]] == home; ++end) {
-            const uint32_t place = standing_place(ropes, home, list->particles[end]);
+    for (uint32_t begin = 0, end; begin < list->assigned_count; begin = end) {
+        const uint32_t assigned_strip = ropes->assignment->assigned_strip[list->particles[begin]];
+        uint32_t lying = begin + standing_count(ropes, assigned_strip);
+        for (end = begin; end < list->assigned_count &&
+                          ropes->assignment->assigned_strip[list->particles[end]] == assigned_strip;
+             ++end) {
+            const uint32_t place = standing_place(ropes, assigned_strip, list->particles[end]);
             list->scratch[place == MSPRING_NONE ? lying++ : begin + place] = list->particles[end];
         }
         for (uint32_t i = begin; i < end; ++i)

@@ -1,5 +1,5 @@
 /// @file ropes.h
-/// Strands with a home, as the web has them.
+/// Chains with an assigned strip, as the irregular part has them.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ROPES_H
@@ -10,20 +10,21 @@
 typedef struct mspringi_ropes {
     const mspringi_graph *graph;
     const mspringi_grids *grids;
-    const mspringi_strands *strands;
-    mspringi_homes *homes;
+    const mspringi_chains *chains;
+    mspringi_strip_assignment *assignment;
     uint32_t strip_count;
-    uint32_t *piece; ///< [particles] number of its piece in its home, length and row there; 0 if it is in none; all
-                     ///< NULL if there is none
+    uint32_t *piece; ///< [particles] number of its piece in its assigned strip, length and row there; 0 if it is in
+                     ///< none; all NULL if there is none
     uint32_t *long_count, *short_count; ///< [strips] pieces
 } mspringi_ropes;
 
-/// Before strands with a home are dropped: cut those into pieces, and change their homes.
+/// Before chains with an assigned strip are dropped: cut those into pieces, and change their assigned strips.
 mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph *graph,
-                                     const mspringi_grids *grids, const mspringi_strands *strands,
-                                     mspringi_homes *homes, mspringi_memory *memory, mspringi_message *message);
-/// When the web's particles are listed by home: put the pieces side by side.
-void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_web_list *list);
+                                     const mspringi_grids *grids, const mspringi_chains *chains,
+                                     mspringi_strip_assignment *assignment, mspringi_memory *memory,
+                                     mspringi_message *message);
+/// When the irregular part's particles are listed by assigned strip: put the pieces side by side.
+void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_irregular_list *list);
 void mspringi_ropes_destroy(mspringi_ropes *ropes, mspringi_memory *memory);
 
 #endif

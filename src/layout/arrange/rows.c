@@ -1,12 +1,12 @@
 /// Rows of spans, and strips of rows, as they are swept.
-#include "layout/emit/assembly.h"
+#include "layout/emit/layout_builder.h"
 #include "layout/emit/spare.h"
 
 /// Chains are swept in spans of this many blocks.
 #define LONGEST_CHAIN_SPAN 64
 
 // Append a row without spans.
-static bool append_row(mspringi_assembly *a, mspringi_row_kind kind) {
+static bool append_row(mspringi_layout_builder *a, mspringi_row_kind kind) {
     mspringi_topology *t = a->topology;
     void *rows = t->rows;
     const bool grown = mspringi_grow(a->memory, &rows, &a->row_capacity, (size_t)t->row_count + 1, sizeof *t->rows);
@@ -16,7 +16,7 @@ static bool append_row(mspringi_assembly *a, mspringi_row_kind kind) {
     return grown;
 }
 
-static bool store_span(mspringi_assembly *a, const mspringi_span *span) {
+static bool store_span(mspringi_layout_builder *a, const mspringi_span *span) {
     mspringi_topology *t = a->topology;
     void *spans = t->spans;
     const bool grown = mspringi_grow(a->memory, &spans, &a->span_capacity, (size_t)t->span_count + 1, sizeof *span);
@@ -27,7 +27,7 @@ static bool store_span(mspringi_assembly *a, const mspringi_span *span) {
 }
 
 // Append a span to the last row, or lengthen its last one if this is what that would go on with.
-static bool append_span(mspringi_assembly *a, const mspringi_span *span) {
+static bool append_span(mspringi_layout_builder *a, const mspringi_span *span) {
     mspringi_topology *t = a->topology;
     mspringi_row *row = &t->rows[t->row_count - 1];
     if (row->span_count > 0) {
@@ -55,22 +55,23 @@ static int64_t offset_between(uint32_t from_block, uint32_t to_block) {
     return ((int64_t)to_block - (int64_t)from_block) * MSPRINGI_WIDTH;
 }
 
-// Where the span of herds that begins with a group ends: herds are whole in it.
-static uint32_t end_of_herds(const mspringi_assembly *a, uint32_t first) {
+// Where the span of bundles that begins with a group ends: bundles are whole in it.
+static uint32_t end_of_bundles(const mspringi_layout_builder *a, uint32_t first) {
     uint32_t end = first + 1;
-    while (end < a->herds.group_count && (end - first < MSPRINGI_HERD_SPAN || !a->herds.is_first[end]))
+    while (end < a->bundles.slice_count && (end - first < MSPRINGI_BUNDLE_SPAN || !a->bundles.is_first[end]))
         ++end;
     return end;
 }
 
-static uint32_t widest_row(const mspringi_assembly *a) {
+static uint32_t widest_row(const mspringi_layout_builder *a) {
     uint32_t widest =
         a->topology->chain_blocks < LONGEST_CHAIN_SPAN ? a->topology->chain_blocks : LONGEST_CHAIN_SPAN;
-    for (uint32_t first = 0, end, rungs = 0; first < a->herds.group_count; first = end, rungs = 0) {
-        end = end_of_herds(a, first);
+    for (uint32_t first = 0, end, slice_columns = 0; first < a->bundles.slice_count;
+         first = end, slice_columns = 0) {
+        end = end_of_bundles(a, first);
         for (uint32_t group = first; group < end; ++group)
-            rungs += mspringi_degree_of(&a->graph, a->herds.particles[group * MSPRINGI_WIDTH]);
-        widest = rungs > widest ? rungs : widest;
+            slice_columns += mspringi_degree_of(&a->graph, a->bundles.particles[group * MSPRINGI_WIDTH]);
+        widest = slice_columns > widest ? slice_columns : widest;
     }
     for (size_t i = 0; i < a->block_count; ++i)
         widest = mspringi_column_block_of_key(a->blocks[i]) + 1 > widest
@@ -80,12 +81,12 @@ static uint32_t widest_row(const mspringi_assembly *a) {
 }
 
 // Append the row of a grid's block, or the block to its row.
-static bool append_lattice_block(mspringi_assembly *a, uint32_t i, uint32_t grid, uint32_t number) {
+static bool append_lattice_block(mspringi_layout_builder *a, uint32_t i, uint32_t grid, uint32_t number) {
     mspringi_topology *t = a->topology;
     const uint32_t row = mspringi_row_of_key(a->blocks[i]),
                    column_block = mspringi_column_block_of_key(a->blocks[i]);
     const bool starts_row = i == a->first_block[grid] || mspringi_row_of_key(a->blocks[i - 1]) != row;
-    const uint32_t up = mspringi_assembly_find_block(a, grid, row + 1, column_block);
+    const uint32_t up = mspringi_layout_builder_find_block(a, grid, row + 1, column_block);
     const uint32_t block = t->lattice_first + i, up_block = up == MSPRING_NONE ? block : t->lattice_first + up;
     mspringi_span span = span_of_blocks(block, 1, i, MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
     span.up = offset_between(block, up_block);
@@ -101,18 +102,18 @@ static bool append_lattice_block(mspringi_assembly *a, uint32_t i, uint32_t grid
     return append_span(a, &span);
 }
 
-mspring_result mspringi_assembly_append_lattice_rows(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_append_lattice_rows(mspringi_layout_builder *a) {
     for (uint32_t i = 0, grid = 0; i < a->topology->lattice_blocks; ++i) {
-        while (i >= a->end_block[a->homes.grid_order[grid]])
+        while (i >= a->end_block[a->assignment.grid_order[grid]])
             grid++;
-        if (!append_lattice_block(a, i, a->homes.grid_order[grid], grid))
-            return mspringi_assembly_fail(a);
+        if (!append_lattice_block(a, i, a->assignment.grid_order[grid], grid))
+            return mspringi_layout_builder_fail(a);
     }
     return MSPRING_OK;
 }
 
 // Append the chains. Their spans are no longer than the carry row, which has no force for them.
-static bool append_chain_row(mspringi_assembly *a) {
+static bool append_chain_row(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     bool ok = t->chain_blocks == 0 || append_row(a, MSPRINGI_ROW_CHAIN);
     for (uint32_t i = 0; ok && i < t->chain_blocks; i += LONGEST_CHAIN_SPAN) {
@@ -122,101 +123,102 @@ static bool append_chain_row(mspringi_assembly *a) {
         span.carry = offset_between(block, 0);
         if (left <= LONGEST_CHAIN_SPAN) // what is behind the last particle holds nothing
             span.end_slot = t->chain_first * MSPRINGI_WIDTH +
-                            (a->strands.count + MSPRINGI_QUARTER - 1) / MSPRINGI_QUARTER * MSPRINGI_QUARTER;
+                            (a->chains.count + MSPRINGI_QUARTER - 1) / MSPRINGI_QUARTER * MSPRINGI_QUARTER;
         ok = append_span(a, &span);
     }
     return ok;
 }
 
 // Append a row of one span.
-static bool append_simple_row(mspringi_assembly *a, mspringi_row_kind kind, uint32_t first_block,
+static bool append_simple_row(mspringi_layout_builder *a, mspringi_row_kind kind, uint32_t first_block,
                               uint32_t block_count, uint32_t first_record) {
     const mspringi_span span = span_of_blocks(first_block, block_count, first_record, MSPRINGI_WIDTH);
     return append_row(a, kind) && append_span(a, &span);
 }
 
-// Append the herds, several to a span.
-static bool append_herd_row(mspringi_assembly *a) {
+// Append the bundles, several to a span.
+static bool append_bundle_row(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
-    const uint32_t groups = a->herds.group_count;
+    const uint32_t groups = a->bundles.slice_count;
     if (groups == 0)
         return true;
-    a->herd_row = t->row_count;
-    bool ok = append_row(a, MSPRINGI_ROW_WEB);
-    t->herd_springs = a->herds.spring_count * MSPRINGI_WIDTH;
+    a->bundle_row = t->row_count;
+    bool ok = append_row(a, MSPRINGI_ROW_IRREGULAR);
+    t->bundle_springs = a->bundles.spring_count * MSPRINGI_WIDTH;
     for (uint32_t first = 0, end; ok && first < groups; first = end) {
-        end = end_of_herds(a, first);
-        const mspringi_span span = span_of_blocks(t->web_first + a->loner_blocks + first, end - first,
+        end = end_of_bundles(a, first);
+        const mspringi_span span = span_of_blocks(t->irregular_first + a->loner_blocks + first, end - first,
                                                   a->loner_blocks + first, MSPRINGI_WIDTH);
-        t->rows[a->herd_row].span_count++;
+        t->rows[a->bundle_row].span_count++;
         ok = store_span(a, &span);
     }
     return ok;
 }
 
-// Append the span of a strip's own particles of the web, of which the last is in last_slot.
-static bool append_home_span(mspringi_assembly *a, uint32_t strip, uint32_t last_slot) {
+// Append the span of a strip's own particles of the irregular part, of which the last is in last_slot.
+static bool append_home_span(mspringi_layout_builder *a, uint32_t strip, uint32_t last_slot) {
     mspringi_topology *t = a->topology;
-    const uint32_t first_block = t->web_first + a->home_blocks, end_block = last_slot / MSPRINGI_WIDTH + 1;
-    mspringi_span span = span_of_blocks(first_block, end_block - first_block, a->home_blocks, MSPRINGI_WIDTH);
+    const uint32_t first_block = t->irregular_first + a->placed_blocks, end_block = last_slot / MSPRINGI_WIDTH + 1;
+    mspringi_span span = span_of_blocks(first_block, end_block - first_block, a->placed_blocks, MSPRINGI_WIDTH);
     span.end_slot = (last_slot / MSPRINGI_QUARTER + 1) * MSPRINGI_QUARTER;
-    a->home_blocks += end_block - first_block;
-    t->strips[strip].home_span = t->span_count;
+    a->placed_blocks += end_block - first_block;
+    t->strips[strip].assigned_span = t->span_count;
     return store_span(a, &span);
 }
 
-static bool append_home_spans(mspringi_assembly *a) {
+static bool append_home_spans(mspringi_layout_builder *a) {
     const mspringi_topology *t = a->topology;
-    const uint32_t *particles = a->web.particles, *home = a->homes.home;
-    for (uint32_t i = 0; i < a->web.homed_count; ++i) {
-        const bool is_last = i + 1 == a->web.count || home[particles[i + 1]] != home[particles[i]];
-        if (is_last && !append_home_span(a, home[particles[i]], t->slot_of_particle[particles[i]]))
+    const uint32_t *particles = a->irregular.particles, *assigned_strip = a->assignment.assigned_strip;
+    for (uint32_t i = 0; i < a->irregular.assigned_count; ++i) {
+        const bool is_last =
+            i + 1 == a->irregular.count || assigned_strip[particles[i + 1]] != assigned_strip[particles[i]];
+        if (is_last && !append_home_span(a, assigned_strip[particles[i]], t->slot_of_particle[particles[i]]))
             return false;
     }
     return true;
 }
 
 // The last particle of a layer says where the next one begins.
-static bool list_layers(mspringi_assembly *a) {
+static bool list_layers(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     if (a->layers.count == 0)
         return true;
-    const uint32_t *particles = a->web.particles + a->web.homed_count;
+    const uint32_t *particles = a->irregular.particles + a->irregular.assigned_count;
     t->layer_blocks = mspringi_alloc(a->memory, (size_t)a->layers.count + 1, sizeof *t->layer_blocks);
     if (!t->layer_blocks)
         return false;
     t->layer_blocks[0] = 0;
     for (uint32_t i = 0; i < a->layers.count; ++i)
         t->layer_blocks[i + 1] = t->slot_of_particle[particles[a->layers.end[i] - 1]] / MSPRINGI_WIDTH + 1 -
-                                 t->web_first - a->homed_blocks;
+                                 t->irregular_first - a->assigned_blocks;
     t->layer_count = a->layers.count;
     return true;
 }
 
-// Cut the rows into strips: those of the wavefront as their homes want it, of the others each on its own.
-mspring_result mspringi_assembly_make_strips(mspringi_assembly *a) {
+// Cut the rows into strips: those of the wavefront as their assigned strips want it, of the others each on its own.
+mspring_result mspringi_layout_builder_make_strips(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
-    const uint32_t rows = a->homes.strip_rows;
-    t->skew = a->homes.skew;
-    t->wavefront_rows = a->homes.row_count;
+    const uint32_t rows = a->assignment.strip_rows;
+    t->skew = a->assignment.skew;
+    t->wavefront_rows = a->assignment.row_count;
     t->wavefront_strips = (t->wavefront_rows + rows - 1) / rows;
     t->strip_count = t->wavefront_strips + (t->row_count - t->wavefront_rows);
-    t->herd_strip =
-        a->herds.group_count > 0 ? t->wavefront_strips + (a->herd_row - t->wavefront_rows) : MSPRING_NONE;
+    t->bundle_strip =
+        a->bundles.slice_count > 0 ? t->wavefront_strips + (a->bundle_row - t->wavefront_rows) : MSPRING_NONE;
     t->strips = mspringi_alloc(a->memory, t->strip_count, sizeof *t->strips);
     if (!t->strips)
-        return mspringi_assembly_fail(a);
+        return mspringi_layout_builder_fail(a);
     for (uint32_t s = 0, row = 0; s < t->strip_count; ++s) {
         const uint32_t left = t->wavefront_rows - row, count = s >= t->wavefront_strips ? 1
                                                                : left < rows            ? left
                                                                                         : rows;
-        t->strips[s] = (mspringi_strip){.first_row = row, .row_count = count, .home_span = MSPRING_NONE};
+        t->strips[s] = (mspringi_strip){.first_row = row, .row_count = count, .assigned_span = MSPRING_NONE};
         row += count;
     }
-    return append_home_spans(a) && list_layers(a) ? MSPRING_OK : mspringi_assembly_fail(a);
+    return append_home_spans(a) && list_layers(a) ? MSPRING_OK : mspringi_layout_builder_fail(a);
 }
 
-uint32_t *mspringi_assembly_list_strips_of_blocks(const mspringi_assembly *a) {
+uint32_t *mspringi_layout_builder_list_strips_of_blocks(const mspringi_layout_builder *a) {
     const mspringi_topology *t = a->topology;
     uint32_t *strip_of_block = mspringi_alloc(a->memory, t->block_count, sizeof *strip_of_block);
     for (uint32_t s = 0; strip_of_block && s < t->strip_count; ++s) {
@@ -224,10 +226,10 @@ uint32_t *mspringi_assembly_list_strips_of_blocks(const mspringi_assembly *a) {
         for (uint32_t i = first->first_span; i < last->first_span + last->span_count; ++i)
             for (uint32_t slot = t->spans[i].first_slot; slot < t->spans[i].end_slot; slot += MSPRINGI_QUARTER)
                 strip_of_block[slot / MSPRINGI_WIDTH] = s;
-        if (t->strips[s].home_span == MSPRING_NONE)
+        if (t->strips[s].assigned_span == MSPRING_NONE)
             continue;
-        const mspringi_span *home = &t->spans[t->strips[s].home_span];
-        for (uint32_t slot = home->first_slot; slot < home->end_slot; slot += MSPRINGI_WIDTH)
+        const mspringi_span *assigned_strip = &t->spans[t->strips[s].assigned_span];
+        for (uint32_t slot = assigned_strip->first_slot; slot < assigned_strip->end_slot; slot += MSPRINGI_WIDTH)
             strip_of_block[slot / MSPRINGI_WIDTH] = s;
     }
     return strip_of_block;
@@ -246,24 +248,24 @@ static bool is_busy(const uint8_t *busy, uint32_t slot) {
 // no force is handed on through them. The latter two are so if no spring's record, and no slot to the right of a
 // north-east spring, lies in them.
 
-void mspringi_assembly_mark_busy(mspringi_assembly *a) {
+void mspringi_layout_builder_mark_busy(mspringi_layout_builder *a) {
     const mspringi_topology *t = a->topology;
     for (uint32_t slot = 0; slot < t->chain_first * MSPRINGI_WIDTH; ++slot)
         if (t->particle_of_slot[slot] != MSPRING_NONE)
             mark_busy(a->busy, slot);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        const mspringi_place place = a->topology->place_of_spring[s];
-        if (place >= t->lattice_places)
+        const mspringi_spring_slot spring_slot = a->topology->slot_of_spring[s];
+        if (spring_slot >= t->lattice_spring_slots)
             continue;
-        const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
-        const uint32_t slot = (t->lattice_first + block) * MSPRINGI_WIDTH + place % MSPRINGI_WIDTH;
+        const uint32_t block = spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+        const uint32_t slot = (t->lattice_first + block) * MSPRINGI_WIDTH + spring_slot % MSPRINGI_WIDTH;
         mark_busy(a->busy, slot);
-        if (place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS == MSPRINGI_NORTH_EAST)
+        if (spring_slot / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS == MSPRINGI_NORTH_EAST)
             mark_busy(a->busy, slot + 1);
     }
 }
 
-void mspringi_assembly_trim_spans(mspringi_assembly *a) {
+void mspringi_layout_builder_trim_spans(mspringi_layout_builder *a) {
     const mspringi_topology *t = a->topology;
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
     for (uint32_t s = 0; s < t->span_count && t->spans[s].first_slot < lattice_end; ++s) {
@@ -280,7 +282,7 @@ void mspringi_assembly_trim_spans(mspringi_assembly *a) {
 }
 
 // Whether a register that is filled from this slot on has a quarter that has to be swept.
-static bool is_any_busy(const mspringi_assembly *a, uint32_t slot) {
+static bool is_any_busy(const mspringi_layout_builder *a, uint32_t slot) {
     for (uint32_t end = slot + a->lanes; slot < end; slot += MSPRINGI_QUARTER)
         if (is_busy(a->busy, slot))
             return true;
@@ -288,7 +290,7 @@ static bool is_any_busy(const mspringi_assembly *a, uint32_t slot) {
 }
 
 // Cut a span into runs of registers that have to be swept. Returns how many there are; cut NULL: only that.
-static uint32_t cut_span(const mspringi_assembly *a, const mspringi_span *span, mspringi_span *cut) {
+static uint32_t cut_span(const mspringi_layout_builder *a, const mspringi_span *span, mspringi_span *cut) {
     uint32_t count = 0;
     bool in_run = false;
     for (uint32_t slot = span->first_slot / a->lanes * a->lanes; slot < span->end_slot; slot += a->lanes) {
@@ -313,46 +315,47 @@ static uint32_t cut_span(const mspringi_assembly *a, const mspringi_span *span, 
 // of a hole. That takes lists of their own, as spans without blocks in common are what all others want. (Of our
 // ship's 13,105 registers of four lanes 848 hold nothing, of 6,926 of eight 110, of 3,683 of sixteen one; a span
 // costs nothing to speak of.)
-mspring_result mspringi_assembly_tighten_spans(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_tighten_spans(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
     uint32_t spans = 0, count = 0;
     for (; spans < t->span_count && t->spans[spans].first_slot < lattice_end; ++spans)
         count += cut_span(a, &t->spans[spans], NULL);
     if (a->lanes < MSPRINGI_WIDTH && count > spans) {
-        t->tightened_count = spans;
-        t->tight_spans = mspringi_alloc(a->memory, count, sizeof *t->tight_spans);
-        t->first_tight = mspringi_alloc(a->memory, (size_t)spans + 1, sizeof *t->first_tight);
-        if (!t->tight_spans || !t->first_tight)
-            return mspringi_assembly_fail(a);
+        t->trimmed_count = spans;
+        t->trimmed_spans = mspringi_alloc(a->memory, count, sizeof *t->trimmed_spans);
+        t->first_trimmed = mspringi_alloc(a->memory, (size_t)spans + 1, sizeof *t->first_trimmed);
+        if (!t->trimmed_spans || !t->first_trimmed)
+            return mspringi_layout_builder_fail(a);
         for (uint32_t s = 0; s < spans; ++s)
-            t->first_tight[s + 1] =
-                t->first_tight[s] + cut_span(a, &t->spans[s], &t->tight_spans[t->first_tight[s]]);
+            t->first_trimmed[s + 1] =
+                t->first_trimmed[s] + cut_span(a, &t->spans[s], &t->trimmed_spans[t->first_trimmed[s]]);
     }
     mspringi_free(a->memory, a->busy);
     a->busy = NULL;
     return MSPRING_OK;
 }
 
-mspring_result mspringi_assembly_begin_rows(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_begin_rows(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     t->carry_blocks = widest_row(a);
     t->up_of_block = mspringi_alloc(a->memory, t->lattice_blocks, sizeof *t->up_of_block);
     t->grid_of_row = mspringi_alloc(a->memory, t->lattice_blocks,
                                     sizeof *t->grid_of_row); // no more rows than blocks
     a->busy = mspringi_alloc(a->memory, t->block_count, sizeof *a->busy);
-    return t->up_of_block && t->grid_of_row && a->busy ? MSPRING_OK : mspringi_assembly_fail(a);
+    return t->up_of_block && t->grid_of_row && a->busy ? MSPRING_OK : mspringi_layout_builder_fail(a);
 }
 
-mspring_result mspringi_assembly_append_other_rows(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_append_other_rows(mspringi_layout_builder *a) {
     const mspringi_topology *t = a->topology;
-    const uint32_t web_blocks = t->web_blocks - a->herds.group_count - a->homed_blocks;
+    const uint32_t irregular_blocks = t->irregular_blocks - a->bundles.slice_count - a->assigned_blocks;
     const bool has_loose_row = t->loose_blocks + t->spare_blocks > 0;
     if (!append_chain_row(a) ||
-        (web_blocks > 0 &&
-         !append_simple_row(a, MSPRINGI_ROW_WEB, t->web_first + a->homed_blocks, web_blocks, a->homed_blocks)) ||
-        !append_herd_row(a) ||
+        (irregular_blocks > 0 &&
+         !append_simple_row(a, MSPRINGI_ROW_IRREGULAR, t->irregular_first + a->assigned_blocks, irregular_blocks,
+                            a->assigned_blocks)) ||
+        !append_bundle_row(a) ||
         (has_loose_row && !append_simple_row(a, MSPRINGI_ROW_LOOSE, t->loose_first, t->loose_blocks, 0)))
-        return mspringi_assembly_fail(a);
+        return mspringi_layout_builder_fail(a);
     return MSPRING_OK;
 }

@@ -1,5 +1,5 @@
 /// Giving every particle a slot and every spring a place.
-#include "layout/emit/assembly.h"
+#include "layout/emit/layout_builder.h"
 #include "layout/emit/spare.h"
 
 #include <string.h>
@@ -9,27 +9,27 @@ static void place_particle(mspringi_topology *t, uint32_t particle, uint32_t slo
     t->particle_of_slot[slot] = particle;
 }
 
-mspring_result mspringi_assembly_reserve_maps(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_reserve_maps(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     const size_t slots = (size_t)t->block_count * MSPRINGI_WIDTH;
     t->slot_of_particle = mspringi_alloc(a->memory, t->reserve.particle_end, sizeof *t->slot_of_particle);
     t->particle_of_slot = mspringi_alloc(a->memory, slots, sizeof *t->particle_of_slot);
     if (!t->slot_of_particle || !t->particle_of_slot)
-        return mspringi_assembly_fail(a);
+        return mspringi_layout_builder_fail(a);
     memset(t->particle_of_slot, 0xff, slots * sizeof *t->particle_of_slot);
     a->loose = t->loose_first * MSPRINGI_WIDTH;
     return MSPRING_OK;
 }
 
-void mspringi_assembly_assign_slots(mspringi_assembly *a, uint32_t first, uint32_t end) {
+void mspringi_layout_builder_assign_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_topology *t = a->topology;
     const mspringi_grids *grids = &a->grids;
     for (uint32_t p = first; p < end; ++p) {
         if (a->kinds[p] == MSPRINGI_ROW_LATTICE) {
-            const uint32_t block = mspringi_assembly_find_block(a, grids->grid_of[p], grids->row[p],
-                                                                grids->column[p] / MSPRINGI_WIDTH);
+            const uint32_t block = mspringi_layout_builder_find_block(a, grids->grid_of[p], grids->row[p],
+                                                                      grids->column[p] / MSPRINGI_WIDTH);
             place_particle(t, p, (t->lattice_first + block) * MSPRINGI_WIDTH + grids->column[p] % MSPRINGI_WIDTH);
-        } else if (mspringi_assembly_is_loose(a, p)) {
+        } else if (mspringi_layout_builder_is_loose(a, p)) {
             place_particle(t, p, a->loose++);
         } else if (a->kinds[p] == MSPRINGI_ROW_LOOSE && p >= t->reserve.first_particle) {
             t->slot_of_particle[p] = mspringi_spare_slot(t, p);
@@ -37,84 +37,85 @@ void mspringi_assembly_assign_slots(mspringi_assembly *a, uint32_t first, uint32
     }
 }
 
-void mspringi_assembly_assign_other_slots(mspringi_assembly *a) {
+void mspringi_layout_builder_assign_other_slots(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
-    uint32_t web_place = 0;
-    for (uint32_t i = 0; i < a->strands.count; ++i)
-        place_particle(t, a->strands.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
-    for (uint32_t i = 0; i < a->web.count; ++i) {
-        web_place = mspringi_assembly_web_place(a, i, web_place);
-        place_particle(t, a->web.particles[i], t->web_first * MSPRINGI_WIDTH + web_place);
+    uint32_t irregular_spring_slot = 0;
+    for (uint32_t i = 0; i < a->chains.count; ++i)
+        place_particle(t, a->chains.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
+    for (uint32_t i = 0; i < a->irregular.count; ++i) {
+        irregular_spring_slot = mspringi_layout_builder_irregular_slot(a, i, irregular_spring_slot);
+        place_particle(t, a->irregular.particles[i], t->irregular_first * MSPRINGI_WIDTH + irregular_spring_slot);
     }
     for (mspring_id p = t->particle_count; p < t->reserve.particle_end; ++p)
         t->slot_of_particle[p] = mspringi_spare_slot(t, p);
 }
 
-mspring_result mspringi_assembly_begin_places(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_begin_spring_slots(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     const uint32_t springs = t->reserve.spring_end;
-    t->place_of_spring = mspringi_alloc(a->memory, springs, sizeof *t->place_of_spring);
-    if (!t->place_of_spring)
-        return mspringi_assembly_fail(a);
-    memset(t->place_of_spring, 0xff, springs * sizeof *t->place_of_spring);
-    for (uint32_t i = 0; i < a->strands.count; ++i)
-        if (a->strands.springs[i] != MSPRING_NONE)
-            t->place_of_spring[a->strands.springs[i]] = t->lattice_places + i;
+    t->slot_of_spring = mspringi_alloc(a->memory, springs, sizeof *t->slot_of_spring);
+    if (!t->slot_of_spring)
+        return mspringi_layout_builder_fail(a);
+    memset(t->slot_of_spring, 0xff, springs * sizeof *t->slot_of_spring);
+    for (uint32_t i = 0; i < a->chains.count; ++i)
+        if (a->chains.springs[i] != MSPRING_NONE)
+            t->slot_of_spring[a->chains.springs[i]] = t->lattice_spring_slots + i;
     return MSPRING_OK;
 }
 
 // In an array: lattice springs where they are, and the others one after the other.
-void mspringi_assembly_assign_places(mspringi_assembly *a, uint32_t first, uint32_t end) {
+void mspringi_layout_builder_assign_spring_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_topology *t = a->topology;
-    mspringi_place *places = a->topology->place_of_spring;
+    mspringi_spring_slot *spring_slots = a->topology->slot_of_spring;
     for (uint32_t s = first; s < end; ++s) {
         mspringi_lattice_spring found;
-        if (places[s] != MSPRING_NONE)
+        if (spring_slots[s] != MSPRING_NONE)
             continue;
         if (!mspringi_graph_place(&a->graph, &a->grids, s, &found)) {
-            places[s] = t->chain_places + t->leftover_count++;
+            spring_slots[s] = t->chain_spring_slots + t->irregular_count++;
             continue;
         }
         // The spring's first particle is in its block, in the one to the right, or in the one above or both.
         const uint32_t grid = a->grids.grid_of[a->builder->springs[s].a];
-        const uint32_t block = mspringi_assembly_find_block(a, grid, found.row, found.column / MSPRINGI_WIDTH);
-        places[s] = (block * MSPRINGI_DIRECTIONS + (uint32_t)found.direction) * MSPRINGI_WIDTH +
-                    found.column % MSPRINGI_WIDTH;
+        const uint32_t block =
+            mspringi_layout_builder_find_block(a, grid, found.row, found.column / MSPRINGI_WIDTH);
+        spring_slots[s] = (block * MSPRINGI_DIRECTIONS + (uint32_t)found.direction) * MSPRINGI_WIDTH +
+                          found.column % MSPRINGI_WIDTH;
         t->lattice_springs++;
     }
 }
 
-mspring_result mspringi_assembly_note_ends(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_note_ends(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
-    t->woven_count = t->leftover_capacity = t->leftover_count;
-    t->leftover_a = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_a);
-    t->leftover_b = mspringi_alloc(a->memory, t->leftover_count, sizeof *t->leftover_b);
-    if (!t->leftover_a || !t->leftover_b)
-        return mspringi_assembly_fail(a);
+    t->laid_out_count = t->irregular_capacity = t->irregular_count;
+    t->irregular_a = mspringi_alloc(a->memory, t->irregular_count, sizeof *t->irregular_a);
+    t->irregular_b = mspringi_alloc(a->memory, t->irregular_count, sizeof *t->irregular_b);
+    if (!t->irregular_a || !t->irregular_b)
+        return mspringi_layout_builder_fail(a);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        if (t->place_of_spring[s] < t->chain_places)
+        if (t->slot_of_spring[s] < t->chain_spring_slots)
             continue;
-        const uint32_t i = t->place_of_spring[s] - t->chain_places;
-        t->leftover_a[i] = t->slot_of_particle[a->builder->springs[s].a];
-        t->leftover_b[i] = t->slot_of_particle[a->builder->springs[s].b];
+        const uint32_t i = t->slot_of_spring[s] - t->chain_spring_slots;
+        t->irregular_a[i] = t->slot_of_particle[a->builder->springs[s].a];
+        t->irregular_b[i] = t->slot_of_particle[a->builder->springs[s].b];
     }
     return MSPRING_OK;
 }
 
-void mspringi_topology_ends(const mspringi_topology *topology, mspringi_place place, uint32_t *base,
+void mspringi_topology_ends(const mspringi_topology *topology, mspringi_spring_slot spring_slot, uint32_t *base,
                             uint32_t *tip) {
-    const uint32_t lane = place % MSPRINGI_WIDTH;
-    if (place >= topology->chain_places) {
-        *base = topology->leftover_a[place - topology->chain_places];
-        *tip = topology->leftover_b[place - topology->chain_places];
-    } else if (place >= topology->lattice_places) {
-        *base = topology->chain_first * MSPRINGI_WIDTH + (place - topology->lattice_places);
+    const uint32_t lane = spring_slot % MSPRINGI_WIDTH;
+    if (spring_slot >= topology->chain_spring_slots) {
+        *base = topology->irregular_a[spring_slot - topology->chain_spring_slots];
+        *tip = topology->irregular_b[spring_slot - topology->chain_spring_slots];
+    } else if (spring_slot >= topology->lattice_spring_slots) {
+        *base = topology->chain_first * MSPRINGI_WIDTH + (spring_slot - topology->lattice_spring_slots);
         *tip = *base + 1;
     } else {
-        const uint32_t block = place / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+        const uint32_t block = spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
         const uint32_t here = (topology->lattice_first + block) * MSPRINGI_WIDTH + lane;
         const uint32_t up = topology->up_of_block[block] * MSPRINGI_WIDTH + lane;
-        switch ((mspringi_direction)(place / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS)) {
+        switch ((mspringi_direction)(spring_slot / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS)) {
         case MSPRINGI_NORTH:
             *base = here;
             *tip = up;

@@ -1,8 +1,8 @@
-/// Which blocks of slots the grids take, and where those of strands and of the web begin.
-#include "layout/emit/assembly.h"
+/// Which blocks of slots the grids take, and where those of chains and of the irregular part begin.
+#include "layout/emit/layout_builder.h"
 #include "layout/emit/spare.h"
 
-static bool append_block(mspringi_assembly *a, uint32_t row, uint32_t column_block) {
+static bool append_block(mspringi_layout_builder *a, uint32_t row, uint32_t column_block) {
     if (a->block_count > a->grid_begin && a->blocks[a->block_count - 1] == mspringi_make_key(row, column_block))
         return true; // most particles are in the block of the one before; sorting drops the other repetitions
     void *blocks = a->blocks;
@@ -16,7 +16,7 @@ static bool append_block(mspringi_assembly *a, uint32_t row, uint32_t column_blo
 // List the blocks of one of a grid's particles: its own; those that own a spring; and, where a block's last slot
 // has a north-east spring, the block to its right, through which the spring's force is handed on to the row above,
 // and the block above it, so that the slot to the right of that is the spring's other end.
-static bool list_blocks(mspringi_assembly *a, uint32_t p) {
+static bool list_blocks(mspringi_layout_builder *a, uint32_t p) {
     const mspringi_grids *grids = &a->grids;
     const uint32_t column = grids->column[p];
     if (!append_block(a, grids->row[p], column / MSPRINGI_WIDTH))
@@ -40,7 +40,7 @@ static bool list_blocks(mspringi_assembly *a, uint32_t p) {
 }
 
 // Of the grid that has been listed and sorted.
-static void drop_repeated(mspringi_assembly *a) {
+static void drop_repeated(mspringi_layout_builder *a) {
     const size_t count = a->block_count - a->grid_begin;
     mspringi_block_key *keys = a->blocks + a->grid_begin;
     size_t kept = 0;
@@ -50,49 +50,50 @@ static void drop_repeated(mspringi_assembly *a) {
     a->block_count = a->grid_begin + kept;
 }
 
-uint32_t mspringi_assembly_web_place(const mspringi_assembly *a, uint32_t i, uint32_t place_before) {
-    const uint32_t *particles = a->web.particles, *home = a->homes.home;
+uint32_t mspringi_layout_builder_irregular_slot(const mspringi_layout_builder *a, uint32_t i,
+                                                uint32_t place_before) {
+    const uint32_t *particles = a->irregular.particles, *assigned_strip = a->assignment.assigned_strip;
     if (i == 0)
         return 0;
-    const uint32_t *layer_of = a->layers.count > 0 ? a->layers.layer_of : home;
-    const bool goes_on = home[particles[i]] == home[particles[i - 1]] &&
-                         layer_of[particles[i]] == layer_of[particles[i - 1]] && i != a->web.first_in_herds;
+    const uint32_t *layer_of = a->layers.count > 0 ? a->layers.layer_of : assigned_strip;
+    const bool goes_on = assigned_strip[particles[i]] == assigned_strip[particles[i - 1]] &&
+                         layer_of[particles[i]] == layer_of[particles[i - 1]] && i != a->irregular.first_in_bundles;
     return goes_on ? place_before + 1 : (place_before / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
 }
 
-bool mspringi_assembly_is_loose(const mspringi_assembly *a, uint32_t particle) {
+bool mspringi_layout_builder_is_loose(const mspringi_layout_builder *a, uint32_t particle) {
     return a->kinds[particle] == MSPRINGI_ROW_LOOSE &&
            !(a->builder->particles[particle].flags & MSPRINGI_PARTICLE_ABSENT);
 }
 
-mspring_result mspringi_assembly_begin_blocks(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_begin_blocks(mspringi_layout_builder *a) {
     a->first_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->first_block);
     a->end_block = mspringi_alloc(a->memory, a->grids.count, sizeof *a->end_block);
-    return a->first_block && a->end_block ? MSPRING_OK : mspringi_assembly_fail(a);
+    return a->first_block && a->end_block ? MSPRING_OK : mspringi_layout_builder_fail(a);
 }
 
-static mspring_result sort_blocks(mspringi_assembly *a) {
+static mspring_result sort_blocks(mspringi_layout_builder *a) {
     const size_t count = a->block_count - a->grid_begin;
     uint64_t *scratch = mspringi_alloc(a->memory, count, sizeof *scratch);
     if (!scratch)
-        return mspringi_assembly_fail(a);
+        return mspringi_layout_builder_fail(a);
     mspringi_sort_keys(a->blocks + a->grid_begin, scratch, count);
     mspringi_free(a->memory, scratch);
     drop_repeated(a);
     return MSPRING_OK;
 }
 
-mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a, uint32_t first, uint32_t end) {
+mspring_result mspringi_layout_builder_number_blocks(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     const mspringi_grids *grids = &a->grids;
     mspring_result result = MSPRING_OK;
     for (uint32_t i = first; result == MSPRING_OK && i < end; ++i) {
-        const uint32_t grid = a->homes.grid_order[a->grid];
+        const uint32_t grid = a->assignment.grid_order[a->grid];
         if (a->grid_members == 0) {
             a->first_block[grid] = (uint32_t)a->block_count;
             a->grid_begin = a->block_count;
         }
         if (!list_blocks(a, grids->members[grids->first_member[grid] + a->grid_members++]))
-            return mspringi_assembly_fail(a);
+            return mspringi_layout_builder_fail(a);
         if (grids->first_member[grid] + a->grid_members < grids->first_member[grid + 1])
             continue;
         result = sort_blocks(a);
@@ -103,48 +104,49 @@ mspring_result mspringi_assembly_number_blocks(mspringi_assembly *a, uint32_t fi
     return result;
 }
 
-static void count_web_blocks(mspringi_assembly *a) {
-    a->web_place = 0;
-    for (uint32_t i = 0; i < a->web.count; ++i) {
-        a->web_place = mspringi_assembly_web_place(a, i, a->web_place);
-        if (i + 1 == a->web.homed_count)
-            a->homed_blocks = a->web_place / MSPRINGI_WIDTH + 1;
-        if (i + 1 == a->web.first_in_herds)
-            a->loner_blocks = a->web_place / MSPRINGI_WIDTH + 1;
+static void count_irregular_blocks(mspringi_layout_builder *a) {
+    a->irregular_spring_slot = 0;
+    for (uint32_t i = 0; i < a->irregular.count; ++i) {
+        a->irregular_spring_slot = mspringi_layout_builder_irregular_slot(a, i, a->irregular_spring_slot);
+        if (i + 1 == a->irregular.assigned_count)
+            a->assigned_blocks = a->irregular_spring_slot / MSPRINGI_WIDTH + 1;
+        if (i + 1 == a->irregular.first_in_bundles)
+            a->loner_blocks = a->irregular_spring_slot / MSPRINGI_WIDTH + 1;
     }
 }
 
-mspring_result mspringi_assembly_number_the_rest(mspringi_assembly *a) {
+mspring_result mspringi_layout_builder_number_the_rest(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     uint32_t loose = 0;
     for (uint32_t p = 0; p < a->builder->particle_count; ++p)
-        loose += mspringi_assembly_is_loose(a, p);
-    count_web_blocks(a);
+        loose += mspringi_layout_builder_is_loose(a, p);
+    count_irregular_blocks(a);
     t->lattice_first = 1;
     t->lattice_blocks = (uint32_t)a->block_count;
     t->chain_first = t->lattice_first + t->lattice_blocks;
-    t->chain_blocks = (a->strands.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    t->web_blocks = a->web.count > 0 ? a->web_place / MSPRINGI_WIDTH + 1 : 0;
+    t->chain_blocks = (a->chains.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
+    t->irregular_blocks = a->irregular.count > 0 ? a->irregular_spring_slot / MSPRINGI_WIDTH + 1 : 0;
     t->loose_particles = loose;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->spare_blocks = (mspringi_spare_particles(t) + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     // One of padding: vectors at the end of the rows before reach into it, while other threads move what is behind.
-    t->web_first = t->chain_first + t->chain_blocks + (t->web_blocks + t->loose_blocks + t->spare_blocks > 0);
-    t->loose_first = t->web_first + t->web_blocks;
+    t->irregular_first =
+        t->chain_first + t->chain_blocks + (t->irregular_blocks + t->loose_blocks + t->spare_blocks > 0);
+    t->loose_first = t->irregular_first + t->irregular_blocks;
     t->spare_first = t->loose_first + t->loose_blocks;
     t->block_count = t->spare_first + t->spare_blocks + 1;
-    if ((uint64_t)t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + a->strands.count + MSPRINGI_WIDTH +
+    if ((uint64_t)t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + a->chains.count + MSPRINGI_WIDTH +
             t->reserve.spring_end >=
         MSPRING_NONE)
         return mspringi_fail(a->message, MSPRING_ERROR_LIMIT, "%u blocks of lattice are more than can be numbered",
                              (unsigned)t->lattice_blocks);
-    t->lattice_places = t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
-    t->chain_places = t->lattice_places + t->chain_blocks * MSPRINGI_WIDTH;
+    t->lattice_spring_slots = t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+    t->chain_spring_slots = t->lattice_spring_slots + t->chain_blocks * MSPRINGI_WIDTH;
     return MSPRING_OK;
 }
 
-uint32_t mspringi_assembly_find_block(const mspringi_assembly *a, uint32_t grid, uint32_t row,
-                                      uint32_t column_block) {
+uint32_t mspringi_layout_builder_find_block(const mspringi_layout_builder *a, uint32_t grid, uint32_t row,
+                                            uint32_t column_block) {
     const mspringi_block_key key = mspringi_make_key(row, column_block);
     uint32_t low = a->first_block[grid], high = a->end_block[grid];
     while (low < high) {

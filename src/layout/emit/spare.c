@@ -17,47 +17,51 @@ static bool lengthen(uint32_t **array, size_t old_count, size_t count, mspringi_
 
 static bool note_layout(mspringi_topology *t, mspringi_memory *memory) {
     const uint32_t particles = mspringi_spare_particles(t), springs = mspringi_spare_springs(t);
-    t->laid_particles = t->particle_count - t->reserve.first_particle;
-    t->laid_slots = mspringi_alloc(memory, particles, sizeof *t->laid_slots);
-    t->laid_places = mspringi_alloc(memory, springs, sizeof *t->laid_places);
-    if (!t->laid_slots || !t->laid_places)
+    t->initial_particles = t->particle_count - t->reserve.first_particle;
+    t->initial_slots = mspringi_alloc(memory, particles, sizeof *t->initial_slots);
+    t->initial_spring_slots = mspringi_alloc(memory, springs, sizeof *t->initial_spring_slots);
+    if (!t->initial_slots || !t->initial_spring_slots)
         return false;
-    memcpy(t->laid_slots, t->slot_of_particle + t->reserve.first_particle, particles * sizeof *t->laid_slots);
-    memcpy(t->laid_places, t->place_of_spring + t->reserve.first_spring, springs * sizeof *t->laid_places);
+    memcpy(t->initial_slots, t->slot_of_particle + t->reserve.first_particle, particles * sizeof *t->initial_slots);
+    memcpy(t->initial_spring_slots, t->slot_of_spring + t->reserve.first_spring,
+           springs * sizeof *t->initial_spring_slots);
     return true;
 }
 
 mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, mspringi_memory *memory,
                                       mspringi_message *message) {
-    const uint32_t springs = mspringi_spare_springs(t), woven = t->woven_count;
-    const size_t count = (size_t)woven + springs + inactive;
-    const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
-    if ((uint64_t)t->chain_places + count >= MSPRING_NONE ||
-        (uint64_t)rungs * MSPRINGI_WIDTH + springs + inactive >= MSPRING_NONE)
+    const uint32_t springs = mspringi_spare_springs(t), laid_out = t->laid_out_count;
+    const size_t count = (size_t)laid_out + springs + inactive;
+    const uint32_t slice_columns =
+        t->irregular.slice_count > 0 ? t->irregular.first_slice_column[t->irregular.slice_count] : 0;
+    if ((uint64_t)t->chain_spring_slots + count >= MSPRING_NONE ||
+        (uint64_t)slice_columns * MSPRINGI_WIDTH + springs + inactive >= MSPRING_NONE)
         return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u springs are more than can be numbered",
                              (unsigned)t->spring_count);
-    t->leftover_capacity = woven + springs;
+    t->irregular_capacity = laid_out + springs;
     t->inactive_count = inactive;
     if (springs + inactive > 0 &&
-        (!lengthen(&t->leftover_a, woven, count, memory) || !lengthen(&t->leftover_b, woven, count, memory) ||
-         !lengthen(&t->web.entry, (size_t)2 * (t->web.entry ? woven : 0), 2 * count, memory)))
+        (!lengthen(&t->irregular_a, laid_out, count, memory) ||
+         !lengthen(&t->irregular_b, laid_out, count, memory) ||
+         !lengthen(&t->irregular.entry, (size_t)2 * (t->irregular.entry ? laid_out : 0), 2 * count, memory)))
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %zu springs", count);
-    t->leftover_count = woven + (t->spring_count - t->reserve.first_spring);
+    t->irregular_count = laid_out + (t->spring_count - t->reserve.first_spring);
     return MSPRING_OK;
 }
 
 void mspringi_spare_enter(mspringi_topology *t) {
-    const uint32_t rungs = t->web.group_count > 0 ? t->web.first_rung[t->web.group_count] : 0;
+    const uint32_t slice_columns =
+        t->irregular.slice_count > 0 ? t->irregular.first_slice_column[t->irregular.slice_count] : 0;
     for (uint32_t i = 0; i < mspringi_spare_springs(t) + t->inactive_count; ++i) {
-        uint32_t *entry = t->web.entry + 2 * ((size_t)t->woven_count + i);
-        entry[0] = entry[1] = rungs * MSPRINGI_WIDTH + i;
+        uint32_t *entry = t->irregular.entry + 2 * ((size_t)t->laid_out_count + i);
+        entry[0] = entry[1] = slice_columns * MSPRINGI_WIDTH + i;
     }
 }
 
 mspring_result mspringi_spare_keep(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message) {
     for (mspring_id s = t->spring_count > t->reserve.first_spring ? t->spring_count : t->reserve.first_spring;
          s < t->reserve.spring_end; ++s)
-        t->place_of_spring[s] = mspringi_spare_place(t, s);
+        t->slot_of_spring[s] = mspringi_spare_spring_slot(t, s);
     if (mspringi_spare_particles(t) + mspringi_spare_springs(t) > 0 && !note_layout(t, memory))
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u spare springs",
                              (unsigned)mspringi_spare_springs(t));
@@ -75,16 +79,16 @@ void mspringi_spare_take_particle(mspringi_topology *t, mspring_id particle) {
 }
 
 void mspringi_spare_put_spring(mspringi_topology *t, mspring_id spring, mspring_id a, mspring_id b) {
-    const mspringi_place place = mspringi_spare_place(t, spring);
-    t->place_of_spring[spring] = place;
-    t->leftover_a[place - t->chain_places] = t->slot_of_particle[a];
-    t->leftover_b[place - t->chain_places] = t->slot_of_particle[b];
+    const mspringi_spring_slot spring_slot = mspringi_spare_spring_slot(t, spring);
+    t->slot_of_spring[spring] = spring_slot;
+    t->irregular_a[spring_slot - t->chain_spring_slots] = t->slot_of_particle[a];
+    t->irregular_b[spring_slot - t->chain_spring_slots] = t->slot_of_particle[b];
 }
 
 void mspringi_spare_count(mspringi_topology *t, uint32_t particle_count, uint32_t spring_count) {
     t->particle_count = particle_count;
     t->spring_count = spring_count;
-    t->leftover_count = t->woven_count + (spring_count - t->reserve.first_spring);
+    t->irregular_count = t->laid_out_count + (spring_count - t->reserve.first_spring);
     if (t->spare_blocks == 0)
         return;
     uint32_t slots = particle_count - t->reserve.first_particle;

@@ -40,12 +40,12 @@ static bool is_one_way(const mspringi_spring *spring) {
 static mspring_result note_second(mspringi_graph *graph, uint32_t spring, mspringi_memory *memory,
                                   mspringi_message *message) {
     const size_t springs = graph->builder->spring_count;
-    if (!graph->is_second)
-        graph->is_second = mspringi_alloc(memory, springs, sizeof *graph->is_second);
-    if (!graph->is_second)
+    if (!graph->is_parallel)
+        graph->is_parallel = mspringi_alloc(memory, springs, sizeof *graph->is_parallel);
+    if (!graph->is_parallel)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the graph of %zu springs", springs);
-    graph->is_second[spring] = 1;
-    graph->second_count++;
+    graph->is_parallel[spring] = 1;
+    graph->parallel_count++;
     return MSPRING_OK;
 }
 
@@ -82,7 +82,7 @@ static void drop_seconds(mspringi_graph *graph) {
     for (size_t p = 0; p < graph->builder->particle_count; ++p) {
         const uint32_t end = graph->first[p + 1];
         for (uint32_t i = begin; i < end; ++i)
-            if (!graph->is_second[graph->springs[i]])
+            if (!graph->is_parallel[graph->springs[i]])
                 graph->springs[kept++] = graph->springs[i];
         graph->first[p + 1] = kept;
         begin = end;
@@ -91,7 +91,7 @@ static void drop_seconds(mspringi_graph *graph) {
 
 bool mspringi_graph_place(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
                           mspringi_lattice_spring *found) {
-    return !(graph->is_second && graph->is_second[spring]) &&
+    return !(graph->is_parallel && graph->is_parallel[spring]) &&
            mspringi_grids_place(grids, &graph->builder->springs[spring], found);
 }
 
@@ -105,7 +105,7 @@ mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builde
     if (is_checked)
         return MSPRING_OK;
     result = check(graph, memory, message);
-    if (graph->is_second)
+    if (graph->is_parallel)
         drop_seconds(graph);
     mspringi_free(memory, graph->stamp_of);
     mspringi_free(memory, graph->spring_to);
@@ -118,5 +118,5 @@ void mspringi_graph_destroy(mspringi_graph *graph, mspringi_memory *memory) {
     mspringi_free(memory, graph->springs);
     mspringi_free(memory, graph->stamp_of);
     mspringi_free(memory, graph->spring_to);
-    mspringi_free(memory, graph->is_second);
+    mspringi_free(memory, graph->is_parallel);
 }

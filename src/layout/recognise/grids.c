@@ -6,7 +6,7 @@
 /// nearly all springs of their particles, for such that lie at any angle, are oblong or bend, and for upright ones
 /// that have half of the springs.
 #include "layout/analysis.h"
-#include "layout/recognise/frame.h"
+#include "layout/recognise/lattice_basis.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -49,9 +49,10 @@ typedef struct mspringi_grid_finder {
     uint32_t *cell;    ///< hash table of the candidates' particles
     size_t cell_mask;
     uint64_t *keys, *scratch; ///< [particles]
-    mspringi_step *steps[2];  ///< [particles] of frames, in the memory of keys and scratch, which are wanted later
-    mspringi_frame upright;   ///< the frame of all particles of an upright grid
-    grid_springs *springs;    ///< [candidates]
+    mspringi_grid_step
+        *steps[2]; ///< [particles] of frames, in the memory of keys and scratch, which are wanted later
+    mspringi_lattice_basis upright; ///< the frame of all particles of an upright grid
+    grid_springs *springs;          ///< [candidates]
 
     uint32_t first, end;         ///< candidates
     uint32_t seed;               ///< the particle to be looked at next
@@ -102,19 +103,19 @@ static bool is_free(const finder *f, uint32_t particle) {
            f->given_up[particle] <= f->search;
 }
 
-static mspringi_frame frame_of(const finder *f, uint32_t particle) {
-    return (mspringi_frame){f->steps[0][particle], f->steps[1][particle]};
+static mspringi_lattice_basis frame_of(const finder *f, uint32_t particle) {
+    return (mspringi_lattice_basis){f->steps[0][particle], f->steps[1][particle]};
 }
 
-static void set_frame(finder *f, uint32_t particle, mspringi_frame frame) {
+static void set_frame(finder *f, uint32_t particle, mspringi_lattice_basis frame) {
     f->steps[0][particle] = frame.column;
     f->steps[1][particle] = frame.row;
 }
 
-static mspringi_step way_between(const finder *f, uint32_t from, uint32_t to) {
+static mspringi_grid_step way_between(const finder *f, uint32_t from, uint32_t to) {
     const mspring_builder *builder = f->graph->builder;
-    return (mspringi_step){(float)(builder->particles[to].x - builder->particles[from].x),
-                           (float)(builder->particles[to].y - builder->particles[from].y)};
+    return (mspringi_grid_step){(float)(builder->particles[to].x - builder->particles[from].x),
+                                (float)(builder->particles[to].y - builder->particles[from].y)};
 }
 
 // The frame of a seed from the shortest of its springs that lie along an axis.
@@ -122,24 +123,24 @@ static bool find_upright_frame(finder *f, uint32_t seed) {
     float shortest = 0.0f;
     for (uint32_t i = f->graph->first[seed]; i < f->graph->first[seed + 1]; ++i) {
         const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
-        const mspringi_step way = way_between(f, seed, other);
+        const mspringi_grid_step way = way_between(f, seed, other);
         const float dx = fabsf(way.x), dy = fabsf(way.y);
         const float along = dx > dy ? dx : dy, across = dx > dy ? dy : dx;
         if (is_free(f, other) && across <= AXIAL_TOLERANCE * along && (shortest == 0.0f || along < shortest))
             shortest = along;
     }
-    f->upright = mspringi_frame_upright(shortest);
+    f->upright = mspringi_lattice_basis_upright(shortest);
     return shortest > 0.0f;
 }
 
 // The ways along a seed's springs to particles that are free, shortest first. Returns how many; 0 if they are more
 // than a seed's.
-static uint32_t list_ways(const finder *f, uint32_t seed, mspringi_step ways[MOST_SEED_SPRINGS]) {
+static uint32_t list_ways(const finder *f, uint32_t seed, mspringi_grid_step ways[MOST_SEED_SPRINGS]) {
     const uint32_t first = f->graph->first[seed], end = f->graph->first[seed + 1];
     uint32_t count = 0;
     for (uint32_t i = first; end - first <= MOST_SEED_SPRINGS && i < end; ++i) {
         const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
-        const mspringi_step way = way_between(f, seed, other);
+        const mspringi_grid_step way = way_between(f, seed, other);
         if (!is_free(f, other))
             continue;
         uint32_t at = count++;
@@ -150,24 +151,24 @@ static uint32_t list_ways(const finder *f, uint32_t seed, mspringi_step ways[MOS
     return count;
 }
 
-static uint32_t count_rounded(mspringi_frame frame, const mspringi_step *ways, uint32_t count) {
+static uint32_t count_rounded(mspringi_lattice_basis frame, const mspringi_grid_step *ways, uint32_t count) {
     uint32_t rounded = 0;
     int32_t columns, rows;
     for (uint32_t i = 0; i < count; ++i)
-        rounded += mspringi_frame_round(frame, ways[i], &columns, &rows);
+        rounded += mspringi_lattice_basis_round(frame, ways[i], &columns, &rows);
     return rounded;
 }
 
 // The frame of a seed from the shortest of its springs and the one with which most of them lead to neighbouring
 // cells: of a slanted cell's side and diagonal, which may be as long, the side.
 static bool find_any_frame(finder *f, uint32_t seed) {
-    mspringi_step ways[MOST_SEED_SPRINGS];
+    mspringi_grid_step ways[MOST_SEED_SPRINGS];
     const uint32_t count = list_ways(f, seed, ways);
     uint32_t most = 0;
     for (uint32_t i = 1; i < count; ++i) {
-        if (!mspringi_frame_is_spanned(ways[0], ways[i]))
+        if (!mspringi_lattice_basis_is_spanned(ways[0], ways[i]))
             continue;
-        const mspringi_frame frame = mspringi_frame_from(ways[0], ways[i]);
+        const mspringi_lattice_basis frame = mspringi_lattice_basis_from(ways[0], ways[i]);
         const uint32_t rounded = count_rounded(frame, ways, count);
         if (rounded > most) {
             most = rounded;
@@ -186,30 +187,30 @@ static void seed_from(finder *f, uint32_t seed) {
 }
 
 // Fit a particle's frame to its neighbours, those of the nearest eight cells that are members already.
-static mspringi_frame fitted_frame(finder *f, uint32_t at) {
-    mspringi_frame_fit fit = {.count = 0};
+static mspringi_lattice_basis fitted_frame(finder *f, uint32_t at) {
+    mspringi_basis_fit fit = {.count = 0};
     for (uint32_t i = f->graph->first[at]; i < f->graph->first[at + 1]; ++i) {
         const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], at);
         const bool is_member = f->grids->grid_of[other] == f->end - 1;
         const int32_t dc = is_member ? f->column[other] - f->column[at] : 0;
         const int32_t dr = is_member ? f->row[other] - f->row[at] : 0;
         if ((dc != 0 || dr != 0) && abs(dc) <= 1 && abs(dr) <= 1)
-            mspringi_frame_fit_add(&fit, frame_of(f, other), way_between(f, at, other), dc, dr);
+            mspringi_basis_fit_add(&fit, frame_of(f, other), way_between(f, at, other), dc, dr);
     }
     if (fit.count > 0)
-        set_frame(f, at, mspringi_frame_fitted(&fit));
+        set_frame(f, at, mspringi_basis_fit_result(&fit));
     return frame_of(f, at);
 }
 
 // Collect what can be reached from a member of the last candidate, cell by cell.
 static void spread_from(finder *f, uint32_t at) {
     const mspringi_graph *graph = f->graph;
-    const mspringi_frame frame = f->search == FOR_BENT ? fitted_frame(f, at) : f->upright;
+    const mspringi_lattice_basis frame = f->search == FOR_BENT ? fitted_frame(f, at) : f->upright;
     for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
         const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
-        const mspringi_step way = way_between(f, at, other);
+        const mspringi_grid_step way = way_between(f, at, other);
         int32_t dc = 0, dr = 0;
-        if (!is_free(f, other) || !mspringi_frame_round(frame, way, &dc, &dr))
+        if (!is_free(f, other) || !mspringi_lattice_basis_round(frame, way, &dc, &dr))
             continue;
         if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr) && f->search == FOR_BENT)
             set_frame(f, other, frame);
@@ -393,8 +394,8 @@ mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph 
     if (!f || !grids->grid_of || !grids->column || !grids->row || !grids->members || !grids->first_member ||
         !f->given_up || !f->column || !f->row || !f->cell || !f->keys || !f->scratch)
         return out_of_memory(graph, message);
-    f->steps[0] = (mspringi_step *)(void *)f->keys;
-    f->steps[1] = (mspringi_step *)(void *)f->scratch;
+    f->steps[0] = (mspringi_grid_step *)(void *)f->keys;
+    f->steps[1] = (mspringi_grid_step *)(void *)f->scratch;
     memset(grids->grid_of, 0xff, particles * sizeof *grids->grid_of);
     return MSPRING_OK;
 }

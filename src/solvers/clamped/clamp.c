@@ -21,7 +21,7 @@
 // What does not come from springs, as the explicit solver has it.
 static void push_from_outside(const mspring_network *network, float h, mspringi_field base) {
     const mspringi_state *s = &network->state;
-    const float *inverse_mass = mspringi_free_mass(network);
+    const float *inverse_mass = mspringi_active_inverse_mass(network);
     const float decay = mspringi_decay(network->settings.global_damping, h);
     const float gravity_h_x = network->settings.gravity_x * h, gravity_h_y = network->settings.gravity_y * h;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
@@ -39,7 +39,7 @@ static void take_turn(const mspring_network *network, double h, mspring_id sprin
     const mspringi_spring_values values = mspringi_spring_get(network, spring);
     const mspringi_state *s = &network->state;
     const uint32_t a = values.base, b = values.tip;
-    const float *inverse_mass = mspringi_free_mass(network);
+    const float *inverse_mass = mspringi_active_inverse_mass(network);
     const double by_a = (double)inverse_mass[a], by_b = (double)inverse_mass[b], by = by_a + by_b;
     if (!(by > 0.0) || !(values.stiffness > 0.0f || values.damping > 0.0f))
         return;
@@ -76,18 +76,18 @@ static void move_all(const mspring_network *network, float h) {
 }
 
 static void act_on_floor(mspring_network *network, float h) {
-    mspringi_floor_touch_all(network, h);
-    mspringi_floor_brake_all(network, h);
+    mspringi_floor_apply_all(network, h);
+    mspringi_floor_apply_silt(network, h);
 }
 
 static void take_substeps(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count) {
     const uint32_t springs = network->topology.spring_count;
     (void)object;
     if (network->floor)
-        mspringi_floor_keep_alone(network);
+        mspringi_floor_save_isolated(network);
     for (uint32_t i = 0; i < count; ++i) {
         if (network->floor)
-            mspringi_floor_keep(network, h);
+            mspringi_floor_save_positions(network, h);
         push_from_outside(network, h, base);
         for (mspring_id s = 0; s < springs; ++s)
             take_turn(network, (double)h, s);
@@ -98,15 +98,15 @@ static void take_substeps(mspring_network *network, void *object, float h, mspri
             act_on_floor(network, h);
     }
     if (network->floor)
-        mspringi_floor_fly_alone(network, h, base, count);
+        mspringi_floor_step_isolated(network, h, base, count);
 }
 
 static const mspringi_solver_ops ops = {
-    .skews = true,
+    .is_staggered = true,
     .can_add = true,
-    .begin = mspringi_graft_follow,
+    .begin = mspringi_added_springs_update,
     .substeps = take_substeps,
     .end = mspringi_explicit_end,
-    .is_alone = mspringi_explicit_is_alone,
+    .is_isolated = mspringi_explicit_is_isolated,
 };
 const mspringi_solver mspringi_clamped = {&ops, NULL};

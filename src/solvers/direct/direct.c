@@ -4,9 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "base/mix.h"
+#include "base/hash.h"
 #include "solvers/implicit/implicit.h"
-#include "solvers/implicit/terms.h"
+#include "solvers/implicit/implicit_terms.h"
 
 /// The largest stiffness at a particle, in the units of its mass in A, that goes with single precision. Rounding is
 /// 6e-8 of the stiffness: 0.1 % of the mass there, at random, so far less in any motion of many particles.
@@ -28,7 +28,7 @@
 /// Times that positions are handed on to neighbours, in one direction of the places and then in the other.
 #define PLACING_PASSES 4
 
-typedef mspringi_direct_making making;
+typedef mspringi_direct_builder making;
 
 static size_t block_count(const mspringi_direct *direct) {
     return ((size_t)direct->place_count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
@@ -60,8 +60,8 @@ static void list_absent(const mspring_network *network, const mspringi_direct *d
     const size_t slots = mspringi_slot_count(network);
     for (size_t slot = 0; slot <= slots; ++slot)
         absent[slot] = true;
-    for (uint32_t place = 0; place < direct->place_count; ++place)
-        absent[direct->end_a[place]] = absent[direct->end_b[place]] = false;
+    for (uint32_t spring_slot = 0; spring_slot < direct->place_count; ++spring_slot)
+        absent[direct->end_a[spring_slot]] = absent[direct->end_b[spring_slot]] = false;
     absent[slots] = true;
 }
 
@@ -80,7 +80,8 @@ static mspring_result begin_places(making *m) {
     mspringi_memory *memory = &m->network->memory;
     mspringi_direct *d = m->direct;
     const size_t nodes = mspringi_slot_count(m->network) + 1;
-    *d = (mspringi_direct){.place_count = t->chain_places + t->leftover_count, .fingerprint = MSPRINGI_MIX_START};
+    *d = (mspringi_direct){.place_count = t->chain_spring_slots + t->irregular_count,
+                           .fingerprint = MSPRINGI_HASH_START};
     d->end_a = mspringi_alloc(memory, d->place_count, sizeof *d->end_a);
     d->end_b = mspringi_alloc(memory, d->place_count, sizeof *d->end_b);
     d->edge_blocks = mspringi_alloc(memory, block_count(d), sizeof *d->edge_blocks);
@@ -89,20 +90,20 @@ static mspring_result begin_places(making *m) {
     m->is_placed = mspringi_alloc(memory, nodes, sizeof *m->is_placed);
     if (!d->end_a || !d->end_b || !d->edge_blocks || !m->x || !m->absent || !m->is_placed)
         return no_memory(m);
-    for (uint32_t place = 0; place < d->place_count; ++place)
-        d->end_a[place] = d->end_b[place] = (uint32_t)nodes - 1;
+    for (uint32_t spring_slot = 0; spring_slot < d->place_count; ++spring_slot)
+        d->end_a[spring_slot] = d->end_b[spring_slot] = (uint32_t)nodes - 1;
     return MSPRING_OK;
 }
 
 static mspring_result list_ends(making *m, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &m->network->topology;
     for (mspring_id spring = first; spring < end; ++spring) {
-        const mspringi_place place = t->place_of_spring[spring];
-        if (mspringi_place_is_inactive(t, place) || !mspringi_spring_exists(m->network, spring))
+        const mspringi_spring_slot spring_slot = t->slot_of_spring[spring];
+        if (mspringi_spring_slot_is_inactive(t, spring_slot) || !mspringi_spring_exists(m->network, spring))
             continue;
-        uint32_t *a = &m->direct->end_a[place], *b = &m->direct->end_b[place];
-        mspringi_topology_ends(t, place, a, b);
-        m->direct->fingerprint = mspringi_mix(m->direct->fingerprint, (uint64_t)*a << 32 | *b);
+        uint32_t *a = &m->direct->end_a[spring_slot], *b = &m->direct->end_b[spring_slot];
+        mspringi_topology_ends(t, spring_slot, a, b);
+        m->direct->fingerprint = mspringi_hash(m->direct->fingerprint, (uint64_t)*a << 32 | *b);
     }
     return MSPRING_OK;
 }
@@ -139,8 +140,8 @@ static mspring_result place_others(making *m, uint32_t first, uint32_t end) {
     double *const x = m->x, *const y = m->x + mspringi_slot_count(m->network) + 1;
     for (uint32_t i = first; i < end; ++i) {
         const uint32_t pass = i / d->place_count, at = i % d->place_count;
-        const uint32_t place = pass % 2 == 0 ? at : d->place_count - 1 - at;
-        const uint32_t a = d->end_a[place], b = d->end_b[place];
+        const uint32_t spring_slot = pass % 2 == 0 ? at : d->place_count - 1 - at;
+        const uint32_t a = d->end_a[spring_slot], b = d->end_b[spring_slot];
         const uint32_t from = m->is_placed[a] ? a : b, to = m->is_placed[a] ? b : a;
         if (m->is_placed[from] && !m->is_placed[to]) {
             x[to] = x[from];
@@ -161,8 +162,8 @@ static mspring_result begin_plan(making *m) {
                                          .x = m->x,
                                          .y = m->x + nodes,
                                          .most_numbers = MOST_NUMBERS};
-    return mspringi_cholesky_plan_begin(&m->direct->plan, &m->graph, &m->network->memory, &m->network->message,
-                                        &m->planning);
+    return mspringi_cholesky_symbolic_begin(&m->direct->plan, &m->graph, &m->network->memory, &m->network->message,
+                                            &m->planning);
 }
 
 static mspring_result refuse(const making *m) {
@@ -178,7 +179,7 @@ static mspring_result refuse(const making *m) {
 
 static mspring_result run_plan(making *m) {
     bool is_done;
-    const mspring_result result = mspringi_cholesky_plan_run(m->planning, &is_done);
+    const mspring_result result = mspringi_cholesky_symbolic_run(m->planning, &is_done);
     m->cursor.again = !is_done;
     return result == MSPRING_ERROR_LIMIT ? refuse(m) : result == MSPRING_ERROR_MEMORY ? no_memory(m) : result;
 }
@@ -186,18 +187,18 @@ static mspring_result run_plan(making *m) {
 static mspring_result reserve_system(making *m) {
     mspringi_direct *d = m->direct;
     mspringi_memory *memory = &m->network->memory;
-    const size_t places = d->place_count, nodes = mspringi_slot_count(m->network) + 1;
+    const size_t spring_slots = d->place_count, nodes = mspringi_slot_count(m->network) + 1;
     const size_t whole = block_count(d) * MSPRINGI_WIDTH, all_nodes = nodes + MSPRINGI_WIDTH;
     // Where no spring is, nothing of these is read; all else is set in each substep.
-    d->edges.xx = mspringi_alloc_unset(memory, 3 * places, sizeof *d->edges.xx);
+    d->edges.xx = mspringi_alloc_unset(memory, 3 * spring_slots, sizeof *d->edges.xx);
     d->edges_twice.xx = mspringi_alloc_unset(memory, 3 * whole, sizeof *d->edges_twice.xx);
     d->nodes_twice.xx = mspringi_alloc_unset(memory, 3 * all_nodes, sizeof *d->nodes_twice.xx);
     d->solution = mspringi_alloc(memory, 2 * nodes, sizeof *d->solution);
     d->answer = mspringi_alloc_unset(memory, 2 * nodes, sizeof *d->answer);
     if (!d->edges.xx || !d->edges_twice.xx || !d->nodes_twice.xx || !d->solution || !d->answer)
         return no_memory(m);
-    d->edges.xy = d->edges.xx + places;
-    d->edges.yy = d->edges.xy + places;
+    d->edges.xy = d->edges.xx + spring_slots;
+    d->edges.yy = d->edges.xy + spring_slots;
     d->edges_twice.xy = d->edges_twice.xx + whole;
     d->edges_twice.yy = d->edges_twice.xy + whole;
     d->nodes_twice.xy = d->nodes_twice.xx + all_nodes;
@@ -300,35 +301,35 @@ void mspringi_direct_end(making *m) {
     if (!m->network)
         return;
     mspringi_memory *memory = &m->network->memory;
-    mspringi_cholesky_plan_end(m->planning, memory);
+    mspringi_cholesky_symbolic_end(m->planning, memory);
     mspringi_free(memory, m->x);
     mspringi_free(memory, m->absent);
     mspringi_free(memory, m->is_placed);
     *m = (making){0};
 }
 
-#define ARRAY(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_ARRAY)
-#define VIEW(member) MSPRINGI_COLUMN(mspringi_direct, member, MSPRINGI_VIEW)
-static const mspringi_column list[] = {
+#define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_direct, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_ARRAY_ENTRY(mspringi_direct, member, MSPRINGI_VIEW)
+static const mspringi_array_entry list[] = {
     ARRAY(end_a),         ARRAY(end_b),          ARRAY(edge_blocks),   ARRAY(edges.xx),      VIEW(edges.xy),
     VIEW(edges.yy),       ARRAY(edges_twice.xx), VIEW(edges_twice.xy), VIEW(edges_twice.yy), ARRAY(nodes_twice.xx),
     VIEW(nodes_twice.xy), VIEW(nodes_twice.yy),  ARRAY(solution),      ARRAY(answer),
 };
-static const mspringi_columns columns = MSPRINGI_COLUMNS(list);
+static const mspringi_array_table columns = MSPRINGI_ARRAY_TABLE(list);
 
 void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory) {
     mspringi_cholesky_float_destroy(&direct->single, memory);
     mspringi_cholesky_double_destroy(&direct->twice, memory);
-    mspringi_cholesky_plan_destroy(&direct->plan, memory);
-    mspringi_columns_free(columns, direct, memory);
+    mspringi_cholesky_symbolic_destroy(&direct->plan, memory);
+    mspringi_array_table_free(columns, direct, memory);
     *direct = (mspringi_direct){0};
 }
 
 void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *from, const mspringi_memory *to) {
-    mspringi_columns_relocate(columns, direct, from, to);
-    mspringi_columns_relocate(mspringi_cholesky_plan_columns, &direct->plan, from, to);
-    mspringi_columns_relocate(mspringi_cholesky_float_columns, &direct->single, from, to);
-    mspringi_columns_relocate(mspringi_cholesky_double_columns, &direct->twice, from, to);
+    mspringi_array_table_relocate(columns, direct, from, to);
+    mspringi_array_table_relocate(mspringi_cholesky_symbolic_columns, &direct->plan, from, to);
+    mspringi_array_table_relocate(mspringi_cholesky_float_columns, &direct->single, from, to);
+    mspringi_array_table_relocate(mspringi_cholesky_double_columns, &direct->twice, from, to);
 }
 
 /* ------------------------------------------------------------------------------------------- single precision */
@@ -391,16 +392,16 @@ static void add_any_edges(const mspringi_implicit *n, uint32_t first) {
     const mspringi_direct *d = &n->direct;
     const mspringi_blocks_double node = d->nodes_twice, edge = d->edges_twice;
     const uint32_t rest = d->place_count - first, count = rest < MSPRINGI_WIDTH ? rest : MSPRINGI_WIDTH;
-    for (uint32_t place = first; place < first + count; ++place) {
-        const uint32_t a = d->end_a[place], b = d->end_b[place];
-        const float *f = factors_of_block(n, place / MSPRINGI_WIDTH) + place % MSPRINGI_WIDTH;
+    for (uint32_t spring_slot = first; spring_slot < first + count; ++spring_slot) {
+        const uint32_t a = d->end_a[spring_slot], b = d->end_b[spring_slot];
+        const float *f = factors_of_block(n, spring_slot / MSPRINGI_WIDTH) + spring_slot % MSPRINGI_WIDTH;
         const double pull_x = (double)f[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
         const double pull_y = (double)f[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
         const double geometric = (double)f[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH];
         const double xx = geometric + pull_x * pull_x, xy = pull_x * pull_y, yy = geometric + pull_y * pull_y;
-        edge.xx[place] = -xx;
-        edge.xy[place] = -xy;
-        edge.yy[place] = -yy;
+        edge.xx[spring_slot] = -xx;
+        edge.xy[spring_slot] = -xy;
+        edge.yy[spring_slot] = -yy;
         node.xx[a] += xx;
         node.xy[a] += xy;
         node.yy[a] += yy;

@@ -28,7 +28,7 @@ typedef struct mspringi_direct {
     uint32_t *end_a, *end_b;          ///< [place_count] slots; of places without spring both the slot count
     mspringi_edge_block *edge_blocks; ///< [place_count / MSPRINGI_WIDTH, rounded up]; tip = base: springs have to
                                       ///< be taken one by one
-    mspringi_cholesky_plan plan;
+    mspringi_cholesky_symbolic plan;
     mspringi_cholesky_float single;
     mspringi_cholesky_double twice;
     mspringi_blocks_float edges;        ///< [place_count]
@@ -41,42 +41,42 @@ typedef struct mspringi_direct {
 typedef void (*mspringi_solve_fn)(const mspring_network *network, mspringi_field field);
 
 /// One that is being made.
-typedef struct mspringi_direct_making {
+typedef struct mspringi_direct_builder {
     mspring_network *network;
     mspringi_direct *direct;
     mspringi_cursor cursor;
     mspringi_cholesky_graph graph;
     double *x; ///< [2 * nodes] x, then y
     bool *absent, *is_placed;
-    mspringi_cholesky_planning *planning;
-} mspringi_direct_making;
+    mspringi_cholesky_analysis *planning;
+} mspringi_direct_builder;
 
 #if !defined(MSPRINGI_WITHOUT_DIRECT)
 /// Analyse the network's springs and reserve memory for their factor: begin, then make until it is done, then end,
 /// on failure too.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT if the factor would be too large.
-void mspringi_direct_begin(mspringi_direct_making *making, mspringi_direct *direct, mspring_network *network);
-mspring_result mspringi_direct_make(mspringi_direct_making *making, bool *is_done);
-void mspringi_direct_end(mspringi_direct_making *making);
+void mspringi_direct_begin(mspringi_direct_builder *making, mspringi_direct *direct, mspring_network *network);
+mspring_result mspringi_direct_make(mspringi_direct_builder *making, bool *is_done);
+void mspringi_direct_end(mspringi_direct_builder *making);
 void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory);
 void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *from, const mspringi_memory *to);
 
 /// Solve the system that mspringi_assemble() has left in the network's implicit solver.
 void mspringi_direct_solve(mspring_network *network);
-/// Add to its solution what rows between bodies do; see touching.c.
+/// Add to its solution what rows between bodies do; see direct_contact.c.
 void mspringi_direct_hold_bodies(mspring_network *network, mspringi_solve_fn solve);
-/// Add to a solution without angles what these do; see angles.c.
+/// Add to a solution without angles what these do; see direct_angles.c.
 void mspringi_direct_hold_angles(const mspring_network *network, double *x, double *y);
 #else // no table of solvers leads here
-static inline void mspringi_direct_begin(mspringi_direct_making *making, mspringi_direct *direct,
+static inline void mspringi_direct_begin(mspringi_direct_builder *making, mspringi_direct *direct,
                                          mspring_network *network) {
-    *making = (mspringi_direct_making){.network = network, .direct = direct};
+    *making = (mspringi_direct_builder){.network = network, .direct = direct};
 }
-static inline mspring_result mspringi_direct_make(mspringi_direct_making *making, bool *is_done) {
+static inline mspring_result mspringi_direct_make(mspringi_direct_builder *making, bool *is_done) {
     *is_done = true;
     return mspringi_solver_check_name(MSPRING_SOLVER_DIRECT, &making->network->message);
 }
-static inline void mspringi_direct_end(mspringi_direct_making *making) {
+static inline void mspringi_direct_end(mspringi_direct_builder *making) {
     (void)making;
 }
 static inline void mspringi_direct_destroy(mspringi_direct *direct, mspringi_memory *memory) {

@@ -5,14 +5,14 @@
 
 #include "contact/floor.h"
 #include "sleep/sleep.h"
+#include "solvers/explicit/bundles.h"
 #include "solvers/explicit/flush.h"
 #include "solvers/explicit/halo.h"
-#include "solvers/explicit/herds.h"
-#include "solvers/explicit/shares.h"
-#include "solvers/explicit/stint.h"
-#include "solvers/explicit/straight.h"
+#include "solvers/explicit/partition.h"
+#include "solvers/explicit/pass_task.h"
+#include "solvers/explicit/small_network.h"
 #include "solvers/explicit/strip.h"
-#include "store/alike.h"
+#include "store/record_sharing.h"
 #include "tasks/team.h"
 
 /// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
@@ -22,21 +22,22 @@
 #define FAR_CACHE_BYTES ((size_t)4 << 20)
 #define FEW_SUBSTEPS 4u
 
-/// Springs of the web times substeps from which more than one worker is worth it.
-#define SMALLEST_SHARED_WEB 400000u
+/// Springs of the irregular part times substeps from which more than one worker is worth it.
+#define SMALLEST_SHARED_IRREGULAR 400000u
 
 /// What the workers of a sweep have in common. (The job of network/job.h is another thing.)
 typedef struct job {
     const mspring_network *network;
     mspringi_field base;
     float h;
-    uint32_t count;              ///< substeps
-    uint32_t workers;            ///< bodies that run at the same time
-    mspringi_progress *progress; ///< [workers]; NULL for one
-    mspringi_shares shares;      ///< (wavefront)
-    const mspringi_strip *web;   ///< the web row's, if that is swept in layers, as strips of a wavefront of its own
+    uint32_t count;               ///< substeps
+    uint32_t workers;             ///< bodies that run at the same time
+    mspringi_progress *progress;  ///< [workers]; NULL for one
+    mspringi_partition partition; ///< (wavefront)
+    const mspringi_strip
+        *irregular; ///< the irregular row's, if that is swept in layers, as strips of a wavefront of its own
     mspringi_extrema *all_extrema; ///< [workers] if the substeps are a whole step; else NULL
-    bool herds_are_apart;          ///< and not to be swept here
+    bool bundles_are_apart;        ///< and not to be swept here
 } job;
 
 /* ---------------------------------------------------------------------------------------------- the wavefront */
@@ -63,24 +64,25 @@ uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t par
 uint32_t mspringi_explicit_workers(const mspring_network *network) {
     const uint32_t count = network->substeps > 0 ? network->substeps : 1;
     return network->topology.wavefront_strips > 0
-               ? mspringi_shares_count(network, NULL, count, network->depth).workers
+               ? mspringi_partition_count(network, NULL, count, network->depth).workers
                : 1;
 }
 
 // One more than are under way, so that the processor can begin the next substep of a small network before the last
 // row of this one is done.
-uint32_t mspringi_explicit_carries(const mspring_network *network) {
+uint32_t mspringi_explicit_carry_rows(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const uint32_t enough = t->wavefront_strips == 0 ? 1 : (t->wavefront_strips - 1) / t->skew + 2;
     return network->depth < enough ? network->depth : enough;
 }
 
 // If the substeps are a whole step, have the first one keep the state and the last one look at it.
-static void mark_ends(const job *wavefront, mspringi_substep *substep, uint32_t number, mspringi_watch *watch) {
+static void mark_ends(const job *wavefront, mspringi_substep *substep, uint32_t number,
+                      mspringi_extrema_lanes *watch) {
     if (wavefront->all_extrema && number == 0)
-        mspringi_substep_keep(wavefront->network, substep);
+        mspringi_substep_save_state(wavefront->network, substep);
     if (wavefront->all_extrema && number + 1 == wavefront->count)
-        mspringi_substep_watch(wavefront->network, substep, watch);
+        mspringi_substep_track_extrema(wavefront->network, substep, watch);
 }
 
 static void add_extrema(const job *wavefront, uint32_t worker, mspringi_extrema extrema) {
@@ -90,104 +92,104 @@ static void add_extrema(const job *wavefront, uint32_t worker, mspringi_extrema 
 // Take one substep of a strip and, if it is the last of a whole step, what belongs after it.
 static void sweep_strip(const job *wavefront, const mspringi_substep *substep, uint32_t worker,
                         const mspringi_strip *strip, const mspringi_halo *halo) {
-    if (mspringi_share_of_strip(wavefront->network, strip) == MSPRINGI_ASLEEP)
+    if (mspringi_sleep_state_of_strip(wavefront->network, strip) == MSPRINGI_ASLEEP)
         return;
     mspringi_strip_sweep(wavefront->network, substep, strip, halo);
     if (substep->sweep.watch)
         add_extrema(wavefront, worker, mspringi_strip_end(wavefront->network, strip));
 }
 
-// A layer of the web row, as a span of its own.
+// A layer of the irregular row, as a span of its own.
 static mspringi_span layer_span(const job *wavefront, uint32_t layer) {
     const mspringi_topology *t = &wavefront->network->topology;
     const uint32_t begin = t->layer_blocks[layer], end = t->layer_blocks[layer + 1];
-    mspringi_span span = t->spans[t->rows[wavefront->web->first_row].first_span];
+    mspringi_span span = t->spans[t->rows[wavefront->irregular->first_row].first_span];
     span.first_slot += begin * MSPRINGI_WIDTH;
     span.end_slot = span.first_slot + (end - begin) * MSPRINGI_WIDTH;
     span.first_record += begin;
     return span;
 }
 
-// The same of a layer of the web row.
+// The same of a layer of the irregular row.
 static void sweep_layer(const job *wavefront, const mspringi_substep *substep, uint32_t layer) {
     const mspring_network *network = wavefront->network;
     const mspringi_span span = layer_span(wavefront, layer);
-    mspringi_floor_note(network, wavefront->web, &span, 1);
-    mspringi_web_sweep(network, substep, &span);
-    mspringi_floor_touch(network, wavefront->web, &span, 1, substep->sweep.h);
+    mspringi_floor_save_velocities(network, wavefront->irregular, &span, 1);
+    mspringi_irregular_sweep(network, substep, &span);
+    mspringi_floor_apply(network, wavefront->irregular, &span, 1, substep->sweep.h);
     if (substep->next_gathered)
-        mspringi_web_pack_next(network, substep, &span);
+        mspringi_irregular_pack_next(network, substep, &span);
     if (substep->sweep.watch)
         mspringi_flush_to_zero(network, span.first_slot, span.end_slot);
 }
 
-// Take a substep of the pass for a strip of the stint.
-static void take_strip(const job *wavefront, mspringi_stint *stint, uint32_t number,
+// Take a substep of the pass for a strip of the pass task.
+static void take_strip(const job *wavefront, mspringi_pass_task *task, uint32_t number,
                        const mspringi_substep *substep, uint32_t strip) {
     const mspring_network *network = wavefront->network;
-    const bool is_first = strip == stint->begin[number], is_last = strip + 1 == stint->end[number];
-    if (stint->progress)
-        mspringi_stint_wait_above(stint, number, strip);
-    if (wavefront->web) {
+    const bool is_first = strip == task->begin[number], is_last = strip + 1 == task->end[number];
+    if (task->progress)
+        mspringi_pass_task_wait_above(task, number, strip);
+    if (wavefront->irregular) {
         sweep_layer(wavefront, substep, strip);
     } else {
         const mspringi_strip *here = &network->topology.strips[strip];
-        const mspringi_halo below = {is_first ? mspringi_stint_halo_below(stint, number) : MSPRING_NONE, number};
-        const mspringi_halo above = {is_last ? mspringi_stint_halo_above(stint, number) : MSPRING_NONE, number};
+        const mspringi_halo below = {is_first ? mspringi_pass_task_halo_below(task, number) : MSPRING_NONE, number};
+        const mspringi_halo above = {is_last ? mspringi_pass_task_halo_above(task, number) : MSPRING_NONE, number};
         if (below.border != MSPRING_NONE)
             mspringi_halo_keep(network, &below, substep, here);
-        sweep_strip(wavefront, substep, stint->body, here, above.border != MSPRING_NONE ? &above : NULL);
+        sweep_strip(wavefront, substep, task->body, here, above.border != MSPRING_NONE ? &above : NULL);
     }
-    if (stint->share > 0 && strip + 1 == stint->begin[number] + stint->shares->skew)
-        mspringi_stint_say(stint, number + 1);
+    if (task->share > 0 && strip + 1 == task->begin[number] + task->partition->skew)
+        mspringi_pass_task_publish(task, number + 1);
 }
 
 // Make one pass: several substeps over all strips of a share, each skew strips behind the one before, so that a
 // strip is in the cache for all of them. A strip's substep needs the one before of the strip itself, of the row
-// above, and of the other ends of leftover springs: all are done by then, and none is further.
-static void make_pass(const job *wavefront, mspringi_stint *stint) {
+// above, and of the other ends of irregular springs: all are done by then, and none is further.
+static void make_pass(const job *wavefront, mspringi_pass_task *task) {
     const mspring_network *network = wavefront->network;
-    const uint32_t count = mspringi_shares_substeps(stint->shares, stint->pass), skew = stint->shares->skew;
-    const uint32_t carries = mspringi_explicit_carries(network);
-    const uint32_t first_carry = mspringi_stint_carries(stint) * carries;
+    const uint32_t count = mspringi_partition_substeps(task->partition, task->pass), skew = task->partition->skew;
+    const uint32_t carries = mspringi_explicit_carry_rows(network);
+    const uint32_t first_carry = mspringi_pass_task_carry_owner(task) * carries;
     const mspringi_substep any =
         mspringi_substep_prepare(network, wavefront->h, wavefront->base, 0, wavefront->count, 0);
     mspringi_substep substeps[MSPRINGI_DEEPEST_PASS];
-    mspringi_watch_room room = {{0.0f}};
-    mspringi_watch *const watch = mspringi_watch_in(&room);
+    mspringi_extrema_buffer room = {{0.0f}};
+    mspringi_extrema_lanes *const watch = mspringi_extrema_in_buffer(&room);
     for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t number = stint->pass * stint->shares->group + i;
+        const uint32_t number = task->pass * task->partition->group + i;
         substeps[i] = any;
-        mspringi_substep_turn(network, &substeps[i], number, wavefront->count,
-                              wavefront->web ? 0 : first_carry + i % carries);
+        mspringi_substep_reuse(network, &substeps[i], number, wavefront->count,
+                               wavefront->irregular ? 0 : first_carry + i % carries);
         mark_ends(wavefront, &substeps[i], number, watch);
     }
-    mspringi_stint_begin(stint);
-    const uint32_t end = stint->end[count - 1] + (count - 1) * skew;
-    for (uint32_t front = stint->begin[0]; front < end; ++front)
+    mspringi_pass_task_begin(task);
+    const uint32_t end = task->end[count - 1] + (count - 1) * skew;
+    for (uint32_t front = task->begin[0]; front < end; ++front)
         for (uint32_t i = 0; i < count && i * skew <= front; ++i) {
             const uint32_t strip = front - i * skew;
-            if (strip >= stint->begin[i] && strip < stint->end[i])
-                take_strip(wavefront, stint, i, &substeps[i], strip);
+            if (strip >= task->begin[i] && strip < task->end[i])
+                take_strip(wavefront, task, i, &substeps[i], strip);
         }
     if (wavefront->all_extrema)
-        add_extrema(wavefront, stint->body, network->kernels->extrema_of(watch));
+        add_extrema(wavefront, task->body, network->kernels->extrema_of(watch));
 }
 
 // Make all passes over a share. What is computed, and in which order, is the same for any number of workers. The
 // first bodies are those above, which wait for nobody within a pass.
 static void take_share(void *argument, uint32_t index, uint32_t worker) {
     const job *wavefront = argument;
-    const mspringi_shares *shares = &wavefront->shares;
-    mspringi_stint stint = {.shares = shares,
-                            .progress = wavefront->progress,
-                            .share = shares->workers - 1 - index,
-                            .body = shares->workers - 1 - index};
+    const mspringi_partition *partition = &wavefront->partition;
+    mspringi_pass_task task = {.partition = partition,
+                               .progress = wavefront->progress,
+                               .share = partition->workers - 1 - index,
+                               .body = partition->workers - 1 - index};
     (void)worker;
-    for (; stint.pass * shares->group < shares->count; stint.pass++, stint.passed += shares->group + 1) {
-        mspringi_stint_wait_last(&stint);
-        make_pass(wavefront, &stint);
-        mspringi_stint_say(&stint, shares->group + 1);
+    for (; task.pass * partition->group < partition->count; task.pass++, task.passed += partition->group + 1) {
+        mspringi_pass_task_wait_previous(&task);
+        make_pass(wavefront, &task);
+        mspringi_pass_task_publish(&task, partition->group + 1);
     }
 }
 
@@ -199,47 +201,48 @@ typedef struct tiles {
 
 static void take_tile(void *argument, uint32_t index, uint32_t worker) {
     const tiles *of = argument;
-    mspringi_stint stint = {.shares = &of->wavefront->shares, .share = index, .body = index, .pass = of->pass};
+    mspringi_pass_task task = {
+        .partition = &of->wavefront->partition, .share = index, .body = index, .pass = of->pass};
     (void)worker;
-    make_pass(of->wavefront, &stint);
+    make_pass(of->wavefront, &task);
 }
 
 static void take_border(void *argument, uint32_t index, uint32_t worker) {
     const tiles *of = argument;
-    mspringi_stint stint = {.shares = &of->wavefront->shares,
-                            .share = index > 0 ? index : of->wavefront->shares.workers,
-                            .body = index,
-                            .pass = of->pass,
-                            .is_border = true};
+    mspringi_pass_task task = {.partition = &of->wavefront->partition,
+                               .share = index > 0 ? index : of->wavefront->partition.workers,
+                               .body = index,
+                               .pass = of->pass,
+                               .is_border = true};
     (void)worker;
-    make_pass(of->wavefront, &stint);
+    make_pass(of->wavefront, &task);
     if (index > 0)
         return;
-    stint.share = 0;
-    make_pass(of->wavefront, &stint);
+    task.share = 0;
+    make_pass(of->wavefront, &task);
 }
 
 static void run_wavefront(job *wavefront) {
     const mspring_network *network = wavefront->network;
-    const mspringi_shares *shares = &wavefront->shares;
-    mspringi_tasks *tasks = shares->workers > 1 ? network->tasks : NULL;
-    if (!shares->are_independent) {
+    const mspringi_partition *partition = &wavefront->partition;
+    mspringi_tasks *tasks = partition->workers > 1 ? network->tasks : NULL;
+    if (!partition->are_independent) {
         wavefront->progress = mspringi_tasks_progress(tasks);
-        mspringi_tasks_run(tasks, shares->workers, take_share, wavefront);
+        mspringi_tasks_run(tasks, partition->workers, take_share, wavefront);
         return;
     }
-    for (tiles of = {.wavefront = wavefront}; of.pass * shares->group < shares->count; ++of.pass) {
-        mspringi_tasks_run(tasks, shares->workers, take_tile, &of);
-        mspringi_tasks_run(tasks, shares->workers, take_border, &of);
+    for (tiles of = {.wavefront = wavefront}; of.pass * partition->group < partition->count; ++of.pass) {
+        mspringi_tasks_run(tasks, partition->workers, take_tile, &of);
+        mspringi_tasks_run(tasks, partition->workers, take_border, &of);
     }
 }
 
-// Pack what the first substep sees of the web's nodes.
+// Pack what the first substep sees of the irregular part's nodes.
 static void pack_wavefront(const mspring_network *network, float h, mspringi_field base, uint32_t count) {
     const mspringi_topology *t = &network->topology;
     const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
     for (uint32_t s = 0; s < t->wavefront_strips; ++s)
-        if (mspringi_share_of_strip(network, &t->strips[s]) != MSPRINGI_ASLEEP)
+        if (mspringi_sleep_state_of_strip(network, &t->strips[s]) != MSPRINGI_ASLEEP)
             mspringi_strip_pack(network, &first, &t->strips[s]);
 }
 
@@ -252,62 +255,69 @@ static void sweep_wavefront(mspring_network *network, float h, mspringi_field ba
                      .base = base,
                      .h = h,
                      .count = count,
-                     .shares = mspringi_shares_plan(network, NULL, count, network->depth),
+                     .partition = mspringi_partition_make(network, NULL, count, network->depth),
                      .all_extrema = all_extrema};
-    if (t->web.group_count > 0)
+    if (t->irregular.slice_count > 0)
         pack_wavefront(network, h, base, count);
     run_wavefront(&wavefront);
 }
 
-/* ---------------------------------------------------------------------------------------- a web's own wavefront */
+/* --------------------------------------------------------------------------- an irregular part's own wavefront */
 
-static const mspringi_strip *find_web_strip(const mspringi_topology *t) {
+static const mspringi_strip *find_irregular_strip(const mspringi_topology *t) {
     for (uint32_t s = t->wavefront_strips; s < t->strip_count; ++s)
-        if (t->rows[t->strips[s].first_row].kind == MSPRINGI_ROW_WEB)
+        if (t->rows[t->strips[s].first_row].kind == MSPRINGI_ROW_IRREGULAR)
             return &t->strips[s];
     return NULL;
 }
 
-// Substeps for which layers of the web row fit so much cache, at least one: a pass has as many under way, and two.
-static uint32_t web_depth_within(const job *wavefront, size_t cache_bytes) {
+// Substeps for which layers of the irregular row fit so much cache, at least one: a pass has as many under way, and
+// two.
+static uint32_t irregular_depth_within(const job *wavefront, size_t cache_bytes) {
     const mspringi_topology *t = &wavefront->network->topology;
-    const uint32_t first = t->spans[t->rows[wavefront->web->first_row].first_span].first_record;
+    const uint32_t first = t->spans[t->rows[wavefront->irregular->first_row].first_span].first_record;
     const uint32_t groups = t->layer_blocks[t->layer_count];
-    const uint64_t rungs = t->web.first_rung[first + groups] - t->web.first_rung[first];
+    const uint64_t slice_columns =
+        t->irregular.first_slice_column[first + groups] - t->irregular.first_slice_column[first];
     const uint64_t parts = wavefront->network->parts + 1; // and the neighbour
-    const uint64_t floats =
-        rungs * parts + (uint64_t)groups * (MSPRINGI_STATE_ARRAYS + 1 + 2 * 4); // state, inverse mass, packed twice
+    const uint64_t floats = slice_columns * parts + (uint64_t)groups * (MSPRINGI_STATE_ARRAYS + 1 +
+                                                                        2 * 4); // state, inverse mass, packed twice
     const uint64_t layers = cache_bytes * t->layer_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
     return layers < 3 ? 1 : layers - 2 < MSPRINGI_DEEPEST_PASS ? (uint32_t)layers - 2 : MSPRINGI_DEEPEST_PASS;
 }
 
-// Sweep the web row in layers, if it has them and that is worth it: for several substeps, where a wavefront has
-// work for all workers. (100,000 particles of about 8 neighbours, which take 15 MB, 40 substeps, on a Zen 4 whose
-// third-level cache others use, too: 28 ms instead of 60 to 75.)
+// Sweep the irregular row in layers, if it has them and that is worth it: for several substeps, where a wavefront
+// has work for all workers. (100,000 particles of about 8 neighbours, which take 15 MB, 40 substeps, on a Zen 4
+// whose third-level cache others use, too: 28 ms instead of 60 to 75.)
 static bool sweep_layers(const mspring_network *network, float h, mspringi_field base, uint32_t count,
                          mspringi_extrema *all_extrema) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_strip *web = find_web_strip(t);
-    if (!web || t->layer_count == 0 || count == 1 || network->graft.count > 0)
+    const mspringi_strip *irregular = find_irregular_strip(t);
+    if (!irregular || t->layer_count == 0 || count == 1 || network->added_springs.count > 0)
         return false;
-    job wavefront = {
-        .network = network, .base = base, .h = h, .count = count, .web = web, .all_extrema = all_extrema};
-    const uint32_t near_depth = web_depth_within(&wavefront, NEAR_CACHE_BYTES);
-    const uint32_t depth = near_depth > FEW_SUBSTEPS ? near_depth : web_depth_within(&wavefront, FAR_CACHE_BYTES);
-    wavefront.shares = mspringi_shares_plan(network, web, count, depth);
-    if (depth == 1 || wavefront.shares.workers < mspringi_tasks_concurrency(network->tasks))
+    job wavefront = {.network = network,
+                     .base = base,
+                     .h = h,
+                     .count = count,
+                     .irregular = irregular,
+                     .all_extrema = all_extrema};
+    const uint32_t near_depth = irregular_depth_within(&wavefront, NEAR_CACHE_BYTES);
+    const uint32_t depth =
+        near_depth > FEW_SUBSTEPS ? near_depth : irregular_depth_within(&wavefront, FAR_CACHE_BYTES);
+    wavefront.partition = mspringi_partition_make(network, irregular, count, depth);
+    if (depth == 1 || wavefront.partition.workers < mspringi_tasks_concurrency(network->tasks))
         return false;
-    if (mspringi_share_of_strip(network, web) == MSPRINGI_ASLEEP)
+    if (mspringi_sleep_state_of_strip(network, irregular) == MSPRINGI_ASLEEP)
         return true;
     const mspringi_substep first = mspringi_substep_prepare(network, h, base, 0, count, 0);
-    mspringi_web_pack(network, &first, &t->spans[t->rows[web->first_row].first_span]);
+    mspringi_irregular_pack(network, &first, &t->spans[t->rows[irregular->first_row].first_span]);
     run_wavefront(&wavefront);
     return true;
 }
 
 /* -------------------------------------------------------------------------------------------- the other strips */
 
-// The blocks of a web row that a worker takes.
+// The blocks of a irregular row that a worker takes.
 static mspringi_span share_of(const mspringi_span *all, uint32_t worker, uint32_t workers) {
     const uint32_t first_block = all->first_slot / MSPRINGI_WIDTH;
     const uint64_t blocks = all->end_slot / MSPRINGI_WIDTH - first_block;
@@ -319,21 +329,21 @@ static mspringi_span share_of(const mspringi_span *all, uint32_t worker, uint32_
     return share;
 }
 
-// What belongs before the first and after the last substep of a share of the web or of the loose particles, if the
-// substeps are a whole step.
+// What belongs before the first and after the last substep of a share of the irregular part or of the loose
+// particles, if the substeps are a whole step.
 static void begin_share(const job *rest, const mspringi_span *share) {
     if (rest->all_extrema)
-        mspringi_span_keep(rest->network, share);
+        mspringi_span_save_state(rest->network, share);
 }
 
 static void end_share(const job *rest, const mspringi_span *share, uint32_t worker) {
     if (rest->all_extrema)
-        add_extrema(rest, worker, mspringi_span_look(rest->network, share));
+        add_extrema(rest, worker, mspringi_span_extrema(rest->network, share));
 }
 
 // What so many substeps make of particles that nothing pulls at. (Substep by substep they took a quarter of the
 // step of a wreck that has nine particles of ten loose.)
-static mspringi_glide plan_glide(const mspringi_sweep *sweep, uint32_t substeps) {
+static mspringi_free_motion plan_glide(const mspringi_sweep *sweep, uint32_t substeps) {
     const double h = (double)sweep->h, decay = (double)sweep->decay;
     double keep = 1.0, gain = 0.0, fall = 0.0;
     for (uint32_t i = 0; i < substeps; ++i) {
@@ -341,11 +351,11 @@ static mspringi_glide plan_glide(const mspringi_sweep *sweep, uint32_t substeps)
         gain += keep;
         fall += gain;
     }
-    return (mspringi_glide){.keep = (float)keep,
-                            .gain = (float)gain,
-                            .reach = (float)(gain * h),
-                            .fall = (float)(fall * h),
-                            .drift = (float)(h * (double)substeps)};
+    return (mspringi_free_motion){.keep = (float)keep,
+                                  .gain = (float)gain,
+                                  .reach = (float)(gain * h),
+                                  .fall = (float)(fall * h),
+                                  .drift = (float)(h * (double)substeps)};
 }
 
 /// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.
@@ -378,7 +388,7 @@ static void take_loose(const job *rest, const mspringi_substep *substep, const m
                        const mspringi_span *span, uint32_t count) {
     const mspring_network *network = rest->network;
     const mspringi_loose_fn loose = network->kernels->loose[substep->base.x != NULL];
-    const mspringi_glide all = plan_glide(&substep->sweep, count), one = plan_glide(&substep->sweep, 1);
+    const mspringi_free_motion all = plan_glide(&substep->sweep, count), one = plan_glide(&substep->sweep, 1);
     const bool is_floor_near = mspringi_floor_is_near(network, strip), glides = !may_be_cut(network);
     if (!is_floor_near && glides) {
         loose(&substep->sweep, span, &all);
@@ -396,9 +406,9 @@ static void take_loose(const job *rest, const mspringi_substep *substep, const m
         if (!is_near && glides)
             loose(&substep->sweep, &chunk, &all);
         for (uint32_t i = 0; is_near && i < count; ++i) {
-            mspringi_floor_note(network, strip, &chunk, 1);
+            mspringi_floor_save_velocities(network, strip, &chunk, 1);
             loose(&substep->sweep, &chunk, &one);
-            mspringi_floor_touch_loose(network, strip, &chunk, rest->h);
+            mspringi_floor_apply_loose(network, strip, &chunk, rest->h);
         }
     }
 }
@@ -410,7 +420,7 @@ static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t i
     const mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, 0, 1, 0);
     const mspringi_span share = share_of(&t->spans[t->rows[strip->first_row].first_span], index, rest->workers);
     mspringi_span run[2];
-    if (mspringi_share_of_strip(network, strip) == MSPRINGI_ASLEEP)
+    if (mspringi_sleep_state_of_strip(network, strip) == MSPRINGI_ASLEEP)
         return;
     begin_share(rest, &share);
     if (network->sleep.sleeping == 0)
@@ -430,7 +440,7 @@ static void sweep_grafted_loose(const job *rest, const mspringi_substep *substep
     const uint32_t end = all->end_slot / MSPRINGI_WIDTH;
     bool pulled = false;
     for (uint32_t block = all->first_slot / MSPRINGI_WIDTH, next; block < end; block = next, pulled = !pulled) {
-        next = mspringi_graft_find_block(&network->graft, block, end, !pulled);
+        next = mspringi_added_springs_find_block(&network->added_springs, block, end, !pulled);
         mspringi_span span = *all;
         span.first_slot = block * MSPRINGI_WIDTH;
         span.end_slot = next * MSPRINGI_WIDTH;
@@ -440,20 +450,20 @@ static void sweep_grafted_loose(const job *rest, const mspringi_substep *substep
             take_loose(rest, substep, strip, &span, count);
             continue;
         }
-        const mspringi_glide glide = plan_glide(&substep->sweep, 1);
-        mspringi_floor_note(network, strip, &span, 1);
+        const mspringi_free_motion glide = plan_glide(&substep->sweep, 1);
+        mspringi_floor_save_velocities(network, strip, &span, 1);
         network->kernels->loose[rest->base.x != NULL](&substep->sweep, &span, &glide);
-        mspringi_graft_pull(network, &substep->sweep, span.first_slot, span.end_slot);
-        mspringi_floor_touch(network, strip, &span, 1, rest->h);
+        mspringi_added_springs_pull(network, &substep->sweep, span.first_slot, span.end_slot);
+        mspringi_floor_apply(network, strip, &span, 1, rest->h);
     }
 }
 
-// What of a strip a worker takes, if it is one of the web that is not swept apart.
-static bool share_of_web(const job *rest, uint32_t strip, uint32_t index, mspringi_span *share) {
+// What of a strip a worker takes, if it is one of the irregular part that is not swept apart.
+static bool share_of_irregular(const job *rest, uint32_t strip, uint32_t index, mspringi_span *share) {
     const mspringi_topology *t = &rest->network->topology;
     const mspringi_row *row = &t->rows[t->strips[strip].first_row];
-    const bool is_swept = strip == t->herd_strip ? rest->herds_are_apart : rest->web != NULL;
-    if (row->kind != MSPRINGI_ROW_WEB || is_swept)
+    const bool is_swept = strip == t->bundle_strip ? rest->bundles_are_apart : rest->irregular != NULL;
+    if (row->kind != MSPRINGI_ROW_IRREGULAR || is_swept)
         return false;
     mspringi_span all = t->spans[row->first_span];
     all.end_slot = t->spans[row->first_span + row->span_count - 1].end_slot;
@@ -461,56 +471,56 @@ static bool share_of_web(const job *rest, uint32_t strip, uint32_t index, msprin
     return share->end_slot > share->first_slot;
 }
 
-static void sweep_web_share(const job *rest, const mspringi_substep *substep, const mspringi_strip *strip,
-                            const mspringi_span *share, uint32_t number, uint32_t index) {
+static void sweep_irregular_share(const job *rest, const mspringi_substep *substep, const mspringi_strip *strip,
+                                  const mspringi_span *share, uint32_t number, uint32_t index) {
     const mspring_network *network = rest->network;
     if (number == 0)
         begin_share(rest, share);
-    mspringi_floor_note(network, strip, share, 1);
-    mspringi_web_sweep(network, substep, share);
-    if (network->graft.count > 0)
-        mspringi_graft_pull(network, &substep->sweep, share->first_slot, share->end_slot);
-    mspringi_floor_touch(network, strip, share, 1, substep->sweep.h);
+    mspringi_floor_save_velocities(network, strip, share, 1);
+    mspringi_irregular_sweep(network, substep, share);
+    if (network->added_springs.count > 0)
+        mspringi_added_springs_pull(network, &substep->sweep, share->first_slot, share->end_slot);
+    mspringi_floor_apply(network, strip, share, 1, substep->sweep.h);
     if (number + 1 == rest->count)
         end_share(rest, share, index);
 }
 
-// Take one substep after the other: all workers pack and sweep the web, the first one everything else. Substeps
-// have the packed nodes in two places in turn, so one meeting in each keeps the next from changing what this one
-// reads.
+// Take one substep after the other: all workers pack and sweep the irregular part, the first one everything else.
+// Substeps have the packed nodes in two places in turn, so one meeting in each keeps the next from changing what
+// this one reads.
 static void sweep_share(void *argument, uint32_t index, uint32_t worker) {
     const job *rest = argument;
     const mspring_network *network = rest->network;
     const mspringi_topology *t = &network->topology;
-    mspringi_watch_room room = {{0.0f}};
-    mspringi_watch *const watch = mspringi_watch_in(&room);
-    mspringi_mate mate = {.index = index, .count = rest->workers, .progress = rest->progress};
+    mspringi_extrema_buffer room = {{0.0f}};
+    mspringi_extrema_lanes *const watch = mspringi_extrema_in_buffer(&room);
+    mspringi_team_member member = {.index = index, .count = rest->workers, .progress = rest->progress};
     const mspringi_substep any = mspringi_substep_prepare(network, rest->h, rest->base, 0, rest->count, 0);
     (void)worker;
     for (uint32_t i = 0; i < rest->count; ++i) {
         mspringi_substep substep = any;
-        mspringi_substep_turn(network, &substep, i, rest->count, 0);
+        mspringi_substep_reuse(network, &substep, i, rest->count, 0);
         substep.next_gathered = NULL;
         mspringi_span share;
         for (uint32_t s = t->wavefront_strips; s < t->strip_count; ++s) {
             const mspringi_row *row = &t->rows[t->strips[s].first_row];
             if (row->kind == MSPRINGI_ROW_LOOSE) {
-                if (i == 0 && network->graft.count == 0)
+                if (i == 0 && network->added_springs.count == 0)
                     sweep_loose(rest, &t->strips[s], index);
-            } else if (row->kind == MSPRINGI_ROW_WEB) {
-                if (share_of_web(rest, s, index, &share))
-                    mspringi_web_pack(network, &substep, &share);
+            } else if (row->kind == MSPRINGI_ROW_IRREGULAR) {
+                if (share_of_irregular(rest, s, index, &share))
+                    mspringi_irregular_pack(network, &substep, &share);
             } else if (index == 0) {
                 mspringi_strip_pack(network, &substep, &t->strips[s]);
             }
         }
-        mspringi_meet(&mate);
+        mspringi_team_barrier(&member);
         for (uint32_t s = t->wavefront_strips; s < t->strip_count; ++s)
-            if (share_of_web(rest, s, index, &share))
-                sweep_web_share(rest, &substep, &t->strips[s], &share, i, index);
+            if (share_of_irregular(rest, s, index, &share))
+                sweep_irregular_share(rest, &substep, &t->strips[s], &share, i, index);
         mark_ends(rest, &substep, i, watch);
         for (uint32_t s = t->wavefront_strips; index == 0 && s < t->strip_count; ++s)
-            if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_WEB)
+            if (t->rows[t->strips[s].first_row].kind < MSPRINGI_ROW_IRREGULAR)
                 sweep_strip(rest, &substep, index, &t->strips[s], NULL);
     }
     if (rest->all_extrema)
@@ -524,12 +534,12 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
         return;
     job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .all_extrema = all_extrema};
     if (sweep_layers(network, h, base, count, all_extrema))
-        rest.web = find_web_strip(t);
-    rest.herds_are_apart = mspringi_herds_are_apart(network);
-    if (t->wavefront_strips + (rest.web != NULL) + rest.herds_are_apart == t->strip_count)
+        rest.irregular = find_irregular_strip(t);
+    rest.bundles_are_apart = mspringi_bundles_are_apart(network);
+    if (t->wavefront_strips + (rest.irregular != NULL) + rest.bundles_are_apart == t->strip_count)
         return;
-    const uint32_t springs = t->leftover_count - (rest.herds_are_apart ? t->herd_springs : 0);
-    if ((uint64_t)springs * count >= SMALLEST_SHARED_WEB && network->graft.count == 0)
+    const uint32_t springs = t->irregular_count - (rest.bundles_are_apart ? t->bundle_springs : 0);
+    if ((uint64_t)springs * count >= SMALLEST_SHARED_IRREGULAR && network->added_springs.count == 0)
         rest.workers = mspringi_tasks_concurrency(network->tasks);
     rest.progress = rest.workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
     mspringi_tasks_run(rest.progress ? network->tasks : NULL, rest.workers, sweep_share, &rest);
@@ -544,7 +554,7 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
     const uint32_t first = network->plastic.substep;
     for (uint32_t i = 0; i < count; ++i) {
         network->plastic.substep = first + i;
-        mspringi_graft_begin(network, &substep.sweep);
+        mspringi_added_springs_begin(network, &substep.sweep);
         sweep_wavefront(network, h, base, 1, NULL);
         sweep_rest(network, h, base, 1, NULL);
         if (has_loose)
@@ -555,22 +565,23 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
 // The wavefront's strips know nothing of the others, nor they of the wavefront's, unless springs were added.
 static void sweep_all(mspring_network *network, float h, mspringi_field base, uint32_t count,
                       mspringi_extrema *all_extrema) {
-    mspringi_alike_renew(network);
-    if (network->graft.count > 0) {
+    mspringi_shared_records_find(network);
+    if (network->added_springs.count > 0) {
         sweep_grafted(network, h, base, count);
         return;
     }
-    if (mspringi_straight_sweep(network, h, base, count, all_extrema))
+    if (mspringi_small_network_step(network, h, base, count, all_extrema))
         return;
     sweep_wavefront(network, h, base, count, all_extrema);
     sweep_rest(network, h, base, count, all_extrema);
-    if (mspringi_herds_are_apart(network))
-        mspringi_herds_sweep(network, h, base, count, all_extrema);
+    if (mspringi_bundles_are_apart(network))
+        mspringi_bundles_sweep(network, h, base, count, all_extrema);
 }
 
-mspringi_extrema mspringi_explicit_step(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+mspringi_extrema mspringi_explicit_run_step(mspring_network *network, float h, mspringi_field base,
+                                            uint32_t count) {
     mspringi_extrema all_extrema[MSPRING_MAX_WORKERS];
-    const uint32_t workers = mspringi_tasks_shares(network->tasks);
+    const uint32_t workers = mspringi_tasks_partition_size(network->tasks);
     memset(all_extrema, 0, workers * sizeof *all_extrema);
     sweep_all(network, h, base, count, all_extrema);
     for (uint32_t worker = 1; worker < workers; ++worker)
@@ -578,12 +589,12 @@ mspringi_extrema mspringi_explicit_step(mspring_network *network, float h, mspri
     return all_extrema[0];
 }
 
-void mspringi_explicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+void mspringi_explicit_run_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     if (network->floor)
-        mspringi_floor_survey(network, (double)h * (double)count);
+        mspringi_floor_update_clearances(network, (double)h * (double)count);
     sweep_all(network, h, base, count, NULL);
     if (network->floor)
-        mspringi_floor_look_far(network);
+        mspringi_floor_check_clear(network);
 }
 
 void mspringi_explicit_reset(mspring_network *network) {

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "solvers/explicit/partly.h"
-#include "solvers/explicit/shares.h"
+#include "solvers/explicit/partial_sweep.h"
+#include "solvers/explicit/partition.h"
 #include "store/precise.h"
 
 /// Rows that a halo has: the row below as each of the workers sweeps it, and the velocities that the one below
@@ -22,15 +22,15 @@ static uint32_t most_spans(const mspringi_topology *t) {
 
 static mspringi_halos plan_halos(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    const uint32_t shares = mspringi_tasks_shares(network->tasks);
+    const uint32_t partition = mspringi_tasks_partition_size(network->tasks);
     mspringi_halos halos = {.segment = ((size_t)t->carry_blocks + 1) * MSPRINGI_WIDTH};
-    if (shares == 1)
+    if (partition == 1)
         return halos;
     halos.substeps = network->depth;
-    halos.workers = shares;
+    halos.workers = partition;
     halos.row_spans = most_spans(t);
-    const uint32_t most = t->wavefront_strips / mspringi_shares_least(t->skew);
-    const uint32_t used = most < shares ? most : shares;
+    const uint32_t most = t->wavefront_strips / mspringi_partition_min_strips(t->skew);
+    const uint32_t used = most < partition ? most : partition;
     // Independent shares have one at the lower end, too.
     halos.count = used < 2 ? 0 : mspringi_tasks_are_independent(network->tasks) ? used : used - 1;
     halos.strips = t->wavefront_strips > t->layer_count ? t->wavefront_strips : t->layer_count;
@@ -161,18 +161,18 @@ static void sweep_copy(const mspring_network *network, const mspringi_substep *s
         sweep_moved(copy, lattice, sweep, spans, below->span_count);
         return;
     }
-    mspringi_partly_at at = mspringi_partly_begin(spans, below->span_count);
-    for (uint32_t count; (count = mspringi_partly_next(network, &at, copy->runs)) > 0;) {
+    mspringi_partial_cursor at = mspringi_partial_begin(spans, below->span_count);
+    for (uint32_t count; (count = mspringi_partial_next(network, &at, copy->runs)) > 0;) {
         sweep_moved(copy, lattice, sweep, copy->runs, count);
         for (uint32_t i = 0; i < count; ++i)
-            mspringi_partly_clear(network, &substep->sweep, &copy->runs[i]);
+            mspringi_partial_clear(network, &substep->sweep, &copy->runs[i]);
     }
 }
 
 void mspringi_halo_keep(const mspring_network *network, const mspringi_halo *halo, const mspringi_substep *substep,
                         const mspringi_strip *strip) {
     const mspringi_row *above = &network->topology.rows[strip->first_row], *below = above - 1;
-    const mspringi_share share = mspringi_share_of_strip(network, strip - 1);
+    const mspringi_share share = mspringi_sleep_state_of_strip(network, strip - 1);
     if (below->kind != MSPRINGI_ROW_LATTICE || share == MSPRINGI_ASLEEP)
         return;
     const mspringi_state kept = state_of(network, halo->border, ABOVE + halo->substep);
@@ -199,7 +199,8 @@ void mspringi_halo_sweep(const mspring_network *network, const mspringi_halo *ha
         memcpy(before.y, backup->vy + copy.below.first, copy.below.count * sizeof *before.y);
         sweep.before = before.x;
     }
-    sweep_copy(network, substep, &copy, &sweep, below, mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY);
+    sweep_copy(network, substep, &copy, &sweep, below,
+               mspringi_sleep_state_of_strip(network, strip) == MSPRINGI_PARTLY);
     copy_slots(&copy.state, 0, &network->state, copy.below.first, copy.below.count);
     // The worker above has what the row hands on.
     const size_t carried = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;

@@ -8,7 +8,7 @@
 #include "contact/floor.h"
 #include "solvers/explicit/flush.h"
 #include "solvers/explicit/halo.h"
-#include "solvers/explicit/partly.h"
+#include "solvers/explicit/partial_sweep.h"
 #include "store/precise.h"
 
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
@@ -24,18 +24,18 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .vy = network->state.vy,
                 .low_x = network->state.low_x,
                 .low_y = network->state.low_y,
-                .inverse_mass = mspringi_free_mass(network),
+                .inverse_mass = mspringi_active_inverse_mass(network),
                 .force_x = base.x,
                 .force_y = base.y,
                 .lattice_springs = network->lattice_springs,
-                .springs_of_block = network->alike.of_block,
+                .springs_of_block = network->shared_records.of_block,
                 .cells = network->areas.swept > 0 ? network->areas.cells : NULL,
-                .rest_lengths = network->rests.lengths,
-                .rests_of_block =
-                    network->plastic.nominal ? network->plastic.alike.of_block : network->rests.of_block,
+                .rest_lengths = network->rest_lengths.lengths,
+                .rests_of_block = network->plastic.nominal ? network->plastic.shared_records.of_block
+                                                           : network->rest_lengths.of_block,
                 .chain_springs = network->chain_springs,
-                .web = &network->topology.web,
-                .web_springs = network->web_springs,
+                .irregular = &network->topology.irregular,
+                .irregular_springs = network->irregular_springs,
                 .parts = network->parts,
                 .h = h,
                 .decay = mspringi_decay(network->settings.global_damping, h),
@@ -45,15 +45,16 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .gravity_h_y = network->settings.gravity_y * h + 0.0f,
             },
     };
-    mspringi_substep_turn(network, &substep, i, count, carry_number);
+    mspringi_substep_reuse(network, &substep, i, count, carry_number);
     return substep;
 }
 
-void mspringi_substep_turn(const mspring_network *network, mspringi_substep *substep, uint32_t i, uint32_t count,
-                           uint32_t carry_number) {
+void mspringi_substep_reuse(const mspring_network *network, mspringi_substep *substep, uint32_t i, uint32_t count,
+                            uint32_t carry_number) {
     const mspringi_topology *t = &network->topology;
     const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
-    const size_t gathered_floats = (size_t)mspringi_gathered_values(network) * t->web.group_count * MSPRINGI_WIDTH;
+    const size_t gathered_floats =
+        (size_t)mspringi_gathered_values(network) * t->irregular.slice_count * MSPRINGI_WIDTH;
     substep->looks = substep->tests && (network->plastic.substep + i) % MSPRINGI_YIELD_PERIOD == 0;
     substep->gathered = network->gathered + i % 2 * gathered_floats;
     substep->next_gathered = i + 1 < count ? network->gathered + (i + 1) % 2 * gathered_floats : NULL;
@@ -62,13 +63,13 @@ void mspringi_substep_turn(const mspring_network *network, mspringi_substep *sub
     substep->sweep.carry_y = substep->sweep.carry_x + carry_slots;
 }
 
-// Pack what the web sees of the nodes that are slots of a strip.
+// Pack what the irregular part sees of the nodes that are slots of a strip.
 static void pack_attached(const mspring_network *network, const mspringi_strip *strip, float *gathered) {
-    const mspringi_web *web = &network->topology.web;
-    const uint32_t *slots = web->attached_slot + strip->first_attached;
-    gathered += 4 * ((size_t)web->own_count + strip->first_attached);
+    const mspringi_sell *irregular = &network->topology.irregular;
+    const uint32_t *slots = irregular->attached_slot + strip->first_attached;
+    gathered += 4 * ((size_t)irregular->own_count + strip->first_attached);
     for (uint32_t i = 0; i < strip->attached_count; ++i, gathered += 4)
-        mspringi_pack_slot(network, web, gathered, slots[i]);
+        mspringi_pack_slot(network, irregular, gathered, slots[i]);
 }
 
 // Pack groups that lie behind one another.
@@ -86,13 +87,13 @@ static void pack_blocks(const mspring_network *network, const mspringi_sweep *sw
         return;
     from.x = sweep->vx;
     from.y = sweep->vy;
-    network->kernels->pack(&from, first_block, count, gathered + mspringi_gathered_half(sweep->web));
+    network->kernels->pack(&from, first_block, count, gathered + mspringi_gathered_half(sweep->irregular));
 }
 
-// Pack what the web sees of its own nodes in a span: runs of groups that somebody reads there.
+// Pack what the irregular part sees of its own nodes in a span: runs of groups that somebody reads there.
 static void pack_span(const mspring_network *network, const mspringi_sweep *sweep, const mspringi_span *span,
                       float *gathered) {
-    const uint8_t *is_read = network->topology.web.is_read;
+    const uint8_t *is_read = network->topology.irregular.is_read;
     const size_t first_block = span->first_slot / MSPRINGI_WIDTH;
     const size_t end = (span->end_slot + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH - first_block + span->first_record;
     for (size_t first = span->first_record, last = first; first < end; first = ++last) {
@@ -104,14 +105,15 @@ static void pack_span(const mspring_network *network, const mspringi_sweep *swee
     }
 }
 
-// Add what the web's pull at the slots of a strip does in the substep that they have just been swept for. It could
-// be among the forces that they are swept with, but then whole strips would read them for the sake of some slots.
+// Add what the irregular part's pull at the slots of a strip does in the substep that they have just been swept
+// for. It could be among the forces that they are swept with, but then whole strips would read them for the sake of
+// some slots.
 static void pull_attached(const mspring_network *network, const mspringi_substep *substep,
                           const mspringi_strip *strip) {
-    const mspringi_web *web = &network->topology.web;
+    const mspringi_sell *irregular = &network->topology.irregular;
     const mspringi_sweep *sweep = &substep->sweep;
-    const uint32_t *slots = web->attached_slot + strip->first_attached;
-    float *pull_x = network->attached, *pull_y = network->attached + web->attached_count;
+    const uint32_t *slots = irregular->attached_slot + strip->first_attached;
+    float *pull_x = network->attached, *pull_y = network->attached + irregular->attached_count;
     mspringi_attached_kernel(network)(sweep, strip->first_attached, strip->attached_count, pull_x, pull_y);
     pull_x += strip->first_attached;
     pull_y += strip->first_attached;
@@ -141,43 +143,45 @@ static void sweep_rows(const mspring_network *network, const mspringi_substep *s
         mspringi_row_kernel(network, rows->kind, substep->base.x != NULL, sweep->test != NULL);
     if (is_partly) {
         for (const mspringi_row *row = rows; row <= last; ++row)
-            mspringi_partly_sweep_row(network, substep, sweep_spans, row);
+            mspringi_partial_sweep_row(network, substep, sweep_spans, row);
         return;
     }
-    if (t->tight_spans && first_span < t->tightened_count) {
-        spans = t->tight_spans;
-        first_span = t->first_tight[first_span];
-        end_span = t->first_tight[end_span];
+    if (t->trimmed_spans && first_span < t->trimmed_count) {
+        spans = t->trimmed_spans;
+        first_span = t->first_trimmed[first_span];
+        end_span = t->first_trimmed[end_span];
     }
     sweep_spans(sweep, spans + first_span, end_span - first_span);
 }
 
-void mspringi_web_pack(const mspring_network *network, const mspringi_substep *substep, const mspringi_span *span) {
+void mspringi_irregular_pack(const mspring_network *network, const mspringi_substep *substep,
+                             const mspringi_span *span) {
     pack_span(network, &substep->sweep, span, substep->gathered);
 }
 
-void mspringi_web_pack_next(const mspring_network *network, const mspringi_substep *substep,
-                            const mspringi_span *span) {
+void mspringi_irregular_pack_next(const mspring_network *network, const mspringi_substep *substep,
+                                  const mspringi_span *span) {
     pack_span(network, &substep->sweep, span, substep->next_gathered);
 }
 
-void mspringi_web_sweep(const mspring_network *network, const mspringi_substep *substep,
-                        const mspringi_span *span) {
-    const mspringi_row_fn web = mspringi_row_kernel(network, MSPRINGI_ROW_WEB, substep->base.x != NULL, false);
+void mspringi_irregular_sweep(const mspring_network *network, const mspringi_substep *substep,
+                              const mspringi_span *span) {
+    const mspringi_row_fn irregular =
+        mspringi_row_kernel(network, MSPRINGI_ROW_IRREGULAR, substep->base.x != NULL, false);
     if (network->sleep.sleeping > 0)
-        mspringi_partly_sweep_web(network, substep, web, span);
+        mspringi_partial_sweep_irregular(network, substep, irregular, span);
     else
-        web(&substep->sweep, span, 1);
+        irregular(&substep->sweep, span, 1);
 }
 
 void mspringi_strip_pack(const mspring_network *network, const mspringi_substep *substep,
                          const mspringi_strip *strip) {
     const mspringi_topology *t = &network->topology;
-    if (t->web.group_count == 0)
+    if (t->irregular.slice_count == 0)
         return;
     pack_attached(network, strip, substep->gathered);
-    if (strip->home_span != MSPRING_NONE)
-        mspringi_web_pack(network, substep, &t->spans[strip->home_span]);
+    if (strip->assigned_span != MSPRING_NONE)
+        mspringi_irregular_pack(network, substep, &t->spans[strip->assigned_span]);
 }
 
 // What a strip tests in a substep: in a look all its springs, and after one that found some of them warm as well.
@@ -202,11 +206,11 @@ static bool begin_test(const mspring_network *network, const mspringi_substep *s
                                   .hardening = p->hardening,
                                   .plastic_limit = p->plastic_limit,
                                   .gain = p->gain,
-                                  .lattice_rests = network->rests.lengths,
+                                  .lattice_rests = network->rest_lengths.lengths,
                                   .chain_springs = network->chain_springs,
                                   .live = network->live,
-                                  .chain_place = network->topology.lattice_places,
-                                  .alike = p->alike,
+                                  .first_chain_slot = network->topology.lattice_spring_slots,
+                                  .shared_records = p->shared_records,
                                   .block_count = network->topology.lattice_blocks,
                                   .heat = p->heat,
                                   .before = p->before,
@@ -218,12 +222,12 @@ static bool begin_test(const mspring_network *network, const mspringi_substep *s
 static void sweep_strip(const mspring_network *network, const mspringi_substep *substep,
                         const mspringi_strip *strip, const mspringi_halo *halo) {
     const mspringi_row *rows = &network->topology.rows[strip->first_row], *last = rows + strip->row_count - 1;
-    const bool is_partly = mspringi_share_of_strip(network, strip) == MSPRINGI_PARTLY;
+    const bool is_partly = mspringi_sleep_state_of_strip(network, strip) == MSPRINGI_PARTLY;
     const bool has_halo = halo && last->kind == MSPRINGI_ROW_LATTICE;
     const uint32_t row_count = strip->row_count - has_halo;
     const mspringi_span *spans = &network->topology.spans[rows->first_span];
     const uint32_t span_count = last->first_span + last->span_count - rows->first_span;
-    mspringi_floor_note(network, strip, spans, span_count);
+    mspringi_floor_save_velocities(network, strip, spans, span_count);
     for (uint32_t first = 0, count; first < row_count; first += count) {
         for (count = 1; first + count < row_count && rows[first + count].kind == rows[first].kind;)
             ++count;
@@ -233,20 +237,20 @@ static void sweep_strip(const mspring_network *network, const mspringi_substep *
         mspringi_halo_sweep(network, halo, substep, strip);
     if (strip->attached_count > 0)
         pull_attached(network, substep, strip);
-    if (network->graft.count > 0)
-        mspringi_graft_pull(network, &substep->sweep, network->topology.spans[rows->first_span].first_slot,
-                            network->topology.spans[last->first_span + last->span_count - 1].end_slot);
-    mspringi_floor_touch(network, strip, spans, span_count, substep->sweep.h);
+    if (network->added_springs.count > 0)
+        mspringi_added_springs_pull(network, &substep->sweep, network->topology.spans[rows->first_span].first_slot,
+                                    network->topology.spans[last->first_span + last->span_count - 1].end_slot);
+    mspringi_floor_apply(network, strip, spans, span_count, substep->sweep.h);
     if (strip->attached_count > 0 && substep->next_gathered)
         pack_attached(network, strip, substep->next_gathered);
-    if (strip->home_span == MSPRING_NONE)
+    if (strip->assigned_span == MSPRING_NONE)
         return;
-    const mspringi_span *span = &network->topology.spans[strip->home_span];
-    mspringi_floor_note(network, strip, span, 1);
-    mspringi_web_sweep(network, substep, span);
-    if (network->graft.count > 0)
-        mspringi_graft_pull(network, &substep->sweep, span->first_slot, span->end_slot);
-    mspringi_floor_touch(network, strip, span, 1, substep->sweep.h);
+    const mspringi_span *span = &network->topology.spans[strip->assigned_span];
+    mspringi_floor_save_velocities(network, strip, span, 1);
+    mspringi_irregular_sweep(network, substep, span);
+    if (network->added_springs.count > 0)
+        mspringi_added_springs_pull(network, &substep->sweep, span->first_slot, span->end_slot);
+    mspringi_floor_apply(network, strip, span, 1, substep->sweep.h);
     if (substep->next_gathered)
         pack_span(network, &substep->sweep, span, substep->next_gathered);
 }
@@ -279,7 +283,7 @@ static void keep_slots(const mspring_network *network, size_t first, size_t end)
 
 static mspringi_extrema look_at_slots(const mspring_network *network, size_t first, size_t end) {
     mspringi_flush_to_zero(network, first, end);
-    return mspringi_guard_look(network, first, end);
+    return mspringi_guard_extrema(network, first, end);
 }
 
 static size_t first_block_slot(const mspringi_span *span) {
@@ -302,34 +306,35 @@ static size_t end_row_slot(const mspring_network *network, const mspringi_strip 
     return end_block_slot(&t->spans[last->first_span + last->span_count - 1]);
 }
 
-void mspringi_span_keep(const mspring_network *network, const mspringi_span *span) {
+void mspringi_span_save_state(const mspring_network *network, const mspringi_span *span) {
     keep_slots(network, first_block_slot(span), end_block_slot(span));
 }
 
-mspringi_extrema mspringi_span_look(const mspring_network *network, const mspringi_span *span) {
+mspringi_extrema mspringi_span_extrema(const mspring_network *network, const mspringi_span *span) {
     return look_at_slots(network, first_block_slot(span), end_block_slot(span));
 }
 
-void mspringi_substep_keep(const mspring_network *network, mspringi_substep *substep) {
+void mspringi_substep_save_state(const mspring_network *network, mspringi_substep *substep) {
     substep->sweep.keep = network->backup.x;
 }
 
-void mspringi_substep_watch(const mspring_network *network, mspringi_substep *substep, mspringi_watch *watch) {
+void mspringi_substep_track_extrema(const mspring_network *network, mspringi_substep *substep,
+                                    mspringi_extrema_lanes *watch) {
     substep->sweep.watch = watch;
     substep->sweep.before = network->guard.watches ? network->backup.vx : NULL;
-    substep->sweep.watches_place = !network->guard.knows_place;
+    substep->sweep.watches_coordinate = !network->guard.knows_coordinate;
     substep->sweep.watches_speed = !(network->guard.watches && network->guard.knows_speed);
 }
 
-mspringi_watch *mspringi_watch_in(mspringi_watch_room *room) {
+mspringi_extrema_lanes *mspringi_extrema_in_buffer(mspringi_extrema_buffer *room) {
     const size_t bytes = sizeof(float) * MSPRINGI_WIDTH, over = (uintptr_t)room->values % bytes;
-    return (mspringi_watch *)(void *)(room->values + (bytes - over) % bytes / sizeof(float));
+    return (mspringi_extrema_lanes *)(void *)(room->values + (bytes - over) % bytes / sizeof(float));
 }
 
-// What the web has pulled at after the slots of the strip were swept.
+// What the irregular part has pulled at after the slots of the strip were swept.
 static mspringi_extrema look_at_attached(const mspring_network *network, const mspringi_strip *strip) {
     const mspringi_state *s = &network->state, *b = &network->backup;
-    const uint32_t *slots = network->topology.web.attached_slot + strip->first_attached;
+    const uint32_t *slots = network->topology.irregular.attached_slot + strip->first_attached;
     mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     for (uint32_t i = 0; i < strip->attached_count; ++i) {
         const uint32_t slot = slots[i];
@@ -344,8 +349,8 @@ static mspringi_extrema look_at_attached(const mspring_network *network, const m
 
 mspringi_extrema mspringi_strip_end(const mspring_network *network, const mspringi_strip *strip) {
     mspringi_flush_to_zero(network, first_row_slot(network, strip), end_row_slot(network, strip));
-    if (strip->home_span != MSPRING_NONE) {
-        const mspringi_span *span = &network->topology.spans[strip->home_span];
+    if (strip->assigned_span != MSPRING_NONE) {
+        const mspringi_span *span = &network->topology.spans[strip->assigned_span];
         mspringi_flush_to_zero(network, first_block_slot(span), end_block_slot(span));
     }
     return strip->attached_count > 0 ? look_at_attached(network, strip) : (mspringi_extrema){0.0f, 0.0f, 0.0f};

@@ -1,6 +1,6 @@
 /// The linear system of a substep.
 #include "solvers/implicit/implicit.h"
-#include "solvers/implicit/terms.h"
+#include "solvers/implicit/implicit_terms.h"
 
 #include <math.h>
 #include <string.h>
@@ -17,15 +17,15 @@ typedef struct panel_share {
     const mspringi_panel *begin, *end;
 } panel_share;
 
-static panel_share share_panels(const mspring_network *network, const mspringi_mate *mate) {
+static panel_share share_panels(const mspring_network *network, const mspringi_team_member *member) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;
     panel_share share = {.system = n->system,
-                         .begin = n->panels.list + mspringi_share_of(mate, n->panels.count),
-                         .end = n->panels.list + mspringi_share_end(mate, n->panels.count)};
-    share.system.force_carry_x = n->force_carry + 2 * mate->index * carry;
+                         .begin = n->panels.list + mspringi_range_begin(member, n->panels.count),
+                         .end = n->panels.list + mspringi_range_end(member, n->panels.count)};
+    share.system.force_carry_x = n->force_carry + 2 * member->index * carry;
     share.system.force_carry_y = share.system.force_carry_x + carry;
-    share.system.carry_xx = n->carry + 3 * mate->index * carry;
+    share.system.carry_xx = n->carry + 3 * member->index * carry;
     share.system.carry_xy = share.system.carry_xx + carry;
     share.system.carry_yy = share.system.carry_xy + carry;
     return share;
@@ -62,14 +62,13 @@ static void clear_carry(const mspring_network *network, const panel_share *share
     memset(share->system.carry_xx, 0, (forces ? 3 : 2) * carry * sizeof *share->system.carry_xx);
 }
 
-static void assemble_panels(const mspring_network *network, const mspringi_mate *mate) {
+static void assemble_panels(const mspring_network *network, const mspringi_team_member *member) {
     const mspringi_topology *t = &network->topology;
     const mspringi_system_kernels *kernels = &network->kernels->system;
     const bool damped = network->parts > MSPRINGI_DAMPING;
-    const panel_share share = share_panels(network, mate);
+    const panel_share share = share_panels(network, member);
     if (is_handed_on(network, &share))
-        kernels->hand_on_forces[damped](&share.system, t->spans + share.begin->below_first,
-                                        share.begin->below_count);
+        kernels->carry_forces[damped](&share.system, t->spans + share.begin->below_first, share.begin->below_count);
     for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
         if (mspringi_panel_is_asleep(network, panel))
             continue;
@@ -80,15 +79,15 @@ static void assemble_panels(const mspring_network *network, const mspringi_mate 
     }
 }
 
-static void multiply_panels(const mspring_network *network, const mspringi_mate *mate) {
+static void multiply_panels(const mspring_network *network, const mspringi_team_member *member) {
     const mspringi_topology *t = &network->topology;
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_system_kernels *kernels = &network->kernels->system;
     const mspringi_field from = n->direction, to = n->product;
-    const panel_share share = share_panels(network, mate);
+    const panel_share share = share_panels(network, member);
     if (is_handed_on(network, &share))
-        kernels->hand_on_product(&share.system, t->spans + share.begin->below_first, share.begin->below_count,
-                                 from.x, from.y);
+        kernels->carry_product(&share.system, t->spans + share.begin->below_first, share.begin->below_count, from.x,
+                               from.y);
     for (const mspringi_panel *panel = share.begin; panel < share.end; ++panel) {
         n->panels.sums[panel - n->panels.list] = 0.0f;
         if (mspringi_panel_is_asleep(network, panel))
@@ -101,17 +100,17 @@ static void multiply_panels(const mspring_network *network, const mspringi_mate 
     }
 }
 
-/* ------------------------------------------------------------------------------------------ leftover springs */
+/* ------------------------------------------------------------------------------------------ irregular springs */
 
 /// One of them as it acts on its base.
-typedef struct leftover {
+typedef struct irregular_spring {
     double force_x, force_y;
     float pull_x, pull_y, geometric;
-} leftover;
+} irregular_spring;
 
 // As in kernels/system_assemble.h, in double precision throughout.
-static leftover compute_leftover(const mspringi_system *s, uint32_t base, uint32_t tip,
-                                 const mspringi_spring_values *values) {
+static irregular_spring compute_irregular(const mspringi_system *s, uint32_t base, uint32_t tip,
+                                          const mspringi_spring_values *values) {
     const double dx = s->x[tip] - s->x[base], dy = s->y[tip] - s->y[base];
     const double length = sqrt(dx * dx + dy * dy), inverse = length > 0.0 ? 1.0 / length : 0.0;
     const double nx = dx * inverse, ny = dy * inverse;
@@ -127,35 +126,36 @@ static leftover compute_leftover(const mspringi_system *s, uint32_t base, uint32
     const double own = MSPRINGI_LAW_ALONG(stiffness), geometric = own * tensed;
     const double along = (own - geometric) + MSPRINGI_LAW_DAMPING_ALONG(damping) * s->damping_rate;
     const float root = sqrtf((float)along);
-    return (leftover){force * nx, force * ny, root * (float)nx, root * (float)ny, (float)geometric};
+    return (irregular_spring){force * nx, force * ny, root * (float)nx, root * (float)ny, (float)geometric};
 }
 
-static void add_to_diagonal(const mspringi_system *s, uint32_t slot, const leftover *spring) {
+static void add_to_diagonal(const mspringi_system *s, uint32_t slot, const irregular_spring *spring) {
     s->xx[slot] += spring->geometric + spring->pull_x * spring->pull_x;
     s->xy[slot] += spring->pull_x * spring->pull_y;
     s->yy[slot] += spring->geometric + spring->pull_y * spring->pull_y;
 }
 
-static float *leftover_factors(const mspringi_implicit *n, uint32_t i) {
-    return n->leftover_factors + (size_t)(i / MSPRINGI_WIDTH) * MSPRINGI_FACTORS * MSPRINGI_WIDTH +
+static float *irregular_factors(const mspringi_implicit *n, uint32_t i) {
+    return n->irregular_factors + (size_t)(i / MSPRINGI_WIDTH) * MSPRINGI_FACTORS * MSPRINGI_WIDTH +
            i % MSPRINGI_WIDTH;
 }
 
-// Whether a leftover spring has nobody to pull at.
+// Whether an irregular spring has nobody to pull at.
 static bool sleeps(const mspring_network *network, uint32_t i) {
     const mspringi_topology *t = &network->topology;
-    return mspringi_slot_is_asleep(network, t->leftover_a[i]) && mspringi_slot_is_asleep(network, t->leftover_b[i]);
+    return mspringi_slot_is_asleep(network, t->irregular_a[i]) &&
+           mspringi_slot_is_asleep(network, t->irregular_b[i]);
 }
 
-static void assemble_leftover(const mspring_network *network) {
+static void assemble_irregular(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_system *s = &mspringi_implicit_of(network)->system;
-    for (uint32_t i = 0; i < t->leftover_count; ++i) {
+    for (uint32_t i = 0; i < t->irregular_count; ++i) {
         if (sleeps(network, i))
             continue;
-        const mspringi_spring_values values = mspringi_place_get(network, t->chain_places + i);
-        const leftover l = compute_leftover(s, values.base, values.tip, &values);
-        float *factors = leftover_factors(mspringi_implicit_of(network), i);
+        const mspringi_spring_values values = mspringi_spring_slot_get(network, t->chain_spring_slots + i);
+        const irregular_spring l = compute_irregular(s, values.base, values.tip, &values);
+        float *factors = irregular_factors(mspringi_implicit_of(network), i);
         factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH] = l.pull_x;
         factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH] = l.pull_y;
         factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH] = l.geometric;
@@ -168,19 +168,19 @@ static void assemble_leftover(const mspring_network *network) {
     }
 }
 
-// Multiply the web's own particles by their masses, and add the leftover springs. Returns direction . product of
-// all that.
-static double multiply_leftover(const mspring_network *network, mspringi_field from, mspringi_field to) {
+// Multiply the irregular part's own particles by their masses, and add the irregular springs. Returns direction .
+// product of all that.
+static double multiply_irregular(const mspring_network *network, mspringi_field from, mspringi_field to) {
     const mspringi_topology *t = &network->topology;
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    const size_t web = (size_t)t->web_first * MSPRINGI_WIDTH,
-                 web_end = web + (size_t)t->web_blocks * MSPRINGI_WIDTH;
+    const size_t irregular = (size_t)t->irregular_first * MSPRINGI_WIDTH,
+                 irregular_end = irregular + (size_t)t->irregular_blocks * MSPRINGI_WIDTH;
     // Loose particles that nothing has been added to are not in the iteration.
     const size_t added = (size_t)t->loose_first * MSPRINGI_WIDTH;
     const size_t added_end =
-        t->leftover_count > t->woven_count ? (size_t)(t->block_count - 1) * MSPRINGI_WIDTH : added;
+        t->irregular_count > t->laid_out_count ? (size_t)(t->block_count - 1) * MSPRINGI_WIDTH : added;
     double sum = 0.0;
-    for (size_t i = web; i < web_end; ++i) {
+    for (size_t i = irregular; i < irregular_end; ++i) {
         to.x[i] = n->mass[i] * from.x[i];
         to.y[i] = n->mass[i] * from.y[i];
         sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);
@@ -190,11 +190,11 @@ static double multiply_leftover(const mspring_network *network, mspringi_field f
         to.y[i] = n->mass[i] * from.y[i];
         sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);
     }
-    for (uint32_t i = 0; i < t->leftover_count; ++i) {
-        const uint32_t a = t->leftover_a[i], b = t->leftover_b[i];
+    for (uint32_t i = 0; i < t->irregular_count; ++i) {
+        const uint32_t a = t->irregular_a[i], b = t->irregular_b[i];
         if (sleeps(network, i))
             continue;
-        const float *factors = leftover_factors(n, i);
+        const float *factors = irregular_factors(n, i);
         const float pull_x = factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
         const float pull_y = factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
         const float geometric = factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH];
@@ -215,29 +215,29 @@ static double multiply_leftover(const mspring_network *network, mspringi_field f
 // Rows write these; the slots of other rows begin at nothing.
 static void clear_others(const mspring_network *network, mspringi_slots slots) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    const size_t swept = (size_t)network->topology.web_first * MSPRINGI_WIDTH;
+    const size_t swept = (size_t)network->topology.irregular_first * MSPRINGI_WIDTH;
     const size_t first = slots.first > swept ? slots.first : swept;
     float *const arrays[] = {n->residual.x, n->residual.y, n->system.xx, n->system.xy, n->system.yy};
     for (size_t i = 0; i < sizeof arrays / sizeof arrays[0] && first < slots.end; ++i)
         memset(arrays[i] + first, 0, (slots.end - first) * sizeof *arrays[i]);
 }
 
-void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) {
+void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_member *member) {
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    const mspringi_slots slots = mspringi_slots_of(network, mate);
+    const mspringi_slots slots = mspringi_slots_of(network, member);
     mspringi_slots run;
-    mspringi_meet(mate);
-    assemble_panels(network, mate);
+    mspringi_team_barrier(member);
+    assemble_panels(network, member);
     clear_others(network, slots);
-    mspringi_meet(mate);
-    if (network->topology.leftover_count > 0 || network->areas.count > 0) {
-        if (mate->index == 0) {
-            assemble_leftover(network);
+    mspringi_team_barrier(member);
+    if (network->topology.irregular_count > 0 || network->areas.count > 0) {
+        if (member->index == 0) {
+            assemble_irregular(network);
             mspringi_areas_add_terms(network);
             mspringi_angles_add_terms(network);
         }
-        mspringi_meet(mate);
+        mspringi_team_barrier(member);
     }
     for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);) {
         network->kernels->system.add_outside(&substep->outside[0], n->residual.x, run.first, run.end);
@@ -245,23 +245,24 @@ void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate) 
     }
 }
 
-double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate) {
+double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team_member *member) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    multiply_panels(network, mate);
-    mspringi_meet(mate);
+    multiply_panels(network, member);
+    mspringi_team_barrier(member);
     const bool has_terms = (network->floor && network->floor->contact_count > 0) || network->grips.count > 0 ||
-                           network->areas.hinge_count > 0 || mspringi_bodies_are_near(network);
-    const bool has_others = network->topology.web_blocks > 0 || network->topology.leftover_count > 0 || has_terms;
+                           network->areas.hinge_count > 0 || mspringi_implicit_contact_is_near(network);
+    const bool has_others =
+        network->topology.irregular_blocks > 0 || network->topology.irregular_count > 0 || has_terms;
     if (has_others) {
-        if (mate->index == 0)
-            n->leftover_product = multiply_leftover(network, n->direction, n->product) +
-                                  mspringi_holds_multiply(network, n->direction, n->product) +
-                                  mspringi_angles_multiply(network, n->direction, n->product) +
-                                  mspringi_bodies_multiply(network, n->direction, n->product);
-        mspringi_meet(mate);
+        if (member->index == 0)
+            n->irregular_product = multiply_irregular(network, n->direction, n->product) +
+                                   mspringi_holds_multiply(network, n->direction, n->product) +
+                                   mspringi_angles_multiply(network, n->direction, n->product) +
+                                   mspringi_implicit_contact_multiply(network, n->direction, n->product);
+        mspringi_team_barrier(member);
     }
-    double sum = has_others ? n->leftover_product : 0.0;
+    double sum = has_others ? n->irregular_product : 0.0;
     for (uint32_t p = 0; p < n->panels.count; ++p)
         sum += (double)n->panels.sums[p];
     return sum;

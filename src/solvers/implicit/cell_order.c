@@ -2,24 +2,24 @@
 #include "solvers/implicit/cells.h"
 
 // The cells that a spring joins, if it joins two.
-static bool ends_of(const mspringi_cutting *g, mspring_id spring, uint32_t *a, uint32_t *b) {
+static bool ends_of(const mspringi_cell_builder *g, mspring_id spring, uint32_t *a, uint32_t *b) {
     const mspringi_topology *t = &g->network->topology;
-    const mspringi_place place = t->place_of_spring[spring];
-    if (!mspringi_place_is_woven(t, place))
+    const mspringi_spring_slot spring_slot = t->slot_of_spring[spring];
+    if (!mspringi_spring_slot_is_laid_out(t, spring_slot))
         return false;
-    mspringi_topology_ends(t, place, a, b);
+    mspringi_topology_ends(t, spring_slot, a, b);
     *a = g->cells->of_slot[*a];
     *b = g->cells->of_slot[*b];
     return *a != *b;
 }
 
 // Neighbours are repeated as often as there are springs to them.
-bool mspringi_cells_begin_order(mspringi_cutting *g) {
+bool mspringi_cells_begin_order(mspringi_cell_builder *g) {
     g->first = mspringi_alloc(g->memory, (size_t)g->cells->count + 2, sizeof *g->first);
     return g->first != NULL;
 }
 
-void mspringi_cells_count_neighbours(mspringi_cutting *g, uint32_t first, uint32_t end) {
+void mspringi_cells_count_neighbours(mspringi_cell_builder *g, uint32_t first, uint32_t end) {
     for (mspring_id s = first; s < end; ++s) {
         uint32_t a, b;
         if (!ends_of(g, s, &a, &b))
@@ -29,14 +29,14 @@ void mspringi_cells_count_neighbours(mspringi_cutting *g, uint32_t first, uint32
     }
 }
 
-bool mspringi_cells_add_up(mspringi_cutting *g) {
+bool mspringi_cells_add_up(mspringi_cell_builder *g) {
     for (uint32_t i = 2; i < g->cells->count + 2; ++i)
         g->first[i] += g->first[i - 1];
     g->neighbour = mspringi_alloc(g->memory, g->first[g->cells->count + 1], sizeof *g->neighbour);
     return g->neighbour != NULL;
 }
 
-void mspringi_cells_list_neighbours(mspringi_cutting *g, uint32_t first, uint32_t end) {
+void mspringi_cells_list_neighbours(mspringi_cell_builder *g, uint32_t first, uint32_t end) {
     for (mspring_id s = first; s < end; ++s) {
         uint32_t a, b;
         if (!ends_of(g, s, &a, &b))
@@ -47,7 +47,7 @@ void mspringi_cells_list_neighbours(mspringi_cutting *g, uint32_t first, uint32_
 }
 
 // Breadth first from a cell, over those that are not marked with stamp; appends to order and returns its new end.
-static uint32_t spread(const mspringi_cutting *graph, uint32_t from, uint32_t *order, uint32_t begin,
+static uint32_t spread(const mspringi_cell_builder *graph, uint32_t from, uint32_t *order, uint32_t begin,
                        uint32_t *mark, uint32_t stamp) {
     uint32_t end = begin;
     order[end++] = from;
@@ -64,7 +64,7 @@ static uint32_t spread(const mspringi_cutting *graph, uint32_t from, uint32_t *o
     return end;
 }
 
-bool mspringi_cells_order(mspringi_cutting *g) {
+bool mspringi_cells_order(mspringi_cell_builder *g) {
     mspringi_cells *cells = g->cells;
     const uint32_t slots = (uint32_t)mspringi_slot_count(g->network);
     uint32_t *order = mspringi_alloc(g->memory, cells->count, sizeof *order);

@@ -7,15 +7,15 @@
 /// Grids of at most this many rows are cut across only.
 #define SLENDER_ROWS 10
 
-typedef mspringi_cutting cutting;
+typedef mspringi_cell_builder cutting;
 
 static mspring_result no_memory(const cutting *g) {
     return mspringi_fail(g->message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into cells",
                          (unsigned)g->network->topology.particle_count);
 }
 
-uint32_t mspringi_factors_of_place(mspringi_place place) {
-    return place / MSPRINGI_WIDTH * (MSPRINGI_FACTORS * MSPRINGI_WIDTH) + place % MSPRINGI_WIDTH;
+uint32_t mspringi_factors_of_spring_slot(mspringi_spring_slot spring_slot) {
+    return spring_slot / MSPRINGI_WIDTH * (MSPRINGI_FACTORS * MSPRINGI_WIDTH) + spring_slot % MSPRINGI_WIDTH;
 }
 
 /* ------------------------------------------------------------------------------------------------------ cutting */
@@ -42,7 +42,7 @@ static uint32_t cut_rows(cutting *g, uint32_t first_row, uint32_t row_count, uin
             for (uint32_t slot = span->first_slot; slot < span->end_slot; ++slot) {
                 const uint32_t column = (uint32_t)((int64_t)slot + span->carry);
                 const uint32_t cell = first + column / width;
-                if (!g->is_for_none[slot])
+                if (!g->is_unused[slot])
                     g->cells->of_slot[slot] = cell;
                 end = cell + 1 > end ? cell + 1 : end;
             }
@@ -71,74 +71,75 @@ static void cut_chains(cutting *g, uint32_t size) {
     const mspringi_topology *t = &g->network->topology;
     const uint32_t first = t->chain_first * MSPRINGI_WIDTH, count = t->chain_blocks * MSPRINGI_WIDTH;
     for (uint32_t i = 0; i < count; ++i)
-        if (!g->is_for_none[first + i])
+        if (!g->is_unused[first + i])
             g->cells->of_slot[first + i] = g->cells->count + i / size;
     g->cells->count += (count + size - 1) / size;
 }
 
-/* ---------------------------------------------------------------------------------------------------- the web */
+/* ------------------------------------------------------------------------------------------ the irregular part */
 
-static uint32_t web_slots_of(const cutting *g) {
-    return g->network->topology.web_blocks * MSPRINGI_WIDTH;
+static uint32_t irregular_slots_of(const cutting *g) {
+    return g->network->topology.irregular_blocks * MSPRINGI_WIDTH;
 }
 
-static uint32_t web_springs_of(const cutting *g) {
-    return web_slots_of(g) > 0 ? g->network->topology.woven_count : 0;
+static uint32_t irregular_springs_of(const cutting *g) {
+    return irregular_slots_of(g) > 0 ? g->network->topology.laid_out_count : 0;
 }
 
 static uint32_t most_in_cell(const cutting *g) {
     return g->cells->size * g->cells->size / 2;
 }
 
-static mspring_result begin_web(cutting *g) {
+static mspring_result begin_irregular(cutting *g) {
     const size_t slots = mspringi_slot_count(g->network);
-    if (web_slots_of(g) == 0)
+    if (irregular_slots_of(g) == 0)
         return MSPRING_OK;
     g->first = mspringi_alloc(g->memory, slots + 2, sizeof *g->first);
-    g->neighbour = mspringi_alloc(g->memory, (size_t)2 * web_springs_of(g), sizeof *g->neighbour);
+    g->neighbour = mspringi_alloc(g->memory, (size_t)2 * irregular_springs_of(g), sizeof *g->neighbour);
     g->queue = mspringi_alloc(g->memory, most_in_cell(g), sizeof *g->queue);
     return g->first && g->neighbour && g->queue ? MSPRING_OK : no_memory(g);
 }
 
-static mspring_result count_web(cutting *g, uint32_t first, uint32_t end) {
+static mspring_result count_irregular(cutting *g, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &g->network->topology;
     for (uint32_t i = first; i < end; ++i) {
-        g->first[t->leftover_a[i] + 2]++;
-        g->first[t->leftover_b[i] + 2]++;
+        g->first[t->irregular_a[i] + 2]++;
+        g->first[t->irregular_b[i] + 2]++;
     }
     return MSPRING_OK;
 }
 
-static mspring_result add_up_web(cutting *g) {
+static mspring_result add_up_irregular(cutting *g) {
     for (size_t slot = 2; g->first && slot < mspringi_slot_count(g->network) + 2; ++slot)
         g->first[slot] += g->first[slot - 1];
     return MSPRING_OK;
 }
 
-static mspring_result list_web(cutting *g, uint32_t first, uint32_t end) {
+static mspring_result list_irregular(cutting *g, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &g->network->topology;
     for (uint32_t i = first; i < end; ++i) {
-        g->neighbour[g->first[t->leftover_a[i] + 1]++] = t->leftover_b[i];
-        g->neighbour[g->first[t->leftover_b[i] + 1]++] = t->leftover_a[i];
+        g->neighbour[g->first[t->irregular_a[i] + 1]++] = t->irregular_b[i];
+        g->neighbour[g->first[t->irregular_b[i] + 1]++] = t->irregular_a[i];
     }
     return MSPRING_OK;
 }
 
 static bool is_free_for_cell(const cutting *g, uint32_t slot) {
-    return !g->is_for_none[slot] && g->cells->of_slot[slot] == MSPRING_NONE;
+    return !g->is_unused[slot] && g->cells->of_slot[slot] == MSPRING_NONE;
 }
 
 // Let the last cell grow breadth first from a slot.
 static void grow_cell(cutting *g, uint32_t seed, uint32_t most) {
     const mspringi_topology *t = &g->network->topology;
-    const uint32_t web = t->web_first * MSPRINGI_WIDTH, web_end = web + web_slots_of(g);
+    const uint32_t irregular = t->irregular_first * MSPRINGI_WIDTH,
+                   irregular_end = irregular + irregular_slots_of(g);
     uint32_t i = g->grown;
     g->queue[g->grown++] = seed;
     g->cells->of_slot[seed] = g->cells->count;
     for (; i < g->grown; ++i) {
         for (uint32_t n = g->first[g->queue[i]]; n < g->first[g->queue[i] + 1] && g->grown < most; ++n) {
             const uint32_t slot = g->neighbour[n];
-            if (slot < web || slot >= web_end || !is_free_for_cell(g, slot))
+            if (slot < irregular || slot >= irregular_end || !is_free_for_cell(g, slot))
                 continue;
             g->cells->of_slot[slot] = g->cells->count;
             g->queue[g->grown++] = slot;
@@ -150,9 +151,9 @@ static void grow_cell(cutting *g, uint32_t seed, uint32_t most) {
 // anywhere, the last of them are crumbs, each with springs to many others, and their coarse matrix is full: of the
 // largest size they are swept up into cells as large as the others.
 static mspring_result grow_cells(cutting *g, uint32_t first, uint32_t end) {
-    const uint32_t web = g->network->topology.web_first * MSPRINGI_WIDTH, most = most_in_cell(g);
+    const uint32_t irregular = g->network->topology.irregular_first * MSPRINGI_WIDTH, most = most_in_cell(g);
     const bool sweeps_up = g->cells->size == MSPRINGI_LARGEST_TILE_SIZE;
-    for (uint32_t seed = web + first; seed < web + end; ++seed) {
+    for (uint32_t seed = irregular + first; seed < irregular + end; ++seed) {
         if (!is_free_for_cell(g, seed))
             continue;
         if (g->grown == most || !sweeps_up) {
@@ -234,10 +235,10 @@ static uint32_t springs_of(const cutting *g) {
 // The slots of a spring's ends; false if it is in no cell.
 static bool find_ends(const cutting *g, mspring_id spring, uint32_t *a, uint32_t *b) {
     const mspringi_topology *t = &g->network->topology;
-    const mspringi_place place = t->place_of_spring[spring];
-    if (!mspringi_place_is_woven(t, place))
+    const mspringi_spring_slot spring_slot = t->slot_of_spring[spring];
+    if (!mspringi_spring_slot_is_laid_out(t, spring_slot))
         return false;
-    mspringi_topology_ends(t, place, a, b);
+    mspringi_topology_ends(t, spring_slot, a, b);
     return true;
 }
 
@@ -248,7 +249,7 @@ static mspring_result count_inner(cutting *g, uint32_t first, uint32_t end) {
         if (!find_ends(g, s, &a, &b))
             continue;
         if (cells->of_slot[a] != cells->of_slot[b])
-            cells->joint_count++;
+            cells->cell_edge_count++;
         else
             cells->first_inner[cells->of_slot[a] + 2]++;
     }
@@ -260,8 +261,8 @@ static mspring_result reserve_springs(cutting *g) {
     for (uint32_t i = 2; i < cells->count + 2; ++i)
         cells->first_inner[i] += cells->first_inner[i - 1];
     cells->inner = mspringi_alloc(g->memory, cells->first_inner[cells->count + 1], sizeof *cells->inner);
-    cells->joints = mspringi_alloc(g->memory, cells->joint_count, sizeof *cells->joints);
-    return cells->inner && cells->joints ? MSPRING_OK : no_memory(g);
+    cells->cell_edges = mspringi_alloc(g->memory, cells->cell_edge_count, sizeof *cells->cell_edges);
+    return cells->inner && cells->cell_edges ? MSPRING_OK : no_memory(g);
 }
 
 // List the springs inside cells, and those between them.
@@ -276,35 +277,35 @@ static mspring_result list_springs(cutting *g, uint32_t first, uint32_t end) {
             continue;
         }
         const bool a_later = cells->of_slot[a] > cells->of_slot[b];
-        cells->joints[g->listed++] =
-            (mspringi_joint){.slot = a_later ? a : b,
-                             .other_slot = a_later ? b : a,
-                             .factors = mspringi_factors_of_place(g->network->topology.place_of_spring[s])};
+        cells->cell_edges[g->listed++] = (mspringi_cell_edge){
+            .slot = a_later ? a : b,
+            .other_slot = a_later ? b : a,
+            .factors = mspringi_factors_of_spring_slot(g->network->topology.slot_of_spring[s])};
     }
     return MSPRING_OK;
 }
 
 // One pass of a stable counting sort of joints, by the cell of one of the ends.
-static void sort_joints(const mspringi_cells *cells, const mspringi_joint *from, mspringi_joint *to,
+static void sort_joints(const mspringi_cells *cells, const mspringi_cell_edge *from, mspringi_cell_edge *to,
                         uint32_t *first, bool by_other) {
     for (uint32_t i = 0; i < cells->count + 2; ++i)
         first[i] = 0;
-    for (uint32_t j = 0; j < cells->joint_count; ++j)
+    for (uint32_t j = 0; j < cells->cell_edge_count; ++j)
         first[cells->of_slot[by_other ? from[j].other_slot : from[j].slot] + 1]++;
     for (uint32_t i = 1; i < cells->count + 2; ++i)
         first[i] += first[i - 1];
-    for (uint32_t j = 0; j < cells->joint_count; ++j)
+    for (uint32_t j = 0; j < cells->cell_edge_count; ++j)
         to[first[cells->of_slot[by_other ? from[j].other_slot : from[j].slot]]++] = from[j];
 }
 
 static mspring_result sort_all_joints(cutting *g) {
     mspringi_cells *cells = g->cells;
-    mspringi_joint *scratch = mspringi_alloc(g->memory, cells->joint_count, sizeof *scratch);
-    uint32_t *first = cells->first_joint =
-        mspringi_alloc(g->memory, (size_t)cells->count + 2, sizeof *cells->first_joint);
+    mspringi_cell_edge *scratch = mspringi_alloc(g->memory, cells->cell_edge_count, sizeof *scratch);
+    uint32_t *first = cells->first_cell_edge =
+        mspringi_alloc(g->memory, (size_t)cells->count + 2, sizeof *cells->first_cell_edge);
     if (scratch && first) {
-        sort_joints(cells, cells->joints, scratch, first, true);
-        sort_joints(cells, scratch, cells->joints, first, false);
+        sort_joints(cells, cells->cell_edges, scratch, first, true);
+        sort_joints(cells, scratch, cells->cell_edges, first, false);
         // Each is at the end of its cell's now, which is where the next one's begin.
         for (uint32_t cell = cells->count; cell > 0; --cell)
             first[cell] = first[cell - 1];
@@ -321,9 +322,9 @@ static mspring_result find_lowest(cutting *g) {
         return no_memory(g);
     for (uint32_t c = 0; c < cells->count; ++c)
         cells->lowest[c] = c;
-    for (uint32_t j = 0; j < cells->joint_count; ++j) {
-        const uint32_t cell = cells->of_slot[cells->joints[j].slot];
-        const uint32_t other = cells->of_slot[cells->joints[j].other_slot];
+    for (uint32_t j = 0; j < cells->cell_edge_count; ++j) {
+        const uint32_t cell = cells->of_slot[cells->cell_edges[j].slot];
+        const uint32_t other = cells->of_slot[cells->cell_edges[j].other_slot];
         cells->lowest[cell] = other < cells->lowest[cell] ? other : cells->lowest[cell];
     }
     return MSPRING_OK;
@@ -333,11 +334,11 @@ static mspring_result find_lowest(cutting *g) {
 
 static bool find_empty(cutting *g) {
     const mspringi_topology *t = &g->network->topology;
-    g->is_for_none = mspringi_alloc(g->memory, mspringi_slot_count(g->network), sizeof *g->is_for_none);
-    for (uint32_t i = 0; g->is_for_none && i < t->empty_run_count; ++i)
+    g->is_unused = mspringi_alloc(g->memory, mspringi_slot_count(g->network), sizeof *g->is_unused);
+    for (uint32_t i = 0; g->is_unused && i < t->empty_run_count; ++i)
         for (uint32_t j = 0; j < t->empty_runs[i].slot_count; ++j)
-            g->is_for_none[t->empty_runs[i].first_slot + j] = true;
-    return g->is_for_none != NULL;
+            g->is_unused[t->empty_runs[i].first_slot + j] = true;
+    return g->is_unused != NULL;
 }
 
 static mspring_result begin(cutting *g) {
@@ -352,7 +353,7 @@ static mspring_result begin(cutting *g) {
     return MSPRING_OK;
 }
 
-static mspring_result end_web(cutting *g) {
+static mspring_result end_irregular(cutting *g) {
     g->cells->count += g->grown > 0;
     free_lists(g);
     cut_loose(g);
@@ -384,15 +385,15 @@ static mspring_result list_all_slots(cutting *g) {
     return g->cells->first_inner && list_slots(g) ? MSPRING_OK : no_memory(g);
 }
 
-MSPRINGI_PASSES(cells, mspringi_cutting)
+MSPRINGI_PASSES(cells, mspringi_cell_builder)
 static const cells_pass cells_passes[] = {
     MSPRINGI_ONCE(begin),
-    MSPRINGI_ONCE(begin_web),
-    MSPRINGI_EACH(count_web, web_springs_of, 64000),
-    MSPRINGI_ONCE(add_up_web),
-    MSPRINGI_EACH(list_web, web_springs_of, 32000),
-    MSPRINGI_EACH(grow_cells, web_slots_of, 1000),
-    MSPRINGI_ONCE(end_web),
+    MSPRINGI_ONCE(begin_irregular),
+    MSPRINGI_EACH(count_irregular, irregular_springs_of, 64000),
+    MSPRINGI_ONCE(add_up_irregular),
+    MSPRINGI_EACH(list_irregular, irregular_springs_of, 32000),
+    MSPRINGI_EACH(grow_cells, irregular_slots_of, 1000),
+    MSPRINGI_ONCE(end_irregular),
     MSPRINGI_EACH(count_neighbours, springs_of, 32000),
     MSPRINGI_ONCE(add_up),
     MSPRINGI_EACH(list_neighbours, springs_of, 32000),
@@ -405,32 +406,32 @@ static const cells_pass cells_passes[] = {
     MSPRINGI_ONCE(find_lowest),
 };
 
-void mspringi_cells_begin(mspringi_cutting *g, mspringi_cells *cells, const mspring_network *network, uint32_t size,
-                          mspringi_memory *memory, mspringi_message *message) {
+void mspringi_cells_begin(mspringi_cell_builder *g, mspringi_cells *cells, const mspring_network *network,
+                          uint32_t size, mspringi_memory *memory, mspringi_message *message) {
     *cells = (mspringi_cells){.size = size};
-    *g = (mspringi_cutting){.network = network, .memory = memory, .message = message, .cells = cells};
+    *g = (mspringi_cell_builder){.network = network, .memory = memory, .message = message, .cells = cells};
 }
 
-mspring_result mspringi_cells_run(mspringi_cutting *g, bool *is_done) {
+mspring_result mspringi_cells_run(mspringi_cell_builder *g, bool *is_done) {
     const mspring_result result = cells_run(g, cells_passes, &g->cursor);
     *is_done = g->cursor.pass == MSPRINGI_PASS_COUNT(cells_passes);
     return result;
 }
 
-void mspringi_cells_end(mspringi_cutting *g) {
+void mspringi_cells_end(mspringi_cell_builder *g) {
     free_lists(g);
-    mspringi_free(g->memory, g->is_for_none);
-    g->is_for_none = NULL;
+    mspringi_free(g->memory, g->is_unused);
+    g->is_unused = NULL;
 }
 
-#define ARRAY(member) MSPRINGI_COLUMN(mspringi_cells, member, MSPRINGI_ARRAY)
-static const mspringi_column columns[] = {
-    ARRAY(of_slot), ARRAY(first_slot), ARRAY(slots),       ARRAY(first_inner),
-    ARRAY(inner),   ARRAY(joints),     ARRAY(first_joint), ARRAY(lowest),
+#define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_cells, member, MSPRINGI_ARRAY)
+static const mspringi_array_entry columns[] = {
+    ARRAY(of_slot), ARRAY(first_slot), ARRAY(slots),           ARRAY(first_inner),
+    ARRAY(inner),   ARRAY(cell_edges), ARRAY(first_cell_edge), ARRAY(lowest),
 };
-const mspringi_columns mspringi_cells_columns = MSPRINGI_COLUMNS(columns);
+const mspringi_array_table mspringi_cells_columns = MSPRINGI_ARRAY_TABLE(columns);
 
 void mspringi_cells_destroy(mspringi_cells *cells, mspringi_memory *memory) {
-    mspringi_columns_free(mspringi_cells_columns, cells, memory);
+    mspringi_array_table_free(mspringi_cells_columns, cells, memory);
     *cells = (mspringi_cells){0};
 }

@@ -2,9 +2,9 @@
 /// Cells: the pieces that a network's particles are cut into by its layout alone, whichever springs are broken and
 /// whichever particles are pinned.
 ///
-/// A cell is some rows by some columns of a grid, a piece of the chains, or a neighbourhood in the web. Loose
-/// particles are in none, unless springs may be added; then each block of them is one. Springs that were added are
-/// not among those of the cells.
+/// A cell is some rows by some columns of a grid, a piece of the chains, or a neighbourhood in the irregular part.
+/// Loose particles are in none, unless springs may be added; then each block of them is one. Springs that were
+/// added are not among those of the cells.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CELLS_H
@@ -14,61 +14,61 @@
 #include "store/network.h"
 
 /// A spring between two cells, or between a particle of a cell and one of its pinned ones.
-typedef struct mspringi_joint {
+typedef struct mspringi_cell_edge {
     uint32_t slot,
         other_slot;   ///< the end in the later cell, or the free one; the end in the earlier, or the pinned
     uint32_t factors; ///< where in the factors
-} mspringi_joint;
+} mspringi_cell_edge;
 
 /// Rows and columns of a cell: a power of two.
 #define MSPRINGI_LEAST_TILE_SIZE 8u
 #define MSPRINGI_LARGEST_TILE_SIZE 256u
 
 typedef struct mspringi_cells {
-    uint32_t count, size;   ///< size: rows and columns of a cell in wide grids
-    uint32_t *of_slot;      ///< [slots] MSPRING_NONE: none
-    uint32_t *first_slot;   ///< [count + 1] in slots
-    uint32_t *slots;        ///< by cell, ascending in each
-    uint32_t *first_inner;  ///< [count + 1] in inner
-    uint32_t *inner;        ///< springs inside a cell, by cell
-    mspringi_joint *joints; ///< springs between cells, sorted by the two
-    uint32_t joint_count;
-    uint32_t *first_joint; ///< [count + 1] in joints, by the later cell
-    uint32_t *lowest;      ///< [count] lowest of a cell and its neighbours
+    uint32_t count, size;           ///< size: rows and columns of a cell in wide grids
+    uint32_t *of_slot;              ///< [slots] MSPRING_NONE: none
+    uint32_t *first_slot;           ///< [count + 1] in slots
+    uint32_t *slots;                ///< by cell, ascending in each
+    uint32_t *first_inner;          ///< [count + 1] in inner
+    uint32_t *inner;                ///< springs inside a cell, by cell
+    mspringi_cell_edge *cell_edges; ///< springs between cells, sorted by the two
+    uint32_t cell_edge_count;
+    uint32_t *first_cell_edge; ///< [count + 1] in joints, by the later cell
+    uint32_t *lowest;          ///< [count] lowest of a cell and its neighbours
 } mspringi_cells;
 
 /// What is needed while a network is cut.
-typedef struct mspringi_cutting {
+typedef struct mspringi_cell_builder {
     const mspring_network *network;
     mspringi_memory *memory;
     mspringi_message *message;
     mspringi_cells *cells;
     mspringi_cursor cursor;
-    bool *is_for_none;           ///< [slots] no particle is there, nor was one that has been removed
-    uint32_t *first, *neighbour; ///< of the slots of the web, then of cells
+    bool *is_unused;             ///< [slots] no particle is there, nor was one that has been removed
+    uint32_t *first, *neighbour; ///< of the slots of the irregular part, then of cells
     uint32_t *queue, grown;      ///< [grown] slots of the cell that grows
     uint32_t listed;             ///< joints
-} mspringi_cutting;
+} mspringi_cell_builder;
 
 /// Cut a network into cells of size x size particles, numbered so that neighbours have near numbers: begin, then
 /// run until it is done, then end, on failure too.
-void mspringi_cells_begin(mspringi_cutting *cutting, mspringi_cells *cells, const mspring_network *network,
+void mspringi_cells_begin(mspringi_cell_builder *cutting, mspringi_cells *cells, const mspring_network *network,
                           uint32_t size, mspringi_memory *memory, mspringi_message *message);
-mspring_result mspringi_cells_run(mspringi_cutting *cutting, bool *is_done);
-void mspringi_cells_end(mspringi_cutting *cutting);
-extern const mspringi_columns mspringi_cells_columns;
+mspring_result mspringi_cells_run(mspringi_cell_builder *cutting, bool *is_done);
+void mspringi_cells_end(mspringi_cell_builder *cutting);
+extern const mspringi_array_table mspringi_cells_columns;
 void mspringi_cells_destroy(mspringi_cells *cells, mspringi_memory *memory);
 
-/// Where the factors of a spring begin: lattice, chain and leftover records one behind the other.
-uint32_t mspringi_factors_of_place(mspringi_place place);
+/// Where the factors of a spring begin: lattice, chain and irregular records one behind the other.
+uint32_t mspringi_factors_of_spring_slot(mspringi_spring_slot spring_slot);
 
 /// Give the cells, as of_slot has them, numbers that are near for neighbours (Cuthill and McKee 1969), in this
 /// order. Ranges are of springs.
 /// @return false: no memory
-bool mspringi_cells_begin_order(mspringi_cutting *cutting);
-void mspringi_cells_count_neighbours(mspringi_cutting *cutting, uint32_t first, uint32_t end);
-bool mspringi_cells_add_up(mspringi_cutting *cutting);
-void mspringi_cells_list_neighbours(mspringi_cutting *cutting, uint32_t first, uint32_t end);
-bool mspringi_cells_order(mspringi_cutting *cutting);
+bool mspringi_cells_begin_order(mspringi_cell_builder *cutting);
+void mspringi_cells_count_neighbours(mspringi_cell_builder *cutting, uint32_t first, uint32_t end);
+bool mspringi_cells_add_up(mspringi_cell_builder *cutting);
+void mspringi_cells_list_neighbours(mspringi_cell_builder *cutting, uint32_t first, uint32_t end);
+bool mspringi_cells_order(mspringi_cell_builder *cutting);
 
 #endif

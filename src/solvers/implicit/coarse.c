@@ -59,14 +59,14 @@ mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_ti
                          (unsigned)tiles->count);
 }
 
-#define ARRAY(member) MSPRINGI_COLUMN(mspringi_coarse, member, MSPRINGI_ARRAY)
-static const mspringi_column columns[] = {
+#define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_coarse, member, MSPRINGI_ARRAY)
+static const mspringi_array_entry columns[] = {
     ARRAY(first), ARRAY(row), ARRAY(values), ARRAY(kept), ARRAY(far_turns), ARRAY(restricted),
 };
-const mspringi_columns mspringi_coarse_columns = MSPRINGI_COLUMNS(columns);
+const mspringi_array_table mspringi_coarse_columns = MSPRINGI_ARRAY_TABLE(columns);
 
 void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory) {
-    mspringi_columns_free(mspringi_coarse_columns, coarse, memory);
+    mspringi_array_table_free(mspringi_coarse_columns, coarse, memory);
     *coarse = (mspringi_coarse){0};
 }
 
@@ -74,7 +74,7 @@ void mspringi_coarse_keep(const mspringi_coarse *coarse) {
     memcpy(coarse->kept, coarse->values, coarse->value_count * sizeof *coarse->kept);
 }
 
-void mspringi_coarse_take_back(const mspringi_coarse *coarse) {
+void mspringi_coarse_restore(const mspringi_coarse *coarse) {
     memcpy(coarse->values, coarse->kept, coarse->value_count * sizeof *coarse->values);
 }
 
@@ -98,7 +98,7 @@ typedef struct joint_sum {
     double near_near, near_far, far_far;
 } joint_sum;
 
-static void add_joint(joint_sum *sum, const mspringi_joint *joint, const mspringi_coarse_parts *parts) {
+static void add_joint(joint_sum *sum, const mspringi_cell_edge *joint, const mspringi_coarse_parts *parts) {
     const float *const f = parts->factors + joint->factors, *const arm_x = parts->iterate->arm_x;
     const float *const arm_y = parts->iterate->arm_y;
     const double pull_x = (double)f[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
@@ -156,7 +156,7 @@ static void add_sum(mspringi_coarse *coarse, uint32_t tile, uint32_t other, cons
 // Add joints, those of the same two tiles together as far as they follow each other.
 static void add_joints(mspringi_coarse *coarse, const mspringi_tiles *tiles, const mspringi_coarse_parts *parts,
                        uint32_t first, uint32_t end) {
-    const mspringi_joint *const joints = tiles->cells.joints;
+    const mspringi_cell_edge *const joints = tiles->cells.cell_edges;
     for (uint32_t j = first; j < end;) {
         const uint32_t tile = tiles->of_slot[joints[j].slot], other = tiles->of_slot[joints[j].other_slot];
         joint_sum sum = {0};
@@ -191,7 +191,7 @@ void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *til
     for (uint32_t cell = first, behind; cell < end; cell = behind + (behind == cell)) {
         for (behind = cell; behind < end && tiles->first_of_cell[behind] < tiles->first_of_cell[behind + 1];)
             ++behind;
-        add_joints(coarse, tiles, parts, tiles->cells.first_joint[cell], tiles->cells.first_joint[behind]);
+        add_joints(coarse, tiles, parts, tiles->cells.first_cell_edge[cell], tiles->cells.first_cell_edge[behind]);
     }
 }
 
@@ -204,12 +204,12 @@ void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *til
                          -from.row[0][2], -from.row[1][2], *far_turn_of(coarse, t, other));
         }
     }
-    for (uint32_t a = 0; a < tiles->anchor_count; ++a) {
-        const uint32_t tile = tiles->of_slot[tiles->anchors[a].slot];
+    for (uint32_t a = 0; a < tiles->pin_edge_count; ++a) {
+        const uint32_t tile = tiles->of_slot[tiles->pin_edges[a].slot];
         joint_sum sum = {0};
-        if (tile == MSPRING_NONE || tile == tiles->of_slot[tiles->anchors[a].other_slot])
+        if (tile == MSPRING_NONE || tile == tiles->of_slot[tiles->pin_edges[a].other_slot])
             continue;
-        add_joint(&sum, &tiles->anchors[a], parts);
+        add_joint(&sum, &tiles->pin_edges[a], parts);
         add_diagonal(rows_of(coarse, tile, tile), sum.xx, sum.xy, sum.yy, sum.near_x, sum.near_y, sum.near_near);
     }
 }
@@ -225,7 +225,7 @@ static bool has_place(const mspringi_coarse *coarse, uint32_t tile, uint32_t oth
 }
 
 // Add rows of one tile times those of another to the lower triangle.
-static void add_outer(const mspringi_coarse *coarse, const mspringi_coarse_pulls *pulls, uint32_t i, uint32_t j,
+static void add_outer(const mspringi_coarse *coarse, const mspringi_coarse_rank_one *pulls, uint32_t i, uint32_t j,
                       double times) {
     const block_rows to = rows_of(coarse, pulls->tiles[i], pulls->tiles[j]);
     for (int r = 0; r < MSPRINGI_RIGID; ++r)
@@ -233,7 +233,7 @@ static void add_outer(const mspringi_coarse *coarse, const mspringi_coarse_pulls
             to.row[r][c] += times * pulls->rows[i][r] * pulls->rows[j][c];
 }
 
-void mspringi_coarse_add_pulls(mspringi_coarse *coarse, const mspringi_coarse_pulls *pulls) {
+void mspringi_coarse_add_rank_one(mspringi_coarse *coarse, const mspringi_coarse_rank_one *pulls) {
     bool is_whole = true;
     for (uint32_t i = 0; i < pulls->count; ++i)
         for (uint32_t j = 0; j < i; ++j)

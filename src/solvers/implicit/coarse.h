@@ -29,7 +29,7 @@ double mspringi_coarse_cost(const mspringi_tiles *tiles);
 /// Make a matrix for these tiles, and for what they may become.
 mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_tiles *tiles, mspringi_memory *memory,
                                       mspringi_message *message);
-extern const mspringi_columns mspringi_coarse_columns;
+extern const mspringi_array_table mspringi_coarse_columns;
 void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory);
 
 /// Take over the tiles that there are now.
@@ -55,20 +55,21 @@ void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, doub
                          double y);
 
 /// What pulls at the rigid motions of a few tiles at once.
-typedef struct mspringi_coarse_pulls {
+typedef struct mspringi_coarse_rank_one {
     uint32_t count, tiles[3];
     double rows[3][MSPRINGI_RIGID];
-} mspringi_coarse_pulls;
+} mspringi_coarse_rank_one;
 
-/// Add the product of that with itself. Where the envelope has no place for two of the tiles, what is added is more.
-void mspringi_coarse_add_pulls(mspringi_coarse *coarse, const mspringi_coarse_pulls *pulls);
+/// Add the product of that with itself. Where the envelope has no place for two of the tiles, what is added is
+/// more.
+void mspringi_coarse_add_rank_one(mspringi_coarse *coarse, const mspringi_coarse_rank_one *pulls);
 
 /// Factor in place. Never fails: a pivot that rounding has made too small is replaced.
 void mspringi_coarse_factor(mspringi_coarse *coarse);
 
 /// Keep the factor, and take back what was kept. The tiles must be the same ones.
 void mspringi_coarse_keep(const mspringi_coarse *coarse);
-void mspringi_coarse_take_back(const mspringi_coarse *coarse);
+void mspringi_coarse_restore(const mspringi_coarse *coarse);
 
 /// Solve for restricted. Returns restricted . unknowns.
 double mspringi_coarse_solve(const mspringi_coarse *coarse, double (*unknowns)[MSPRINGI_RIGID]);

@@ -1,5 +1,5 @@
 /// What floor and grips add to the linear system of a substep: a block for each particle that they hold.
-#include "solvers/implicit/terms.h"
+#include "solvers/implicit/implicit_terms.h"
 
 // The next, from number at on: the floor's, then the grips'.
 static bool next_hold(const mspring_network *network, uint32_t *at, mspringi_slot_stiffness *hold) {

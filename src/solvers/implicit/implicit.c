@@ -18,13 +18,13 @@
 /* ----------------------------------------------------------------------------------------------------- creation */
 
 /// An implicit solver that is being made.
-typedef struct mspringi_implicit_making {
+typedef struct mspringi_implicit_builder {
     mspring_network *network;
     mspringi_implicit *made;
     mspringi_cursor cursor;
     uint32_t tile_size; ///< asked for; 0: by plan
-    mspringi_tiling tiling;
-    mspringi_direct_making direct;
+    mspringi_tile_builder tiling;
+    mspringi_direct_builder direct;
 } making;
 
 static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t slots) {
@@ -77,9 +77,9 @@ static mspring_result allocate(making *m) {
     const size_t slots = mspringi_slot_count(network);
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2;
     const size_t loose = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
-    if (t->leftover_capacity > t->woven_count) {
-        n->is_solved = mspringi_alloc(memory, loose, sizeof *n->is_solved);
-        if (!n->is_solved)
+    if (t->irregular_capacity > t->laid_out_count) {
+        n->is_coupled = mspringi_alloc(memory, loose, sizeof *n->is_coupled);
+        if (!n->is_coupled)
             return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for added springs");
     }
     n->history_size = (two ? 4 : 2) * slots;
@@ -121,14 +121,14 @@ static mspring_result clear_budget(making *m, uint32_t first, uint32_t end) {
     return MSPRING_OK;
 }
 
-static uint32_t accounts_of(const making *m) {
+static uint32_t components_of(const making *m) {
     return (uint32_t)(mspringi_slot_count(m->network) / 2 + 1);
 }
 
 static mspring_result allocate_factors(making *m) {
     const mspringi_topology *t = &m->network->topology;
-    const size_t leftover = ((size_t)t->leftover_capacity + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
-    m->made->factors = mspringi_alloc(&m->network->memory, (t->chain_places + leftover) * MSPRINGI_FACTORS,
+    const size_t irregular = ((size_t)t->irregular_capacity + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
+    m->made->factors = mspringi_alloc(&m->network->memory, (t->chain_spring_slots + irregular) * MSPRINGI_FACTORS,
                                       sizeof *m->made->factors);
     return m->made->factors ? MSPRING_OK : no_memory(m->network);
 }
@@ -139,8 +139,8 @@ static mspring_result allocate_iterate(making *m) {
     mspring_network *network = m->network;
     mspringi_memory *memory = &network->memory;
     const size_t slots = mspringi_slot_count(network);
-    n->flights = mspringi_alloc(memory, n->tiles.capacity, sizeof *n->flights);
-    if (!reserve_field(memory, &n->direction, slots) || !reserve_field(memory, &n->arm, slots) || !n->flights)
+    n->tile_motions = mspringi_alloc(memory, n->tiles.capacity, sizeof *n->tile_motions);
+    if (!reserve_field(memory, &n->direction, slots) || !reserve_field(memory, &n->arm, slots) || !n->tile_motions)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for the iterations of %u particles",
                              (unsigned)network->topology.particle_count);
@@ -153,7 +153,7 @@ static void wire(mspringi_implicit *n, const mspring_network *network) {
     const size_t slots = mspringi_slot_count(network);
     mspringi_system *s = &n->system;
     n->y = n->x + slots;
-    n->leftover_factors = n->factors + (size_t)t->chain_places * MSPRINGI_FACTORS;
+    n->irregular_factors = n->factors + (size_t)t->chain_spring_slots * MSPRINGI_FACTORS;
     n->seen.link_log = network->edits.link_log;
     s->x = n->x;
     s->y = n->y;
@@ -162,10 +162,10 @@ static void wire(mspringi_implicit *n, const mspring_network *network) {
     s->mass = n->mass;
     s->lattice_springs = network->lattice_springs;
     s->chain_springs = network->chain_springs;
-    s->rest_lengths = network->rests.lengths;
-    s->rests_of_block = network->rests.of_block;
+    s->rest_lengths = network->rest_lengths.lengths;
+    s->rests_of_block = network->rest_lengths.of_block;
     s->lattice_factors = n->factors;
-    s->chain_factors = n->factors + (size_t)t->lattice_places * MSPRINGI_FACTORS;
+    s->chain_factors = n->factors + (size_t)t->lattice_spring_slots * MSPRINGI_FACTORS;
     s->force_x = n->residual.x;
     s->force_y = n->residual.y;
     s->xx = n->diagonal;
@@ -283,13 +283,13 @@ static void find_solved(mspringi_implicit *n, const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
     const size_t count = ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
-    for (size_t i = 0; n->is_solved && !n->is_direct && i < count; ++i)
-        n->is_solved[i] = n->tiles.of_slot[loose + i] != MSPRING_NONE;
-    for (uint32_t i = t->woven_count; n->is_direct && i < t->leftover_count; ++i) {
-        if (t->leftover_a[i] >= loose)
-            n->is_solved[t->leftover_a[i] - loose] = 1;
-        if (t->leftover_b[i] >= loose)
-            n->is_solved[t->leftover_b[i] - loose] = 1;
+    for (size_t i = 0; n->is_coupled && !n->is_direct && i < count; ++i)
+        n->is_coupled[i] = n->tiles.of_slot[loose + i] != MSPRING_NONE;
+    for (uint32_t i = t->laid_out_count; n->is_direct && i < t->irregular_count; ++i) {
+        if (t->irregular_a[i] >= loose)
+            n->is_coupled[t->irregular_a[i] - loose] = 1;
+        if (t->irregular_b[i] >= loose)
+            n->is_coupled[t->irregular_b[i] - loose] = 1;
     }
 }
 
@@ -315,7 +315,7 @@ MSPRINGI_PASSES(implicit, making)
 #define COMMON                                                                                                     \
     MSPRINGI_ONCE(begin), MSPRINGI_ONCE(allocate), MSPRINGI_ONCE(allocate_factors),                                \
         MSPRINGI_ONCE(allocate_history), MSPRINGI_ONCE(allocate_fields), MSPRINGI_ONCE(make_budget),               \
-        MSPRINGI_EACH(clear_budget, accounts_of, 2000)
+        MSPRINGI_EACH(clear_budget, components_of, 2000)
 static const implicit_pass two_level_passes[] = {
     COMMON,
     MSPRINGI_ONCE(choose_tiles),
@@ -372,17 +372,17 @@ void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *de
     n->coarse_period = coarse_period;
 }
 
-#define ARRAY(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_ARRAY)
-#define VIEW(member) MSPRINGI_COLUMN(mspringi_implicit, member, MSPRINGI_VIEW)
+#define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_implicit, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_ARRAY_ENTRY(mspringi_implicit, member, MSPRINGI_VIEW)
 #define FIELD(member) ARRAY(member.x), VIEW(member.y)
 #define HISTORY(member) FIELD(member.first), VIEW(member.second.x), VIEW(member.second.y)
-static const mspringi_column list[] = {
-    HISTORY(history), HISTORY(backup),     HISTORY(previous), ARRAY(x),        FIELD(velocity),
-    FIELD(residual),  FIELD(displacement), FIELD(direction),  FIELD(product),  FIELD(scaled),
-    FIELD(arm),       ARRAY(mass),         ARRAY(diagonal),   ARRAY(factors),  ARRAY(force_carry),
-    ARRAY(carry),     ARRAY(sums),         ARRAY(flights),    ARRAY(unknowns), ARRAY(is_solved),
+static const mspringi_array_entry list[] = {
+    HISTORY(history), HISTORY(backup),     HISTORY(previous),   ARRAY(x),        FIELD(velocity),
+    FIELD(residual),  FIELD(displacement), FIELD(direction),    FIELD(product),  FIELD(scaled),
+    FIELD(arm),       ARRAY(mass),         ARRAY(diagonal),     ARRAY(factors),  ARRAY(force_carry),
+    ARRAY(carry),     ARRAY(sums),         ARRAY(tile_motions), ARRAY(unknowns), ARRAY(is_coupled),
 };
-static const mspringi_columns columns = MSPRINGI_COLUMNS(list);
+static const mspringi_array_table columns = MSPRINGI_ARRAY_TABLE(list);
 
 void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     if (!n)
@@ -393,18 +393,18 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     mspringi_budget_destroy(&n->budget, memory);
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
-    mspringi_columns_free(columns, n, memory);
+    mspringi_array_table_free(columns, n, memory);
     mspringi_free(memory, n);
 }
 
 void mspringi_implicit_relocate(mspringi_implicit *n, const mspring_network *network, const mspringi_memory *from,
                                 const mspringi_memory *to) {
-    mspringi_columns_relocate(columns, n, from, to);
-    mspringi_columns_relocate(mspringi_panels_columns, &n->panels, from, to);
-    mspringi_columns_relocate(mspringi_budget_columns, &n->budget, from, to);
-    mspringi_columns_relocate(mspringi_cells_columns, &n->tiles.cells, from, to);
-    mspringi_columns_relocate(mspringi_tiles_columns, &n->tiles, from, to);
-    mspringi_columns_relocate(mspringi_coarse_columns, &n->coarse, from, to);
+    mspringi_array_table_relocate(columns, n, from, to);
+    mspringi_array_table_relocate(mspringi_panels_columns, &n->panels, from, to);
+    mspringi_array_table_relocate(mspringi_budget_columns, &n->budget, from, to);
+    mspringi_array_table_relocate(mspringi_cells_columns, &n->tiles.cells, from, to);
+    mspringi_array_table_relocate(mspringi_tiles_columns, &n->tiles, from, to);
+    mspringi_array_table_relocate(mspringi_coarse_columns, &n->coarse, from, to);
     mspringi_direct_relocate(&n->direct, from, to);
     wire(n, network);
 }
@@ -438,7 +438,7 @@ void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit
     n->budget.knows_elastic = false;
     n->age = n->kept_age;
     if (n->age > 0)
-        mspringi_coarse_take_back(&n->coarse);
+        mspringi_coarse_restore(&n->coarse);
     // These are zero between steps, or where there is no tile, unless numbers overflowed.
     const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->team;
     memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
@@ -458,21 +458,21 @@ static void rest_sleepers(const mspring_network *network, mspringi_implicit *n) 
         n->velocity.x[slot] = n->velocity.y[slot] = 0.0f;
         n->displacement.x[slot] = n->displacement.y[slot] = 0.0f;
     }
-    n->rested = network->edits.naps;
+    n->rested = network->edits.sleep_changes;
 }
 
 // The factorisation of the direct solver has places for all.
 static void follow_slots(const mspring_network *network, mspringi_implicit *n) {
     const size_t slots = n->is_direct ? mspringi_slot_count(network) : mspringi_used_slots(network);
-    n->touched_slots = slots > n->touched_slots ? slots : n->touched_slots;
+    n->used_slot_end = slots > n->used_slot_end ? slots : n->used_slot_end;
 }
 
-void mspringi_implicit_follow(const mspring_network *network, mspringi_implicit *n) {
+void mspringi_implicit_update(const mspring_network *network, mspringi_implicit *n) {
     follow_slots(network, n);
-    if (n->rested != network->edits.naps && network->sleep.sleeping > 0)
+    if (n->rested != network->edits.sleep_changes && network->sleep.sleeping > 0)
         rest_sleepers(network, n);
     if (!n->is_direct && mspringi_tiles_are_outdated(&n->tiles, network, &n->seen)) {
-        mspringi_tiles_follow(&n->tiles, network, &n->seen);
+        mspringi_tiles_update(&n->tiles, network, &n->seen);
         mspringi_coarse_shape(&n->coarse, &n->tiles);
         find_solved(n, network);
         clear_outside_of_tiles(network, n);

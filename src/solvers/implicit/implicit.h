@@ -1,12 +1,13 @@
 /// @file implicit.h
 /// The implicit solver: one linear system a substep, whatever the stiffness.
 ///
-///   weigh, fly, predict    where the particles would be without forces               scheme.c
+///   weigh, fly, predict    where the particles would be without forces               integrator.c
 ///   assemble               springs, linearised there, into A d = b                   assemble.c
-///   solve                  two-level preconditioned conjugate gradients              solve.c, tiles.c, coarse.c
+///   solve                  two-level preconditioned conjugate gradients              conjugate_gradients.c,
+///   tiles.c, coarse.c
 ///                          or, for the direct solver, a factorisation                solvers/direct/direct.c
-///   land                   positions and velocities from d                           scheme.c
-///   budget                 what no force has done is taken back                      budget.h
+///   land                   positions and velocities from d                           integrator.c
+///   budget                 what no force has done is taken back                      energy_budget.h
 ///
 /// Workers share all of it (team.h): slots in chunks, rows in panels (panels.h), and tiles. Whatever is summed is
 /// summed in these pieces first, so that the bits do not depend on how many there are. The factorisation of the
@@ -20,8 +21,8 @@
 #include "tasks/team.h"
 
 #include "solvers/direct/direct.h"
-#include "solvers/implicit/budget.h"
 #include "solvers/implicit/coarse.h"
+#include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/panels.h"
 #include "solvers/implicit/tiles.h"
 
@@ -41,7 +42,11 @@ typedef struct mspringi_history {
 
 /// How contact between bodies acts in a substep: with friction; without, where friction and what presses bodies
 /// together would raise each other; after the substep alone, by impulses.
-typedef enum mspringi_holding { MSPRINGI_HOLD_ALL, MSPRINGI_HOLD_ACROSS, MSPRINGI_HOLD_AFTER } mspringi_holding;
+typedef enum mspringi_contact_mode {
+    MSPRINGI_CONTACT_WITH_FRICTION,
+    MSPRINGI_CONTACT_FRICTIONLESS,
+    MSPRINGI_CONTACT_BY_IMPULSES
+} mspringi_contact_mode;
 
 typedef struct mspringi_implicit {
     mspring_integrator integrator;
@@ -50,7 +55,7 @@ typedef struct mspringi_implicit {
     uint32_t age;           ///< substeps since the coarse matrix was factored; 0: it is to be
     uint32_t kept_age;      ///< before the step; 0: there is none to go back to
     uint32_t kept_restarts; ///< those of the history before the step
-    uint32_t retaken;       ///< pieces of this substep that were undone
+    uint32_t retry_count;   ///< pieces of this substep that were undone
     double scale;           ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup is that of before the step once that has written one
@@ -66,30 +71,30 @@ typedef struct mspringi_implicit {
     mspringi_field arm;                 ///< from the mass centre of its tile to each particle, m
     float *mass;                        ///< [slots] scaled; 0 if pinned or empty
     float *diagonal;                    ///< [slots] xx, then xy, then yy of A's blocks, then of their inverses
-    float *factors;                     ///< of lattices, chains and leftover springs, one behind the other
-    float *leftover_factors;            ///< where those of the leftover springs begin: [block][factor][lane]
+    float *factors;                     ///< of lattices, chains and irregular springs, one behind the other
+    float *irregular_factors;           ///< where those of the irregular springs begin: [block][factor][lane]
     double *force_carry;                ///< carry rows, one for each worker: see mspringi_system
     float *carry;                       ///< likewise
     double (*unknowns)[MSPRINGI_RIGID]; ///< [workers][tiles] of the coarse matrix; each worker solves for them
     uint32_t team;                      ///< workers that there are carry rows and unknowns for
-    uint32_t alone;                     ///< substeps to come that one worker takes, as others had no core
-    uint32_t patience;                  ///< how many these were to be
+    uint32_t solo_substeps;             ///< substeps to come that one worker takes, as others had no core
+    uint32_t solo_backoff;              ///< how many these were to be
     float *sums;                        ///< [chunks]
-    mspringi_tile_flight *flights;      ///< [tiles]
-    uint8_t *is_solved;                 ///< [loose and spare slots] 1 where springs were added, so that A is not
+    mspringi_tile_motion *tile_motions; ///< [tiles]
+    uint8_t *is_coupled;                ///< [loose and spare slots] 1 where springs were added, so that A is not
                                         ///< diagonal there; NULL: nowhere
-    double leftover_product;            ///< what leftover springs and contacts add to p . A p
-    bool is_hit;                        ///< the present substep is one of implicit Euler: particles hit the floor,
+    double irregular_product;           ///< what irregular springs and contacts add to p . A p
+    bool uses_euler;                    ///< the present substep is one of implicit Euler: particles hit the floor,
                                         ///< or motion is not to be followed as the integrator would
-    bool hits_floor;                    ///< it is to be begun again, as one of implicit Euler
-    bool again;                         ///< it is to be solved again, as floor or grips hold particles otherwise
-    mspringi_holding holding;           ///< how rows between bodies hold in the present substep
+    bool restarts_with_euler;           ///< it is to be begun again, as one of implicit Euler
+    bool must_solve_again;              ///< it is to be solved again, as floor or grips hold particles otherwise
+    mspringi_contact_mode contact_mode; ///< how rows between bodies hold in the present substep
     bool is_piece;                      ///< it is a half of one that got energy from nowhere, or of such a half
     mspringi_system system;
     mspringi_iterate iterate;
-    mspringi_edits seen;                     ///< the edits that it has followed
-    struct mspringi_implicit_making *making; ///< NULL: it is complete
-    size_t touched_slots; ///< behind these no particle has ever been: all that is kept by slot is 0 there
+    mspringi_edits seen;                      ///< the edits that it has followed
+    struct mspringi_implicit_builder *making; ///< NULL: it is complete
+    size_t used_slot_end; ///< behind these no particle has ever been: all that is kept by slot is 0 there
     uint64_t rested;      ///< edits.naps for which what sleeps is at rest in all that is kept by slot
 
     mspringi_budget budget;
@@ -122,16 +127,16 @@ mspring_result mspringi_implicit_reserve(mspringi_implicit *implicit, mspring_ne
 void mspringi_implicit_forget(mspringi_implicit *implicit);
 
 /// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
-void mspringi_implicit_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
+void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 /// Cut tiles anew where springs broke or were restored, or pins changed. Allocates nothing.
-void mspringi_implicit_follow(const mspring_network *network, mspringi_implicit *implicit);
+void mspringi_implicit_update(const mspring_network *network, mspringi_implicit *implicit);
 
 /// Keep the history for a step that fails, and get it back.
 void mspringi_implicit_keep(mspringi_implicit *implicit);
 void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit *implicit);
 
-/* saved.c: a snapshot's section */
+/* implicit_snapshot.c: a snapshot's section */
 
 void mspringi_implicit_save(const mspring_network *network, const mspringi_implicit *implicit,
                             struct mspringi_writer *to);
@@ -141,7 +146,7 @@ void mspringi_implicit_load(mspring_network *network, mspringi_implicit *implici
                             size_t size);
 
 /// What the workers of one substep share.
-typedef struct mspringi_substep_of {
+typedef struct mspringi_implicit_substep {
     mspring_network *network;
     mspringi_field base;
     float h;
@@ -149,34 +154,37 @@ typedef struct mspringi_substep_of {
     bool watches; ///< with an energy budget
     uint32_t workers;
     mspringi_progress *progress;
-    mspringi_flight flight;
+    mspringi_prediction prediction;
     mspringi_outside outside[2];
-    mspringi_landing landing[2];
-    mspringi_memory_of memory;
-} mspringi_substep_of;
+    mspringi_correction correction[2];
+    mspringi_history_kind history;
+} mspringi_implicit_substep;
 
-/// A range of slots: those of a mate's share of the chunks.
+/// A range of slots: those of a team member's share of the chunks.
 typedef struct mspringi_slots {
     size_t first, end;
 } mspringi_slots;
-static inline mspringi_slots mspringi_slots_of(const mspring_network *network, const mspringi_mate *mate) {
-    const size_t slots = mspringi_implicit_of(network)->touched_slots;
+static inline mspringi_slots mspringi_slots_of(const mspring_network *network, const mspringi_team_member *member) {
+    const size_t slots = mspringi_implicit_of(network)->used_slot_end;
     const size_t chunks = (slots + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
-    const size_t end = mspringi_share_end(mate, chunks) * MSPRINGI_CHUNK;
-    return (mspringi_slots){mspringi_share_of(mate, chunks) * MSPRINGI_CHUNK, end < slots ? end : slots};
+    const size_t end = mspringi_range_end(member, chunks) * MSPRINGI_CHUNK;
+    return (mspringi_slots){mspringi_range_begin(member, chunks) * MSPRINGI_CHUNK, end < slots ? end : slots};
 }
 
-/// Whether a mate computes what a tile or cell with this slot in its middle needs: its particles are mostly those
-/// that the mate moves. (With equal shares of tiles in their order, half of all particles went from core to core
-/// and back in each iteration. Where cores are far apart, two workers took 1.15 times as long as one then.)
-static inline bool mspringi_slot_is_of(const mspring_network *network, const mspringi_mate *mate, size_t slot) {
-    const mspringi_slots slots = mspringi_slots_of(network, mate);
-    return slot >= slots.first && (slot < slots.end || mate->index + 1 == mate->count);
+/// Whether a team member computes what a tile or cell with this slot in its middle needs: its particles are mostly
+/// those that the team member moves. (With equal shares of tiles in their order, half of all particles went from
+/// core to core and back in each iteration. Where cores are far apart, two workers took 1.15 times as long as one
+/// then.)
+static inline bool mspringi_slot_is_of(const mspring_network *network, const mspringi_team_member *member,
+                                       size_t slot) {
+    const mspringi_slots slots = mspringi_slots_of(network, member);
+    return slot >= slots.first && (slot < slots.end || member->index + 1 == member->count);
 }
-static inline bool mspringi_tile_is_of(const mspring_network *network, const mspringi_mate *mate, size_t tile) {
+static inline bool mspringi_tile_is_of(const mspring_network *network, const mspringi_team_member *member,
+                                       size_t tile) {
     const mspringi_tiles *tiles = &mspringi_implicit_of(network)->tiles;
     const uint32_t middle = (tiles->first_part[tile] + tiles->first_part[tile + 1]) / 2;
-    return mate->count == 1 || mspringi_slot_is_of(network, mate, tiles->parts[middle].first_slot);
+    return member->count == 1 || mspringi_slot_is_of(network, member, tiles->parts[middle].first_slot);
 }
 
 /// The next of these slots that are to be gone through, in whole chunks, from *at on, which goes behind them: all,
@@ -190,41 +198,41 @@ static inline mspringi_slots mspringi_loose_slots(const mspringi_topology *t, co
     return (mspringi_slots){within->first > loose ? within->first : loose,
                             within->end < loose_end ? within->end : loose_end};
 }
-static inline bool mspringi_is_solved(const mspring_network *network, const mspringi_implicit *n, size_t slot) {
-    return n->is_solved && n->is_solved[slot - (size_t)network->topology.loose_first * MSPRINGI_WIDTH];
+static inline bool mspringi_is_coupled(const mspring_network *network, const mspringi_implicit *n, size_t slot) {
+    return n->is_coupled && n->is_coupled[slot - (size_t)network->topology.loose_first * MSPRINGI_WIDTH];
 }
 
-/* scheme.c */
+/* integrator.c */
 
 /// Where an integrator puts the forces: A = M + c K + s C, with c = force_fraction h^2 and s = c velocity_fraction
 /// / h; the velocity after the substep is that of d = 0 plus velocity_fraction d / h.
-typedef struct mspringi_scheme {
+typedef struct mspringi_integrator_coefficients {
     double force_fraction, velocity_fraction;
-} mspringi_scheme;
-mspringi_scheme mspringi_scheme_of(mspring_integrator integrator);
+} mspringi_integrator_coefficients;
+mspringi_integrator_coefficients mspringi_integrator_coefficients_of(mspring_integrator integrator);
 
 /// Fill in all that a substep needs to know but its workers.
-void mspringi_scheme_prepare(mspringi_substep_of *substep);
-void mspringi_predict(const mspringi_substep_of *substep, mspringi_mate *mate);
+void mspringi_integrator_prepare(mspringi_implicit_substep *substep);
+void mspringi_predict(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 /// d = displacement + alpha direction.
-void mspringi_land(const mspringi_substep_of *substep, const mspringi_mate *mate, float alpha);
+void mspringi_correct(const mspringi_implicit_substep *substep, const mspringi_team_member *member, float alpha);
 /// Let the history be that of the substep that has landed.
-void mspringi_scheme_close(const mspringi_substep_of *substep);
+void mspringi_integrator_accept(const mspringi_implicit_substep *substep);
 /// Go back to the history of before the substep that has landed.
-void mspringi_scheme_reopen(mspring_network *network);
+void mspringi_integrator_undo(mspring_network *network);
 
 /* assemble.c */
 
 /// Whether nothing of a panel is to be swept.
 bool mspringi_panel_is_asleep(const mspring_network *network, const mspringi_panel *panel);
 
-void mspringi_assemble(const mspringi_substep_of *substep, mspringi_mate *mate);
+void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 /// product = A direction. Returns their scalar product, when all have met.
-double mspringi_multiply(const mspringi_substep_of *substep, mspringi_mate *mate);
+double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 
-/* solve.c: from residual, factors and diagonal to d */
+/* conjugate_gradients.c: from residual, factors and diagonal to d */
 
 /// Solve for d, but for the last step along the direction. Returns its length; NaN if numbers overflowed.
-float mspringi_solve(const mspringi_substep_of *substep, mspringi_mate *mate);
+float mspringi_solve(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 
 #endif

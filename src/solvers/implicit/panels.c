@@ -52,14 +52,14 @@ mspring_result mspringi_panels_create(mspringi_panels *panels, const mspringi_to
     return MSPRING_OK;
 }
 
-#define ARRAY(member) MSPRINGI_COLUMN(mspringi_panels, member, MSPRINGI_ARRAY)
-static const mspringi_column columns[] = {
+#define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_panels, member, MSPRINGI_ARRAY)
+static const mspringi_array_entry columns[] = {
     ARRAY(list),
     ARRAY(sums),
 };
-const mspringi_columns mspringi_panels_columns = MSPRINGI_COLUMNS(columns);
+const mspringi_array_table mspringi_panels_columns = MSPRINGI_ARRAY_TABLE(columns);
 
 void mspringi_panels_destroy(mspringi_panels *panels, mspringi_memory *memory) {
-    mspringi_columns_free(mspringi_panels_columns, panels, memory);
+    mspringi_array_table_free(mspringi_panels_columns, panels, memory);
     *panels = (mspringi_panels){0};
 }

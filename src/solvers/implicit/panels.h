@@ -24,7 +24,7 @@ typedef struct mspringi_panels {
 
 mspring_result mspringi_panels_create(mspringi_panels *panels, const mspringi_topology *topology,
                                       mspringi_memory *memory, mspringi_message *message);
-extern const mspringi_columns mspringi_panels_columns;
+extern const mspringi_array_table mspringi_panels_columns;
 void mspringi_panels_destroy(mspringi_panels *panels, mspringi_memory *memory);
 
 #endif

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "base/forest.h"
-#include "base/mix.h"
+#include "base/hash.h"
+#include "base/union_find.h"
 #include "store/one_way.h"
 #include "store/springs.h"
 
@@ -16,22 +16,22 @@
 
 // Whether a spring can pull. One that only pulls or only pushes can, even where it is slack in this step: when
 // tiles are cut must not matter, as they are cut after a snapshot is loaded, too.
-static bool is_live(const mspring_network *network, mspring_id spring, mspringi_place place) {
-    return mspringi_place_is_live(network, place) &&
+static bool is_live(const mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot) {
+    return mspringi_spring_slot_is_live(network, spring_slot) &&
            (mspringi_side_of(network, spring) != 0 ||
-            mspringi_spring_get_nominal(network, spring, place).stiffness > 0.0f);
+            mspringi_spring_get_nominal(network, spring, spring_slot).stiffness > 0.0f);
 }
 
 static bool is_free(const mspring_network *network, uint32_t slot) {
-    return mspringi_free_mass(network)[slot] > 0.0f;
+    return mspringi_active_inverse_mass(network)[slot] > 0.0f;
 }
 
 // The other end of the added spring number end / 2, if the spring can pull; else MSPRING_NONE.
 static uint32_t slot_pulled_at(const mspring_network *network, uint32_t end) {
     const mspringi_topology *t = &network->topology;
     const mspring_id spring = t->reserve.first_spring + end / 2;
-    const mspringi_place place = mspringi_place_of(t, spring);
-    if (mspringi_place_is_woven(t, place) || !is_live(network, spring, place))
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, spring);
+    if (mspringi_spring_slot_is_laid_out(t, spring_slot) || !is_live(network, spring, spring_slot))
         return MSPRING_NONE;
     return t->slot_of_particle[network->growth.particle_of_end[end ^ 1u]];
 }
@@ -69,7 +69,7 @@ static void join_loose(mspringi_tiles *tiles, const mspring_network *network, ui
             const uint32_t other = slot_pulled_at(network, end);
             if (other != MSPRING_NONE && cells->of_slot[other] == cell && is_free(network, slot) &&
                 is_free(network, other))
-                mspringi_forest_join(tiles->parent, slot, other);
+                mspringi_union_find_join(tiles->parent, slot, other);
         }
     }
 }
@@ -82,14 +82,14 @@ static void find_components(mspringi_tiles *tiles, const mspring_network *networ
         tiles->parent[cells->slots[i]] = cells->slots[i];
     for (uint32_t i = cells->first_inner[cell]; i < cells->first_inner[cell + 1]; ++i) {
         const mspring_id spring = cells->inner[i];
-        const mspringi_place place = mspringi_place_of(t, spring);
+        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, spring);
         uint32_t a, b;
-        mspringi_topology_ends(t, place, &a, &b);
+        mspringi_topology_ends(t, spring_slot, &a, &b);
         // The id may be that of a spring that was added since, which lies elsewhere.
-        if (!mspringi_place_is_woven(t, place) || !is_free(network, a) || !is_free(network, b) ||
-            !is_live(network, spring, place))
+        if (!mspringi_spring_slot_is_laid_out(t, spring_slot) || !is_free(network, a) || !is_free(network, b) ||
+            !is_live(network, spring, spring_slot))
             continue;
-        mspringi_forest_join(tiles->parent, a, b);
+        mspringi_union_find_join(tiles->parent, a, b);
     }
     if (is_loose(network, cells->slots[cells->first_slot[cell]]))
         join_loose(tiles, network, cell);
@@ -106,7 +106,7 @@ static uint32_t number_cell(mspringi_tiles *tiles, const mspring_network *networ
         tiles->of_slot[slot] = MSPRING_NONE;
         if (!is_in_tile(network, slot))
             continue;
-        const uint32_t root = mspringi_forest_root(tiles->parent, slot);
+        const uint32_t root = mspringi_union_find_root(tiles->parent, slot);
         tiles->of_slot[slot] = root == slot ? end++ : tiles->of_slot[root];
     }
     if (end - first <= most)
@@ -198,37 +198,39 @@ static void list_parts(mspringi_tiles *tiles, uint32_t first, uint32_t end) {
 static void add_anchor(mspringi_tiles *tiles, const mspring_network *network, uint32_t a, uint32_t b,
                        uint32_t factors) {
     const bool a_free = is_free(network, a);
-    if (a_free == is_free(network, b) || tiles->anchor_count == tiles->anchor_capacity)
+    if (a_free == is_free(network, b) || tiles->pin_edge_count == tiles->pin_edge_capacity)
         return;
-    tiles->anchors[tiles->anchor_count++] =
-        (mspringi_joint){.slot = a_free ? a : b, .other_slot = a_free ? b : a, .factors = factors};
+    tiles->pin_edges[tiles->pin_edge_count++] =
+        (mspringi_cell_edge){.slot = a_free ? a : b, .other_slot = a_free ? b : a, .factors = factors};
 }
 
 // Note both ends of an added spring, each as if the other were pinned: the coarse matrix has no room for what joins
 // any two tiles. Where the two are in one tile, they are left out of it.
 static void add_grafted(mspringi_tiles *tiles, const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_place place = mspringi_place_of(t, spring);
-    if (mspringi_place_is_woven(t, place) || !mspringi_spring_exists(network, spring) ||
-        tiles->anchor_count + 2 > tiles->anchor_capacity)
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, spring);
+    if (mspringi_spring_slot_is_laid_out(t, spring_slot) || !mspringi_spring_exists(network, spring) ||
+        tiles->pin_edge_count + 2 > tiles->pin_edge_capacity)
         return;
-    const uint32_t factors = mspringi_factors_of_place(place);
+    const uint32_t factors = mspringi_factors_of_spring_slot(spring_slot);
     uint32_t a, b;
-    mspringi_topology_ends(t, place, &a, &b);
-    tiles->anchors[tiles->anchor_count++] = (mspringi_joint){.slot = a, .other_slot = b, .factors = factors};
-    tiles->anchors[tiles->anchor_count++] = (mspringi_joint){.slot = b, .other_slot = a, .factors = factors};
+    mspringi_topology_ends(t, spring_slot, &a, &b);
+    tiles->pin_edges[tiles->pin_edge_count++] =
+        (mspringi_cell_edge){.slot = a, .other_slot = b, .factors = factors};
+    tiles->pin_edges[tiles->pin_edge_count++] =
+        (mspringi_cell_edge){.slot = b, .other_slot = a, .factors = factors};
 }
 
 // Springs to pinned particles inside cells.
 static void add_inner_anchors(mspringi_tiles *tiles, const mspring_network *network, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &network->topology;
     for (uint32_t i = first; i < end; ++i) {
-        const mspringi_place place = mspringi_place_of(t, tiles->cells.inner[i]);
+        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, tiles->cells.inner[i]);
         uint32_t a, b;
-        mspringi_topology_ends(t, place, &a, &b);
-        if (!mspringi_place_is_woven(t, place))
+        mspringi_topology_ends(t, spring_slot, &a, &b);
+        if (!mspringi_spring_slot_is_laid_out(t, spring_slot))
             continue;
-        add_anchor(tiles, network, a, b, mspringi_factors_of_place(place));
+        add_anchor(tiles, network, a, b, mspringi_factors_of_spring_slot(spring_slot));
     }
 }
 
@@ -236,14 +238,15 @@ static void add_inner_anchors(mspringi_tiles *tiles, const mspring_network *netw
 static void add_other_anchors(mspringi_tiles *tiles, const mspring_network *network) {
     const mspringi_cells *cells = &tiles->cells;
     const mspringi_topology *t = &network->topology;
-    for (const mspringi_joint *joint = cells->joints; joint < cells->joints + cells->joint_count; ++joint)
+    for (const mspringi_cell_edge *joint = cells->cell_edges; joint < cells->cell_edges + cells->cell_edge_count;
+         ++joint)
         add_anchor(tiles, network, joint->slot, joint->other_slot, joint->factors);
     for (mspring_id s = t->reserve.first_spring; s < t->spring_count; ++s)
         add_grafted(tiles, network, s);
 }
 
 static void list_anchors(mspringi_tiles *tiles, const mspring_network *network) {
-    tiles->anchor_count = 0;
+    tiles->pin_edge_count = 0;
     add_inner_anchors(tiles, network, 0, tiles->cells.first_inner[tiles->cells.count]);
     add_other_anchors(tiles, network);
 }
@@ -261,7 +264,7 @@ static void mark_changed_links(mspringi_tiles *tiles, const mspring_network *net
     const mspringi_topology *t = &network->topology;
     for (uint64_t n = seen; n < network->edits.links; ++n) {
         uint32_t a, b;
-        mspringi_topology_ends(t, mspringi_place_of(t, mspringi_edits_link(&network->edits, n)), &a, &b);
+        mspringi_topology_ends(t, mspringi_slot_of_spring(t, mspringi_edits_link(&network->edits, n)), &a, &b);
         if (tiles->cells.of_slot[a] != MSPRING_NONE && tiles->cells.of_slot[a] == tiles->cells.of_slot[b])
             mark_dirty(tiles, tiles->cells.of_slot[a]);
     }
@@ -270,7 +273,7 @@ static void mark_changed_links(mspringi_tiles *tiles, const mspring_network *net
 // What sleeps is as good as pinned.
 static bool pins_have_changed(const mspringi_tiles *tiles, const mspring_network *network,
                               const mspringi_edits *seen) {
-    if (seen->masses == network->edits.masses && seen->naps == network->edits.naps)
+    if (seen->masses == network->edits.masses && seen->sleep_changes == network->edits.sleep_changes)
         return false;
     const size_t slots = mspringi_slot_count(network);
     size_t changed = 0;
@@ -318,7 +321,7 @@ bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_netw
            pins_have_changed(tiles, network, seen);
 }
 
-void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen) {
+void mspringi_tiles_update(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen) {
     const mspringi_edits *edits = &network->edits;
     const bool pins = pins_have_changed(tiles, network, seen);
     const bool has_grafts = network->topology.spring_count > network->topology.reserve.first_spring;
@@ -340,32 +343,32 @@ void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network
 
 // Everything that edits do not change.
 static void take_fingerprint(mspringi_tiles *tiles, size_t slots) {
-    tiles->fingerprint = mspringi_mix_floats(MSPRINGI_MIX_START, tiles->turn_inertia, 0.0f);
+    tiles->fingerprint = mspringi_hash_floats(MSPRINGI_HASH_START, tiles->turn_inertia, 0.0f);
     for (size_t slot = 0; slot < slots; ++slot)
-        tiles->fingerprint = mspringi_mix(tiles->fingerprint, tiles->cells.of_slot[slot]);
+        tiles->fingerprint = mspringi_hash(tiles->fingerprint, tiles->cells.of_slot[slot]);
 }
 
-static mspring_result no_memory(const mspringi_tiling *m) {
+static mspring_result no_memory(const mspringi_tile_builder *m) {
     return mspringi_fail(m->message, MSPRING_ERROR_MEMORY, "no memory to cut %u particles into tiles",
                          (unsigned)m->network->topology.particle_count);
 }
 
-static mspring_result cut_cells(mspringi_tiling *m) {
+static mspring_result cut_cells(mspringi_tile_builder *m) {
     bool is_done;
     const mspring_result result = mspringi_cells_run(&m->cutting, &is_done);
     m->cursor.again = !is_done;
     return result;
 }
 
-static mspring_result reserve(mspringi_tiling *m) {
+static mspring_result reserve(mspringi_tile_builder *m) {
     mspringi_tiles *tiles = m->tiles;
     const mspring_network *network = m->network;
     mspringi_memory *memory = m->memory;
     const size_t slots = mspringi_slot_count(network), cells = tiles->cells.count;
     tiles->capacity = 2 * (uint32_t)cells + SPARE_TILES;
     tiles->value_capacity = 4 * values_of_cells(&tiles->cells) + SPARE_VALUES;
-    tiles->anchor_capacity = network->topology.spring_count / 4 + SPARE_ANCHORS +
-                             2 * (network->topology.leftover_capacity - network->topology.woven_count);
+    tiles->pin_edge_capacity = network->topology.spring_count / 4 + SPARE_ANCHORS +
+                               2 * (network->topology.irregular_capacity - network->topology.laid_out_count);
     tiles->of_slot = mspringi_alloc(memory, slots, sizeof *tiles->of_slot);
     tiles->parent = mspringi_alloc(memory, slots, sizeof *tiles->parent);
     tiles->first_of_cell = mspringi_alloc(memory, cells + 1, sizeof *tiles->first_of_cell);
@@ -376,21 +379,21 @@ static mspring_result reserve(mspringi_tiling *m) {
         mspringi_alloc(memory, network->topology.reserve.particle_end, sizeof *tiles->parts_by_slot);
     tiles->first_by_slot = mspringi_alloc(memory, slots / MSPRINGI_PART + 1, sizeof *tiles->first_by_slot);
     tiles->first_part = mspringi_alloc(memory, (size_t)tiles->capacity + 1, sizeof *tiles->first_part);
-    tiles->anchors = mspringi_alloc(memory, tiles->anchor_capacity, sizeof *tiles->anchors);
+    tiles->pin_edges = mspringi_alloc(memory, tiles->pin_edge_capacity, sizeof *tiles->pin_edges);
     if (!tiles->of_slot || !tiles->parent || !tiles->first_of_cell || !tiles->dirty || !tiles->is_dirty ||
-        !tiles->parts || !tiles->parts_by_slot || !tiles->first_by_slot || !tiles->first_part || !tiles->anchors)
+        !tiles->parts || !tiles->parts_by_slot || !tiles->first_by_slot || !tiles->first_part || !tiles->pin_edges)
         return no_memory(m);
     for (size_t slot = 0; slot < slots; ++slot)
         tiles->of_slot[slot] = MSPRING_NONE;
     return MSPRING_OK;
 }
 
-static mspring_result list_inner_anchors(mspringi_tiling *m, uint32_t first, uint32_t end) {
+static mspring_result list_inner_anchors(mspringi_tile_builder *m, uint32_t first, uint32_t end) {
     add_inner_anchors(m->tiles, m->network, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result list_other_anchors(mspringi_tiling *m) {
+static mspring_result list_other_anchors(mspringi_tile_builder *m) {
     add_other_anchors(m->tiles, m->network);
     return MSPRING_OK;
 }
@@ -403,33 +406,33 @@ static uint32_t cell_from(const mspringi_cells *cells, uint32_t at) {
     return cells->first_slot[cell] < at ? cell + 1 : cell;
 }
 
-static mspring_result find_all_components(mspringi_tiling *m, uint32_t first, uint32_t end) {
+static mspring_result find_all_components(mspringi_tile_builder *m, uint32_t first, uint32_t end) {
     const uint32_t end_cell = cell_from(&m->tiles->cells, end);
     for (uint32_t cell = cell_from(&m->tiles->cells, first); cell < end_cell; ++cell)
         find_components(m->tiles, m->network, cell);
     return MSPRING_OK;
 }
 
-static mspring_result number_some(mspringi_tiling *m, uint32_t first, uint32_t end) {
+static mspring_result number_some(mspringi_tile_builder *m, uint32_t first, uint32_t end) {
     const mspringi_cells *cells = &m->tiles->cells;
     number_tiles(m->tiles, m->network, cell_from(cells, first), cell_from(cells, end), m->most);
     return MSPRING_OK;
 }
 
 // If they do not fit, they are numbered again.
-static mspring_result judge_number(mspringi_tiling *m) {
+static mspring_result judge_number(mspringi_tile_builder *m) {
     m->most = next_most(m->tiles, m->most);
     m->cursor.again = m->most > 0;
     m->cursor.pass -= m->cursor.again;
     return MSPRING_OK;
 }
 
-static mspring_result list_all_parts(mspringi_tiling *m, uint32_t first, uint32_t end) {
+static mspring_result list_all_parts(mspringi_tile_builder *m, uint32_t first, uint32_t end) {
     list_parts(m->tiles, cell_from(&m->tiles->cells, first), cell_from(&m->tiles->cells, end));
     return MSPRING_OK;
 }
 
-static mspring_result add_lengths(mspringi_tiling *m, uint32_t first, uint32_t end) {
+static mspring_result add_lengths(mspringi_tile_builder *m, uint32_t first, uint32_t end) {
     for (mspring_id s = first; s < end; ++s) {
         if (!mspringi_spring_exists(m->network, s))
             continue;
@@ -441,7 +444,7 @@ static mspring_result add_lengths(mspringi_tiling *m, uint32_t first, uint32_t e
 }
 
 // Each body turns as if it were at least about as large as a spring.
-static mspring_result finish(mspringi_tiling *m) {
+static mspring_result finish(mspringi_tile_builder *m) {
     const size_t slots = mspringi_slot_count(m->network);
     const double mean = m->counted > 0 ? m->length / (double)m->counted : 1.0;
     sort_parts(m->tiles, slots);
@@ -449,19 +452,19 @@ static mspring_result finish(mspringi_tiling *m) {
     return MSPRING_OK;
 }
 
-static uint32_t inner_of(const mspringi_tiling *m) {
+static uint32_t inner_of(const mspringi_tile_builder *m) {
     return m->tiles->cells.first_inner[m->tiles->cells.count];
 }
 
-static uint32_t slots_of(const mspringi_tiling *m) {
+static uint32_t slots_of(const mspringi_tile_builder *m) {
     return m->tiles->cells.first_slot[m->tiles->cells.count];
 }
 
-static uint32_t springs_of(const mspringi_tiling *m) {
+static uint32_t springs_of(const mspringi_tile_builder *m) {
     return m->network->topology.spring_count;
 }
 
-MSPRINGI_PASSES(tiles, mspringi_tiling)
+MSPRINGI_PASSES(tiles, mspringi_tile_builder)
 static const tiles_pass tiles_passes[] = {
     MSPRINGI_ONCE(cut_cells),
     MSPRINGI_ONCE(reserve),
@@ -475,21 +478,21 @@ static const tiles_pass tiles_passes[] = {
     MSPRINGI_ONCE(finish),
 };
 
-void mspringi_tiles_begin(mspringi_tiling *m, mspringi_tiles *tiles, const mspring_network *network, uint32_t size,
-                          mspringi_memory *memory, mspringi_message *message) {
+void mspringi_tiles_begin(mspringi_tile_builder *m, mspringi_tiles *tiles, const mspring_network *network,
+                          uint32_t size, mspringi_memory *memory, mspringi_message *message) {
     *tiles = (mspringi_tiles){0};
-    *m = (mspringi_tiling){
+    *m = (mspringi_tile_builder){
         .network = network, .memory = memory, .message = message, .tiles = tiles, .most = UINT32_MAX};
     mspringi_cells_begin(&m->cutting, &tiles->cells, network, size, memory, message);
 }
 
-mspring_result mspringi_tiles_run(mspringi_tiling *m, bool *is_done) {
+mspring_result mspringi_tiles_run(mspringi_tile_builder *m, bool *is_done) {
     const mspring_result result = tiles_run(m, tiles_passes, &m->cursor);
     *is_done = m->cursor.pass == MSPRINGI_PASS_COUNT(tiles_passes);
     return result;
 }
 
-void mspringi_tiles_end(mspringi_tiling *m) {
+void mspringi_tiles_end(mspringi_tile_builder *m) {
     mspringi_cells_end(&m->cutting);
 }
 
@@ -498,15 +501,15 @@ void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_
     take_fingerprint(tiles, slots);
 }
 
-#define ARRAY(member) MSPRINGI_COLUMN(mspringi_tiles, member, MSPRINGI_ARRAY)
-static const mspringi_column columns[] = {
+#define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_tiles, member, MSPRINGI_ARRAY)
+static const mspringi_array_entry columns[] = {
     ARRAY(first_part),    ARRAY(parts),  ARRAY(parts_by_slot), ARRAY(first_by_slot), ARRAY(of_slot),
-    ARRAY(first_of_cell), ARRAY(parent), ARRAY(anchors),       ARRAY(dirty),         ARRAY(is_dirty),
+    ARRAY(first_of_cell), ARRAY(parent), ARRAY(pin_edges),     ARRAY(dirty),         ARRAY(is_dirty),
 };
-const mspringi_columns mspringi_tiles_columns = MSPRINGI_COLUMNS(columns);
+const mspringi_array_table mspringi_tiles_columns = MSPRINGI_ARRAY_TABLE(columns);
 
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory) {
     mspringi_cells_destroy(&tiles->cells, memory);
-    mspringi_columns_free(mspringi_tiles_columns, tiles, memory);
+    mspringi_array_table_free(mspringi_tiles_columns, tiles, memory);
     *tiles = (mspringi_tiles){0};
 }

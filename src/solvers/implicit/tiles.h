@@ -22,8 +22,8 @@ typedef struct mspringi_tiles {
     uint32_t *of_slot;                 ///< [slots] MSPRING_NONE: none
     uint32_t *first_of_cell;           ///< [cells + 1] tiles follow the order of their cells
     uint32_t *parent;                  ///< [slots] of a slot in the forest of components
-    mspringi_joint *anchors;           ///< springs of tiles to pinned particles
-    uint32_t anchor_count, anchor_capacity;
+    mspringi_cell_edge *pin_edges;     ///< springs of tiles to pinned particles
+    uint32_t pin_edge_count, pin_edge_capacity;
     size_t value_capacity; ///< most numbers that the coarse matrix may have
     uint32_t *dirty;       ///< cells to be looked at again
     uint32_t dirty_count;
@@ -33,27 +33,27 @@ typedef struct mspringi_tiles {
 } mspringi_tiles;
 
 /// Tiles that are being made.
-typedef struct mspringi_tiling {
+typedef struct mspringi_tile_builder {
     const mspring_network *network;
     mspringi_memory *memory;
     mspringi_message *message;
     mspringi_tiles *tiles;
     mspringi_cursor cursor;
-    mspringi_cutting cutting;
+    mspringi_cell_builder cutting;
     double length; ///< of so many springs at rest
     uint32_t counted;
     uint32_t most; ///< tiles that a cell may be cut into
-} mspringi_tiling;
+} mspringi_tile_builder;
 
 /// Make tiles in cells of that size: begin, then run until it is done, then end, on failure too.
-void mspringi_tiles_begin(mspringi_tiling *tiling, mspringi_tiles *tiles, const mspring_network *network,
+void mspringi_tiles_begin(mspringi_tile_builder *tiling, mspringi_tiles *tiles, const mspring_network *network,
                           uint32_t size, mspringi_memory *memory, mspringi_message *message);
-mspring_result mspringi_tiles_run(mspringi_tiling *tiling, bool *is_done);
-void mspringi_tiles_end(mspringi_tiling *tiling);
+mspring_result mspringi_tiles_run(mspringi_tile_builder *tiling, bool *is_done);
+void mspringi_tiles_end(mspringi_tile_builder *tiling);
 /// Have the bodies turn as hard as those of other tiles of the same network, in which rest lengths may have been
 /// others.
 void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots);
-extern const mspringi_columns mspringi_tiles_columns;
+extern const mspringi_array_table mspringi_tiles_columns;
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory);
 
 /// Parts by slot.
@@ -83,6 +83,6 @@ bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_netw
                                  const mspringi_edits *seen);
 
 /// Follow the edits since seen. Allocates nothing.
-void mspringi_tiles_follow(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen);
+void mspringi_tiles_update(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen);
 
 #endif

@@ -1,5 +1,5 @@
 /// Neighbours of the nodes that are there.
-#include "solvers/sparse/plan.h"
+#include "solvers/sparse/symbolic.h"
 
 static bool is_absent(const mspringi_cholesky_graph *graph, uint32_t node) {
     return graph->absent && graph->absent[node];

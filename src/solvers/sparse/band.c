@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "layout/analysis.h"
-#include "solvers/sparse/plan.h"
+#include "solvers/sparse/symbolic.h"
 
 /// Groups behind its own that a column of MSPRINGI_PAD rows can reach.
 #define MOST_REACH (MSPRINGI_PAD / MSPRINGI_BAND_COLUMNS - 1)
@@ -22,11 +22,11 @@ static mspring_result no_memory(const choosing *c, mspringi_message *message) {
 static uint32_t reach_of(const choosing *c, const uint32_t *order, uint32_t first, uint32_t end) {
     uint32_t reach = 0;
     for (uint32_t place = first; place < end; ++place)
-        c->place[order[place]] = place;
+        c->coordinate[order[place]] = place;
     for (uint32_t place = first; place < end && reach <= 2 * MOST_REACH; ++place) {
         const uint32_t node = order[place];
         for (uint32_t i = c->adjacency->first[node]; i < c->adjacency->first[node + 1]; ++i) {
-            const uint32_t other = c->place[c->adjacency->neighbour[i]];
+            const uint32_t other = c->coordinate[c->adjacency->neighbour[i]];
             if (other > place && other / 2 - place / 2 > reach)
                 reach = other / 2 - place / 2;
         }
@@ -47,8 +47,8 @@ static double sort_by(const choosing *c, uint32_t *nodes, uint32_t count, const 
         c->keys[i] = (uint64_t)((coordinate[c->adjacency->node[nodes[i]]] - low) * scale) << 32 | i;
     mspringi_sort_keys(c->keys, c->scratch, count);
     for (uint32_t i = 0; i < count; ++i)
-        c->place[i] = nodes[(uint32_t)c->keys[i]];
-    memcpy(nodes, c->place, count * sizeof *nodes);
+        c->coordinate[i] = nodes[(uint32_t)c->keys[i]];
+    memcpy(nodes, c->coordinate, count * sizeof *nodes);
     return high - low;
 }
 
@@ -62,9 +62,9 @@ static uint32_t search_from(const choosing *c, uint32_t *nodes, uint32_t started
                             uint32_t count) {
     uint32_t last_level = 0, end = started;
     for (uint32_t i = 0; i < count; ++i)
-        c->place[order[i]] = MSPRING_NONE;
+        c->coordinate[order[i]] = MSPRING_NONE;
     for (uint32_t i = 0; i < started; ++i)
-        c->place[nodes[i]] = i;
+        c->coordinate[nodes[i]] = i;
     for (uint32_t place = 0, level_end = started; place < end; ++place) {
         const uint32_t node = nodes[place], own = end;
         if (place == level_end) {
@@ -73,10 +73,10 @@ static uint32_t search_from(const choosing *c, uint32_t *nodes, uint32_t started
         }
         for (uint32_t i = c->adjacency->first[node]; i < c->adjacency->first[node + 1]; ++i) {
             const uint32_t other = c->adjacency->neighbour[i];
-            if (c->place[other] != MSPRING_NONE)
+            if (c->coordinate[other] != MSPRING_NONE)
                 continue;
             uint32_t at = end++;
-            c->place[other] = at;
+            c->coordinate[other] = at;
             for (; at > own && degree_of(c, nodes[at - 1]) > degree_of(c, other); --at)
                 nodes[at] = nodes[at - 1];
             nodes[at] = other;
@@ -140,7 +140,7 @@ static void choose(choosing *c, const mspringi_cholesky_graph *graph) {
 }
 
 // The edges by the group of their first node, and where each begins.
-static void fill_entries(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
+static void fill_entries(mspringi_cholesky_symbolic *plan, const mspringi_cholesky_graph *graph,
                          const uint32_t *place_of) {
     uint32_t *const next = plan->band_entries + 1; // one ahead: where the next of a group goes
     for (int pass = 0; pass < 2; ++pass) {
@@ -164,7 +164,7 @@ static void fill_entries(mspringi_cholesky_plan *plan, const mspringi_cholesky_g
 }
 
 // Products of a column with those that it reaches.
-static double count_products(const mspringi_cholesky_plan *plan) {
+static double count_products(const mspringi_cholesky_symbolic *plan) {
     const double rows = (double)MSPRINGI_BAND_COLUMNS * (plan->band_reach + 1);
     double products = 0.0;
     for (double below = rows - 1.0; below > rows - 1.0 - (double)MSPRINGI_BAND_COLUMNS; below -= 1.0)
@@ -172,7 +172,7 @@ static double count_products(const mspringi_cholesky_plan *plan) {
     return products * (double)plan->band_groups;
 }
 
-static bool fill(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
+static bool fill(mspringi_cholesky_symbolic *plan, const mspringi_cholesky_graph *graph,
                  const mspringi_adjacency *adjacency, const uint32_t *order, uint32_t reach,
                  mspringi_memory *memory) {
     plan->size = adjacency->size;
@@ -208,7 +208,7 @@ mspring_result mspringi_band_reserve(choosing *c, const mspringi_sweep_order *sw
     if (!c->order || !c->keys)
         return no_memory(c, message);
     c->sorted = c->order + size;
-    c->place = c->order + 2 * size;
+    c->coordinate = c->order + 2 * size;
     c->scratch = c->keys + size;
     memcpy(c->order, sweep->order, size * sizeof *c->order);
     return MSPRING_OK;
@@ -224,8 +224,9 @@ bool mspringi_band_choose(choosing *c, const mspringi_cholesky_graph *graph) {
     return false;
 }
 
-mspring_result mspringi_band_make(choosing *c, mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
-                                  mspringi_memory *memory, mspringi_message *message) {
+mspring_result mspringi_band_make(choosing *c, mspringi_cholesky_symbolic *plan,
+                                  const mspringi_cholesky_graph *graph, mspringi_memory *memory,
+                                  mspringi_message *message) {
     const bool ok = c->adjacency->size == 0 || c->reach > MOST_REACH ||
                     fill(plan, graph, c->adjacency, c->order, c->reach, memory);
     return ok ? MSPRING_OK : no_memory(c, message);

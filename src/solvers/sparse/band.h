@@ -42,7 +42,7 @@ MSPRINGI_INLINE BAND_VECTOR NAME(band_set)(REAL value) {
 }
 
 MSPRINGI_INLINE WINDOW NAME(window_at)(const FACTOR *factor, uint32_t group) {
-    const mspringi_cholesky_plan *plan = factor->plan;
+    const mspringi_cholesky_symbolic *plan = factor->plan;
     const uint32_t behind = plan->band_groups - 1 - group;
     return (WINDOW){.columns = factor->panels + (size_t)group * GROUP * MSPRINGI_PAD,
                     .later = behind < plan->band_reach ? behind : plan->band_reach};
@@ -50,7 +50,7 @@ MSPRINGI_INLINE WINDOW NAME(window_at)(const FACTOR *factor, uint32_t group) {
 
 /// Put the matrix into a group's columns.
 MSPRINGI_INLINE void NAME(fill_group)(const FACTOR *factor, const MATRIX *matrix, uint32_t group) {
-    const mspringi_cholesky_plan *plan = factor->plan;
+    const mspringi_cholesky_symbolic *plan = factor->plan;
     REAL *const columns = factor->panels + (size_t)group * GROUP * MSPRINGI_PAD;
     UNROLL_PARTS
     for (size_t i = 0; i < GROUP * PARTS; ++i)
@@ -167,7 +167,7 @@ MSPRINGI_INLINE void NAME(finish_group)(const FACTOR *factor, const WINDOW *w, u
 /// A group's corner is one long wait, and the next group's corner waits for it and for little else. So what no one
 /// waits for is left until the next corner has begun.
 static uint32_t NAME(eliminate_band)(FACTOR *factor, const MATRIX *matrix, REAL *vector) {
-    const mspringi_cholesky_plan *plan = factor->plan;
+    const mspringi_cholesky_symbolic *plan = factor->plan;
     WINDOW w, before = {0};
     CORNER corner, last = {{0}, {{0}}};
     BAND_VECTOR scaled[PARTS][GROUP], right[PARTS];
@@ -216,7 +216,7 @@ static void NAME(solve_band_forward)(const FACTOR *factor, REAL *vector) {
 
 /// L^-T, the unknowns that are known last coming last.
 static void NAME(solve_band_backward)(const FACTOR *factor, REAL *vector) {
-    const mspringi_cholesky_plan *plan = factor->plan;
+    const mspringi_cholesky_symbolic *plan = factor->plan;
     for (uint32_t group = plan->band_groups; group-- > 0;) {
         const REAL *const columns = factor->panels + (size_t)group * GROUP * MSPRINGI_PAD;
         REAL *const to = vector + (size_t)group * GROUP;

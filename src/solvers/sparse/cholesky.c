@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "solvers/sparse/kernels.h"
-#include "solvers/sparse/plan.h"
+#include "solvers/sparse/factor_kernels.h"
+#include "solvers/sparse/symbolic.h"
 
 static const mspringi_cholesky_kernels *const levels[] = {
 #define LEVEL(name, number) &mspringi_cholesky_##name,
@@ -23,7 +23,7 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
 // NOLINTBEGIN(bugprone-macro-parentheses): of a type
 #define MSPRINGI_CHOLESKY_DEFINE(real)                                                                             \
     mspring_result mspringi_cholesky_##real##_reserve(mspringi_cholesky_##real *factor,                            \
-                                                      const mspringi_cholesky_plan *plan, mspring_simd level,      \
+                                                      const mspringi_cholesky_symbolic *plan, mspring_simd level,  \
                                                       mspringi_memory *memory, mspringi_message *message) {        \
         const size_t size = mspringi_pad(2 * (size_t)plan->size) + MSPRINGI_PAD;                                   \
         const size_t first = plan->update_reals[0] + MSPRINGI_PAD, second = plan->update_reals[1] + MSPRINGI_PAD;  \
@@ -56,7 +56,7 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
     }                                                                                                              \
                                                                                                                    \
     mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
-                                                     const mspringi_cholesky_plan *plan, mspring_simd level,       \
+                                                     const mspringi_cholesky_symbolic *plan, mspring_simd level,   \
                                                      mspringi_memory *memory, mspringi_message *message) {         \
         const mspring_result result = mspringi_cholesky_##real##_reserve(factor, plan, level, memory, message);    \
         if (result == MSPRING_OK)                                                                                  \
@@ -64,20 +64,20 @@ const mspringi_cholesky_kernels *mspringi_cholesky_kernels_of(mspring_simd level
         return result;                                                                                             \
     }                                                                                                              \
                                                                                                                    \
-    static const mspringi_column columns_##real[] = {                                                              \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, plan, MSPRINGI_VIEW),                                            \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, panels, MSPRINGI_ARRAY),                                         \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, reciprocal, MSPRINGI_VIEW),                                      \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, updates[0], MSPRINGI_VIEW),                                      \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, updates[1], MSPRINGI_VIEW),                                      \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, scaled, MSPRINGI_VIEW),                                          \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, vector, MSPRINGI_VIEW),                                          \
-        MSPRINGI_COLUMN(mspringi_cholesky_##real, part, MSPRINGI_VIEW),                                            \
+    static const mspringi_array_entry columns_##real[] = {                                                         \
+        MSPRINGI_ARRAY_ENTRY(mspringi_cholesky_##real, plan, MSPRINGI_VIEW),                                       \
+        MSPRINGI_ARRAY_ENTRY(mspringi_cholesky_##real, panels, MSPRINGI_ARRAY),                                    \
+        MSPRINGI_ARRAY_ENTRY(mspringi_cholesky_##real, reciprocal, MSPRINGI_VIEW),                                 \
+        MSPRINGI_ARRAY_ENTRY(mspringi_cholesky_##real, updates[0], MSPRINGI_VIEW),                                 \
+        MSPRINGI_ARRAY_ENTRY(mspringi_cholesky_##real, updates[1], MSPRINGI_VIEW),                                 \
+        MSPRINGI_ARRAY_ENTRY(mspringi_cholesky_##real, scaled, MSPRINGI_VIEW),                                     \
+        MSPRINGI_ARRAY_ENTRY(mspringi_cholesky_##real, vector, MSPRINGI_VIEW),                                     \
+        MSPRINGI_ARRAY_ENTRY(mspringi_cholesky_##real, part, MSPRINGI_VIEW),                                       \
     };                                                                                                             \
-    const mspringi_columns mspringi_cholesky_##real##_columns = MSPRINGI_COLUMNS(columns_##real);                  \
+    const mspringi_array_table mspringi_cholesky_##real##_columns = MSPRINGI_ARRAY_TABLE(columns_##real);          \
                                                                                                                    \
     void mspringi_cholesky_##real##_destroy(mspringi_cholesky_##real *factor, mspringi_memory *memory) {           \
-        mspringi_columns_free(mspringi_cholesky_##real##_columns, factor, memory);                                 \
+        mspringi_array_table_free(mspringi_cholesky_##real##_columns, factor, memory);                             \
         *factor = (mspringi_cholesky_##real){0};                                                                   \
     }                                                                                                              \
                                                                                                                    \

@@ -14,9 +14,9 @@
 /// Same bits: every element of L has its products subtracted one by one, in the order of elimination, at each level
 /// alike. Only elements that do not depend on each other share a vector.
 ///
-///     mspringi_cholesky_plan plan = {0};
+///     mspringi_cholesky_symbolic plan = {0};
 ///     mspringi_cholesky_float factor = {0};
-///     mspringi_cholesky_plan_create(&plan, &graph, memory, message);
+///     mspringi_cholesky_symbolic_create(&plan, &graph, memory, message);
 ///     mspringi_cholesky_float_create(&factor, &plan, level, memory, message);
 ///     for each step:
 ///         node = mspringi_cholesky_float_factor_solve(&factor, &matrix, x, y);   MSPRING_NONE: it went well
@@ -25,7 +25,7 @@
 #ifndef MSPRINGI_CHOLESKY_H
 #define MSPRINGI_CHOLESKY_H
 
-#include "base/columns.h"
+#include "base/array_table.h"
 #include "base/memory.h"
 #include "base/message.h"
 
@@ -39,13 +39,13 @@ typedef struct mspringi_cholesky_graph {
     double most_numbers;             ///< that the factor may take; 0: 2^31
 } mspringi_cholesky_graph;
 
-typedef struct mspringi_cholesky_planning mspringi_cholesky_planning;
+typedef struct mspringi_cholesky_analysis mspringi_cholesky_analysis;
 typedef struct mspringi_front mspringi_front;
 typedef struct mspringi_cholesky_entry mspringi_cholesky_entry;
 typedef struct mspringi_front_run mspringi_front_run;
 
 /// All that depends on the graph alone. Read-only once made, so that several factors may share it.
-typedef struct mspringi_cholesky_plan {
+typedef struct mspringi_cholesky_symbolic {
     uint32_t node_count;    ///< of the graph
     uint32_t size;          ///< nodes that are there: blocks on the diagonal of A
     uint32_t *order;        ///< [size] node by place in the order of elimination
@@ -64,22 +64,23 @@ typedef struct mspringi_cholesky_plan {
     size_t vector_reals;              ///< and in the largest front's part of a vector
     double multiply_adds;             ///< products that a factorisation subtracts, padding not counted
     double predicted_numbers;         ///< that the factor would take, where it was refused for them
-} mspringi_cholesky_plan;
+} mspringi_cholesky_symbolic;
 
 /// Find the plan. Positions only change the cost; they may coincide.
 /// @return MSPRING_OK; MSPRING_ERROR_MEMORY; MSPRING_ERROR_LIMIT if the factor would take over most_numbers. Then
 ///         the plan is as it was, zero, but for predicted_numbers.
-mspring_result mspringi_cholesky_plan_create(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
-                                             mspringi_memory *memory, mspringi_message *message);
+mspring_result mspringi_cholesky_symbolic_create(mspringi_cholesky_symbolic *plan,
+                                                 const mspringi_cholesky_graph *graph, mspringi_memory *memory,
+                                                 mspringi_message *message);
 /// The same as a list of short functions: begin, then run until it is done, then end, on failure too. The graph
 /// must stay until then. NULL may be ended.
-mspring_result mspringi_cholesky_plan_begin(mspringi_cholesky_plan *plan, const mspringi_cholesky_graph *graph,
-                                            mspringi_memory *memory, mspringi_message *message,
-                                            mspringi_cholesky_planning **begun);
-mspring_result mspringi_cholesky_plan_run(mspringi_cholesky_planning *begun, bool *is_done);
-void mspringi_cholesky_plan_end(mspringi_cholesky_planning *begun, mspringi_memory *memory);
-extern const mspringi_columns mspringi_cholesky_plan_columns;
-void mspringi_cholesky_plan_destroy(mspringi_cholesky_plan *plan, mspringi_memory *memory);
+mspring_result mspringi_cholesky_symbolic_begin(mspringi_cholesky_symbolic *plan,
+                                                const mspringi_cholesky_graph *graph, mspringi_memory *memory,
+                                                mspringi_message *message, mspringi_cholesky_analysis **begun);
+mspring_result mspringi_cholesky_symbolic_run(mspringi_cholesky_analysis *begun, bool *is_done);
+void mspringi_cholesky_symbolic_end(mspringi_cholesky_analysis *begun, mspringi_memory *memory);
+extern const mspringi_array_table mspringi_cholesky_symbolic_columns;
+void mspringi_cholesky_symbolic_destroy(mspringi_cholesky_symbolic *plan, mspringi_memory *memory);
 
 typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
 
@@ -92,7 +93,7 @@ typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
     } mspringi_cholesky_matrix_##real;                                                                             \
                                                                                                                    \
     typedef struct mspringi_cholesky_##real {                                                                      \
-        const mspringi_cholesky_plan *plan;                                                                        \
+        const mspringi_cholesky_symbolic *plan;                                                                    \
         const mspringi_cholesky_kernels *kernels;                                                                  \
         real *panels;     /**< L, front after front; the others lie behind it */                                   \
         real *reciprocal; /**< [2 size] of D */                                                                    \
@@ -107,13 +108,13 @@ typedef struct mspringi_cholesky_kernels mspringi_cholesky_kernels;
     /** must outlive the factor. On failure the factor is as it was: zero. */                                      \
     /** What lies behind panels and updates is cleared, in pieces if it was only reserved. */                      \
     mspring_result mspringi_cholesky_##real##_reserve(mspringi_cholesky_##real *factor,                            \
-                                                      const mspringi_cholesky_plan *plan, mspring_simd level,      \
+                                                      const mspringi_cholesky_symbolic *plan, mspring_simd level,  \
                                                       mspringi_memory *memory, mspringi_message *message);         \
     void mspringi_cholesky_##real##_clear(const mspringi_cholesky_##real *factor, size_t first, size_t count);     \
     mspring_result mspringi_cholesky_##real##_create(mspringi_cholesky_##real *factor,                             \
-                                                     const mspringi_cholesky_plan *plan, mspring_simd level,       \
+                                                     const mspringi_cholesky_symbolic *plan, mspring_simd level,   \
                                                      mspringi_memory *memory, mspringi_message *message);          \
-    extern const mspringi_columns mspringi_cholesky_##real##_columns;                                              \
+    extern const mspringi_array_table mspringi_cholesky_##real##_columns;                                          \
     void mspringi_cholesky_##real##_destroy(mspringi_cholesky_##real *factor, mspringi_memory *memory);            \
                                                                                                                    \
     /** Factor A. Returns MSPRING_NONE, or the node whose pivot is not positive (or not a finite number): */       \

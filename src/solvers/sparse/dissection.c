@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "layout/analysis.h"
-#include "solvers/sparse/plan.h"
+#include "solvers/sparse/symbolic.h"
 
 /// Sets of at most this many nodes are not cut. The tree's supernodes are merged afterwards, so small is right.
 #define SMALLEST_SET 3

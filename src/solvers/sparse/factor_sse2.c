@@ -1,10 +1,10 @@
 /// SSE2: four floats or two doubles in a vector, 16 registers.
-#include "solvers/sparse/kernels.h"
+#include "solvers/sparse/factor_kernels.h"
 
 #if defined(MSPRINGI_X86)
 #define MSPRINGI_VECTOR_BYTES 16
 #define MSPRINGI_TILE_VECTORS 2
 #define MSPRINGI_TABLE mspringi_cholesky_sse2
 #define MSPRINGI_LEVEL MSPRING_SIMD_SSE2
-#include "solvers/sparse/table.h"
+#include "solvers/sparse/factor_table.h"
 #endif

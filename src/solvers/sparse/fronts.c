@@ -1,14 +1,14 @@
 /// From supernodes to fronts: their order, borders, places in memory, and the way of each number into them.
-#include "solvers/sparse/plan.h"
+#include "solvers/sparse/symbolic.h"
 
-typedef mspringi_fronts_making making;
+typedef mspringi_fronts_builder making;
 
 /* --------------------------------------------------------------------------------------------- order of fronts */
 
 // Number the supernodes so that each follows its descendants, which lie in one piece: tree->mark[last pivot].
 static uint32_t number_fronts(mspringi_tree *tree, uint32_t size) {
     uint32_t count = 0;
-    uint32_t *up = tree->place; // not needed any more: the way back
+    uint32_t *up = tree->coordinate; // not needed any more: the way back
     for (uint32_t root = 0; root < size; ++root) {
         if (tree->into[root] != root || tree->parent[root] != MSPRING_NONE)
             continue;
@@ -39,7 +39,7 @@ static void resolve(mspringi_tree *tree, uint32_t size) {
 }
 
 static void fill_fronts(making *m) {
-    mspringi_cholesky_plan *plan = m->plan;
+    mspringi_cholesky_symbolic *plan = m->plan;
     const mspringi_tree *tree = m->tree;
     for (uint32_t last = 0; last < plan->size; ++last) {
         if (tree->into[last] != last)
@@ -72,7 +72,7 @@ static void fill_fronts(making *m) {
 }
 
 static void fill_children(making *m) {
-    mspringi_cholesky_plan *plan = m->plan;
+    mspringi_cholesky_symbolic *plan = m->plan;
     for (uint32_t f = 0; f < plan->front_count; ++f)
         if (m->parent[f] != MSPRING_NONE)
             plan->fronts[m->parent[f]].child_count++;
@@ -91,7 +91,7 @@ static void fill_children(making *m) {
 // The rows of L, from the first place to the last, so that every border comes out sorted: from each earlier
 // neighbour's front up through the parents.
 void mspringi_fronts_fill_borders(making *m, uint32_t first, uint32_t end) {
-    mspringi_cholesky_plan *plan = m->plan;
+    mspringi_cholesky_symbolic *plan = m->plan;
     const mspringi_adjacency *adjacency = m->adjacency;
     uint32_t *mark = m->tree->mark;
     for (uint32_t f = 0; first == 0 && f < plan->front_count; ++f) {
@@ -111,7 +111,7 @@ void mspringi_fronts_fill_borders(making *m, uint32_t first, uint32_t end) {
 }
 
 // Find a place in a front: among its pivots or, from a place in the border that is not beyond it, in its border.
-static uint32_t find_in(const mspringi_cholesky_plan *plan, const mspringi_front *front, uint32_t place,
+static uint32_t find_in(const mspringi_cholesky_symbolic *plan, const mspringi_front *front, uint32_t place,
                         uint32_t from) {
     if (place < front->first_pivot + front->pivot_count)
         return place - front->first_pivot;
@@ -121,7 +121,7 @@ static uint32_t find_in(const mspringi_cholesky_plan *plan, const mspringi_front
 }
 
 // The runs of one front's border in its parent, into runs if there are any. Returns how many.
-static uint32_t find_runs(const mspringi_cholesky_plan *plan, const mspringi_front *front,
+static uint32_t find_runs(const mspringi_cholesky_symbolic *plan, const mspringi_front *front,
                           const mspringi_front *parent, mspringi_front_run *runs) {
     const uint32_t pivot_end = parent->first_pivot + parent->pivot_count;
     uint32_t count = 0, beyond = 0;
@@ -206,7 +206,7 @@ void mspringi_fronts_place_entries(making *m) {
 }
 
 void mspringi_fronts_fill_entries(making *m, uint32_t first, uint32_t end) {
-    mspringi_cholesky_plan *plan = m->plan;
+    mspringi_cholesky_symbolic *plan = m->plan;
     for (uint32_t edge = first; edge < end; ++edge) {
         const edge_places places = find_edge(m, edge);
         if (places.front == MSPRING_NONE)
@@ -229,7 +229,7 @@ static size_t larger(size_t a, size_t b) {
 // Update matrices lie on two stacks, by the parity of their front's depth: while a front adds up its children's,
 // its own is at the top of the other stack.
 void mspringi_fronts_lay_out(making *m) {
-    mspringi_cholesky_plan *plan = m->plan;
+    mspringi_cholesky_symbolic *plan = m->plan;
     size_t top[2] = {0, 0};
     for (uint32_t f = plan->front_count; f-- > 0;)
         plan->fronts[f].stack = m->parent[f] == MSPRING_NONE ? 0 : 1 - plan->fronts[m->parent[f]].stack;
@@ -259,7 +259,7 @@ static mspring_result no_memory(const making *m, mspringi_message *message) {
 }
 
 mspring_result mspringi_fronts_reserve(making *m, mspringi_memory *memory, mspringi_message *message) {
-    mspringi_cholesky_plan *plan = m->plan;
+    mspringi_cholesky_symbolic *plan = m->plan;
     const size_t nodes = m->graph->node_count, size = plan->size = m->adjacency->size;
     resolve(m->tree, plan->size);
     plan->front_count = number_fronts(m->tree, plan->size);
@@ -278,7 +278,7 @@ mspring_result mspringi_fronts_reserve(making *m, mspringi_memory *memory, mspri
 }
 
 mspring_result mspringi_fronts_fill(making *m, mspringi_memory *memory, mspringi_message *message) {
-    mspringi_cholesky_plan *plan = m->plan;
+    mspringi_cholesky_symbolic *plan = m->plan;
     fill_fronts(m);
     fill_children(m);
     const mspringi_front *last = plan->front_count > 0 ? &plan->fronts[plan->front_count - 1] : NULL;

@@ -1,5 +1,5 @@
 /// @file numeric.h
-/// Factorisation and solution in one precision and one width of vector: included by table.h, once for each
+/// Factorisation and solution in one precision and one width of vector: included by factor_table.h, once for each
 /// precision.
 ///
 /// A front's columns come in groups of four (two nodes), its rows in tiles of some vectors. With W = L D, an
@@ -282,7 +282,7 @@ MSPRINGI_INLINE void NAME(add_edges)(REAL *columns, size_t rows, const mspringi_
 }
 
 /// Put a front's part of A into its columns, which are zero. 0 + makes 0 of -0, see add_columns().
-MSPRINGI_INLINE void NAME(assemble)(const COLUMNS *f, const mspringi_cholesky_plan *plan,
+MSPRINGI_INLINE void NAME(assemble)(const COLUMNS *f, const mspringi_cholesky_symbolic *plan,
                                     const mspringi_front *front, const MATRIX *matrix) {
     const mspringi_cholesky_entry *entries = plan->entries;
     REAL *to = f->pivots;
@@ -338,7 +338,7 @@ MSPRINGI_INLINE void NAME(add_child)(const COLUMNS *f, REAL *update, size_t upda
 /// Factor A. The last row of each border is that of a right side b, whose part for the columns of a front is in
 /// vector in the order of elimination; it leaves as D^-1 L^-1 b.
 static uint32_t NAME(eliminate_all)(FACTOR *factor, const MATRIX *matrix, REAL *vector) {
-    const mspringi_cholesky_plan *plan = factor->plan;
+    const mspringi_cholesky_symbolic *plan = factor->plan;
     for (uint32_t n = 0; n < plan->front_count; ++n) {
         const mspringi_front *front = &plan->fronts[n];
         COLUMNS f = {.count = 2 * (size_t)front->pivot_count,
@@ -483,7 +483,7 @@ MSPRINGI_INLINE void NAME(permute)(const FACTOR *factor, const REAL *x, const RE
 }
 
 static void NAME(solve_all_backward)(const FACTOR *factor, REAL *x, REAL *y) {
-    const mspringi_cholesky_plan *plan = factor->plan;
+    const mspringi_cholesky_symbolic *plan = factor->plan;
     REAL *vector = factor->vector;
     if (plan->band_groups > 0)
         NAME(solve_band_backward)(factor, vector);
@@ -515,7 +515,7 @@ static uint32_t NAME(factor_solve)(FACTOR *factor, const MATRIX *matrix, REAL *x
 }
 
 static void NAME(solve)(FACTOR *factor, REAL *x, REAL *y) {
-    const mspringi_cholesky_plan *plan = factor->plan;
+    const mspringi_cholesky_symbolic *plan = factor->plan;
     NAME(permute)(factor, x, y);
     if (plan->band_groups > 0)
         NAME(solve_band_forward)(factor, factor->vector);

@@ -1,6 +1,6 @@
 /// Orders from end to end: breadth-first from a node at the far end of each component (Cuthill & McKee 1969),
 /// reversed (George 1971).
-#include "solvers/sparse/plan.h"
+#include "solvers/sparse/symbolic.h"
 
 /// Searches for a node further out, each from the far end of the one before.
 #define SEARCHES 4

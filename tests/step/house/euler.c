@@ -84,7 +84,7 @@ static void substeps(mspring_network *network, void *object, float h, mspringi_f
 }
 
 // A floor would let those of the loose row fly past it.
-static bool is_alone(const mspring_network *network, const void *object, size_t slot) {
+static bool is_isolated(const mspring_network *network, const void *object, size_t slot) {
     (void)object;
     return slot / MSPRINGI_WIDTH >= network->topology.loose_first;
 }
@@ -95,5 +95,5 @@ const mspringi_solver_ops house_euler_ops = {
     .destroy = destroy,
     .relocate = relocate,
     .substeps = substeps,
-    .is_alone = is_alone,
+    .is_isolated = is_isolated,
 };

@@ -1,0 +1,204 @@
+/// Areas in a problem of statics: those that springs are all around.
+///
+/// The stiffness of an area is taken as more stiffness along the springs of its outline, as in implicit substeps
+/// (solvers/implicit/implicit_areas.c): no less than it is, so that Newton's way leads down, and with the pattern
+/// that the springs have. Forces and energies are the area's own.
+#include "store/areas.h"
+
+#include <math.h>
+
+#include "analysis/settle/equilibrium.h"
+#include "store/springs.h"
+
+// The number of each spring among those that exert a force.
+static void number_springs(const mspring_network *network, uint32_t *numbers) {
+    uint32_t count = 0;
+    for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring)
+        numbers[spring] = mspringi_spring_get(network, spring).stiffness > 0.0f ? count++ : MSPRING_NONE;
+}
+
+static mspring_result find_sides(mspringi_statics *statics, mspring_network *network, const uint32_t *numbers) {
+    const mspringi_areas *a = &network->areas;
+    for (size_t i = 0; i < a->count; ++i)
+        if (a->list[i].is_angle && !a->list[i].is_open)
+            mspringi_statics_add_angle(statics, a, &a->list[i]);
+    for (size_t i = 0; i < a->count; ++i)
+        for (size_t c = a->list[i].first;
+             !a->list[i].is_open && !a->list[i].is_angle && c < a->list[i].first + a->list[i].count; ++c) {
+            const mspring_id spring = a->corners[c].spring;
+            statics->areas.sides[c] = spring == MSPRING_NONE ? MSPRING_NONE : numbers[spring];
+            if (statics->areas.sides[c] == MSPRING_NONE)
+                return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                     "area %u has a side from particle %u on without a spring: settling takes none "
+                                     "of these",
+                                     (unsigned)a->list[i].id, (unsigned)a->corners[c].particle);
+        }
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_network *network) {
+    if (network->areas.count == 0)
+        return MSPRING_OK;
+    mspringi_areas_refresh(network);
+    uint32_t *numbers = mspringi_alloc(&network->memory, network->topology.spring_count, sizeof *numbers);
+    statics->areas.sides =
+        mspringi_alloc(&network->memory, network->areas.corner_count, sizeof *statics->areas.sides);
+    mspring_result result = MSPRING_OK;
+    if (!numbers || !statics->areas.sides) {
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to settle %zu areas",
+                               network->areas.count);
+    } else {
+        number_springs(network, numbers);
+        result = find_sides(statics, network, numbers);
+    }
+    mspringi_free(&network->memory, numbers);
+    statics->areas.of = result == MSPRING_OK ? &network->areas : NULL;
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------- one of them */
+
+typedef struct place {
+    double x, y;
+} place;
+
+static uint32_t particle_of(const mspringi_statics *statics, const mspringi_area *area, uint32_t corner) {
+    return statics->areas.of->corners[area->first + corner % area->count].particle;
+}
+
+// From the first corner.
+static place place_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner) {
+    const uint32_t p = particle_of(s, area, corner), first = particle_of(s, area, 0);
+    return (place){(s->start.x[p] - s->start.x[first]) + (s->moved.x[p] - s->moved.x[first]),
+                   (s->start.y[p] - s->start.y[first]) + (s->moved.y[p] - s->moved.y[first])};
+}
+
+static double size_of(const mspringi_statics *s, const mspringi_area *area) {
+    double twice = 0.0;
+    place before = place_of(s, area, 1);
+    for (uint32_t i = 2; i < area->count; ++i) {
+        const place here = place_of(s, area, i);
+        twice += before.x * here.y - before.y * here.x;
+        before = here;
+    }
+    return 0.5 * twice;
+}
+
+// How far a corner goes beyond the first.
+static place way_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner, double t) {
+    const uint32_t p = particle_of(s, area, corner), first = particle_of(s, area, 0);
+    return (place){t * ((s->step.x[p] - s->step.x[first]) + t * (s->bend.x[p] - s->bend.x[first])),
+                   t * ((s->step.y[p] - s->step.y[first]) + t * (s->bend.y[p] - s->bend.y[first]))};
+}
+
+// By how much it grows on a way: not as a difference of areas, which would be lost in their rounding.
+static double growth_of(const mspringi_statics *s, const mspringi_area *area, double t) {
+    double twice = 0.0;
+    place before = place_of(s, area, 1), went = way_of(s, area, 1, t);
+    for (uint32_t i = 2; i < area->count; ++i) {
+        const place here = place_of(s, area, i), goes = way_of(s, area, i, t);
+        twice += (before.x * goes.y - before.y * goes.x) + (went.x * here.y - went.y * here.x) +
+                 (went.x * goes.y - went.y * goes.x);
+        before = here;
+        went = goes;
+    }
+    return 0.5 * twice;
+}
+
+/* ------------------------------------------------------------------------------------------------- all of them */
+
+// The next that is closed, from one on; NULL if there is none.
+static const mspringi_area *next_area(const mspringi_statics *statics, size_t *i) {
+    const mspringi_areas *all = statics->areas.of;
+    while (all && *i < all->count && all->list[*i].is_open)
+        ++*i;
+    return all && *i < all->count ? &all->list[(*i)++] : NULL;
+}
+
+double mspringi_statics_area_forces(mspringi_statics *statics) {
+    double largest = 0.0;
+    const mspringi_area *area;
+    for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
+        if (area->is_angle) {
+            largest = fmax(largest, mspringi_statics_angle_forces(statics, area));
+            continue;
+        }
+        const double half = 0.5 * mspringi_area_pressure(area, size_of(statics, area));
+        for (uint32_t i = 0; i < area->count; ++i) {
+            const place before = place_of(statics, area, i + area->count - 1),
+                        behind = place_of(statics, area, i + 1);
+            const double x = half * (behind.y - before.y), y = half * (before.x - behind.x);
+            const uint32_t p = particle_of(statics, area, i);
+            statics->force.x[p] += x;
+            statics->force.y[p] += y;
+            largest = fmax(largest, fmax(fabs(x), fabs(y)));
+        }
+    }
+    return largest;
+}
+
+double mspringi_statics_area_change(const mspringi_statics *statics, double t, double *size) {
+    double change = 0.0;
+    const mspringi_area *area;
+    for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
+        if (area->is_angle) {
+            change += mspringi_statics_angle_change(statics, area, t, size);
+            continue;
+        }
+        const double energy =
+            mspringi_area_energy_change(area, size_of(statics, area), growth_of(statics, area, t));
+        change += energy;
+        *size += fabs(energy);
+    }
+    return change;
+}
+
+// The vector from the middle of the corners to that of a side.
+static place arm_of(const mspringi_statics *s, const mspringi_area *area, uint32_t side, place middle) {
+    const place a = place_of(s, area, side), b = place_of(s, area, side + 1);
+    return (place){0.5 * (a.x + b.x) - middle.x, 0.5 * (a.y + b.y) - middle.y};
+}
+
+static void stiffen(mspringi_statics *statics, const mspringi_area *area, uint32_t side, double stiffness) {
+    const place from = place_of(statics, area, side), to = place_of(statics, area, side + 1);
+    const double x = to.x - from.x, y = to.y - from.y, square = x * x + y * y;
+    const uint32_t a = particle_of(statics, area, side), b = particle_of(statics, area, side + 1);
+    const uint32_t spring = statics->areas.sides[area->first + side];
+    if (!(square > 0.0))
+        return;
+    const double xx = stiffness * x * x / square, xy = stiffness * x * y / square, yy = stiffness * y * y / square;
+    for (int end = 0; end < 2; ++end) {
+        statics->xx[end ? b : a] += xx;
+        statics->xy[end ? b : a] += xy;
+        statics->yy[end ? b : a] += yy;
+        statics->scale[end ? b : a] += 0.5 * stiffness;
+    }
+    statics->springs.xx[spring] -= xx;
+    statics->springs.xy[spring] -= xy;
+    statics->springs.yy[spring] -= yy;
+}
+
+void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped) {
+    const mspringi_area *area;
+    for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
+        if (area->is_angle) {
+            mspringi_statics_angle_stiffness(statics, area, clamped);
+            continue;
+        }
+        const double c = mspringi_area_stiffness(area, size_of(statics, area));
+        place middle = {0.0, 0.0};
+        double all = 0.0;
+        for (uint32_t i = 1; i < area->count; ++i) {
+            middle.x += place_of(statics, area, i).x / (double)area->count;
+            middle.y += place_of(statics, area, i).y / (double)area->count;
+        }
+        for (uint32_t side = 0; side < area->count; ++side) {
+            const place arm = arm_of(statics, area, side, middle);
+            all += sqrt(arm.x * arm.x + arm.y * arm.y);
+        }
+        for (uint32_t side = 0; side < area->count; ++side) {
+            const place arm = arm_of(statics, area, side, middle);
+            stiffen(statics, area, side, c * all * sqrt(arm.x * arm.x + arm.y * arm.y));
+        }
+    }
+}

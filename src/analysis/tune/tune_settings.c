@@ -1,0 +1,110 @@
+/// What is worth trying where the host does not say.
+#include "analysis/tune/tuning.h"
+
+#include "store/network.h"
+
+/// Part of the stable substep of now that the least number of substeps keeps to: motion stiffens a network.
+#define SAFETY 0.9
+#define MOST_SUBSTEPS 1000
+
+/// Particles up to which a factorisation in each step may be worth its time.
+#define MOST_PARTICLES_OF_DIRECT 20000
+
+/// Iterations with which the default integrator is tried, beside the other one.
+#define USUAL_ITERATIONS 8
+
+typedef struct settings {
+    mspring_solver_def list[MSPRINGI_TUNE_USUAL_SETTINGS];
+    uint32_t count;
+} settings;
+
+static void add(settings *s, mspring_solver solver, mspring_integrator integrator, uint32_t substeps,
+                uint32_t iterations) {
+    mspring_solver_def def;
+    if (!mspringi_solver_ops_of(solver))
+        return; // this build leaves it out
+    (void)mspring_solver_def_init(&def, sizeof def);
+    def.solver = solver;
+    def.integrator = integrator;
+    def.substeps = substeps;
+    def.iterations = iterations;
+    s->list[s->count++] = def;
+}
+
+// Explicit substeps, in rising order.
+static void add_explicit(settings *s, uint32_t substeps) {
+    if (substeps <= MOST_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
+        add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, substeps, 0);
+}
+
+static void list_settings(settings *s, const mspring_network *network, uint32_t least) {
+    static const uint32_t usual[] = {10, 20, 30, 40, 60, 80};
+    static const uint32_t iterations[] = {4, 8, 15};
+    for (size_t i = 0; network->fractions.values && i < sizeof usual / sizeof usual[0]; ++i)
+        if (usual[i] >= least)
+            add_explicit(s, usual[i]);
+    if (s->count == 0) {
+        add_explicit(s, least);
+        add_explicit(s, least + (least + 1) / 2);
+        add_explicit(s, 2 * least);
+        add_explicit(s, 4 * least);
+    }
+    for (uint32_t substeps = 1; substeps <= 4; substeps *= 2) {
+        for (size_t i = 0; i < sizeof iterations / sizeof iterations[0]; ++i)
+            add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, substeps, iterations[i]);
+        add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, USUAL_ITERATIONS);
+    }
+    for (uint32_t substeps = 1; network->topology.particle_count <= MOST_PARTICLES_OF_DIRECT && substeps <= 2;
+         ++substeps) {
+        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, substeps, 0);
+        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, substeps, 0);
+    }
+}
+
+mspring_result mspring_tune_settings(mspring_network *network, double dt, mspring_solver_def *list,
+                                     uint32_t capacity, uint32_t *count) {
+    settings s = {.count = 0};
+    uint32_t least = MSPRING_MAX_SUBSTEPS;
+    mspring_result result = mspringi_check_call(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (!count || (capacity > 0 && !list))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the place for settings, or their count, is NULL");
+    result = mspring_network_suggest_substeps(network, dt, SAFETY, &least);
+    if (result != MSPRING_OK && result != MSPRING_ERROR_UNSTABLE)
+        return result;
+    list_settings(&s, network, least);
+    *count = s.count;
+    if (capacity == 0)
+        return MSPRING_OK;
+    if (capacity < s.count)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "there is room for %u settings, but %u of them", (unsigned)capacity,
+                             (unsigned)s.count);
+    const size_t struct_size = mspringi_struct_size(list);
+    result = mspringi_check_outputs(list, s.count, "mspring_solver_def", sizeof *list, &network->message);
+    for (uint32_t i = 0; result == MSPRING_OK && i < s.count; ++i)
+        mspringi_put_struct((char *)list + struct_size * i, &s.list[i], sizeof s.list[i]);
+    return result;
+}
+
+mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solver_def *solver) {
+    mspring_solver_def made;
+    if (!row)
+        return MSPRING_ERROR_ARGUMENT;
+    mspring_result result = mspringi_check_output(NULL, "mspring_tune_row", row, sizeof *row);
+    if (result == MSPRING_OK)
+        result = mspringi_check_output(NULL, "mspring_solver_def", solver, sizeof *solver);
+    if (result != MSPRING_OK)
+        return result;
+    (void)mspring_solver_def_init(&made, sizeof made);
+    made.solver = row->solver;
+    made.integrator = row->integrator;
+    made.substeps = row->substeps;
+    made.iterations = row->iterations;
+    made.tile_size = row->tile_size;
+    made.coarse_period = row->coarse_period;
+    mspringi_put_struct(solver, &made, sizeof made);
+    return MSPRING_OK;
+}

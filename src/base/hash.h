@@ -1,0 +1,33 @@
+/// @file hash.h
+/// A 64-bit hash over words: FNV-1a (Fowler, Noll, Vo 1991) taken over 64-bit words instead of bytes, with the
+/// upper half folded in so that every bit of a word reaches every bit of the hash.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_HASH_H
+#define MSPRINGI_HASH_H
+
+#include <stdint.h>
+#include <string.h>
+
+/// The hash of nothing.
+#define MSPRINGI_HASH_START UINT64_C(0xcbf29ce484222325)
+
+static inline uint64_t mspringi_hash(uint64_t hash, uint64_t word) {
+    hash = (hash ^ word) * UINT64_C(0x100000001b3);
+    return hash ^ hash >> 32;
+}
+
+static inline uint64_t mspringi_hash_floats(uint64_t hash, float a, float b) {
+    uint32_t low, high;
+    memcpy(&low, &a, sizeof low);
+    memcpy(&high, &b, sizeof high);
+    return mspringi_hash(hash, (uint64_t)high << 32 | low);
+}
+
+static inline uint64_t mspringi_hash_double(uint64_t hash, double value) {
+    uint64_t word;
+    memcpy(&word, &value, sizeof word);
+    return mspringi_hash(hash, word);
+}
+
+#endif

@@ -1,0 +1,305 @@
+/// Adding particles and springs.
+#include <math.h>
+
+#include "base/bytes.h"
+#include "base/cpu.h"
+#include "base/hash.h"
+#include "contact/floor.h"
+#include "layout/emit/spare.h"
+#include "step/breaking.h"
+#include "step/origin.h"
+#include "step/plastic.h"
+#include "step/ramps.h"
+#include "step/strain.h"
+#include "store/changed.h"
+#include "store/fractions.h"
+#include "store/id_pool.h"
+#include "store/springs.h"
+
+// Put the place in the caller's array in front of what was wrong with it.
+static mspring_result name_definition(mspring_network *network, mspring_result result, uint32_t index) {
+    const mspringi_message reason = network->message;
+    return mspringi_fail(&network->message, result, "definition %u: %s", (unsigned)index, reason.text);
+}
+
+static mspring_result check_arrays(mspring_network *network, const void *defs, uint32_t count, const void *ids) {
+    mspring_result result = mspringi_check_call(network);
+    if (result == MSPRING_OK && count > 0 && (!defs || !ids))
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "an array of %u elements is NULL",
+                               (unsigned)count);
+    if (result == MSPRING_OK && network->groups.count > 0)
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "nothing is added to groups of particles: set no groups before");
+    return result;
+}
+
+// The lowest spare id from first on; end if there is none.
+static mspring_id find_spare(const uint8_t *marks, mspring_id first, mspring_id end) {
+    return marks && first < end ? mspringi_find_byte(marks, MSPRINGI_SPARE, first, end) : end;
+}
+
+// Refuse to give more ids than are spare.
+static mspring_result check_room(mspring_network *network, const char *what, const uint8_t *marks,
+                                 mspring_id lowest, mspring_id first, mspring_id end, uint32_t count) {
+    uint32_t room = 0;
+    for (mspring_id id = find_spare(marks, lowest, end); id < end && room < count;
+         id = find_spare(marks, id + 1, end))
+        ++room;
+    return room == count
+               ? MSPRING_OK
+               : mspringi_fail(
+                     &network->message, MSPRING_ERROR_LIMIT,
+                     "no room for %u %s%s: spare_%ss (mspring_network_def) is %u, and %u of these are free. "
+                     "Set more at creation; mspring_network_recycle() frees what was removed",
+                     (unsigned)count, what, count == 1 ? "" : "s", what, (unsigned)(end - first), (unsigned)room);
+}
+
+/* --------------------------------------------------------------------------------------------------- particles */
+
+static mspring_result check_particle(mspring_network *network, mspring_id id, const mspring_particle_def *def,
+                                     size_t struct_size) {
+    mspring_result result = mspringi_check_particle_def(&network->message, id, def, struct_size);
+    const double largest = MSPRING_MAX_COORDINATE;
+    if (result == MSPRING_OK &&
+        !(fabs(def->x - network->origin_x) <= largest && fabs(def->y - network->origin_y) <= largest))
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "particle %u: position (%g, %g) m is not within 1e12 of the local origin",
+                               (unsigned)id, def->x, def->y);
+    return result;
+}
+
+static void put_particle(mspring_network *network, mspring_id p, const mspring_particle_def *def) {
+    const bool is_pinned = def->flags & MSPRING_PARTICLE_PINNED;
+    mspringi_spare_put_particle(&network->topology, p);
+    if (network->is_compact)
+        mspringi_spare_put_particle(&network->whole, p);
+    const uint32_t slot = network->topology.slot_of_particle[p];
+    network->growth.particles[p] = MSPRINGI_THERE;
+    network->mass[p] = def->mass;
+    network->inverse_mass[slot] = is_pinned ? 0.0f : 1.0f / def->mass;
+    if (network->inverse_mass_scale)
+        network->inverse_mass_scale[p] = is_pinned ? 0.0f : 1.0f;
+    if (network->spring_mass)
+        network->spring_mass[p] = def->mass;
+    if (network->components.number)
+        network->components.number[p] = MSPRING_NONE;
+    network->state.vx[slot] = def->vx;
+    network->state.vy[slot] = def->vy;
+    mspringi_set_position(network, p, def->x, def->y);
+    mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_PARTICLE, p);
+    network->parameter_fingerprint = mspringi_hash(network->parameter_fingerprint, def->flags);
+}
+
+static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, const mspring_particle_def *defs,
+                                                      uint32_t count, mspring_id *ids) {
+    const mspringi_reserve *reserve = &network->topology.reserve;
+    mspringi_id_pool *g = &network->growth;
+    const size_t struct_size = mspringi_struct_size(defs);
+    mspring_result result = check_room(network, "particle", g->particles, g->lowest_particle,
+                                       reserve->first_particle, reserve->particle_end, count);
+    mspring_id id = g->lowest_particle;
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i, ++id) {
+        id = find_spare(g->particles, id, reserve->particle_end);
+        result = check_particle(network, id, mspringi_element(defs, struct_size, i), struct_size);
+        if (result != MSPRING_OK && count > 1)
+            result = name_definition(network, result, i);
+    }
+    if (result != MSPRING_OK)
+        return result;
+    uint32_t end = network->topology.particle_count;
+    id = g->lowest_particle;
+    for (uint32_t i = 0; i < count; ++i) {
+        id = find_spare(g->particles, id, reserve->particle_end);
+        put_particle(network, id, mspringi_element(defs, struct_size, i));
+        end = id >= end ? id + 1 : end;
+        ids[i] = id;
+    }
+    g->lowest_particle = id;
+    mspringi_id_pool_count(network, end, network->topology.spring_count);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_add_particles(mspring_network *network, const mspring_particle_def *defs,
+                                             uint32_t count, mspring_id *ids) {
+    mspring_result result = check_arrays(network, defs, count, ids);
+    if (result != MSPRING_OK || count == 0)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = add_particles(network, defs, count, ids);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+/* ----------------------------------------------------------------------------------------------------- springs */
+
+static mspring_id other_end(const mspring_network *network, mspring_id spring, mspring_id particle) {
+    const mspringi_topology *t = &network->topology;
+    if (spring >= t->reserve.first_spring) {
+        const mspring_id *ends = network->growth.particle_of_end + 2 * (spring - t->reserve.first_spring);
+        return ends[0] == particle ? ends[1] : ends[0];
+    }
+    uint32_t base, tip;
+    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
+    return t->particle_of_slot[base] == particle ? t->particle_of_slot[tip] : t->particle_of_slot[base];
+}
+
+static mspring_result check_ends(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
+    const mspring_id ends[] = {def->a, def->b};
+    if (def->a == MSPRING_NONE || def->b == MSPRING_NONE)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ID,
+                             "spring %u: its particle %s is not set (MSPRING_NONE)", (unsigned)id,
+                             def->a == MSPRING_NONE ? "a" : "b");
+    for (int i = 0; i < 2; ++i)
+        if (ends[i] >= network->topology.particle_count || !mspringi_particle_exists(network, ends[i]))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ID, "spring %u: there is no particle %u",
+                                 (unsigned)id, (unsigned)ends[i]);
+    return MSPRING_OK;
+}
+
+static mspring_result check_unique(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, def->a);
+    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;)
+        if (other_end(network, s, def->a) == def->b)
+            return mspringi_fail(&network->message, MSPRING_ERROR_DUPLICATE,
+                                 "spring %u: particles %u and %u are joined by spring %u, which may be broken",
+                                 (unsigned)id, (unsigned)def->a, (unsigned)def->b, (unsigned)s);
+    return MSPRING_OK;
+}
+
+static mspring_result check_kind(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
+    if (def->flags & MSPRING_SPRING_RELATIVE && !network->fractions.values)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "spring %u is relative, but the network was created without any that is "
+                             "(MSPRING_NETWORK_RESERVE_RELATIVE)",
+                             (unsigned)id);
+    if (def->flags & (MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "spring %u: springs that only pull or only push come from a builder", (unsigned)id);
+    if (def->damping > 0.0f && network->parts <= MSPRINGI_DAMPING)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "spring %u: damping is %g, but the network was created without room for any "
+                             "(MSPRING_NETWORK_RESERVE_DAMPING)",
+                             (unsigned)id, (double)def->damping);
+    return MSPRING_OK;
+}
+
+static mspring_result find_rest_length(mspring_network *network, mspring_id id, const mspring_spring_def *def,
+                                       float *rest_length) {
+    const mspringi_state *s = &network->state;
+    const uint32_t a = network->topology.slot_of_particle[def->a], b = network->topology.slot_of_particle[def->b];
+    return mspringi_find_rest_length(&network->message, id, def, (double)s->x[b] - (double)s->x[a],
+                                     (double)s->y[b] - (double)s->y[a], rest_length);
+}
+
+// Check a spring and link its ends, so that those checked after it see it.
+static mspring_result link_spring(mspring_network *network, mspring_id id, const mspring_spring_def *def,
+                                  size_t struct_size) {
+    float rest_length;
+    mspring_result result = mspringi_check_spring_def(&network->message, id, def, struct_size);
+    if (result == MSPRING_OK)
+        result = check_ends(network, id, def);
+    if (result == MSPRING_OK)
+        result = mspringi_check_spring_values(&network->message, id, def);
+    if (result == MSPRING_OK)
+        result = check_kind(network, id, def);
+    if (result == MSPRING_OK)
+        result = find_rest_length(network, id, def, &rest_length);
+    if (result == MSPRING_OK)
+        result = check_unique(network, id, def);
+    if (result == MSPRING_OK)
+        mspringi_id_pool_link(network, id, def->a, def->b);
+    return result;
+}
+
+static void put_spring(mspring_network *network, mspring_id s, const mspring_spring_def *def) {
+    float rest_length = 0.0f;
+    (void)find_rest_length(network, s, def, &rest_length);
+    mspringi_solvers_clear_spring(network, mspringi_slot_of_spring(&network->topology, s));
+    mspringi_spare_put_spring(&network->topology, s, def->a, def->b);
+    if (network->is_compact)
+        mspringi_spare_put_spring(&network->whole, s, def->a, def->b);
+    network->growth.springs[s] = MSPRINGI_THERE;
+    const bool relative = def->flags & MSPRING_SPRING_RELATIVE;
+    if (network->fractions.values)
+        mspringi_fractions_set(&network->fractions, s,
+                               (mspringi_relative){relative ? def->stiffness : -1.0f, 0.0f});
+    mspringi_ramp_drop(network, s);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
+    const float damping = mspringi_find_damping(def->stiffness, def->damping, def->flags, network->mass[def->a],
+                                                network->mass[def->b]);
+    mspringi_spring_slot_set_rest_length(network, spring_slot, rest_length);
+    mspringi_spring_come_live(network, s);
+    mspringi_spring_set_nominal(network, s, spring_slot, (mspringi_relative){def->stiffness, damping});
+    mspringi_strain_forget(network, s);
+    mspringi_strain_put_limits(network, s, MSPRINGI_LIMITS_OF(def));
+    mspringi_plastic_forget(network, s);
+    mspringi_plastic_put_limits(network, s, MSPRINGI_LIMITS_OF(def));
+    mspringi_extents_turn(network, s);
+    mspringi_fingerprint(network, relative ? MSPRINGI_EDIT_ADDED_RELATIVE : MSPRINGI_EDIT_ADDED_SPRING, s);
+    mspringi_fingerprint(network, def->a, def->b);
+    mspringi_fingerprint_floats(network, def->stiffness, damping);
+    mspringi_fingerprint_floats(network, rest_length, 0.0f);
+}
+
+static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, const mspring_spring_def *defs,
+                                                    uint32_t count, mspring_id *ids) {
+    const mspringi_reserve *reserve = &network->topology.reserve;
+    mspringi_id_pool *g = &network->growth;
+    const size_t struct_size = mspringi_struct_size(defs);
+    mspring_result result = check_room(network, "spring", g->springs, g->lowest_spring, reserve->first_spring,
+                                       reserve->spring_end, count);
+    if (result != MSPRING_OK)
+        return result;
+    mspring_id id = g->lowest_spring;
+    uint32_t linked = 0;
+    for (; linked < count; ++linked, ++id) {
+        id = find_spare(g->springs, id, reserve->spring_end);
+        result = link_spring(network, id, mspringi_element(defs, struct_size, linked), struct_size);
+        if (result != MSPRING_OK)
+            break;
+    }
+    if (result != MSPRING_OK && count > 1)
+        result = name_definition(network, result, linked);
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
+        const mspring_spring_def *def = mspringi_element(defs, struct_size, i);
+        result = mspringi_strain_reserve_limits(network, MSPRINGI_LIMITS_OF(def));
+        if (result == MSPRING_OK)
+            result = mspringi_plastic_reserve_limits(network, MSPRINGI_LIMITS_OF(def));
+    }
+    if (result != MSPRING_OK) {
+        for (id = g->lowest_spring; linked > 0; --linked, ++id) {
+            id = find_spare(g->springs, id, reserve->spring_end);
+            mspringi_id_pool_unlink(network, id);
+        }
+        return result;
+    }
+    uint32_t end = network->topology.spring_count;
+    id = g->lowest_spring;
+    for (uint32_t i = 0; i < count; ++i) {
+        id = find_spare(g->springs, id, reserve->spring_end);
+        put_spring(network, id, mspringi_element(defs, struct_size, i));
+        end = id >= end ? id + 1 : end;
+        ids[i] = id;
+    }
+    g->lowest_spring = id;
+    mspringi_id_pool_count(network, network->topology.particle_count, end);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_GRAFTS, 0);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_add_springs(mspring_network *network, const mspring_spring_def *defs, uint32_t count,
+                                           mspring_id *ids) {
+    mspring_result result = check_arrays(network, defs, count, ids);
+    if (result != MSPRING_OK || count == 0)
+        return result;
+    if (!network->solver.ops->can_add)
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_ARGUMENT,
+            "the direct solver has found an order of elimination for the springs that there were when "
+            "it was chosen: choose another solver before springs are added, and the direct one after "
+            "it");
+    const mspringi_fp_state before = mspringi_fp_enter();
+    result = add_springs(network, defs, count, ids);
+    mspringi_fp_leave(before);
+    return result;
+}

@@ -1,0 +1,226 @@
+/// Forces for the next step, and impulses, which change velocities at once.
+///
+/// What is given adds up, where a list names a particle twice as well. So the sums are made in the backup, which is
+/// free between steps, and taken from there once all of them are right: those of a list by slot, those of a range,
+/// which names each particle once, by index. Most forces are so small that no sum can go wrong: those of a range
+/// are added at once.
+#include <math.h>
+
+#include "base/cpu.h"
+#include "store/changed.h"
+#include "store/network.h"
+#include "store/selection.h"
+
+typedef struct pushes {
+    const float *x, *y;
+    uint32_t stride;
+} pushes;
+
+// What a call adds to: forces, or velocities times what a particle gives in to an impulse.
+typedef struct target {
+    mspringi_field sum;
+    const float *inverse_mass; ///< NULL: forces
+} target;
+
+static mspring_result fail(mspring_network *network, const target *to, mspring_id particle, float x, float y) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                         to->inverse_mass
+                             ? "particle %u: an impulse of (%g, %g) N s is not finite, or takes it above 1e15 m/s"
+                             : "particle %u: force (%g, %g) N is not finite, or not with what acts already",
+                         (unsigned)particle, (double)x, (double)y);
+}
+
+static bool is_right(const target *to, float x, float y) {
+    return to->inverse_mass ? mspringi_is_speed(x) && mspringi_is_speed(y) : isfinite(x) && isfinite(y);
+}
+
+// A product of two floats is exact in double precision, so it does not matter whether it is fused with the sum.
+static float plus(float sum, float push, double factor) {
+    return (float)((double)sum + (double)push * factor);
+}
+
+// Make the sums of a range. Returns the index of one that is not right, or the count.
+static MSPRINGI_NOINLINE uint32_t sum_range(const mspring_network *network, const mspringi_selection *at,
+                                            const pushes *given, const target *to) {
+    const uint32_t *const slots = network->topology.slot_of_particle + at->first;
+    const mspringi_field sum = to->sum;
+    float *const made_x = network->backup.vx, *const made_y = network->backup.vy;
+    uint32_t wrong = at->count;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = slots[i];
+        const bool is_there = mspringi_particle_exists(network, at->first + i);
+        const uint32_t ahead = mspringi_slot_ahead(network, at, i);
+        MSPRINGI_PREFETCH(&sum.x[ahead]);
+        MSPRINGI_PREFETCH(&sum.y[ahead]);
+        const double factor = !to->inverse_mass ? 1.0 : (double)to->inverse_mass[slot];
+        const float x = plus(sum.x[slot], given->x[(size_t)i * given->stride], factor);
+        const float y = plus(sum.y[slot], given->y[(size_t)i * given->stride], factor);
+        made_x[i] = is_there ? x : sum.x[slot];
+        made_y[i] = is_there ? y : sum.y[slot];
+        wrong = is_there && !is_right(to, x, y) && wrong == at->count ? i : wrong;
+    }
+    return wrong;
+}
+
+static mspring_result add_range(mspring_network *network, const mspringi_selection *at, const pushes *given,
+                                const target *to) {
+    const uint32_t *const slots = network->topology.slot_of_particle + at->first;
+    const float *const made_x = network->backup.vx, *const made_y = network->backup.vy;
+    const mspringi_field sum = to->sum;
+    const uint32_t wrong = sum_range(network, at, given, to);
+    if (wrong < at->count)
+        return fail(network, to, at->first + wrong, given->x[(size_t)wrong * given->stride],
+                    given->y[(size_t)wrong * given->stride]);
+    for (uint32_t i = 0; i < at->count; ++i) {
+        sum.x[slots[i]] = made_x[i];
+        sum.y[slots[i]] = made_y[i];
+    }
+    return MSPRING_OK;
+}
+
+static MSPRINGI_NOINLINE mspring_result add_list(mspring_network *network, const mspringi_selection *at,
+                                                 const pushes *given, const target *to) {
+    const mspringi_field made = {network->backup.vx, network->backup.vy};
+    const uint32_t *slots = network->topology.slot_of_particle;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = slots[mspringi_selected(at, i)];
+        made.x[slot] = to->sum.x[slot];
+        made.y[slot] = to->sum.y[slot];
+    }
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        const uint32_t slot = slots[particle];
+        if (!mspringi_particle_exists(network, particle))
+            continue;
+        const float x = given->x[(size_t)i * given->stride], y = given->y[(size_t)i * given->stride];
+        const double factor = to->inverse_mass ? (double)to->inverse_mass[slot] : 1.0;
+        made.x[slot] = plus(made.x[slot], x, factor);
+        made.y[slot] = plus(made.y[slot], y, factor);
+        if (!is_right(to, made.x[slot], made.y[slot]))
+            return fail(network, to, particle, x, y);
+    }
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = slots[mspringi_selected(at, i)];
+        if (!mspringi_particle_exists(network, mspringi_selected(at, i)))
+            continue;
+        to->sum.x[slot] = made.x[slot];
+        to->sum.y[slot] = made.y[slot];
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result add_rounding_to_nearest(mspring_network *network, const mspringi_selection *at,
+                                              const pushes *given, const target *to) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = at->list ? add_list(network, at, given, to) : add_range(network, at, given, to);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------------- forces */
+
+static bool are_all_modest(const float *forces, size_t count) {
+    uint32_t others = 0;
+    for (size_t i = 0; i < count; ++i)
+        others |= !(fabsf(forces[i]) <= MSPRINGI_MODEST);
+    return others == 0;
+}
+
+// Whether no force is so large that sums of it need a look.
+static bool are_modest(const pushes *given, uint32_t count) {
+    const float *x = given->x, *y = given->y;
+    const size_t stride = given->stride;
+    if (stride == 1)
+        return are_all_modest(x, count) && are_all_modest(y, count);
+    if (stride == 2 && y == x + 1)
+        return are_all_modest(x, 2 * (size_t)count);
+    uint32_t others = 0;
+    for (size_t i = 0; i < count; ++i)
+        others |= !(fabsf(x[i * stride]) <= MSPRINGI_MODEST && fabsf(y[i * stride]) <= MSPRINGI_MODEST);
+    return others == 0;
+}
+
+// Add modest forces to a range, of which all particles are there.
+static MSPRINGI_NOINLINE void add_modest(mspring_network *network, const mspringi_selection *at,
+                                         const pushes *given) {
+    const uint32_t *const slots = network->topology.slot_of_particle + at->first;
+    const mspringi_field sum = network->forces.held;
+    const size_t stride = given->stride;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t slot = slots[i], ahead = mspringi_slot_ahead(network, at, i);
+        MSPRINGI_PREFETCH(&sum.x[ahead]);
+        MSPRINGI_PREFETCH(&sum.y[ahead]);
+        sum.x[slot] += given->x[i * stride];
+        sum.y[slot] += given->y[i * stride];
+    }
+}
+
+static void add_modest_rounding_to_nearest(mspring_network *network, const mspringi_selection *at,
+                                           const pushes *given) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    add_modest(network, at, given);
+    mspringi_fp_leave(before);
+}
+
+static mspring_result apply_forces(mspring_network *network, const mspringi_selection *at, const pushes *given) {
+    mspringi_forces *forces = &network->forces;
+    mspring_result result = mspringi_field_reserve(network, &forces->held);
+    if (result != MSPRING_OK || at->count == 0)
+        return result;
+    const uint32_t calls = forces->held_any ? forces->held_calls : 0;
+    const bool modest =
+        !at->list && !network->growth.particles && calls < MSPRINGI_MODEST_CALLS && are_modest(given, at->count);
+    if (modest)
+        add_modest_rounding_to_nearest(network, at, given);
+    else
+        result = add_rounding_to_nearest(network, at, given, &(target){.sum = forces->held});
+    if (result != MSPRING_OK)
+        return result;
+    forces->held_any = true;
+    forces->held_calls = modest ? calls + 1 : MSPRINGI_MODEST_CALLS;
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,
+                                            const float *x, const float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, x, y, &at);
+    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){x, y, stride}) : result;
+}
+
+mspring_result mspring_network_apply_forces_at(mspring_network *network, const mspring_id *particles,
+                                               uint32_t count, const float *x, const float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
+    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){x, y, stride}) : result;
+}
+
+mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y) {
+    mspringi_selection at;
+    const mspring_result result = mspringi_select_one(network, MSPRINGI_PARTICLES, &particle, &at);
+    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){&x, &y, 1}) : result;
+}
+
+/* ----------------------------------------------------------------------------------------------------- impulses */
+
+static mspring_result apply_impulses(mspring_network *network, const mspringi_selection *at, const pushes *given) {
+    const target velocities = {{network->state.vx, network->state.vy}, network->inverse_mass};
+    const mspring_result result = add_rounding_to_nearest(network, at, given, &velocities);
+    if (result == MSPRING_OK)
+        mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
+    return result;
+}
+
+mspring_result mspring_network_apply_impulses(mspring_network *network, mspring_id first, uint32_t count,
+                                              const float *x, const float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, x, y, &at);
+    return result == MSPRING_OK ? apply_impulses(network, &at, &(pushes){x, y, stride}) : result;
+}
+
+mspring_result mspring_network_apply_impulses_at(mspring_network *network, const mspring_id *particles,
+                                                 uint32_t count, const float *x, const float *y, uint32_t stride) {
+    mspringi_selection at;
+    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
+    return result == MSPRING_OK ? apply_impulses(network, &at, &(pushes){x, y, stride}) : result;
+}

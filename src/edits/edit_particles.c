@@ -1,0 +1,183 @@
+/// Editing particles between steps: masses, and what scales their inverses.
+#include "edits/edit_particles.h"
+
+#include <string.h>
+
+#include "base/cpu.h"
+#include "edits/edit_values.h"
+#include "store/changed.h"
+#include "store/springs.h"
+
+/* ------------------------------------------------------------------------------------------------------ masses */
+
+mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
+    if (!network->fractions.values || network->spring_mass)
+        return MSPRING_OK;
+    const size_t count = network->topology.reserve.particle_end;
+    network->spring_mass = mspringi_alloc(&network->memory, count, sizeof *network->spring_mass);
+    if (!network->spring_mass)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for second masses of %zu particles", count);
+    memcpy(network->spring_mass, network->mass, count * sizeof *network->mass);
+    return MSPRING_OK;
+}
+
+// Index of the first mass that is another than the particle has.
+static uint32_t first_other_mass(const mspring_network *network, const mspringi_selection *at,
+                                 const mspringi_values *values) {
+    uint32_t i = 0;
+    while (i < at->count && (network->mass[mspringi_selected(at, i)] == mspringi_value_of(values, i) ||
+                             !mspringi_particle_exists(network, mspringi_selected(at, i))))
+        ++i;
+    return i;
+}
+
+static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspringi_selection *at,
+                                           const mspringi_values *values, uint32_t i) {
+    for (; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        const float mass = mspringi_value_of(values, i);
+        if (!mspringi_particle_exists(network, particle))
+            continue;
+        float *inverse_mass = &network->inverse_mass[network->topology.slot_of_particle[particle]];
+        network->mass[particle] = mass;
+        if (network->inverse_mass_scale)
+            *inverse_mass = network->inverse_mass_scale[particle] / mass;
+        else if (*inverse_mass > 0.0f)
+            *inverse_mass = 1.0f / mass;
+    }
+}
+
+/// Particles of a range that are given masses together, whose inverses are found in vectors.
+enum { BATCH = 64 };
+
+// Set masses of a batch of particles, of which all are there.
+static inline void store_batch(const mspring_network *network, mspring_id first, const float *given, size_t stride,
+                               uint32_t count) {
+    const uint32_t *const slots = network->topology.slot_of_particle + first;
+    float *const masses = network->mass + first, *const inverse_mass = network->inverse_mass;
+    float inverses[BATCH];
+    for (uint32_t i = 0; i < count; ++i, given += stride)
+        masses[i] = mspringi_broken_value(*given);
+    if (network->inverse_mass_scale) {
+        const float *const scales = network->inverse_mass_scale + first;
+        for (uint32_t i = 0; i < count; ++i)
+            inverses[i] = scales[i] / masses[i];
+        for (uint32_t i = 0; i < count; ++i)
+            inverse_mass[slots[i]] = inverses[i];
+    } else {
+        for (uint32_t i = 0; i < count; ++i)
+            inverses[i] = 1.0f / masses[i];
+        for (uint32_t i = 0; i < count; ++i)
+            inverse_mass[slots[i]] = inverse_mass[slots[i]] > 0.0f ? inverses[i] : 0.0f;
+    }
+}
+
+static MSPRINGI_NOINLINE void store_range(const mspring_network *network, const mspringi_selection *at,
+                                          const mspringi_values *values, uint32_t i) {
+    const uint32_t *const slots = network->topology.slot_of_particle + at->first;
+    for (uint32_t end; i < at->count; i = end) {
+        end = at->count - i < BATCH ? at->count : i + BATCH;
+        const uint32_t fetched = at->count - end < BATCH ? at->count : end + BATCH;
+        for (uint32_t next = end; next < fetched; ++next)
+            MSPRINGI_PREFETCH(&network->inverse_mass[slots[next]]);
+        store_batch(network, at->first + i, values->first + i * values->stride, values->stride, end - i);
+    }
+}
+
+static mspring_result set_masses(mspring_network *network, const mspringi_selection *at,
+                                 const mspringi_values *values) {
+    const uint32_t first = first_other_mass(network, at, values);
+    if (first == at->count)
+        return MSPRING_OK;
+    mspring_result result = mspringi_reserve_spring_masses(network);
+    if (result != MSPRING_OK)
+        return result;
+    if (at->list || network->growth.particles)
+        store_masses(network, at, values, first);
+    else
+        store_range(network, at, values, first);
+    network->is_reweighed = network->spring_mass != NULL;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_renew_relative_springs(mspring_network *network) {
+    mspring_result result = mspringi_check_call(network);
+    if (result != MSPRING_OK || !network->spring_mass)
+        return result;
+    memcpy(network->spring_mass, network->mass, network->topology.reserve.particle_end * sizeof *network->mass);
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspringi_renew_relative(network);
+    mspringi_fp_leave(before);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING_MASSES, 0);
+    return MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ scales */
+
+mspring_result mspringi_reserve_inverse_mass_scales(mspring_network *network) {
+    if (network->inverse_mass_scale)
+        return MSPRING_OK;
+    const uint32_t count = network->topology.reserve.particle_end;
+    float *scales = mspringi_alloc(&network->memory, count, sizeof *scales);
+    if (!scales)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for scales of inverse mass of %u particles", (unsigned)count);
+    for (mspring_id p = 0; p < count; ++p)
+        scales[p] = mspringi_particle_property(network, MSPRING_INVERSE_MASS_SCALE, p);
+    network->inverse_mass_scale = scales;
+    return MSPRING_OK;
+}
+
+static bool is_fractional(float scale) {
+    return scale > 0.0f && scale < 1.0f;
+}
+
+// Index of the first scale that is another than the particle has, and whether one needs room for scales.
+static uint32_t first_other_scale(const mspring_network *network, const mspringi_selection *at,
+                                  const mspringi_values *values, bool *fractional) {
+    uint32_t first = at->count;
+    *fractional = false;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        const float scale = mspringi_value_of(values, i);
+        if (!mspringi_particle_exists(network, particle) ||
+            mspringi_particle_property(network, MSPRING_INVERSE_MASS_SCALE, particle) == scale)
+            continue;
+        first = first < i ? first : i;
+        *fractional = *fractional || is_fractional(scale);
+    }
+    return first;
+}
+
+static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspringi_selection *at,
+                                           const mspringi_values *values, uint32_t i) {
+    for (; i < at->count; ++i) {
+        const mspring_id particle = mspringi_selected(at, i);
+        const float scale = mspringi_value_of(values, i);
+        if (!mspringi_particle_exists(network, particle))
+            continue;
+        if (network->inverse_mass_scale)
+            network->inverse_mass_scale[particle] = scale;
+        network->inverse_mass[network->topology.slot_of_particle[particle]] = scale / network->mass[particle];
+        network->is_scaled = network->is_scaled || is_fractional(scale);
+    }
+}
+
+static mspring_result set_scales(mspring_network *network, const mspringi_selection *at,
+                                 const mspringi_values *values) {
+    bool fractional;
+    const uint32_t first = first_other_scale(network, at, values, &fractional);
+    mspring_result result = fractional ? mspringi_reserve_inverse_mass_scales(network) : MSPRING_OK;
+    if (result != MSPRING_OK || first == at->count)
+        return result;
+    store_scales(network, at, values, first);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0);
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_set_particle_values(mspring_network *network, const mspringi_selection *at,
+                                            const mspringi_values *values) {
+    return values->property == MSPRING_MASS ? set_masses(network, at, values) : set_scales(network, at, values);
+}

@@ -1,0 +1,184 @@
+/// Marking groups, and putting them back.
+#include <string.h>
+
+#include "base/cpu.h"
+#include "edits/edit_groups.h"
+#include "step/actuators.h"
+#include "step/held_groups.h"
+#include "step/plastic.h"
+#include "step/ramps.h"
+#include "store/changed.h"
+#include "store/id_pool.h"
+#include "store/rest_lengths.h"
+#include "store/springs.h"
+
+/* --------------------------------------------------------------------------------------------------- marking */
+
+void mspringi_mark_take(mspring_network *network, mspringi_mark *mark, uint32_t group) {
+    const mspringi_groups *g = &network->groups;
+    const mspringi_topology *t = &network->topology;
+    const float *arrays = network->state.x, *nominal = network->plastic.nominal;
+    const size_t slots = mspringi_slot_count(network);
+    for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p)
+        for (size_t i = 0; i < MSPRINGI_MARKED_VALUES; ++i)
+            mark->motion[p * MSPRINGI_MARKED_VALUES + i] = arrays[i * slots + t->slot_of_particle[p]];
+    for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i) {
+        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, g->springs[i]);
+        const float length = mspringi_spring_slot_own_length(network, spring_slot);
+        mark->lengths[2 * (size_t)i] = length;
+        mark->lengths[2 * (size_t)i + 1] = nominal ? nominal[spring_slot] : length;
+        mark->live[i] = mspringi_spring_slot_is_live(network, spring_slot);
+    }
+    mark->origin[2 * (size_t)group] = network->origin_x;
+    mark->origin[2 * (size_t)group + 1] = network->origin_y;
+}
+
+static mspring_result check_groups(mspring_network *network, const uint32_t *groups, uint32_t count) {
+    if (!groups && count > 0)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the list of groups is NULL");
+    for (uint32_t i = 0; i < count; ++i)
+        if (groups[i] >= network->groups.count)
+            return mspringi_fail(&network->message, MSPRING_ERROR_ID,
+                                 "index %u of the list: there is no group %s: numbers are below %u", (unsigned)i,
+                                 MSPRINGI_ID(groups[i]), (unsigned)network->groups.count);
+    return MSPRING_OK;
+}
+
+// Groups by list, or all of them.
+typedef struct choice {
+    const uint32_t *list; // NULL: all
+    uint32_t count;
+} choice;
+
+static choice choose(const mspring_network *network, const uint32_t *groups, uint32_t count) {
+    return (choice){groups, groups ? count : network->groups.count};
+}
+
+static uint32_t chosen(const choice *from, uint32_t i) {
+    return from->list ? from->list[i] : i;
+}
+
+mspring_result mspring_network_mark_groups(mspring_network *network, const uint32_t *groups, uint32_t count) {
+    mspring_result result = mspringi_check_call(network);
+    if (result == MSPRING_OK)
+        result = check_groups(network, groups, count);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_groups *g = &network->groups;
+    const choice marked = choose(network, groups, count);
+    if (!g->mark.motion && marked.count > 0) {
+        result = mspringi_mark_allocate(network, &g->mark, g->count);
+        if (result != MSPRING_OK)
+            return result;
+        const mspringi_topology *t = &network->topology;
+        memcpy(g->mark.motion, g->start.motion,
+               (size_t)t->particle_count * MSPRINGI_MARKED_VALUES * sizeof *g->mark.motion);
+        memcpy(g->mark.lengths, g->start.lengths, (size_t)t->spring_count * 2 * sizeof *g->mark.lengths);
+        memcpy(g->mark.live, g->start.live, t->spring_count * sizeof *g->mark.live);
+        memcpy(g->mark.origin, g->start.origin, (size_t)g->count * 2 * sizeof *g->mark.origin);
+    }
+    for (uint32_t i = 0; i < marked.count; ++i)
+        mspringi_mark_take(network, &g->mark, chosen(&marked, i));
+    return MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ putting
+ * back */
+
+// List the springs that were live, or broken, at the mark and are not now. A group may be chosen twice.
+static uint32_t list_changed(mspring_network *network, const mspringi_mark *mark, const choice *of,
+                             bool were_live) {
+    mspringi_groups *g = &network->groups;
+    uint32_t found = 0;
+    for (uint32_t k = 0; k < of->count; ++k) {
+        const uint32_t group = chosen(of, k);
+        for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i)
+            if (mark->live[i] == were_live && mspringi_spring_is_live(network, g->springs[i]) != were_live &&
+                mspringi_spring_exists(network, g->springs[i]) && found < network->topology.spring_count)
+                g->changing[found++] = g->springs[i];
+    }
+    return found;
+}
+
+static mspring_result put_links_back(mspring_network *network, const mspringi_mark *mark, const choice *of) {
+    const mspring_id *changing = network->groups.changing;
+    if (!network->edits.broke)
+        return MSPRING_OK;
+    const uint32_t restored = list_changed(network, mark, of, true);
+    mspring_result result =
+        restored > 0 ? mspring_network_restore_springs(network, changing, restored, 0.0) : MSPRING_OK;
+    const uint32_t broken = result == MSPRING_OK ? list_changed(network, mark, of, false) : 0;
+    return broken > 0 ? mspring_network_break_springs(network, changing, broken) : result;
+}
+
+static void put_motion_back(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
+    const mspringi_groups *g = &network->groups;
+    const mspringi_state *s = &network->state;
+    const size_t slots = mspringi_slot_count(network);
+    const double dx = mark->origin[2 * (size_t)group] - network->origin_x,
+                 dy = mark->origin[2 * (size_t)group + 1] - network->origin_y;
+    for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        if (!mspringi_particle_exists(network, p))
+            continue;
+        for (size_t i = 0; i < MSPRINGI_MARKED_VALUES; ++i)
+            s->x[i * slots + slot] = mark->motion[p * MSPRINGI_MARKED_VALUES + i];
+        if (dx != 0.0 || dy != 0.0) {
+            mspringi_set_x(s, slot, mspringi_x_of(s, slot) + dx);
+            mspringi_set_y(s, slot, mspringi_y_of(s, slot) + dy);
+        }
+    }
+}
+
+static void put_length_back(mspring_network *network, mspring_id spring, const float lengths[2]) {
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
+    const uint32_t *actuator = network->actuators.of_spring;
+    float *nominal = network->plastic.nominal;
+    const bool is_plain =
+        mspringi_actuators_are_plain(network) && spring_slot < network->topology.lattice_spring_slots;
+    if (actuator && actuator[spring] != MSPRING_NONE)
+        network->actuators.to[actuator[spring]] = lengths[0];
+    if (network->ramps.count > 0)
+        mspringi_ramp_drop(network, spring);
+    if (is_plain)
+        network->rest_lengths.lengths[spring_slot] = lengths[0];
+    else if (mspringi_spring_slot_get(network, spring_slot).rest_length != lengths[0])
+        mspringi_spring_slot_set_rest_length(network, spring_slot, lengths[0]);
+    if (!nominal || !mspringi_spring_exists(network, spring))
+        return;
+    nominal[spring_slot] = lengths[1];
+    mspringi_plastic_renew(network, spring_slot);
+}
+
+static void put_back(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
+    mspringi_groups *g = &network->groups;
+    if (g->flags[group] & MSPRINGI_HELD)
+        mspringi_groups_release(network, group);
+    put_motion_back(network, mark, group);
+    for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i)
+        put_length_back(network, g->springs[i], mark->lengths + 2 * (size_t)i);
+}
+
+mspring_result mspring_network_reset_groups(mspring_network *network, const uint32_t *groups, uint32_t count,
+                                            mspring_reset to) {
+    mspring_result result = mspringi_check_call(network);
+    if (result == MSPRING_OK && to != MSPRING_RESET_START && to != MSPRING_RESET_MARK)
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "reset is %d, which is none", (int)to);
+    if (result == MSPRING_OK)
+        result = check_groups(network, groups, count);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_groups *g = &network->groups;
+    const mspringi_mark *mark = to == MSPRING_RESET_MARK && g->mark.motion ? &g->mark : &g->start;
+    const choice reset = choose(network, groups, count);
+    result = put_links_back(network, mark, &reset);
+    if (result != MSPRING_OK || reset.count == 0)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    for (uint32_t i = 0; i < reset.count; ++i)
+        put_back(network, mark, chosen(&reset, i));
+    mspringi_fp_leave(before);
+    network->plastic.flows_seen++;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
+    return MSPRING_OK;
+}

@@ -1,0 +1,463 @@
+/// Setting stiffness, damping, rest lengths, thresholds and what springs yield at.
+///
+/// Most springs of most networks lie in lattices: their values are compared, and set, where they lie. A spring that
+/// has its value already costs that comparison.
+#include "base/cpu.h"
+#include "base/hash.h"
+#include "edits/edit_values.h"
+#include "step/plastic.h"
+#include "step/ramps.h"
+#include "step/strain.h"
+#include "store/changed.h"
+#include "store/record_sharing.h"
+#include "store/rest_lengths.h"
+#include "store/springs.h"
+
+/* --------------------------------------------------------------------------------------------------- comparing */
+
+// Where the values of the springs lie that can be compared without looking further, by place.
+typedef struct plane {
+    float *values;            ///< of place p at p % WIDTH + p / WIDTH * WIDTH * planes
+    uint32_t planes;          ///< 1 or 2
+    mspringi_spring_slot end; ///< of the places that it has; 0: none
+} plane;
+
+static inline float *in_plane(const plane *from, mspringi_spring_slot spring_slot) {
+    return &from->values[spring_slot +
+                         (size_t)(from->planes - 1) * (spring_slot & ~(mspringi_spring_slot)(MSPRINGI_WIDTH - 1))];
+}
+
+// Springs whose values are fetched before they are looked at: those of the next blocks, as steps leave none of them
+// in the near caches.
+#define AHEAD 256
+
+/// The same in a list, whose springs may lie anywhere.
+#define AHEAD_IN_LIST 32
+
+static inline void fetch(const plane *from, mspringi_spring_slot spring_slot) {
+    if (spring_slot < from->end)
+        MSPRINGI_PREFETCH(in_plane(from, spring_slot));
+}
+
+// The thresholds of all springs, or NULL.
+static float *thresholds_of(const mspring_network *network, mspring_property property) {
+    const mspringi_strain *strain = &network->strain;
+    return property == MSPRING_BREAK_STRAIN    ? strain->break_strain
+           : property == MSPRING_STRESS_STRAIN ? strain->stress_strain
+           : property == MSPRING_RELAX_STRAIN  ? strain->relax_strain
+           : property == MSPRING_YIELD_STRAIN  ? network->plastic.yield_strain
+           : property == MSPRING_HARDENING     ? network->plastic.hardening
+           : property == MSPRING_PLASTIC_LIMIT ? network->plastic.plastic_limit
+                                               : NULL;
+}
+
+// Thresholds lie by place, and so do rest lengths of lattices once they are not shared. Of lattices stiffness and
+// damping do, too.
+static plane plane_of(const mspring_network *network, mspring_property property) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t planes = network->parts - 1;
+    float *thresholds = thresholds_of(network, property);
+    if (thresholds)
+        return (plane){thresholds, 1, (mspringi_spring_slot)(mspringi_spring_slot_words(t) * MSPRINGI_WIDTH)};
+    if (property == MSPRING_STIFFNESS)
+        return (plane){network->lattice_springs, planes, t->lattice_spring_slots};
+    if (property == MSPRING_DAMPING && planes > 1)
+        return (plane){network->lattice_springs + MSPRINGI_WIDTH, planes, t->lattice_spring_slots};
+    if (property == MSPRING_REST_LENGTH && network->rest_lengths.shared_count == 0 && network->ramps.count == 0)
+        return (plane){network->rest_lengths.lengths, 1, t->lattice_spring_slots};
+    return (plane){NULL, 1, 0};
+}
+
+// Whether a spring is to get another value than it has. A ramp has to be ended.
+static bool differs(const mspring_network *network, mspring_property property, mspring_id spring, float value) {
+    return mspringi_spring_exists(network, spring) &&
+           (mspringi_spring_property(network, property, spring) != value ||
+            (property == MSPRING_REST_LENGTH && mspringi_has_ramp(network, spring)));
+}
+
+// Index of the first, from one on, that is not known to be in a plane already. (A broken spring has 0 in its
+// record, so that value tells nothing.)
+static inline uint32_t skip_equal(const mspringi_spring_slot *spring_slots, plane known, const float *values,
+                                  size_t stride, uint32_t i, uint32_t count) {
+    while (i < count && spring_slots[i] < known.end) {
+        const float value = mspringi_broken_value(values[i * stride]);
+        if (count - i > AHEAD)
+            fetch(&known, spring_slots[i + AHEAD]);
+        if (*in_plane(&known, spring_slots[i]) != value || value == 0.0f)
+            break;
+        ++i;
+    }
+    return i;
+}
+
+// The same of a list.
+static uint32_t skip_equal_listed(const mspring_network *network, const mspring_id *list, plane known,
+                                  const float *values, size_t stride, uint32_t i, uint32_t count) {
+    const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring;
+    for (; i < count && spring_slots[list[i]] < known.end; ++i) {
+        const float value = values[i * stride];
+        if (*in_plane(&known, spring_slots[list[i]]) != value || value == 0.0f)
+            break;
+    }
+    return i;
+}
+
+// The same of rest lengths that many springs share.
+static inline uint32_t skip_equal_rests(const mspring_network *network, const mspringi_spring_slot *spring_slots,
+                                        const float *values, size_t stride, uint32_t i, uint32_t count) {
+    const mspringi_rest_lengths rests = network->rest_lengths;
+    const mspringi_spring_slot end = network->topology.lattice_spring_slots;
+    while (i < count && spring_slots[i] < end &&
+           *mspringi_rest_lengths_at(&rests, spring_slots[i]) == values[i * stride])
+        ++i;
+    return i;
+}
+
+// The same of fractions: springs that are relative and have theirs.
+static inline uint32_t skip_equal_fractions(const mspringi_fractions *fractions, mspring_id first, bool is_damping,
+                                            const float *values, size_t stride, uint32_t i, uint32_t count) {
+    for (; i < count; ++i) {
+        const mspringi_relative had = mspringi_fractions_of(fractions, first + i);
+        if (!(had.stiffness >= 0.0f) || (is_damping ? had.damping : had.stiffness) != values[i * stride])
+            break;
+    }
+    return i;
+}
+
+// The same of a list.
+static uint32_t skip_equal_listed_fractions(const mspringi_fractions *fractions, const mspring_id *list,
+                                            bool is_damping, const float *values, size_t stride, uint32_t i,
+                                            uint32_t count) {
+    for (; i < count; ++i) {
+        if (count - i > AHEAD_IN_LIST && !fractions->of_spring)
+            MSPRINGI_PREFETCH(&fractions->values[list[i + AHEAD_IN_LIST]]);
+        if (skip_equal_fractions(fractions, list[i], is_damping, values + i * stride, stride, 0, 1) == 0)
+            break;
+    }
+    return i;
+}
+
+// Index of the first spring, from one on, that is to get another value than it has.
+static uint32_t next_other(const mspring_network *network, const mspringi_selection *at,
+                           const mspringi_values *values, uint32_t i) {
+    const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring + at->first;
+    const plane known = plane_of(network, values->property);
+    const bool is_damping = values->property == MSPRING_DAMPING;
+    const bool has_fractions = network->fractions.values && (is_damping || values->property == MSPRING_STIFFNESS);
+    const bool has_shared_rests = values->property == MSPRING_REST_LENGTH &&
+                                  network->rest_lengths.shared_count > 0 && network->ramps.count == 0;
+    for (; i < at->count; ++i) {
+        if (!at->list && has_shared_rests)
+            i = skip_equal_rests(network, spring_slots, values->first, values->stride, i, at->count);
+        else if (!at->list && has_fractions)
+            i = skip_equal_fractions(&network->fractions, at->first, is_damping, values->first, values->stride, i,
+                                     at->count);
+        else if (!at->list && known.planes == 1)
+            i = skip_equal(spring_slots, (plane){known.values, 1, known.end}, values->first, values->stride, i,
+                           at->count);
+        else if (!at->list)
+            i = skip_equal(spring_slots, known, values->first, values->stride, i, at->count);
+        else if (has_fractions)
+            i = skip_equal_listed_fractions(&network->fractions, at->list, is_damping, values->first,
+                                            values->stride, i, at->count);
+        else
+            i = skip_equal_listed(network, at->list, known, values->first, values->stride, i, at->count);
+        if (i == at->count ||
+            differs(network, values->property, mspringi_selected(at, i), mspringi_value_of(values, i)))
+            break;
+    }
+    return i;
+}
+
+/* ----------------------------------------------------------------------------------------------------- setting */
+
+static uint32_t edit_of(mspring_property property) {
+    switch (property) {
+    case MSPRING_STIFFNESS:
+        return MSPRINGI_EDIT_PARTS + MSPRINGI_STIFFNESS;
+    case MSPRING_DAMPING:
+        return MSPRINGI_EDIT_PARTS + MSPRINGI_DAMPING;
+    case MSPRING_REST_LENGTH:
+        return MSPRINGI_EDIT_PARTS + MSPRINGI_REST_LENGTH;
+    case MSPRING_BREAK_STRAIN:
+        return MSPRINGI_EDIT_BREAK_STRAIN;
+    case MSPRING_STRESS_STRAIN:
+        return MSPRINGI_EDIT_STRESS_STRAIN;
+    case MSPRING_YIELD_STRAIN:
+        return MSPRINGI_EDIT_YIELD_STRAIN;
+    case MSPRING_HARDENING:
+        return MSPRINGI_EDIT_HARDENING;
+    case MSPRING_PLASTIC_LIMIT:
+        return MSPRINGI_EDIT_PLASTIC_LIMIT;
+    default:
+        return MSPRINGI_EDIT_RELAX_STRAIN;
+    }
+}
+
+static bool is_plastic(mspring_property property) {
+    return property >= MSPRING_YIELD_STRAIN && property <= MSPRING_PLASTIC_STRAIN;
+}
+
+static void store_limit(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
+                        float value) {
+    if (is_plastic(property))
+        mspringi_plastic_store(network, spring_slot, property, value);
+    else
+        mspringi_strain_store(network, spring_slot, property, value);
+}
+
+// After a rest length has been set.
+static void follow_rest_length(mspring_network *network, mspringi_spring_slot spring_slot, float had) {
+    if (network->plastic.nominal)
+        mspringi_plastic_follow(network, spring_slot, had);
+}
+
+static mspring_result check_room_for_damping(mspring_network *network, const mspringi_selection *at,
+                                             const mspringi_values *values) {
+    for (uint32_t i = 0; network->parts <= MSPRINGI_DAMPING && i < at->count; ++i)
+        if (mspringi_value_of(values, i) > 0.0f && mspringi_spring_exists(network, mspringi_selected(at, i)))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "spring %u: damping is %g, but the network was created without room for any "
+                                 "(MSPRING_NETWORK_RESERVE_DAMPING)",
+                                 (unsigned)mspringi_selected(at, i), (double)mspringi_value_of(values, i));
+    return MSPRING_OK;
+}
+
+// Whether another value of a spring ends that many springs share one.
+static bool ends_sharing(const mspring_network *network, mspring_property property, mspring_id spring) {
+    const mspringi_topology *t = &network->topology;
+    if (property == MSPRING_REST_LENGTH)
+        return mspringi_slot_of_spring(t, spring) < t->lattice_spring_slots;
+    return mspringi_spring_is_relative(network, spring);
+}
+
+// Allocate what it takes to set values, of which that of index i is the first that is another than there was.
+static mspring_result reserve(mspring_network *network, const mspringi_selection *at, const mspringi_values *values,
+                              uint32_t i) {
+    const mspring_property property = values->property;
+    const bool is_rest_length = property == MSPRING_REST_LENGTH;
+    if (is_plastic(property))
+        return mspringi_plastic_reserve(network);
+    if (!is_rest_length && property != MSPRING_STIFFNESS && property != MSPRING_DAMPING)
+        return mspringi_strain_reserve_for(network, property);
+    if (is_rest_length ? network->rest_lengths.shared_count == 0 : !network->fractions.of_spring)
+        return MSPRING_OK;
+    while (i < at->count && !ends_sharing(network, property, mspringi_selected(at, i)))
+        i = next_other(network, at, values, i + 1);
+    if (i >= at->count)
+        return MSPRING_OK;
+    return is_rest_length ? mspringi_rest_lengths_unshare(network) : mspringi_fractions_separate(network);
+}
+
+static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property property, mspring_id spring,
+                                      mspringi_spring_slot spring_slot, float value) {
+    mspringi_relative nominal;
+    float had;
+    switch (property) {
+    case MSPRING_STIFFNESS:
+    case MSPRING_DAMPING:
+        nominal = mspringi_spring_get_nominal(network, spring, spring_slot);
+        *(property == MSPRING_STIFFNESS ? &nominal.stiffness : &nominal.damping) = value;
+        mspringi_spring_set_nominal(network, spring, spring_slot, nominal);
+        break;
+    case MSPRING_REST_LENGTH:
+        mspringi_ramp_drop(network, spring);
+        had = mspringi_spring_slot_get(network, spring_slot).rest_length;
+        mspringi_spring_slot_set_rest_length(network, spring_slot, value);
+        follow_rest_length(network, spring_slot, had);
+        break;
+    default:
+        if (property == MSPRING_PLASTIC_STRAIN)
+            mspringi_ramp_drop(network, spring);
+        store_limit(network, spring_slot, property, value);
+    }
+}
+
+// What a value adds to the hash of a call's edits: of each by itself, as a chain of them takes as long as the rest.
+static inline uint64_t trace(uint32_t i, mspring_id spring, float value) {
+    return mspringi_hash_floats(mspringi_hash(MSPRINGI_HASH_START, (uint64_t)i << 32 | spring), value, 0.0f);
+}
+
+// What it takes to set a spring of a lattice where it lies.
+typedef struct lattice_setter {
+    plane records;
+    const float *mass; ///< that relative springs go by
+    double rate;
+    bool is_damping, has_relative;
+    float mass_a, mass_b; ///< of the relative spring that was set last
+    double reduced_mass;
+} lattice_setter;
+
+// Most springs are between masses as the one before.
+static inline double reduced_mass_of(lattice_setter *with, float a, float b) {
+    if (a != with->mass_a || b != with->mass_b) {
+        with->reduced_mass = mspringi_reduced_mass((double)a, (double)b);
+        with->mass_a = a;
+        with->mass_b = b;
+    }
+    return with->reduced_mass;
+}
+
+static lattice_setter lattice_setter_of(const mspring_network *network, mspring_property property) {
+    return (lattice_setter){.records = plane_of(network, property),
+                            .mass = mspringi_spring_masses(network),
+                            .rate = mspringi_relative_rate(network),
+                            .is_damping = property == MSPRING_DAMPING,
+                            .has_relative = network->fractions.values != NULL};
+}
+
+// Stiffness or damping in force of a spring in a lattice that gets this value.
+static inline float in_force(const mspring_network *network, lattice_setter *with, mspringi_spring_slot spring_slot,
+                             float value) {
+    const mspringi_topology *t = &network->topology;
+    uint32_t base, tip;
+    mspringi_lattice_ends(t, spring_slot, &base, &tip);
+    const double reduced_mass =
+        reduced_mass_of(with, with->mass[t->particle_of_slot[base]], with->mass[t->particle_of_slot[tip]]);
+    return with->is_damping ? mspringi_derived_damping(value, reduced_mass, with->rate)
+                            : mspringi_derived_stiffness(value, reduced_mass, with->rate);
+}
+
+// Set stiffness or damping of a spring that is live, in a lattice. False: it had that.
+static inline bool set_in_lattice(mspring_network *network, lattice_setter *with, mspring_id spring,
+                                  mspringi_spring_slot spring_slot, float value) {
+    float *record = in_plane(&with->records, spring_slot), force = value;
+    if (with->has_relative && mspringi_spring_is_relative(network, spring)) {
+        mspringi_relative *fractions = mspringi_fractions_at(&network->fractions, spring);
+        float *had = with->is_damping ? &fractions->damping : &fractions->stiffness;
+        if (*had == value)
+            return false;
+        MSPRINGI_ASSERT(!network->fractions.of_spring);
+        *had = value;
+        force = in_force(network, with, spring_slot, value);
+    } else if (*record == value) {
+        return false;
+    }
+    mspringi_shared_records_unshare(network, spring_slot);
+    *record = force;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
+    return true;
+}
+
+// Set a rest length or threshold in its plane. False: it had that.
+static inline bool set_in_plane(mspring_network *network, const plane *known, mspring_property property,
+                                mspringi_spring_slot spring_slot, float value) {
+    float *at = in_plane(known, spring_slot);
+    const float had = *at;
+    if (had == value)
+        return false;
+    if (property != MSPRING_REST_LENGTH) {
+        store_limit(network, spring_slot, property, value);
+        return true;
+    }
+    *at = value;
+    network->has_welds |= value == MSPRINGI_WELD;
+    follow_rest_length(network, spring_slot, had);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
+    return true;
+}
+
+// Set stiffness or damping of springs from index i on, as long as they are live and lie in a lattice. Nobody but
+// the fingerprint is told of them one by one. Returns the index of the first that is left.
+MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi_selection *at,
+                                        const mspringi_values *values, lattice_setter *with, uint32_t i,
+                                        bool has_relative, uint64_t *traces) {
+    const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring;
+    const mspringi_shared_records shared = network->shared_records;
+    const plane records = with->records;
+    const uint32_t count = at->count;
+    uint64_t sum = 0, changes = 0;
+    for (; i < count; ++i) {
+        const mspring_id spring = mspringi_selected(at, i);
+        const mspringi_spring_slot spring_slot = spring_slots[spring];
+        const uint32_t block = spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
+        float force = mspringi_broken_value(values->first[i * values->stride]);
+        const float value = force;
+        if (count - i > AHEAD)
+            fetch(&records, spring_slots[mspringi_selected(at, i + AHEAD)]);
+        if (spring_slot >= records.end || !mspringi_spring_slot_is_live(network, spring_slot))
+            break;
+        float *record = in_plane(&records, spring_slot);
+        if (has_relative && mspringi_spring_is_relative(network, spring)) {
+            mspringi_relative *fractions = mspringi_fractions_at(&network->fractions, spring);
+            float *had = with->is_damping ? &fractions->damping : &fractions->stiffness;
+            if (*had == value)
+                continue;
+            MSPRINGI_ASSERT(!network->fractions.of_spring);
+            *had = value;
+            force = in_force(network, with, spring_slot, value);
+        } else if (*record == value) {
+            continue;
+        }
+        if (shared.of_block[block] != block || shared.readers[block] > 0)
+            mspringi_shared_records_unshare_block(&network->shared_records, block,
+                                                  network->topology.lattice_blocks);
+        shared.is_set[block] = 1;
+        *record = force;
+        ++changes;
+        sum += trace(i, spring, value);
+    }
+    network->shared_records.changes += changes;
+    *traces += sum;
+    return i;
+}
+
+// Set those that differ, from index i on.
+static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspringi_selection *at,
+                                         const mspringi_values *values, uint32_t i) {
+    const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring;
+    const mspring_property property = values->property;
+    const bool may_sleep = network->sleep.count > 0;
+    const bool is_part = property == MSPRING_STIFFNESS || property == MSPRING_DAMPING;
+    lattice_setter lattice = lattice_setter_of(network, property);
+    const bool runs = is_part && !at->list && !may_sleep && !network->job;
+    uint64_t traces = 0;
+    for (; i < at->count; ++i) {
+        if (runs)
+            i = lattice.has_relative ? set_run(network, at, values, &lattice, i, true, &traces)
+                                     : set_run(network, at, values, &lattice, i, false, &traces);
+        else if (at->list)
+            i = next_other(network, at, values, i);
+        if (i == at->count)
+            break;
+        const mspring_id spring = mspringi_selected(at, i);
+        const mspringi_spring_slot spring_slot = spring_slots[spring];
+        const float value = mspringi_value_of(values, i);
+        bool is_new;
+        if (at->count - i > AHEAD)
+            fetch(&lattice.records, spring_slots[mspringi_selected(at, i + AHEAD)]);
+        if (spring_slot < lattice.records.end && is_part && mspringi_spring_slot_is_live(network, spring_slot)) {
+            is_new = set_in_lattice(network, &lattice, spring, spring_slot, value);
+        } else if (spring_slot < lattice.records.end && !is_part && mspringi_spring_exists(network, spring)) {
+            is_new = set_in_plane(network, &lattice.records, property, spring_slot, value);
+        } else {
+            is_new = differs(network, property, spring, value);
+            if (is_new)
+                set_one(network, property, spring, spring_slot, value);
+        }
+        if (!is_new)
+            continue;
+        traces += trace(i, spring, value);
+        if (may_sleep)
+            mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING, spring);
+    }
+    if (property != MSPRING_PLASTIC_STRAIN) { // which is state
+        mspringi_fingerprint(network, edit_of(property), at->count);
+        network->parameter_fingerprint = mspringi_hash(network->parameter_fingerprint, traces);
+    }
+    if (is_part || property == MSPRING_REST_LENGTH || property == MSPRING_PLASTIC_STRAIN)
+        mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING_VALUES, 0);
+}
+
+mspring_result mspringi_set_spring_values(mspring_network *network, const mspringi_selection *at,
+                                          const mspringi_values *values) {
+    mspring_result result =
+        values->property == MSPRING_DAMPING ? check_room_for_damping(network, at, values) : MSPRING_OK;
+    const uint32_t first = result == MSPRING_OK ? next_other(network, at, values, 0) : at->count;
+    if (first >= at->count)
+        return result;
+    result = reserve(network, at, values, first);
+    if (result == MSPRING_OK)
+        set_others(network, at, values, first);
+    return result;
+}

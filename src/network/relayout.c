@@ -1,0 +1,264 @@
+/// Moving a network to another layout of the same particles and springs.
+///
+/// What lies by slot or by place is made anew, in a second network that shares with the first what lies by id. The
+/// greater part of that is the job's; what a step changes is moved in the end.
+#include <math.h>
+#include <string.h>
+
+#include "contact/floor.h"
+#include "network/job.h"
+#include "sleep/sleep.h"
+#include "stability/stability_limit.h"
+#include "step/plastic.h"
+#include "step/strain.h"
+#include "store/changed.h"
+#include "store/springs.h"
+#include "store/store.h"
+
+static mspring_result no_memory_to_move(mspring_network *to) {
+    return mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory to move %u particles and %u springs",
+                         (unsigned)to->topology.particle_count, (unsigned)to->topology.spring_count);
+}
+
+/* -------------------------------------------------------------------------------------------------- springs */
+
+mspring_result mspringi_relayout_begin(mspring_job *job) {
+    const size_t spring_slots = mspringi_spring_slot_words(&job->from.topology) * MSPRINGI_WIDTH;
+    job->there = mspringi_alloc(&job->memory, spring_slots, sizeof *job->there);
+    job->of_block = mspringi_alloc(&job->memory, job->to.topology.lattice_blocks, sizeof *job->of_block);
+    return job->there && job->of_block ? MSPRING_OK : no_memory_to_move(&job->to);
+}
+
+mspring_result mspringi_relayout_note_rest_lengths(mspring_job *job, uint32_t first, uint32_t end) {
+    const mspringi_topology *t = &job->to.topology;
+    for (mspring_id s = first; s < end; ++s)
+        if (t->slot_of_spring[s] < t->lattice_spring_slots)
+            mspringi_rest_lengths_note(job->of_block, t->slot_of_spring[s],
+                                       mspringi_spring_get(&job->from, s).rest_length);
+    return MSPRING_OK;
+}
+
+// Rest lengths are shared by blocks as they are at creation, unless the network has them apart already.
+mspring_result mspringi_relayout_reserve_springs(mspring_job *job) {
+    mspring_network *to = &job->to;
+    mspring_result result = mspringi_layout_reserve(to);
+    if (result == MSPRING_OK)
+        result = mspringi_rest_lengths_reserve(&to->rest_lengths, job->of_block, to->topology.lattice_blocks,
+                                               &to->memory, &to->message);
+    if (result == MSPRING_OK && job->from.rest_lengths.shared_count == 0)
+        result = mspringi_rest_lengths_unshare(to);
+    if (result == MSPRING_OK)
+        result = mspringi_strain_match_layout(to, &job->from);
+    return result == MSPRING_OK ? mspringi_plastic_match_layout(to, &job->from) : result;
+}
+
+// Copy all that there is of a spring, from its place here to its place there, whatever is there.
+static void copy_spring(mspring_network *to, mspringi_spring_slot spring_slot, const mspring_network *from,
+                        mspringi_spring_slot before) {
+    mspringi_spring_slot_copy(from, before, to, spring_slot);
+    mspringi_store_copy_spring(to, spring_slot, from, before);
+    if (to->strain.least)
+        to->strain.least[spring_slot] = from->strain.least[before];
+}
+
+mspring_result mspringi_relayout_copy_springs(mspring_job *job, uint32_t first, uint32_t end) {
+    for (mspring_id s = first; s < end; ++s) {
+        const mspringi_spring_slot before = job->from.topology.slot_of_spring[s];
+        job->there[before] = job->to.topology.slot_of_spring[s];
+        copy_spring(&job->to, job->there[before], &job->from, before);
+    }
+    return MSPRING_OK;
+}
+
+// Those that were set since the job began.
+static void copy_changed(mspring_network *to, const mspring_network *from, const mspring_job *job) {
+    const size_t words = mspringi_spring_slot_words(&from->topology);
+    if (job->has_all_changed) {
+        for (mspring_id s = 0; s < from->topology.spring_count; ++s)
+            copy_spring(to, to->topology.slot_of_spring[s], from, from->topology.slot_of_spring[s]);
+        return;
+    }
+    for (size_t word = 0; job->has_changed && word < words; ++word)
+        for (uint32_t bit = 0; job->changed[word] >> bit != 0; ++bit)
+            if (job->changed[word] >> bit & 1) {
+                const mspringi_spring_slot before = (mspringi_spring_slot)(word * MSPRINGI_WIDTH + bit);
+                copy_spring(to, job->there[before], from, before);
+            }
+}
+
+/* --------------------------------------------------------------------------------------------------- others */
+
+mspring_result mspringi_relayout_reserve_others(mspring_job *job) {
+    // Which arrays there are is all that is asked of from's: begin has marked those that it has not copied.
+    if (!mspringi_store_match_layout(&job->to, &job->shape))
+        return no_memory_to_move(&job->to);
+    mspringi_store_move_slots(&job->to, &job->from); // inverse masses, which tell what is pinned
+    return job->shape.guard_scratch ? mspringi_stability_limit_reserve(&job->to) : MSPRING_OK;
+}
+
+static mspring_result make_solver(mspring_job *job, mspringi_solver *made, const mspringi_job_solver *asked) {
+    bool is_done = !made->ops || !made->ops->build || !made->object;
+    mspring_result result = MSPRING_OK;
+    if (!made->object && made->ops && made->ops->create) {
+        result = made->ops->create(&job->to, &asked->def, asked->tile_size, &made->object);
+        is_done = !made->ops->build;
+    } else if (!is_done) {
+        result = made->ops->build(made->object, &is_done);
+    }
+    job->cursor.again = !is_done;
+    return result;
+}
+
+mspring_result mspringi_relayout_make_solver(mspring_job *job) {
+    return make_solver(job, &job->to.solver, &job->solvers[0]);
+}
+
+mspring_result mspringi_relayout_make_fallback(mspring_job *job) {
+    return make_solver(job, &job->to.fallback, &job->solvers[1]);
+}
+
+// The solver that the job has made, if it is still the one that is wanted; else another.
+static mspring_result adopt_solver(mspring_network *to, mspringi_solver *solver, const mspringi_solver *made,
+                                   const mspringi_solver *had, uint32_t tile_size) {
+    const mspringi_solver_ops *ops = had->ops;
+    mspring_solver_def def;
+    mspringi_solver unused = *made;
+    *solver = (mspringi_solver){ops, NULL};
+    if (ops && ops->create)
+        ops->get_def(had->object, &def);
+    if (made->object && made->ops == ops && (!ops->fits || ops->fits(made->object, &def))) {
+        solver->object = made->object;
+        if (ops->adjust)
+            ops->adjust(solver->object, &def);
+        return ops->reserve ? ops->reserve(solver->object, to) : MSPRING_OK;
+    }
+    if (made->object)
+        mspringi_solver_destroy(&unused, &to->memory);
+    return ops && ops->create ? mspringi_solver_make(solver, to, &def, tile_size) : MSPRING_OK;
+}
+
+static mspring_result make_hooks(mspring_network *to, const mspring_network *from) {
+    mspring_result result = MSPRING_OK;
+    for (size_t i = 0; result == MSPRING_OK && i < from->hook_count; ++i) {
+        to->hooks[i] = from->hooks[i];
+        to->hooks[i].held = (mspringi_field){NULL, NULL};
+        if (from->hooks[i].held.x)
+            result = mspringi_field_reserve(to, &to->hooks[i].held);
+    }
+    return result;
+}
+
+static mspring_result make_floor(mspring_network *to, const mspring_network *from) {
+    if (!from->floor)
+        return MSPRING_OK;
+    to->floor = mspringi_floor_move(to, from);
+    return to->floor ? MSPRING_OK : mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for a floor");
+}
+
+// What the network has and the job has not made: it came since, or is small.
+static mspring_result make_others(mspring_network *to, const mspring_network *from, mspring_job *job) {
+    mspring_result result = MSPRING_OK;
+    if (to->rest_lengths.shared_count > 0 && from->rest_lengths.shared_count == 0)
+        result = mspringi_rest_lengths_unshare(to);
+    if (result == MSPRING_OK)
+        result = mspringi_strain_match_layout(to, from);
+    if (result == MSPRING_OK)
+        result = mspringi_plastic_match_layout(to, from);
+    if (result == MSPRING_OK && from->guard_scratch)
+        result = mspringi_stability_limit_reserve(to);
+    if (result == MSPRING_OK && !mspringi_store_match_layout(to, from))
+        result = no_memory_to_move(to);
+    if (result == MSPRING_OK)
+        result = mspringi_carry_reserve(to);
+    if (result == MSPRING_OK)
+        result = make_hooks(to, from);
+    if (result == MSPRING_OK)
+        result = make_floor(to, from);
+    if (result == MSPRING_OK)
+        copy_changed(to, from, job);
+    return result;
+}
+
+/* ------------------------------------------------------------------------------------------------- the exchange */
+
+static void move_values(const float *from, float *to, const mspring_network *old, const mspring_network *made) {
+    const uint32_t *here = old->topology.slot_of_particle, *there = made->topology.slot_of_particle;
+    MSPRINGI_ASSERT(made->topology.particle_count == old->topology.particle_count);
+    for (mspring_id p = 0; p < old->topology.particle_count; ++p)
+        to[there[p]] = from[here[p]];
+}
+
+// Free what lies by slot or by place.
+static void free_layout(mspring_network *network, mspringi_memory *memory) {
+    for (size_t i = 0; network->hooks && i < network->hook_count; ++i)
+        mspringi_free(memory, network->hooks[i].held.x);
+    mspringi_store_free_layout(network, memory);
+    mspringi_floor_free_layout(network->floor, memory);
+    mspringi_solver_destroy(&network->solver, memory);
+    mspringi_solver_destroy(&network->fallback, memory);
+}
+
+mspring_network mspringi_relayout_shell(const mspring_network *network) {
+    mspring_network to = *network;
+    mspringi_store_forget_layout(&to);
+    to.topology = (mspringi_topology){0};
+    to.halos = (mspringi_halos){0};
+    to.rest_lengths = (mspringi_rest_lengths){0};
+    mspringi_sleep_forget(&to.sleep);
+    to.solver.object = to.fallback.object = NULL;
+    to.floor = NULL;
+    to.job = NULL;
+    return to;
+}
+
+// The network with what the job has made by slot and place in the stead of its own.
+static mspring_network with_layout_of(const mspring_network *network, const mspring_network *made) {
+    mspring_network to = mspringi_relayout_shell(network);
+    to.memory = made->memory;
+    to.topology = made->topology;
+    mspringi_store_take_layout(&to, made);
+    to.shared_records.changes = made->shared_records.changes;
+    to.shared_records.compared = made->shared_records.compared;
+    to.plastic.shared_records.changes = made->plastic.shared_records.changes;
+    to.plastic.shared_records.compared = made->plastic.shared_records.compared;
+    to.rest_lengths = made->rest_lengths;
+    to.halos = made->halos;
+    to.carry_rows = made->carry_rows;
+    to.depth = made->depth;
+    return to;
+}
+
+static mspring_result fill(mspring_network *to, const mspring_network *network, mspring_job *job) {
+    mspring_result result = make_others(to, network, job);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_store_move_slots(to, network);
+    if (network->guard_scratch)
+        move_values(network->guard_scratch, to->guard_scratch, network, to);
+    mspringi_sleep_move(to, network);
+    result = adopt_solver(to, &to->solver, &job->to.solver, &network->solver, job->solvers[0].tile_size);
+    if (result == MSPRING_OK)
+        result = adopt_solver(to, &to->fallback, &job->to.fallback, &network->fallback, job->solvers[1].tile_size);
+    return result;
+}
+
+mspring_result mspringi_relayout_network(mspring_network *network, mspring_job *job) {
+    mspring_network to = with_layout_of(network, &job->to);
+    mspring_result result = fill(&to, network, job);
+    job->is_spent = true; // all that it has made is to's, or freed with it
+    job->to.memory = to.memory;
+    if (result != MSPRING_OK) {
+        job->to.message = to.message;
+        return result;
+    }
+    mspringi_solver_take_over(&to, &to.solver, network, &network->solver);
+    mspringi_solver_take_over(&to, &to.fallback, network, &network->fallback);
+    mspringi_added_springs_reset(&to.added_springs);
+    mspring_network old = *network;
+    to.memory = old.memory;
+    mspringi_memory_hand_over(&job->to.memory, &to.memory);
+    *network = to;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_LAYOUT, 0);
+    free_layout(&old, &network->memory);
+    return MSPRING_OK;
+}

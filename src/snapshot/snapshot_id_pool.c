@@ -1,0 +1,313 @@
+/// What has been added and removed, in a snapshot: which ids there are, where the spare ones lie, and what added
+/// springs join.
+#include <string.h>
+
+#include "base/bytes.h"
+#include "layout/emit/spare.h"
+#include "step/breaking.h"
+#include "store/changed.h"
+#include "store/fractions.h"
+#include "store/id_pool.h"
+#include "store/sections.h"
+#include "store/springs.h"
+
+/// Of a spare spring.
+enum { IS_RELATIVE = 1, IS_LAID_OUT = 2 };
+
+/// Where the parts of the section are.
+typedef struct growth {
+    uint32_t particle_count, spring_count;
+    const uint8_t *particles, *springs; ///< marks of all ids
+    const uint8_t *slots;               ///< [spare particles] IS_LAID_OUT, or 0: in the slot that is kept for it
+    const uint8_t *kinds;               ///< [spare springs] IS_RELATIVE, IS_LAID_OUT
+    const uint8_t *ends;                ///< [2 * spare springs] ids of particles
+} growth;
+
+static size_t size_of(const mspringi_topology *t) {
+    return 8 + (size_t)t->reserve.particle_end + t->reserve.spring_end + mspringi_spare_particles(t) +
+           (size_t)9 * mspringi_spare_springs(t);
+}
+
+// Without spare ids there is something to save once one has been removed.
+static size_t growth_size(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const uint8_t *particles = network->growth.particles, *springs = network->growth.springs;
+    const mspringi_reserve *r = &t->reserve;
+    if (!particles)
+        return 0;
+    const bool has_spare = mspringi_spare_particles(t) + mspringi_spare_springs(t) > 0;
+    return has_spare || mspringi_find_byte(particles, MSPRINGI_GONE, 0, r->particle_end) < r->particle_end ||
+                   mspringi_find_byte(springs, MSPRINGI_GONE, 0, r->spring_end) < r->spring_end
+               ? size_of(t)
+               : 0;
+}
+
+static bool particle_is_laid_out(const mspringi_topology *t, mspring_id p) {
+    return t->slot_of_particle[p] != mspringi_spare_slot(t, p);
+}
+
+static bool spring_is_laid_out(const mspringi_topology *t, mspring_id s) {
+    return mspringi_slot_of_spring(t, s) != mspringi_spare_spring_slot(t, s);
+}
+
+static void growth_save(const mspring_network *network, mspringi_writer *to) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_id_pool *g = &network->growth;
+    mspringi_put(to, &t->particle_count, 1, sizeof t->particle_count);
+    mspringi_put(to, &t->spring_count, 1, sizeof t->spring_count);
+    mspringi_put(to, g->particles, t->reserve.particle_end, 1);
+    mspringi_put(to, g->springs, t->reserve.spring_end, 1);
+    for (mspring_id p = t->reserve.first_particle; p < t->reserve.particle_end; ++p) {
+        const uint8_t slot = particle_is_laid_out(t, p) ? IS_LAID_OUT : 0;
+        mspringi_put(to, &slot, 1, 1);
+    }
+    for (mspring_id s = t->reserve.first_spring; s < t->reserve.spring_end; ++s) {
+        const uint8_t kind = (uint8_t)((mspringi_spring_is_relative(network, s) ? IS_RELATIVE : 0) |
+                                       (spring_is_laid_out(t, s) ? IS_LAID_OUT : 0));
+        mspringi_put(to, &kind, 1, 1);
+    }
+    for (mspring_id s = t->reserve.first_spring; s < t->reserve.spring_end; ++s) {
+        const mspring_id nobody[2] = {0, 0};
+        const uint32_t first = 2 * (s - t->reserve.first_spring);
+        mspringi_put(to, g->springs[s] == MSPRINGI_THERE ? &g->particle_of_end[first] : nobody, 2, sizeof *nobody);
+    }
+}
+
+static growth read_growth(const mspringi_topology *t, const uint8_t *from) {
+    growth g;
+    from = mspringi_get(from, &g.particle_count, 1, sizeof g.particle_count);
+    g.particles = mspringi_get(from, &g.spring_count, 1, sizeof g.spring_count);
+    g.springs = g.particles + t->reserve.particle_end;
+    g.slots = g.springs + t->reserve.spring_end;
+    g.kinds = g.slots + mspringi_spare_particles(t);
+    g.ends = g.kinds + mspringi_spare_springs(t);
+    return g;
+}
+
+static mspring_id end_of(const growth *g, uint32_t end) {
+    mspring_id particle;
+    mspringi_get(g->ends + (size_t)4 * end, &particle, 1, sizeof particle);
+    return particle;
+}
+
+/* ----------------------------------------------------------------------------------------------------- checking */
+
+static bool marks_are_right(const uint8_t *marks, uint32_t first, uint32_t count, uint32_t end) {
+    for (uint32_t i = 0; i < end; ++i)
+        if (marks[i] > MSPRINGI_SPARE || (i < first && marks[i] == MSPRINGI_SPARE) ||
+            (i >= count && marks[i] != MSPRINGI_SPARE))
+            return false;
+    return count >= first && count <= end;
+}
+
+static mspring_result check_particle(mspring_network *network, const growth *g, mspring_id p) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_section *section = &mspringi_section_growth;
+    const bool is_spare = p >= t->reserve.first_particle;
+    const uint32_t i = p - t->reserve.first_particle;
+    if (is_spare && g->slots[i] != 0 &&
+        (g->slots[i] != IS_LAID_OUT || t->initial_slots[i] == mspringi_spare_slot(t, p)))
+        return mspringi_section_fail(network, section, "particle %u lies where it cannot", (unsigned)p);
+    // Some have been left out of a compact plan.
+    if (g->particles[p] == MSPRINGI_THERE && !is_spare && t->slot_of_particle[p] < MSPRINGI_WIDTH)
+        return mspringi_section_fail(network, section, "particle %u is there, which the plan leaves out",
+                                     (unsigned)p);
+    if (g->particles[p] == MSPRINGI_THERE)
+        return MSPRING_OK;
+    for (uint32_t j = network->incidence.first[p]; j < network->incidence.first[p + 1]; ++j)
+        if (g->springs[network->incidence.springs[j]] == MSPRINGI_THERE)
+            return mspringi_section_fail(network, section, "spring %u is there without particle %u",
+                                         (unsigned)network->incidence.springs[j], (unsigned)p);
+    return MSPRING_OK;
+}
+
+static uint32_t slot_in(const mspringi_topology *t, const growth *g, mspring_id p) {
+    const uint32_t i = p - t->reserve.first_particle;
+    return p < t->reserve.first_particle ? t->slot_of_particle[p]
+           : g->slots[i]                 ? t->initial_slots[i]
+                                         : mspringi_spare_slot(t, p);
+}
+
+static mspring_result check_spring(mspring_network *network, const growth *g, mspring_id s) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t i = s - t->reserve.first_spring;
+    const mspring_id a = end_of(g, 2 * i), b = end_of(g, 2 * i + 1);
+    if (g->kinds[i] > (IS_RELATIVE | IS_LAID_OUT) || (g->kinds[i] & IS_RELATIVE && !network->fractions.values) ||
+        (g->kinds[i] & IS_LAID_OUT && t->initial_spring_slots[i] == mspringi_spare_spring_slot(t, s)))
+        return mspringi_section_fail(network, &mspringi_section_growth, "spring %u is of kind %u", (unsigned)s,
+                                     (unsigned)g->kinds[i]);
+    if (g->springs[s] != MSPRINGI_THERE)
+        return MSPRING_OK;
+    bool fits = a < g->particle_count && b < g->particle_count && a != b;
+    fits = fits && g->particles[a] == MSPRINGI_THERE && g->particles[b] == MSPRINGI_THERE;
+    if (fits && g->kinds[i] & IS_LAID_OUT) {
+        uint32_t base, tip;
+        mspringi_topology_ends(t, t->initial_spring_slots[i], &base, &tip);
+        const uint32_t slot_a = slot_in(t, g, a), slot_b = slot_in(t, g, b);
+        fits = (slot_a == base && slot_b == tip) || (slot_a == tip && slot_b == base);
+    }
+    return fits ? MSPRING_OK
+                : mspringi_section_fail(network, &mspringi_section_growth, "spring %u joins particles %s and %s",
+                                        (unsigned)s, MSPRINGI_ID(a), MSPRINGI_ID(b));
+}
+
+// All are there in a snapshot without this section: some have been left out of a compact plan.
+static mspring_result check_none_is_left_out(mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    for (mspring_id p = 0; network->growth.particles && p < t->particle_count; ++p)
+        if (t->slot_of_particle[p] < MSPRINGI_WIDTH)
+            return mspringi_section_fail(network, &mspringi_section_growth,
+                                         "particle %u is there, which the plan leaves out", (unsigned)p);
+    return MSPRING_OK;
+}
+
+// Whether an added spring is to join what it joins now, or is not there now nor then.
+static bool stays(const mspring_network *network, const growth *g, mspring_id s) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t i = s - t->reserve.first_spring;
+    const bool there = g->springs[s] == MSPRINGI_THERE, is_there = mspringi_spring_exists(network, s);
+    if (!there && !is_there)
+        return true;
+    return there && is_there && !(g->kinds[i] & IS_LAID_OUT) == !spring_is_laid_out(t, s) &&
+           end_of(g, 2 * i) == network->growth.particle_of_end[2 * i] &&
+           end_of(g, 2 * i + 1) == network->growth.particle_of_end[2 * i + 1];
+}
+
+static mspring_result growth_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_growth;
+    const mspringi_topology *t = &network->topology;
+    mspring_result result = MSPRING_OK;
+    if (size == 0 &&
+        t->reserve.particle_end + t->reserve.spring_end > t->reserve.first_particle + t->reserve.first_spring)
+        return mspringi_section_check_size(network, section, size, size_of(t));
+    if (size == 0)
+        return check_none_is_left_out(network);
+    result = mspringi_section_check_size(network, section, size, size_of(t));
+    if (result == MSPRING_OK)
+        result = mspringi_id_pool_reserve(network);
+    if (result == MSPRING_OK)
+        result = mspringi_breaking_reserve(network);
+    if (result != MSPRING_OK)
+        return result;
+    const growth g = read_growth(t, from);
+    if (!marks_are_right(g.particles, t->reserve.first_particle, g.particle_count, t->reserve.particle_end) ||
+        !marks_are_right(g.springs, t->reserve.first_spring, g.spring_count, t->reserve.spring_end))
+        return mspringi_section_fail(network, section, "they count %u particles and %u springs",
+                                     (unsigned)g.particle_count, (unsigned)g.spring_count);
+    for (mspring_id p = 0; result == MSPRING_OK && p < t->reserve.particle_end; ++p)
+        result = check_particle(network, &g, p);
+    for (mspring_id s = t->reserve.first_spring; result == MSPRING_OK && s < t->reserve.spring_end; ++s) {
+        result = check_spring(network, &g, s);
+        if (result == MSPRING_OK && !network->solver.ops->can_add && !stays(network, &g, s))
+            result = mspringi_section_fail(network, section,
+                                           "spring %u is another one, for which the direct solver "
+                                           "would have to be chosen anew",
+                                           (unsigned)s);
+    }
+    return result;
+}
+
+/* ----------------------------------------------------------------------------------------------------- loading */
+
+static bool is_put(const mspringi_topology *t, mspring_id p, uint32_t slot) {
+    return t->slot_of_particle[p] == slot && t->particle_of_slot[slot] == p;
+}
+
+static void put(mspringi_topology *t, mspring_id p, uint32_t slot, bool is_there) {
+    t->slot_of_particle[p] = slot;
+    if (is_there)
+        t->particle_of_slot[slot] = p;
+}
+
+// Where each particle is; what it is follows in other sections. In the plan of before a compaction spare ones are
+// in the slots that are kept for them.
+static void load_particle(mspring_network *network, const growth *g, mspring_id p) {
+    mspringi_topology *t = &network->topology, *whole = &network->whole;
+    const bool is_spare = p >= t->reserve.first_particle, is_there = g->particles[p] == MSPRINGI_THERE;
+    const uint32_t slot = slot_in(t, g, p);
+    if (mspringi_particle_exists(network, p) && !(is_there && is_put(t, p, slot)))
+        mspringi_id_pool_take_particle(network, p);
+    put(t, p, slot, is_there);
+    if (network->is_compact)
+        put(whole, p, is_spare ? mspringi_spare_slot(whole, p) : whole->slot_of_particle[p], is_there);
+    network->growth.particles[p] = g->particles[p];
+}
+
+// Take out a spring that is not to be there, or is to be another one.
+static void unload_spring(mspring_network *network, const growth *g, mspring_id s) {
+    const mspringi_topology *t = &network->topology;
+    if (!mspringi_spring_exists(network, s) || stays(network, g, s))
+        return;
+    (void)mspringi_spring_break(network, s);
+    mspringi_id_pool_unlink(network, s);
+    network->growth.springs[s] = MSPRINGI_GONE;
+    mspringi_solvers_clear_spring(network, mspringi_slot_of_spring(t, s));
+}
+
+// Put in one that is to be there, broken and without values for the time being.
+static void load_spring(mspring_network *network, const growth *g, mspring_id s) {
+    mspringi_topology *t = &network->topology;
+    const uint32_t i = s - t->reserve.first_spring;
+    const mspring_id a = end_of(g, 2 * i), b = end_of(g, 2 * i + 1);
+    const bool is_new = g->springs[s] == MSPRINGI_THERE && !mspringi_spring_exists(network, s);
+    network->growth.springs[s] = g->springs[s];
+    if (is_new) {
+        mspringi_id_pool_link(network, s, a, b);
+        mspringi_spare_put_spring(t, s, a, b);
+        if (network->is_compact)
+            mspringi_spare_put_spring(&network->whole, s, a, b);
+        if (network->fractions.values)
+            mspringi_fractions_set(&network->fractions, s,
+                                   (mspringi_relative){g->kinds[i] & IS_RELATIVE ? 0.0f : -1.0f, 0.0f});
+        network->kept[s] = (mspringi_relative){0.0f, 0.0f};
+    }
+    t->slot_of_spring[s] =
+        g->kinds[i] & IS_LAID_OUT ? t->initial_spring_slots[i] : mspringi_spare_spring_slot(t, s);
+    if (is_new)
+        mspringi_extents_turn(network, s);
+}
+
+static mspring_id first_spare(const uint8_t *marks, mspring_id first, mspring_id end) {
+    while (first < end && marks[first] != MSPRINGI_SPARE)
+        ++first;
+    return first;
+}
+
+static void load_all(mspring_network *network, const growth *g) {
+    const mspringi_reserve *r = &network->topology.reserve;
+    for (mspring_id s = r->first_spring; s < r->spring_end; ++s)
+        unload_spring(network, g, s);
+    for (mspring_id p = 0; p < r->particle_end; ++p)
+        load_particle(network, g, p);
+    memcpy(network->growth.springs, g->springs, r->first_spring);
+    for (mspring_id s = r->first_spring; s < r->spring_end; ++s)
+        load_spring(network, g, s);
+    network->growth.lowest_particle = first_spare(network->growth.particles, r->first_particle, r->particle_end);
+    network->growth.lowest_spring = first_spare(network->growth.springs, r->first_spring, r->spring_end);
+    mspringi_id_pool_count(network, g->particle_count, g->spring_count);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_GRAFTS, 0);
+}
+
+// A snapshot without this section is of a network without spare ids, of which nothing had been removed.
+static void growth_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_topology *t = &network->topology;
+    if (!network->growth.particles)
+        return;
+    if (size > 0) {
+        const growth g = read_growth(t, from);
+        load_all(network, &g);
+        return;
+    }
+    for (mspring_id p = 0; p < t->particle_count; ++p) {
+        put(t, p, t->slot_of_particle[p], true);
+        if (network->is_compact)
+            put(&network->whole, p, network->whole.slot_of_particle[p], true);
+    }
+    memset(network->growth.particles, MSPRINGI_THERE, t->particle_count);
+    memset(network->growth.springs, MSPRINGI_THERE, t->spring_count);
+    mspringi_id_pool_count(network, t->particle_count, t->spring_count);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_GRAFTS, 0);
+}
+
+const mspringi_section mspringi_section_growth = {
+    "grow", "added and removed particles and springs", false, growth_size, growth_save, growth_check, growth_load};

@@ -1,0 +1,158 @@
+/// Which islands sleep, and for how long the others have been still, in a snapshot.
+///
+/// Islands have no names that edits would leave alone: what sleeps is told by particle, and how long others have
+/// been still by their lowest slots. Edits of springs have woken those that they change, so the others are found
+/// again.
+#include <math.h>
+#include <string.h>
+
+#include "sleep/sleep.h"
+#include "store/changed.h"
+#include "store/sections.h"
+
+typedef struct sleep_head {
+    float speed, time;
+    uint32_t still_count; ///< islands that are awake and have been still
+    uint32_t any_asleep, has_force;
+} sleep_head;
+
+static void hand_head(mspringi_io *io, sleep_head *head) {
+    mspringi_hand(io, &head->speed, 2, sizeof(float)); // and those that follow
+    mspringi_hand(io, &head->still_count, 3, sizeof(uint32_t));
+}
+
+// A slot, and for how long its island has been still.
+static void hand_still(mspringi_io *io, uint32_t *slot, double *still) {
+    MSPRINGI_HAND(io, *slot);
+    MSPRINGI_HAND(io, *still);
+}
+
+static size_t words_of_particles(const mspring_network *network) {
+    return ((size_t)network->topology.reserve.particle_end + 31) / 32;
+}
+
+static size_t force_floats(const mspring_network *network, const sleep_head *head) {
+    return head->has_force ? 2 * mspringi_slot_count(network) : 0;
+}
+
+static bool is_listed(const mspringi_sleep *sleep, uint32_t island) {
+    return sleep->still[island] > 0.0;
+}
+
+static sleep_head make_head(const mspring_network *network) {
+    const mspringi_sleep *sleep = &network->sleep;
+    sleep_head head = {.speed = network->settings.sleep_speed,
+                       .time = network->settings.sleep_time,
+                       .any_asleep = sleep->sleeping > 0,
+                       .has_force = sleep->sleeping > 0 && sleep->has_force};
+    for (uint32_t i = 0; i < sleep->count; ++i)
+        head.still_count += is_listed(sleep, i);
+    return head;
+}
+
+// What has been disturbed wakes before the next step.
+static bool sleeps_on(const mspring_network *network, mspring_id particle) {
+    const mspringi_sleep *sleep = &network->sleep;
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    return mspringi_particle_exists(network, particle) && sleep->still[sleep->island[slot]] < 0.0 &&
+           !mspringi_sleeper_is_disturbed(network, slot);
+}
+
+static void sleep_save(const mspring_network *network, mspringi_writer *to) {
+    const mspringi_sleep *sleep = &network->sleep;
+    mspringi_io io = mspringi_io_to(to);
+    sleep_head head = make_head(network);
+    hand_head(&io, &head);
+    for (uint32_t i = 0; i < sleep->count; ++i)
+        if (is_listed(sleep, i))
+            hand_still(&io, &sleep->lowest[i], &sleep->still[i]);
+    const uint32_t particles = network->topology.reserve.particle_end;
+    for (mspring_id first = 0; head.any_asleep && first < particles; first += 32) {
+        uint32_t bits = 0;
+        for (mspring_id p = first; p < first + 32 && p < particles; ++p)
+            bits |= (uint32_t)sleeps_on(network, p) << (p - first);
+        mspringi_put(to, &bits, 1, sizeof bits);
+    }
+    mspringi_put(to, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
+}
+
+static mspring_result check_still(mspring_network *network, mspringi_io *io, uint32_t count) {
+    const size_t slots = mspringi_slot_count(network);
+    for (uint32_t i = 0; i < count; ++i) {
+        uint32_t slot;
+        double still;
+        hand_still(io, &slot, &still);
+        if (slot >= slots || !(still > 0.0 && still <= 1e300))
+            return mspringi_section_fail(network, &mspringi_section_sleep, "slot %u has been still for %g s",
+                                         (unsigned)slot, still);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result sleep_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_sleep;
+    mspringi_io io = mspringi_io_from(from, size);
+    sleep_head head;
+    hand_head(&io, &head);
+    if (!(head.speed >= 0.0f && head.speed <= 1e15f && head.time >= 0.0f && head.time <= 1e6f) ||
+        head.any_asleep > (head.speed > 0.0f) || head.has_force > head.any_asleep ||
+        head.still_count > (head.speed > 0.0f ? network->topology.reserve.particle_end : 0))
+        return mspringi_section_fail(network, section, "%u islands below %g m/s for less than %g s",
+                                     (unsigned)head.still_count, (double)head.speed, (double)head.time);
+    mspring_result result = check_still(network, &io, head.still_count);
+    for (size_t i = 0; head.any_asleep && i < words_of_particles(network); ++i)
+        mspringi_hand(&io, &(uint32_t){0}, 1, sizeof(uint32_t));
+    for (size_t i = 0; result == MSPRING_OK && i < force_floats(network, &head); ++i) {
+        float force;
+        MSPRINGI_HAND(&io, force);
+        if (!isfinite(force))
+            result = mspringi_section_fail(network, section, "a force is %g N", (double)force);
+    }
+    if (result == MSPRING_OK)
+        result = mspringi_section_end(network, section, &io);
+    return result == MSPRING_OK && head.speed > 0.0f ? mspringi_sleep_reserve(network) : result;
+}
+
+// Mark the islands all of whose particles sleep.
+static void mark_asleep(const mspring_network *network, mspringi_io *io) {
+    const mspringi_sleep *sleep = &network->sleep;
+    const uint32_t particles = network->topology.reserve.particle_end;
+    memset(sleep->mark, 1, sleep->count * sizeof *sleep->mark);
+    for (mspring_id first = 0; first < particles; first += 32) {
+        uint32_t bits;
+        MSPRINGI_HAND(io, bits);
+        for (mspring_id p = first; p < first + 32 && p < particles; ++p)
+            if (!(bits >> (p - first) & 1) && mspringi_particle_exists(network, p))
+                sleep->mark[sleep->island[network->topology.slot_of_particle[p]]] = 0;
+    }
+}
+
+// After all that could disturb it.
+static void sleep_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_sleep *sleep = &network->sleep;
+    mspringi_io io = mspringi_io_from(from, size);
+    sleep_head head;
+    hand_head(&io, &head);
+    network->settings.sleep_speed = head.speed;
+    network->settings.sleep_time = head.time;
+    sleep->count = sleep->sleeping = 0;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_NAPS, 0);
+    if (!(head.speed > 0.0f))
+        return;
+    mspringi_islands_find(network);
+    for (uint32_t i = 0; i < head.still_count; ++i) {
+        uint32_t slot;
+        double still;
+        hand_still(&io, &slot, &still);
+        if (sleep->island[slot] != MSPRING_NONE)
+            sleep->still[sleep->island[slot]] = still;
+    }
+    if (!head.any_asleep)
+        return;
+    mark_asleep(network, &io);
+    mspringi_sleep_fall(network, (mspringi_field){NULL, NULL});
+    mspringi_hand(&io, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
+    sleep->has_force = head.has_force;
+}
+
+const mspringi_section mspringi_section_sleep = {"slee", "sleep", false, NULL, sleep_save, sleep_check, sleep_load};

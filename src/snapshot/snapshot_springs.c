@@ -1,0 +1,304 @@
+/// What edits and strain have made of the springs, in a snapshot.
+#include <math.h>
+#include <string.h>
+
+#include "step/breaking.h"
+#include "step/ramps.h"
+#include "step/strain.h"
+#include "store/changed.h"
+#include "store/properties.h"
+#include "store/rest_lengths.h"
+#include "store/sections.h"
+#include "store/springs.h"
+
+/* ------------------------------------------------------------------------------------------------ bits by place */
+
+static size_t words_size(const mspring_network *network) {
+    return mspringi_spring_slot_words(&network->topology) * sizeof(uint16_t);
+}
+
+static bool bit_at(const uint8_t *from, mspringi_spring_slot spring_slot) {
+    uint16_t word;
+    mspringi_get(from + spring_slot / MSPRINGI_WIDTH * sizeof word, &word, 1, sizeof word);
+    return word >> spring_slot % MSPRINGI_WIDTH & 1;
+}
+
+/* ----------------------------------------------------------------------------------------------------- broken */
+
+// A section is there for what has been done to springs, not for memory that is there for it: a call that fails may
+// have made that.
+static size_t broken_size(const mspring_network *network) {
+    return network->edits.broke ? words_size(network) : 0;
+}
+
+static void broken_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->live, mspringi_spring_slot_words(&network->topology), sizeof *network->live);
+}
+
+// A spring that is inactive was broken when the network was compacted, and a restored one ends that.
+static mspring_result broken_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_broken;
+    const mspringi_topology *t = &network->topology;
+    if (size == 0 && t->inactive_count == 0)
+        return MSPRING_OK;
+    mspring_result result = mspringi_section_check_size(network, section, size, words_size(network));
+    for (uint32_t i = 0; result == MSPRING_OK && i < t->inactive_count; ++i)
+        if (bit_at(from, t->chain_spring_slots + t->irregular_capacity + i))
+            result = mspringi_section_fail(network, section, "a spring that the plan leaves out is whole");
+    return result == MSPRING_OK ? mspringi_breaking_reserve(network) : result;
+}
+
+// Most often no spring has broken since, or been restored, and looking at each would take half of loading a frame.
+// (Where springs may have been added or removed each is looked at.)
+static bool are_as_in(const mspring_network *network, const uint8_t *from) {
+    const size_t words = mspringi_spring_slot_words(&network->topology);
+    bool same = !network->growth.springs;
+    for (size_t i = 0; same && i < words; ++i) {
+        uint16_t word;
+        mspringi_get(from + i * sizeof word, &word, 1, sizeof word);
+        same = word == network->live[i];
+    }
+    return same;
+}
+
+static void broken_load(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_topology *t = &network->topology;
+    const bool broke = network->edits.broke;
+    network->edits.broke = size > 0;
+    if ((size == 0 && !broke) || (size > 0 && are_as_in(network, from)))
+        return;
+    for (mspring_id s = 0; s < t->spring_count; ++s) {
+        const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
+        const bool live = mspringi_spring_exists(network, s) && (size == 0 || bit_at(from, spring_slot));
+        if (live == mspringi_spring_slot_is_live(network, spring_slot))
+            continue;
+        if (live)
+            (void)mspringi_spring_restore(network, s);
+        else
+            (void)mspringi_spring_break(network, s);
+    }
+}
+
+const mspringi_section mspringi_section_broken = {"brok",      "broken springs", false,      broken_size,
+                                                  broken_save, broken_check,     broken_load};
+
+/* ----------------------------------------------------------------------------------------------------- values */
+
+// Of each spring its stiffness and damping, as if it were not broken, and its rest length. Of one on a ramp the
+// latter is on its way; the ramp has its own.
+enum { VALUES = 3 };
+
+static size_t values_size(const mspring_network *network) {
+    return (size_t)network->topology.reserve.spring_end * VALUES * sizeof(float);
+}
+
+typedef struct spring_values {
+    float stiffness, damping, rest_length;
+} spring_values;
+
+static spring_values values_of(const mspring_network *network, mspring_id spring,
+                               mspringi_spring_slot spring_slot) {
+    if (!mspringi_spring_exists(network, spring))
+        return (spring_values){0.0f, 0.0f, 1.0f};
+    const mspringi_relative nominal = mspringi_spring_get_nominal(network, spring, spring_slot);
+    return (spring_values){nominal.stiffness, nominal.damping,
+                           mspringi_spring_slot_get(network, spring_slot).rest_length};
+}
+
+static void values_save(const mspring_network *network, mspringi_writer *to) {
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s) {
+        const spring_values values = values_of(network, s, network->topology.slot_of_spring[s]);
+        mspringi_put(to, &values, VALUES, sizeof(float));
+    }
+}
+
+static mspring_result values_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_values;
+    mspring_result result = mspringi_section_check_size(network, section, size, values_size(network));
+    bool other_rest_lengths = false, other_fractions = false;
+    for (mspring_id s = 0; result == MSPRING_OK && s < network->topology.reserve.spring_end; ++s) {
+        spring_values values;
+        from = mspringi_get(from, &values, VALUES, sizeof(float));
+        if (!mspringi_is_spring_value(MSPRINGI_STIFFNESS, values.stiffness) ||
+            !mspringi_is_spring_value(MSPRINGI_DAMPING, values.damping) ||
+            !mspringi_is_spring_value(MSPRINGI_REST_LENGTH, values.rest_length) ||
+            (values.damping > 0.0f && network->parts <= MSPRINGI_DAMPING))
+            result = mspringi_section_fail(
+                network, section, "spring %u has stiffness %g, damping %g, rest length %g m", (unsigned)s,
+                (double)values.stiffness, (double)values.damping, (double)values.rest_length);
+        const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
+        other_rest_lengths = other_rest_lengths ||
+                             (spring_slot < network->topology.lattice_spring_slots &&
+                              values.rest_length != mspringi_spring_slot_get(network, spring_slot).rest_length);
+        if (mspringi_spring_is_relative(network, s)) {
+            const mspringi_relative had = mspringi_fractions_of(&network->fractions, s);
+            other_fractions = other_fractions || values.stiffness != had.stiffness || values.damping != had.damping;
+        }
+    }
+    if (result == MSPRING_OK && other_rest_lengths)
+        result = mspringi_rest_lengths_unshare(network);
+    return result == MSPRING_OK && other_fractions ? mspringi_fractions_separate(network) : result;
+}
+
+static void values_load(mspring_network *network, const uint8_t *from, size_t size) {
+    if (size == 0)
+        return;
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s) {
+        spring_values values;
+        const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
+        const spring_values present = values_of(network, s, spring_slot);
+        from = mspringi_get(from, &values, VALUES, sizeof(float));
+        if (!mspringi_spring_exists(network, s))
+            continue;
+        if (values.rest_length != present.rest_length)
+            mspringi_spring_slot_set_rest_length(network, spring_slot, values.rest_length);
+        if (values.stiffness != present.stiffness || values.damping != present.damping)
+            mspringi_spring_set_nominal(network, s, spring_slot,
+                                        (mspringi_relative){values.stiffness, values.damping});
+    }
+    mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING_VALUES, 0);
+}
+
+const mspringi_section mspringi_section_values = {
+    "valu", "stiffness, damping and rest lengths", true, values_size, values_save, values_check, values_load};
+
+/* ------------------------------------------------------------------------------------------------ strains */
+
+static size_t thresholds_size(const mspring_network *network, bool has_any) {
+    return has_any ? network->topology.reserve.spring_end * sizeof(float) : 0;
+}
+
+static void thresholds_save(const mspring_network *network, const float *thresholds, mspringi_writer *to) {
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
+        mspringi_put(to, &thresholds[network->topology.slot_of_spring[s]], 1, sizeof *thresholds);
+}
+
+static mspring_result thresholds_check(mspring_network *network, const mspringi_section *section,
+                                       mspring_property property, const uint8_t *from, size_t size) {
+    const uint32_t springs = network->topology.reserve.spring_end;
+    mspring_result result = mspringi_section_check_size(network, section, size, springs * sizeof(float));
+    for (mspring_id s = 0; result == MSPRING_OK && s < springs; ++s) {
+        const float value = mspringi_float_at(from, s);
+        if (!mspringi_are_allowed(property, &value, 1, 1))
+            result = mspringi_section_fail(network, section, "spring %u has %g", (unsigned)s, (double)value);
+    }
+    return result == MSPRING_OK ? mspringi_strain_reserve_for(network, property) : result;
+}
+
+static void thresholds_load(mspring_network *network, mspring_property property, const uint8_t *from, size_t size) {
+    const float none = property == MSPRING_RELAX_STRAIN ? MSPRING_RELAX_STRAIN_DEFAULT : INFINITY;
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
+        mspringi_strain_store(network, network->topology.slot_of_spring[s], property,
+                              size > 0 ? mspringi_float_at(from, s) : none);
+}
+
+// A section of thresholds of one kind: none if no spring has ever had one.
+#define THRESHOLDS(name, tag, words, property, array, has_any)                                                     \
+    static size_t name##_size(const mspring_network *network) {                                                    \
+        return thresholds_size(network, network->strain.has_any);                                                  \
+    }                                                                                                              \
+    static void name##_save(const mspring_network *network, mspringi_writer *to) {                                 \
+        thresholds_save(network, network->strain.array, to);                                                       \
+    }                                                                                                              \
+    static mspring_result name##_check(mspring_network *network, const uint8_t *from, size_t size) {               \
+        return size > 0 ? thresholds_check(network, &mspringi_section_##name, property, from, size) : MSPRING_OK;  \
+    }                                                                                                              \
+    static void name##_load(mspring_network *network, const uint8_t *from, size_t size) {                          \
+        network->strain.has_any = size > 0;                                                                        \
+        if (network->strain.array)                                                                                 \
+            thresholds_load(network, property, from, size);                                                        \
+    }                                                                                                              \
+    const mspringi_section mspringi_section_##name = {tag,         words,        true,       name##_size,          \
+                                                      name##_save, name##_check, name##_load}
+
+THRESHOLDS(break_strains, "brks", "break strains", MSPRING_BREAK_STRAIN, break_strain, breaks);
+THRESHOLDS(stress_strains, "strs", "stress strains", MSPRING_STRESS_STRAIN, stress_strain, stresses);
+THRESHOLDS(relax_strains, "rlxs", "relax strains", MSPRING_RELAX_STRAIN, relax_strain, relaxes);
+
+/* --------------------------------------------------------------------------------------------------- stressed */
+
+static size_t stressed_size(const mspring_network *network) {
+    return network->strain.stresses ? words_size(network) : 0;
+}
+
+static void stressed_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->strain.stressed, mspringi_spring_slot_words(&network->topology), sizeof(uint16_t));
+}
+
+static mspring_result stressed_check(mspring_network *network, const uint8_t *from, size_t size) {
+    (void)from;
+    if (size == 0)
+        return MSPRING_OK;
+    mspring_result result =
+        mspringi_section_check_size(network, &mspringi_section_stressed, size, words_size(network));
+    return result == MSPRING_OK ? mspringi_strain_reserve(network) : result;
+}
+
+// Only springs that are whole are stressed.
+static void stressed_load(mspring_network *network, const uint8_t *from, size_t size) {
+    const size_t words = mspringi_spring_slot_words(&network->topology);
+    uint16_t *stressed = network->strain.stressed;
+    if (!stressed)
+        return;
+    if (size == 0)
+        memset(stressed, 0, words * sizeof *stressed);
+    else
+        mspringi_get(from, stressed, words, sizeof *stressed);
+    for (size_t i = 0; i < words; ++i)
+        stressed[i] &= network->live[i];
+}
+
+const mspringi_section mspringi_section_stressed = {"stsd",        "stressed springs", false,        stressed_size,
+                                                    stressed_save, stressed_check,     stressed_load};
+
+/* ------------------------------------------------------------------------------------------------------ ramps */
+
+#define LONGEST_SPRING 1e13 // m, between the corners of where particles may be
+
+static void hand_ramp(mspringi_io *io, mspringi_ramp *ramp) {
+    MSPRINGI_HAND(io, ramp->spring);
+    MSPRINGI_HAND(io, ramp->to);
+    MSPRINGI_HAND(io, ramp->from);
+    MSPRINGI_HAND(io, ramp->seconds);
+    MSPRINGI_HAND(io, ramp->passed);
+}
+
+static void ramps_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_io io = mspringi_io_to(to);
+    for (size_t i = 0; i < network->ramps.count; ++i)
+        hand_ramp(&io, &network->ramps.list[i]);
+}
+
+static mspring_result ramps_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_ramps;
+    mspringi_io io = mspringi_io_from(from, size);
+    uint32_t count = 0;
+    for (; io.left > 0 && !io.is_short && count <= network->topology.reserve.spring_end; ++count) {
+        mspringi_ramp ramp;
+        hand_ramp(&io, &ramp);
+        if (!(ramp.spring < network->topology.reserve.spring_end && ramp.from > 0.0 &&
+              ramp.from <= LONGEST_SPRING && mspringi_is_spring_value(MSPRINGI_REST_LENGTH, ramp.to) &&
+              ramp.seconds > 0.0 && ramp.seconds <= MSPRINGI_LONGEST_RAMP && ramp.passed >= 0.0 &&
+              ramp.passed < ramp.seconds))
+            return mspringi_section_fail(network, section, "spring %u goes from %g to %g m, for %g of %g s",
+                                         (unsigned)ramp.spring, ramp.from, (double)ramp.to, ramp.passed,
+                                         ramp.seconds);
+    }
+    const mspring_result result = mspringi_section_end(network, section, &io);
+    return result == MSPRING_OK && count > 0 ? mspringi_ramps_reserve(network, count) : result;
+}
+
+static void ramps_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
+    network->ramps.count = 0;
+    while (io.left > 0) { // One of a spring that is not there can only be forged: it has no ends to wake.
+        mspringi_ramp ramp;
+        hand_ramp(&io, &ramp);
+        if (mspringi_spring_exists(network, ramp.spring))
+            mspringi_ramp_add(network, &ramp);
+    }
+    mspringi_ramps_apply(network, 0.0);
+}
+
+const mspringi_section mspringi_section_ramps = {
+    "ramp", "springs on the way to their rest lengths", false, NULL, ramps_save, ramps_check, ramps_load};

@@ -1,0 +1,380 @@
+/// Settings, steps so far, motion, masses and forces in a snapshot.
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "edits/edit_particles.h"
+#include "layout/emit/spare.h"
+#include "step/origin.h"
+#include "store/changed.h"
+#include "store/sections.h"
+#include "store/springs.h"
+
+/* --------------------------------------------------------------------------------------------------- settings */
+
+typedef struct settings {
+    double origin_x, origin_y;
+    float recentre_distance, relative_h, gravity_x, gravity_y, global_damping, max_speed, relax;
+    uint32_t substeps, max_substeps, auto_substeps;
+} settings;
+
+static void hand_settings(mspringi_io *io, settings *s) {
+    MSPRINGI_HAND(io, s->origin_x);
+    MSPRINGI_HAND(io, s->origin_y);
+    mspringi_hand(io, &s->recentre_distance, 7, sizeof(float)); // and those that follow
+    mspringi_hand(io, &s->substeps, 3, sizeof(uint32_t));
+}
+
+static void settings_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_io io = mspringi_io_to(to);
+    hand_settings(&io, &(settings){network->origin_x, network->origin_y, network->recentre_distance,
+                                   network->relative_h, network->settings.gravity_x, network->settings.gravity_y,
+                                   network->settings.global_damping, network->settings.max_speed,
+                                   network->settings.relax_fraction, network->substeps, network->max_substeps,
+                                   network->auto_substeps});
+}
+
+static mspring_result settings_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_settings;
+    mspringi_io io = mspringi_io_from(from, size);
+    settings s;
+    hand_settings(&io, &s);
+    if (mspringi_section_end(network, section, &io) != MSPRING_OK)
+        return MSPRING_ERROR_SNAPSHOT;
+    // A network may have walked: its origin is no further than a particle may be from where it was put.
+    const double largest = 2.0 * MSPRING_MAX_COORDINATE;
+    if (!(fabs(s.origin_x) <= largest && fabs(s.origin_y) <= largest && s.recentre_distance > 0.0f))
+        return mspringi_section_fail(network, section, "the origin is (%g, %g) m", s.origin_x, s.origin_y);
+    if (!(s.relative_h == 0.0f || (s.relative_h >= FLT_MIN && s.relative_h <= FLT_MAX)))
+        return mspringi_section_fail(network, section, "relative springs are for a substep of %g s",
+                                     (double)s.relative_h);
+    if (!(isfinite(s.gravity_x) && isfinite(s.gravity_y) && s.global_damping >= 0.0f && s.global_damping <= 1e6f))
+        return mspringi_section_fail(network, section, "gravity is (%g, %g) m/s^2, global damping %g 1/s",
+                                     (double)s.gravity_x, (double)s.gravity_y, (double)s.global_damping);
+    if (!(s.max_speed > 0.0f && s.max_speed <= 1e15f && s.relax >= 0.0f && s.relax <= 1.0f))
+        return mspringi_section_fail(network, section, "max_speed is %g m/s, the relax fraction %g",
+                                     (double)s.max_speed, (double)s.relax);
+    if (s.substeps < 1 || s.substeps > MSPRING_MAX_SUBSTEPS || s.max_substeps < 1 ||
+        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > 1)
+        return mspringi_section_fail(network, section, "substeps is %u, max_substeps %u", (unsigned)s.substeps,
+                                     (unsigned)s.max_substeps);
+    return MSPRING_OK;
+}
+
+static void settings_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
+    settings s;
+    hand_settings(&io, &s);
+    mspringi_origin_set(network, s.origin_x, s.origin_y);
+    network->recentre_distance = s.recentre_distance;
+    network->settings.gravity_x = s.gravity_x;
+    network->settings.gravity_y = s.gravity_y;
+    network->settings.global_damping = s.global_damping;
+    network->settings.max_speed = s.max_speed;
+    network->settings.relax_fraction = s.relax;
+    network->substeps = s.substeps;
+    network->max_substeps = s.max_substeps;
+    network->auto_substeps = s.auto_substeps;
+    mspringi_derive_relative(network, s.relative_h);
+}
+
+const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,        NULL,
+                                                    settings_save, settings_check, settings_load};
+
+/* ---------------------------------------------------------------------------------------------- steps so far */
+
+static void hand_steps(mspringi_io *io, mspringi_steps *steps) {
+    MSPRINGI_HAND(io, steps->count);
+    MSPRINGI_HAND(io, steps->fallback_count);
+    MSPRINGI_HAND(io, steps->time);
+    MSPRINGI_HAND(io, steps->substeps);
+}
+
+static void steps_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_io io = mspringi_io_to(to);
+    mspringi_steps steps = network->steps;
+    hand_steps(&io, &steps);
+}
+
+static mspring_result steps_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_steps;
+    mspringi_io io = mspringi_io_from(from, size);
+    mspringi_steps steps;
+    hand_steps(&io, &steps);
+    if (mspringi_section_end(network, section, &io) != MSPRING_OK)
+        return MSPRING_ERROR_SNAPSHOT;
+    const bool has_stepped = steps.count > 0;
+    if (!(steps.time >= 0.0 && steps.time <= DBL_MAX) || (steps.time > 0.0) != has_stepped ||
+        (steps.substeps > 0) != has_stepped || steps.substeps > MSPRING_MAX_SUBSTEPS ||
+        steps.fallback_count > steps.count)
+        return mspringi_section_fail(network, section,
+                                     "there were %llu, %llu by the fallback, of %u substeps, in %g s",
+                                     (unsigned long long)steps.count, (unsigned long long)steps.fallback_count,
+                                     (unsigned)steps.substeps, steps.time);
+    return MSPRING_OK;
+}
+
+static void steps_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
+    network->steps = (mspringi_steps){.result = MSPRING_OK, .outcome = mspringi_outcome_none()};
+    hand_steps(&io, &network->steps);
+}
+
+const mspringi_section mspringi_section_steps = {"step", "steps", false, NULL, steps_save, steps_check, steps_load};
+
+/* ------------------------------------------------------------------------------------------------ whole arrays */
+
+// Whether all of so many floats are no larger than that. (To look at all slots in a row, and only if something is
+// wrong at each particle's, takes a fifth of the time.)
+static bool are_within(const uint8_t *from, size_t count, float largest) {
+    uint32_t others = 0; // as wide as a float, for vectors
+    for (size_t i = 0; i < count; ++i)
+        others |= !(fabsf(mspringi_float_at(from, i)) <= largest);
+    return others == 0;
+}
+
+// Whether they are these. False on machines where that takes longer.
+static bool are_same(const uint8_t *from, const float *values, size_t count) {
+    return !MSPRINGI_BIG_ENDIAN_HOST && memcmp(from, values, count * sizeof *values) == 0;
+}
+
+/* ----------------------------------------------------------------------------------------------------- motion */
+
+static size_t motion_floats(const mspring_network *network) {
+    return MSPRINGI_STATE_ARRAYS * mspringi_slot_count(network);
+}
+
+static size_t motion_size(const mspring_network *network) {
+    return motion_floats(network) * sizeof(float);
+}
+
+static void motion_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->state.x, motion_floats(network), sizeof(float));
+}
+
+static mspring_result check_motion(mspring_network *network, const uint8_t *from, mspring_id p, uint32_t slot) {
+    const size_t slots = mspringi_slot_count(network);
+    const float largest = (float)MSPRING_MAX_COORDINATE, fastest = (float)MSPRING_MAX_SPEED;
+    const float x = mspringi_float_at(from, slot), y = mspringi_float_at(from, slots + slot);
+    const float vx = mspringi_float_at(from, 2 * slots + slot), vy = mspringi_float_at(from, 3 * slots + slot);
+    return fabsf(x) <= largest && fabsf(y) <= largest && fabsf(vx) <= fastest && fabsf(vy) <= fastest
+               ? MSPRING_OK
+               : mspringi_section_fail(network, &mspringi_section_motion,
+                                       "particle %u is at (%g, %g) m from the origin, at (%g, %g) m/s", (unsigned)p,
+                                       (double)x, (double)y, (double)vx, (double)vy);
+}
+
+// The slots that particles may be in: to which of its two a spare one goes is in another section.
+static mspring_result motion_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_topology *t = &network->topology;
+    const size_t third = motion_floats(network) / MSPRINGI_STATE_ARRAYS * 2; // positions; velocities; low words
+    mspring_result result =
+        mspringi_section_check_size(network, &mspringi_section_motion, size, motion_size(network));
+    if (result == MSPRING_OK && are_within(from, third, (float)MSPRING_MAX_COORDINATE) &&
+        are_within(from + third * sizeof(float), third, (float)MSPRING_MAX_SPEED))
+        return MSPRING_OK;
+    for (mspring_id p = 0; result == MSPRING_OK && p < t->reserve.particle_end; ++p) {
+        const uint32_t first = t->reserve.first_particle;
+        result = check_motion(network, from, p, p < first ? t->slot_of_particle[p] : mspringi_spare_slot(t, p));
+        if (result == MSPRING_OK && p >= first)
+            result = check_motion(network, from, p, t->initial_slots[p - first]);
+    }
+    return result;
+}
+
+// A low word that is too large for its coordinate counts as 0 as long as it is not used, and is 0 from here on.
+static void motion_load(mspring_network *network, const uint8_t *from, size_t size) {
+    mspringi_get(from, network->state.x, size / sizeof(float), sizeof(float));
+    mspringi_clear_unused_slots(network);
+    mspringi_drop_stale_lows(network);
+    mspringi_clear_empty_slots(network);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
+}
+
+const mspringi_section mspringi_section_motion = {
+    "moti", "positions and velocities", false, motion_size, motion_save, motion_check, motion_load};
+
+/* ----------------------------------------------------------------------------------------------------- masses */
+
+// First what there is: a mass for each particle; then inverse masses by slot or, where some are scaled, a scale for
+// each particle; then, where they differ, the masses that relative springs go by.
+enum { SCALED = 1, SPRING_MASSES = 2 };
+
+static uint32_t masses_kind(const mspring_network *network) {
+    return (network->is_scaled ? (uint32_t)SCALED : 0) | (network->is_reweighed ? (uint32_t)SPRING_MASSES : 0);
+}
+
+static size_t masses_size_of(const mspring_network *network, uint32_t kind) {
+    const size_t particles = network->topology.reserve.particle_end;
+    return sizeof kind + sizeof(float) * (particles + (kind & SCALED ? particles : mspringi_slot_count(network)) +
+                                          (kind & SPRING_MASSES ? particles : 0));
+}
+
+static size_t masses_size(const mspring_network *network) {
+    return masses_size_of(network, masses_kind(network));
+}
+
+static void masses_save(const mspring_network *network, mspringi_writer *to) {
+    const uint32_t kind = masses_kind(network);
+    const size_t particles = network->topology.reserve.particle_end;
+    mspringi_put(to, &kind, 1, sizeof kind);
+    mspringi_put(to, network->mass, particles, sizeof(float));
+    if (kind & SCALED)
+        mspringi_put(to, network->inverse_mass_scale, particles, sizeof(float));
+    else
+        mspringi_put(to, network->inverse_mass, mspringi_slot_count(network), sizeof(float));
+    if (kind & SPRING_MASSES)
+        mspringi_put(to, network->spring_mass, particles, sizeof(float));
+}
+
+typedef struct masses {
+    uint32_t kind;
+    const uint8_t *mass, *inverse_or_scale, *spring_mass;
+} masses;
+
+static masses read_masses(const mspring_network *network, const uint8_t *from) {
+    const size_t particles = network->topology.reserve.particle_end;
+    masses m;
+    m.mass = mspringi_get(from, &m.kind, 1, sizeof m.kind);
+    m.inverse_or_scale = m.mass + particles * sizeof(float);
+    m.spring_mass =
+        m.inverse_or_scale + (m.kind & SCALED ? particles : mspringi_slot_count(network)) * sizeof(float);
+    return m;
+}
+
+static bool are_masses(const uint8_t *from, size_t count) {
+    uint32_t others = 0;
+    for (size_t i = 0; i < count; ++i)
+        others |= !mspringi_is_mass(mspringi_float_at(from, i));
+    return others == 0;
+}
+
+static bool are_scales(const uint8_t *from, size_t count) {
+    uint32_t others = 0;
+    for (size_t i = 0; i < count; ++i)
+        others |= !mspringi_is_inverse_mass_scale(mspringi_float_at(from, i));
+    return others == 0;
+}
+
+// Whether all is well with them at first sight. What is not scaled has a scale of 0 or 1.
+static bool are_right(const mspring_network *network, const masses *m) {
+    const size_t particles = network->topology.reserve.particle_end;
+    return are_masses(m->mass, particles) &&
+           (!(m->kind & SPRING_MASSES) || are_masses(m->spring_mass, particles)) &&
+           (!(m->kind & SCALED) || are_scales(m->inverse_or_scale, particles));
+}
+
+// Whether the network has them already, as it most often does.
+static bool has_masses(const mspring_network *network, const masses *m) {
+    const size_t particles = network->topology.reserve.particle_end;
+    return !network->growth.particles && m->kind == masses_kind(network) &&
+           are_same(m->mass, network->mass, particles) &&
+           (m->kind & SCALED
+                ? are_same(m->inverse_or_scale, network->inverse_mass_scale, particles)
+                : are_same(m->inverse_or_scale, network->inverse_mass, mspringi_slot_count(network))) &&
+           (!(m->kind & SPRING_MASSES) || are_same(m->spring_mass, network->spring_mass, particles));
+}
+
+// What is not scaled has inverse mass 0 or the inverse of its mass: a scale of 0 or 1.
+static float scale_in(const mspring_network *network, const masses *m, mspring_id particle) {
+    if (m->kind & SCALED)
+        return mspringi_float_at(m->inverse_or_scale, particle);
+    return mspringi_float_at(m->inverse_or_scale, network->topology.slot_of_particle[particle]) > 0.0f ? 1.0f
+                                                                                                       : 0.0f;
+}
+
+static mspring_result masses_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_masses;
+    uint32_t kind = 0;
+    if (size >= sizeof kind)
+        mspringi_get(from, &kind, 1, sizeof kind);
+    if (kind > (SCALED | SPRING_MASSES) || (kind & SPRING_MASSES && !network->fractions.values))
+        return mspringi_section_fail(network, section, "they are of kind %u", (unsigned)kind);
+    mspring_result result = mspringi_section_check_size(network, section, size, masses_size_of(network, kind));
+    if (result != MSPRING_OK)
+        return result;
+    const masses m = read_masses(network, from);
+    const uint32_t suspects = are_right(network, &m) ? 0 : network->topology.reserve.particle_end;
+    for (mspring_id p = 0; p < suspects; ++p) {
+        const float mass = mspringi_float_at(m.mass, p);
+        if (!mspringi_is_mass(mass) ||
+            (kind & SPRING_MASSES && !mspringi_is_mass(mspringi_float_at(m.spring_mass, p))))
+            return mspringi_section_fail(network, section, "particle %u has a mass of %g kg", (unsigned)p,
+                                         (double)mass);
+        if (!mspringi_is_inverse_mass_scale(scale_in(network, &m, p)))
+            return mspringi_section_fail(network, section, "particle %u has its inverse mass scaled by %g",
+                                         (unsigned)p, (double)scale_in(network, &m, p));
+    }
+    if (kind & SCALED)
+        result = mspringi_reserve_inverse_mass_scales(network);
+    return result == MSPRING_OK && kind & SPRING_MASSES ? mspringi_reserve_spring_masses(network) : result;
+}
+
+static void masses_load(mspring_network *network, const uint8_t *from, size_t size) {
+    (void)size;
+    const masses m = read_masses(network, from);
+    const uint32_t particles = network->topology.reserve.particle_end;
+    if (has_masses(network, &m))
+        return;
+    mspringi_get(m.mass, network->mass, particles, sizeof(float));
+    for (mspring_id p = 0; p < particles; ++p) {
+        const float scale = mspringi_particle_exists(network, p) ? scale_in(network, &m, p) : 0.0f;
+        network->inverse_mass[network->topology.slot_of_particle[p]] = scale / network->mass[p];
+        if (network->inverse_mass_scale)
+            network->inverse_mass_scale[p] = scale;
+    }
+    bool renew = false;
+    for (mspring_id p = 0; network->spring_mass && p < particles; ++p) {
+        const float mass = m.kind & SPRING_MASSES ? mspringi_float_at(m.spring_mass, p) : network->mass[p];
+        renew = renew || mass != network->spring_mass[p];
+        network->spring_mass[p] = mass;
+    }
+    if (renew)
+        mspringi_renew_relative(network);
+    network->is_scaled = m.kind & SCALED;
+    network->is_reweighed = m.kind & SPRING_MASSES;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0);
+}
+
+const mspringi_section mspringi_section_masses = {"mass",      "masses",     false,      masses_size,
+                                                  masses_save, masses_check, masses_load};
+
+/* ----------------------------------------------------------------------------------------------------- forces */
+
+static size_t forces_size(const mspring_network *network) {
+    return network->forces.held_any ? 2 * mspringi_slot_count(network) * sizeof(float) : 0;
+}
+
+static void forces_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->forces.held.x, 2 * mspringi_slot_count(network), sizeof(float));
+}
+
+static mspring_result forces_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_forces;
+    const size_t floats = 2 * mspringi_slot_count(network);
+    if (size == 0)
+        return MSPRING_OK;
+    mspring_result result = mspringi_section_check_size(network, section, size, floats * sizeof(float));
+    for (size_t i = 0; result == MSPRING_OK && i < floats; ++i)
+        if (!isfinite(mspringi_float_at(from, i)))
+            result = mspringi_section_fail(network, section, "a force is %g N", (double)mspringi_float_at(from, i));
+    return result == MSPRING_OK ? mspringi_field_reserve(network, &network->forces.held) : result;
+}
+
+// Forces on nobody can only be forged: a particle that is added would find them.
+static void forces_load(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_field held = network->forces.held;
+    const size_t slots = mspringi_slot_count(network);
+    if (size > 0)
+        mspringi_get(from, held.x, 2 * slots, sizeof(float));
+    else if (network->forces.held_any)
+        memset(held.x, 0, 2 * slots * sizeof(float));
+    for (size_t slot = 0; size > 0 && slot < slots; ++slot)
+        if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
+            held.x[slot] = held.y[slot] = 0.0f;
+    network->forces.held_any = size > 0;
+    network->forces.held_calls = MSPRINGI_MODEST_CALLS;
+}
+
+const mspringi_section mspringi_section_forces = {
+    "forc", "forces given for the next step", false, forces_size, forces_save, forces_check, forces_load};

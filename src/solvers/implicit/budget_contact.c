@@ -1,0 +1,122 @@
+/// The energy of bodies that touch, all together.
+///
+/// Each component keeps a budget of its own, in which the work of other bodies is a gift. What one is given another
+/// has to lack, but forces of rows are only as right as the solution is: in stiff networks they show in how little
+/// springs give way, which rounding may hide. (Two lattices of 4.5e11 N/m had 46 times their energy after a touch:
+/// momenta followed an impulse of 464 N s where 20 were due.) So the sums of all that touch are looked at, too. A
+/// substep that gains is taken again in pieces, and in the end without rows in the system. (As long as particles
+/// without springs were left out, a rope that one of them hit gained 2.1 %.)
+///
+/// Colliders and pins that stand still do no work, and those that move the work of their rows. What overlaps one is
+/// pushed off at a speed, which is work, too: of a row's impulse along its way. (As long as that was a gain, bodies
+/// that landed on a collider took 12 times as long.) Between bodies it is a gain: one in a press had 0.4 % more.
+#include "contact/contacts.h"
+#include "solvers/implicit/energy_budget.h"
+#include "solvers/implicit/implicit.h"
+#include "solvers/implicit/implicit_terms.h"
+
+/// Energy that bodies that touch may have more than before, as a part of what they had, and of what they fall by in
+/// the substep. (With 1e-4 such gains added up to 0.4 % in some thousand substeps.)
+#define DRIVEN_SHARE 1e-5
+#define DRIVEN_FALL 1.0
+
+// Kinetic energy that a component is left with.
+static double left_with(const mspringi_component_budget *a, const mspringi_mass_centre *c) {
+    const double turns = c->inertia > 0.0 ? c->spin / c->inertia : 0.0, to = a->keep * turns + a->turn;
+    const double x = a->keep * (a->origin[2] + c->vx) + a->add_x, y = a->keep * (a->origin[3] + c->vy) + a->add_y;
+    return 0.5 * c->mass * (x * x + y * y) + a->keep * a->keep * (c->kinetic - 0.5 * c->spin * turns) +
+           0.5 * c->inertia * to * to;
+}
+
+// The same of particles without springs, which are in no component: as they fly if there is no floor.
+static void add_loose(const mspring_network *network, double h, mspringi_field base, double *gain, double *most) {
+    const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    const mspringi_state *s = &network->state;
+    const double gx = (double)network->settings.gravity_x, gy = (double)network->settings.gravity_y;
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
+        if (!mspringi_budget_is_isolated(budget, slot) || !(k->inverse_mass[i] > 0.0))
+            continue;
+        const double mass = 1.0 / k->inverse_mass[i], vx = (double)s->vx[slot], vy = (double)s->vy[slot];
+        const double had = 0.5 * mass * (k->v_start[i].x * k->v_start[i].x + k->v_start[i].y * k->v_start[i].y);
+        const double x = mspringi_x_of(s, slot) - k->x[i], y = mspringi_y_of(s, slot) - k->y[i];
+        const double fx = mass * gx + (base.x ? (double)base.x[slot] : 0.0);
+        const double fy = mass * gy + (base.y ? (double)base.y[slot] : 0.0);
+        *gain += 0.5 * mass * (vx * vx + vy * vy) - had - (fx * x + fy * y);
+        *most += DRIVEN_SHARE * had + DRIVEN_FALL * mass * (h * h * (gx * gx + gy * gy));
+    }
+}
+
+double mspringi_gravity_energy_in_contact(const mspring_network *network, const mspringi_component_budget *a,
+                                          double mass) {
+    const double gx = (double)network->settings.gravity_x, gy = (double)network->settings.gravity_y;
+    const double h = a->is_touched ? (double)network->contacts->h : 0.0;
+    return 0.5 * mass * (gx * gx + gy * gy) * (h * h);
+}
+
+// The speed of a row along some shares: of nodes that have a weight, by how far they came, and of those that have
+// none, which are colliders and pins.
+static void speeds_of(const mspring_network *network, const mspringi_contact_constraint *t, double (*shares)[2],
+                      double h, double *own, double *others) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    const mspringi_state *s = &network->state;
+    const uint32_t nodes[] = {t->p, t->a, t->b};
+    *own = *others = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = nodes[i];
+        if (!(k->inverse_mass[node] > 0.0)) {
+            *others += shares[i][0] * k->v_start[node].x + shares[i][1] * k->v_start[node].y;
+            continue;
+        }
+        const uint32_t slot = network->topology.slot_of_particle[k->particles[node]];
+        *own += shares[i][0] * (mspringi_x_of(s, slot) - k->x[node]) / h +
+                shares[i][1] * (mspringi_y_of(s, slot) - k->y[node]) / h;
+    }
+}
+
+// Work of what has no weight: by its motion, and by pushing off what overlaps it.
+static double work_of_constraints(const mspring_network *network, double h) {
+    const mspringi_contacts *contacts = network->contacts;
+    double sum = 0.0, own, others;
+    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
+        const mspringi_contact_constraint *t = &contacts->constraints[i];
+        mspringi_implicit_constraint *c = &contacts->implicit_constraints[i];
+        speeds_of(network, t, c->along, h, &own, &others);
+        sum -= t->tangent_impulse * (others + t->surface_speed);
+        speeds_of(network, t, c->across, h, &own, &others);
+        sum -= t->normal_impulse * others;
+        const double *weight = contacts->nodes.inverse_mass, apart = own + others;
+        const bool is_held = !(weight[t->p] > 0.0 && weight[t->a] > 0.0 && weight[t->b] > 0.0);
+        if (is_held && t->normal_impulse > 0.0 && t->target_speed > 0.0 && !t->is_bounce && apart > 0.0)
+            sum += t->normal_impulse * (apart < t->target_speed ? apart : t->target_speed);
+    }
+    return sum;
+}
+
+// Whether all that touches has more energy together than before, but for work from outside. In stiff networks
+// forces of rows show in how little springs give way, which rounding may hide, and momenta would follow them.
+bool mspringi_implicit_contact_gained_energy(const mspring_network *network, double h, mspringi_field base) {
+    const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    const double gx = (double)network->settings.gravity_x, gy = (double)network->settings.gravity_y;
+    double gain = 0.0, most = 0.0;
+    bool any = false;
+    for (const mspringi_component_budget *a = budget->components; a < budget->components + budget->count; ++a) {
+        if (!a->is_touched || a->is_asleep)
+            continue;
+        if (a->is_driven || a->frame_x != 0.0 || a->frame_y != 0.0)
+            return false;
+        any = true;
+        const mspringi_mass_centre c = mspringi_mass_centre_of(a);
+        const double vx = a->origin[2] + a->vx, vy = a->origin[3] + a->vy, fall = h * h * (gx * gx + gy * gy);
+        const double had = 0.5 * c.mass * (vx * vx + vy * vy) + a->internal;
+        const double work = a->sums[MSPRINGI_EFFECT_WORK] - a->pushed +
+                            c.mass * (gx * (c.x - a->x + a->shift_x) + gy * (c.y - a->y + a->shift_y));
+        gain += left_with(a, &c) + a->elastic - had - work;
+        most += DRIVEN_SHARE * had + DRIVEN_FALL * c.mass * fall + mspringi_energy_rounding(a, a->internal);
+    }
+    if (!any)
+        return false;
+    add_loose(network, h, base, &gain, &most);
+    return gain > most && gain - work_of_constraints(network, h) > most;
+}

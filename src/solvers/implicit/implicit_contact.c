@@ -1,0 +1,583 @@
+/// Contact between bodies in the linear system of an implicit substep.
+///
+/// A row is what contact/constraints.c makes of a point that is near an edge: directions and shares of the start of
+/// the substep. What is nearer at its end than the thickness is held apart by a spring across, and by one along as
+/// long as friction bears that. They join two bodies, so they are added to products of the matrix, or to the
+/// solution of its factor, and to the blocks on its diagonal. Which rows hold is found by solving again, as of the
+/// floor: what pulls is let go. The springs are about as stiff as the network is at the row, so that iterations
+/// find them, and give way by about as much as it does. If a row gives way by more, impulses after the substep mend
+/// it.
+///
+/// A particle without springs is no unknown of the system. What it hits feels its mass: a row that it is in gives
+/// way like a spring and a mass in a line.
+///
+/// A substep in which bodies touch is one of implicit Euler, and so is the next: see implicit_floor.c.
+#include <math.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "contact/contacts.h"
+#include "solvers/implicit/implicit_terms.h"
+
+/// Stiffness of a row, in that of the network at it and its own inertia.
+#define PENALTY 4.0
+
+/// Times that a substep is solved before rows are only added, and not let go or made to slide.
+#define FREE_PASSES 12
+
+/// Change of a normal force, as a part of it, that friction is worth another solution for.
+#define SAME_FORCE 0.1
+
+/// Depth that says nothing, and depth that is mended after the substep, as shares of the thickness.
+#define UNSEEN_SHARE 1e-6
+#define MENDED_SHARE 0.02
+
+/// Work of contact, and pull, that may be rounding, as shares of the largest work and push.
+#define GIVEN_SHARE 1e-3
+
+/// Depth of a pair that had no row, as a share of the thickness, for which a substep is taken again in halves.
+#define MISSED_SHARE 0.1
+
+/// Times that all rows are mended.
+#define MOST_MENDING_SWEEPS 32
+
+/// Nothing in a row moves further than this share of the thickness in a piece of a substep; so many pieces at most.
+#define PIECE_SHARE 1.0
+#define MOST_PIECES 40u
+
+typedef mspringi_implicit_constraint hold;
+
+static mspringi_contacts *pairs_of(const mspring_network *network) {
+    return network->contacts && network->contacts->quiet_substeps == 0 ? network->contacts : NULL;
+}
+
+// The rows of the present substep; 0 of those that have none.
+static uint32_t count_of(const mspring_network *network) {
+    const mspringi_contacts *contacts = network->contacts;
+    return contacts && contacts->quiet_substeps == 0 ? contacts->constraint_count : 0;
+}
+
+static uint32_t node_of(const mspringi_contact_constraint *t, int i) {
+    return i == 0 ? t->p : i == 1 ? t->a : t->b;
+}
+
+static uint32_t slot_of(const mspring_network *network, uint32_t node) {
+    return network->topology.slot_of_particle[network->contacts->nodes.particles[node]];
+}
+
+// Whether a particle is alone in the loose row: its row of the system is its mass.
+static bool flies(const mspring_network *network, size_t slot) {
+    return slot >= (size_t)network->topology.loose_first * MSPRINGI_WIDTH &&
+           !mspringi_is_coupled(network, mspringi_implicit_of(network), slot);
+}
+
+/* -------------------------------------------------------------------------------------------------------- rows */
+
+static void split_forces(const mspring_network *network, const mspringi_contact_constraint *t, hold *to) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    const double shares[] = {1.0, -t->bary_a, -t->bary_b};
+    const double along[3][2] = {{-t->ny, t->nx},
+                                {t->bary_a * t->ny - t->couple_y, t->couple_x - t->bary_a * t->nx},
+                                {t->bary_b * t->ny + t->couple_y, -t->couple_x - t->bary_b * t->nx}};
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = node_of(t, i);
+        to->slots[i] = k->inverse_mass[node] > 0.0 ? slot_of(network, node) : MSPRING_NONE;
+        to->across[i][0] = shares[i] * t->nx;
+        to->across[i][1] = shares[i] * t->ny;
+        to->along[i][0] = along[i][0];
+        to->along[i][1] = along[i][1];
+    }
+}
+
+static double product(double (*shares)[2], double (*vectors)[2]) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        sum += shares[i][0] * vectors[i][0] + shares[i][1] * vectors[i][1];
+    return sum;
+}
+
+// Where a row would be at the end without springs and contact.
+static void begin_constraint(const mspring_network *network, const mspringi_contact_constraint *t, double h,
+                             hold *to) {
+    const mspringi_contacts *contacts = network->contacts;
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    double way[3][2];
+    const bool is_slick =
+        t->tangent_mass == 0.0 || mspringi_implicit_of(network)->contact_mode != MSPRINGI_CONTACT_WITH_FRICTION;
+    *to = (hold){.friction = is_slick ? 0.0 : (double)t->friction};
+    split_forces(network, t, to);
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = node_of(t, i);
+        const double fall = to->slots[i] == MSPRING_NONE ? 0.0 : h * h;
+        way[i][0] = h * k->v_start[node].x + fall * (double)network->settings.gravity_x;
+        way[i][1] = h * k->v_start[node].y + fall * (double)network->settings.gravity_y;
+    }
+    to->spare = t->gap > 0.0 ? t->gap + h * t->target_speed : 0.0;
+    to->is_active = product(to->across, way) - h * t->target_speed + to->spare < 0.0;
+}
+
+bool mspringi_implicit_contact_begin(mspring_network *network, float h) {
+    mspringi_contacts *contacts = pairs_of(network);
+    bool any = false;
+    if (!contacts)
+        return false;
+    mspringi_contact_load_nodes(network, contacts);
+    for (uint32_t i = contacts->nodes.particle_count; i < contacts->nodes.count; ++i) {
+        contacts->nodes.x[i] += contacts->passed * contacts->nodes.v[i].x;
+        contacts->nodes.y[i] += contacts->passed * contacts->nodes.v[i].y;
+    }
+    (void)mspringi_contact_prepare_implicit(network, contacts, (double)h);
+    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
+        begin_constraint(network, &contacts->constraints[i], (double)h, &contacts->implicit_constraints[i]);
+        contacts->implicit_constraints[i].is_active &=
+            mspringi_implicit_of(network)->contact_mode != MSPRINGI_CONTACT_BY_IMPULSES;
+        any |= contacts->implicit_constraints[i].is_active;
+    }
+    return any;
+}
+
+uint32_t mspringi_implicit_contact_count_intervals(mspring_network *network, float h) {
+    mspringi_contacts *contacts = pairs_of(network);
+    if (!contacts)
+        return 1;
+    mspringi_contact_load_nodes(network, contacts);
+    const double fastest = mspringi_contact_prepare_implicit(network, contacts, (double)h);
+    const double pieces = 1.0 + (double)h * fastest / (PIECE_SHARE * contacts->thickness);
+    return pieces < (double)MOST_PIECES ? (uint32_t)pieces : MOST_PIECES;
+}
+
+/* --------------------------------------------------------------------------------------------------- the terms */
+
+// How far a node comes without its springs.
+static void predict(const mspring_network *network, hold *c, const mspringi_contact_constraint *t, int i, double h,
+                    double way[2]) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    const uint32_t node = node_of(t, i), slot = c->slots[i];
+    if (slot == MSPRING_NONE) {
+        way[0] = h * k->v_start[node].x;
+        way[1] = h * k->v_start[node].y;
+        return;
+    }
+    way[0] = n->x[slot] - k->x[node];
+    way[1] = n->y[slot] - k->y[node];
+    if (flies(network, slot)) {
+        way[0] += (double)n->residual.x[slot] / (double)n->mass[slot];
+        way[1] += (double)n->residual.y[slot] / (double)n->mass[slot];
+    }
+}
+
+// What a row holds with: springs in a line with how stiff the network is at each end.
+static double stiffness_of(const mspring_network *network, hold *c, double (*shares)[2]) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    double give = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t slot = c->slots[i];
+        if (slot == MSPRING_NONE)
+            continue;
+        const double square = shares[i][0] * shares[i][0] + shares[i][1] * shares[i][1];
+        const double mass = (double)n->mass[slot];
+        const double own = mass + (double)n->system.xx[slot] + (double)n->system.yy[slot];
+        give += flies(network, slot) ? square / mass : square / (PENALTY * own);
+    }
+    return give > 0.0 ? 1.0 / give : 0.0;
+}
+
+static void predict_constraint(const mspring_network *network, const mspringi_contact_constraint *t, double h,
+                               hold *c) {
+    const mspringi_contacts *contacts = network->contacts;
+    double way[3][2];
+    for (int i = 0; i < 3; ++i)
+        predict(network, c, t, i, h, way[i]);
+    c->gap = product(c->across, way) - h * t->target_speed;
+    c->ahead = product(c->along, way);
+    if (t->collider != MSPRING_NONE)
+        c->ahead += h * mspringi_collider_surface_speed(contacts, t);
+    c->stiffness = stiffness_of(network, c, c->across);
+    c->grip = stiffness_of(network, c, c->along);
+}
+
+// Add what a row along some shares does to the system.
+static void add_constraint(mspring_network *network, hold *c, double (*shares)[2], double stiffness, double force) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t slot = c->slots[i];
+        if (slot == MSPRING_NONE || flies(network, slot))
+            continue;
+        const double x = shares[i][0], y = shares[i][1];
+        n->residual.x[slot] += (float)(force * x);
+        n->residual.y[slot] += (float)(force * y);
+        if (n->is_direct)
+            continue;
+        n->system.xx[slot] += (float)(stiffness * x * x);
+        n->system.xy[slot] += (float)(stiffness * x * y);
+        n->system.yy[slot] += (float)(stiffness * y * y);
+    }
+}
+
+bool mspringi_implicit_constraint_sticks(const hold *c) {
+    return c->is_active && c->slip == 0.0 && c->friction > 0.0;
+}
+
+// The factor of the direct solver has no rows: it solves for their forces.
+void mspringi_implicit_contact_add_terms(mspring_network *network, float h) {
+    const uint32_t count = count_of(network);
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    for (uint32_t i = 0; i < count; ++i)
+        predict_constraint(network, &network->contacts->constraints[i], (double)h,
+                           &network->contacts->implicit_constraints[i]);
+    for (uint32_t i = 0; i < count; ++i) {
+        hold *c = &network->contacts->implicit_constraints[i];
+        if (c->is_active && !n->is_direct)
+            add_constraint(network, c, c->across, c->stiffness, -c->stiffness * c->gap);
+        if (mspringi_implicit_constraint_sticks(c) && !n->is_direct)
+            add_constraint(network, c, c->along, c->grip, -c->grip * c->ahead);
+        else if (c->is_active && c->slip != 0.0)
+            add_constraint(network, c, c->along, 0.0, -c->friction * c->slip * c->normal);
+    }
+}
+
+double mspringi_implicit_contact_gather(const mspring_network *network, hold *c, double (*shares)[2],
+                                        mspringi_field field) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+        if (c->slots[i] != MSPRING_NONE && !flies(network, c->slots[i]))
+            sum += shares[i][0] * (double)field.x[c->slots[i]] + shares[i][1] * (double)field.y[c->slots[i]];
+    return sum;
+}
+
+void mspringi_implicit_contact_scatter(const mspring_network *network, hold *c, double (*shares)[2], double force,
+                                       mspringi_field to) {
+    for (int i = 0; i < 3; ++i) {
+        if (c->slots[i] == MSPRING_NONE || flies(network, c->slots[i]))
+            continue;
+        to.x[c->slots[i]] += (float)(shares[i][0] * force);
+        to.y[c->slots[i]] += (float)(shares[i][1] * force);
+    }
+}
+
+double mspringi_implicit_contact_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
+    const uint32_t count = count_of(network);
+    double sum = 0.0;
+    for (uint32_t i = 0; i < count; ++i) {
+        hold *c = &network->contacts->implicit_constraints[i];
+        if (!c->is_active)
+            continue;
+        const double way = mspringi_implicit_contact_gather(network, c, c->across, from);
+        mspringi_implicit_contact_scatter(network, c, c->across, c->stiffness * way, to);
+        sum += c->stiffness * way * way;
+        if (!mspringi_implicit_constraint_sticks(c))
+            continue;
+        const double slide = mspringi_implicit_contact_gather(network, c, c->along, from);
+        mspringi_implicit_contact_scatter(network, c, c->along, c->grip * slide, to);
+        sum += c->grip * slide * slide;
+    }
+    return sum;
+}
+
+bool mspringi_implicit_contact_is_active(const mspring_network *network) {
+    const uint32_t count = count_of(network);
+    bool any = false;
+    for (uint32_t i = 0; i < count; ++i)
+        any |= network->contacts->implicit_constraints[i].is_active;
+    return any;
+}
+
+/* -------------------------------------------------------------------------------------------------- the review */
+
+// Where a row came to. Of the direct solver displacement is all of it.
+static double end_of(const mspring_network *network, hold *c, double (*shares)[2], float alpha) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const double way = mspringi_implicit_contact_gather(network, c, shares, n->displacement);
+    return n->is_direct ? way
+                        : way + (double)alpha * mspringi_implicit_contact_gather(network, c, shares, n->direction);
+}
+
+// Look at what a row came to. Returns whether that is other than what was assumed.
+static bool update_constraint(const mspring_network *network, hold *c, float alpha, bool is_free) {
+    const double end = c->gap + end_of(network, c, c->across, alpha), before = c->normal, slipped = c->slip;
+    const bool was_active = c->is_active;
+    c->normal = was_active ? -c->stiffness * end : 0.0;
+    c->is_active =
+        was_active ? end <= 0.0 || !is_free : end + c->spare < -UNSEEN_SHARE * network->contacts->thickness;
+    c->braked = 0.0;
+    if (c->friction == 0.0 || !was_active)
+        return c->is_active != was_active;
+    const double ahead = c->ahead + end_of(network, c, c->along, alpha), needed = -c->grip * ahead;
+    const double most = c->friction * (c->normal > 0.0 ? c->normal : 0.0);
+    c->braked = slipped != 0.0 ? -c->friction * slipped * before : needed;
+    if (is_free && slipped == 0.0 && fabs(needed) > most)
+        c->slip = needed < 0.0 ? 1.0 : -1.0;
+    else if (is_free && slipped * ahead < 0.0)
+        c->slip = 0.0;
+    const bool other_force = is_free && c->slip != 0.0 && fabs(c->normal - before) > SAME_FORCE * fabs(c->normal);
+    return c->is_active != was_active || (c->is_active && (c->slip != slipped || other_force));
+}
+
+bool mspringi_implicit_contact_update_active_set(mspring_network *network, float alpha, uint32_t pass) {
+    const uint32_t count = count_of(network);
+    bool again = false;
+    if (mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES)
+        return false;
+    for (uint32_t i = 0; i < count; ++i)
+        again |= update_constraint(network, &network->contacts->implicit_constraints[i], alpha, pass < FREE_PASSES);
+    return again;
+}
+
+void mspringi_implicit_contact_store_impulses(mspring_network *network, float h) {
+    mspringi_contacts *contacts = network->contacts;
+    const uint32_t count = count_of(network);
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const double per_force = (double)h / n->system.force_scale;
+    for (uint32_t i = 0; i < count; ++i) {
+        hold *c = &contacts->implicit_constraints[i];
+        mspringi_contact_constraint *t = &contacts->constraints[i];
+        t->normal_impulse = c->normal * per_force;
+        t->tangent_impulse = c->braked * per_force;
+        for (int k = 0; k < 3; ++k) {
+            if (c->slots[k] == MSPRING_NONE || !flies(network, c->slots[k]))
+                continue;
+            n->residual.x[c->slots[k]] += (float)(c->across[k][0] * c->normal + c->along[k][0] * c->braked);
+            n->residual.y[c->slots[k]] += (float)(c->across[k][1] * c->normal + c->along[k][1] * c->braked);
+        }
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- mending */
+
+// What would get too deep by more than is given is pushed apart by as much. Returns whether it was.
+static bool mend(const mspringi_contacts *contacts, mspringi_contact_constraint *t, double h, double given) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const double speed = mspringi_normal_speed(t, k->v);
+    const double least = (t->gap < 0.0 ? t->gap : 0.0) - given;
+    const double lacks = least - (t->gap + h * speed);
+    if (!(lacks > UNSEEN_SHARE * contacts->thickness))
+        return false;
+    const double impulse = t->normal_mass * lacks / h, x = impulse * t->nx, y = impulse * t->ny;
+    t->normal_impulse += impulse;
+    k->v[t->p].x += k->inverse_mass[t->p] * x;
+    k->v[t->p].y += k->inverse_mass[t->p] * y;
+    k->v[t->a].x -= t->bary_a * k->inverse_mass[t->a] * x;
+    k->v[t->a].y -= t->bary_a * k->inverse_mass[t->a] * y;
+    k->v[t->b].x -= t->bary_b * k->inverse_mass[t->b] * x;
+    k->v[t->b].y -= t->bary_b * k->inverse_mass[t->b] * y;
+    return true;
+}
+
+void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, float step) {
+    mspringi_contacts *contacts = pairs_of(network);
+    const mspringi_state *s = &network->state;
+    const double h = (double)step;
+    bool any = false;
+    if (!contacts || contacts->constraint_count == 0)
+        return;
+    // Where rows hold by this alone, many pieces of a substep would each give some.
+    const bool is_isolated = mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES;
+    const double given = is_isolated ? 0.0 : MENDED_SHARE * contacts->thickness;
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        const uint32_t slot = slot_of(network, i);
+        k->v[i].x = (mspringi_x_of(s, slot) - k->x[i]) / h;
+        k->v[i].y = (mspringi_y_of(s, slot) - k->y[i]) / h;
+    }
+    for (uint32_t sweep = 0, again = 1; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
+        again = 0;
+        for (uint32_t i = 0; i < contacts->constraint_count; ++i)
+            again |= mend(contacts, &contacts->constraints[i], h, given);
+        any |= again;
+    }
+    for (uint32_t i = 0; i < k->particle_count && any; ++i) {
+        const uint32_t slot = slot_of(network, i);
+        const double vx = k->v[i].x - (mspringi_x_of(s, slot) - k->x[i]) / h;
+        const double vy = k->v[i].y - (mspringi_y_of(s, slot) - k->y[i]) / h;
+        if (vx == 0.0 && vy == 0.0)
+            continue;
+        s->vx[slot] = (float)((double)s->vx[slot] + vx);
+        s->vy[slot] = (float)((double)s->vy[slot] + vy);
+        mspringi_move_by(s, slot, (float)(h * vx), (float)(h * vy));
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------- the check */
+
+// The speed across a row at the start of the substep.
+static double speed_before(const mspringi_contacts *contacts, const mspringi_contact_constraint *t) {
+    return mspringi_normal_speed(t, contacts->nodes.v_start);
+}
+
+// The speed of a row along some shares at the end of the substep, by how far it came.
+static double speed_of(const mspring_network *network, const mspringi_contact_constraint *t, hold *c,
+                       double (*shares)[2], double h) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    const mspringi_state *s = &network->state;
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = node_of(t, i), slot = c->slots[i];
+        const bool is_known = slot == MSPRING_NONE;
+        const double x = is_known ? k->v_start[node].x : (mspringi_x_of(s, slot) - k->x[node]) / h;
+        const double y = is_known ? k->v_start[node].y : (mspringi_y_of(s, slot) - k->y[node]) / h;
+        sum += shares[i][0] * x + shares[i][1] * y;
+    }
+    return sum;
+}
+
+// A row that should push gives energy to what it pushes apart, as long as that is no faster than it should be.
+bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float h) {
+    const mspringi_contacts *contacts = network->contacts;
+    const uint32_t count = count_of(network);
+    double given = 0.0, taken = 0.0, most = 0.0, least = 0.0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const mspringi_contact_constraint *t = &contacts->constraints[i];
+        hold *c = &contacts->implicit_constraints[i];
+        if (t->normal_impulse == 0.0 && t->tangent_impulse == 0.0)
+            continue;
+        const double before = speed_before(contacts, t);
+        const double after = speed_of(network, t, c, c->across, (double)h);
+        const double allowed = t->target_speed > 0.0 ? t->target_speed : 0.0;
+        const double drag = t->collider == MSPRING_NONE ? 0.0 : mspringi_collider_surface_speed(contacts, t);
+        const double slide = c->friction > 0.0 ? speed_of(network, t, c, c->along, (double)h) + drag : 0.0;
+        given += t->normal_impulse * (after - allowed) + t->tangent_impulse * slide;
+        taken += fabs(t->normal_impulse) * (fabs(before) + fabs(after));
+        most = t->normal_impulse > most ? t->normal_impulse : most;
+        least = t->normal_impulse < least ? t->normal_impulse : least;
+    }
+    return given <= GIVEN_SHARE * taken && -least <= GIVEN_SHARE * most;
+}
+
+/* ------------------------------------------------------------------------------------------- what has no row */
+
+// Where a node is at the end of a substep.
+static void end_of_node(const mspring_network *network, uint32_t node, double h, double *x, double *y) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    *x = k->x[node] + h * k->v[node].x;
+    *y = k->y[node] + h * k->v[node].y;
+    if (node < k->particle_count) {
+        *x = mspringi_x_of(&network->state, slot_of(network, node));
+        *y = mspringi_y_of(&network->state, slot_of(network, node));
+    }
+}
+
+static double square_of(const mspringi_closest_point *at) {
+    return at->x * at->x + at->y * at->y;
+}
+
+// Whether a pair did not touch at the start of a substep and is too deep at its end.
+static bool is_thrown(const mspring_network *network, const mspringi_candidate *c, double h) {
+    const mspringi_contacts *contacts = network->contacts;
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const mspringi_pair *pair = &contacts->list[c->pair];
+    const double radius = mspringi_radius_of(contacts, pair->point, pair->edge);
+    const double touches = radius + contacts->thickness, deep = touches - MISSED_SHARE * contacts->thickness;
+    double px, py, ax, ay, bx, by;
+    end_of_node(network, c->p, h, &px, &py);
+    end_of_node(network, c->a, h, &ax, &ay);
+    end_of_node(network, c->b, h, &bx, &by);
+    const mspringi_closest_point end = mspringi_closest_point_on_edge(px, py, ax, ay, bx, by);
+    if (!(square_of(&end) < deep * deep))
+        return false;
+    const mspringi_closest_point start =
+        mspringi_closest_point_on_edge(k->x[c->p], k->y[c->p], k->x[c->a], k->y[c->a], k->x[c->b], k->y[c->b]);
+    return square_of(&start) >= touches * touches;
+}
+
+bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, float h) {
+    const mspringi_contacts *contacts = pairs_of(network);
+    if (!contacts)
+        return false;
+    memset(contacts->is_seen, 0, contacts->candidate_count);
+    for (uint32_t i = 0; i < contacts->constraint_count; ++i)
+        contacts->is_seen[contacts->constraints[i].candidate] = 1;
+    for (uint32_t i = 0; i < contacts->candidate_count; ++i)
+        if (!contacts->is_seen[i] && is_thrown(network, &contacts->candidates[i], (double)h))
+            return true;
+    return false;
+}
+
+/* --------------------------------------------------------------------------------------------- once it is taken */
+
+// What rows gave to particles that are flown past the floor by themselves.
+static void gain(const mspring_network *network, const mspringi_contact_constraint *t, hold *c) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    for (int i = 0; i < 3; ++i) {
+        const uint32_t node = node_of(t, i);
+        if (c->slots[i] == MSPRING_NONE || !mspringi_floor_is_isolated(network, c->slots[i]))
+            continue;
+        k->extra_vx[node] +=
+            k->inverse_mass[node] * (c->across[i][0] * t->normal_impulse + c->along[i][0] * t->tangent_impulse);
+        k->extra_vy[node] +=
+            k->inverse_mass[node] * (c->across[i][1] * t->normal_impulse + c->along[i][1] * t->tangent_impulse);
+    }
+}
+
+void mspringi_implicit_contact_count_impulses(mspring_network *network, float h) {
+    mspringi_contacts *contacts = pairs_of(network);
+    if (!contacts)
+        return;
+    contacts->passed += (double)h;
+    mspringi_contact_count_impulses(network, contacts);
+    if (!network->floor)
+        return;
+    for (uint32_t i = 0; i < contacts->constraint_count; ++i)
+        gain(network, &contacts->constraints[i], &contacts->implicit_constraints[i]);
+    // They move on with what they got in the pieces before, too.
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        k->shift_x[i] += (double)h * k->extra_vx[i];
+        k->shift_y[i] += (double)h * k->extra_vy[i];
+    }
+}
+
+void mspringi_implicit_contact_push_free_particles(const mspring_network *network) {
+    const mspringi_contacts *contacts = pairs_of(network);
+    const mspringi_state *s = &network->state;
+    for (uint32_t i = 0; contacts && i < contacts->nodes.particle_count; ++i) {
+        const mspringi_contact_nodes *k = &contacts->nodes;
+        const uint32_t slot = slot_of(network, i);
+        if (k->extra_vx[i] == 0.0 && k->extra_vy[i] == 0.0)
+            continue;
+        s->vx[slot] = (float)((double)s->vx[slot] + k->extra_vx[i]);
+        s->vy[slot] = (float)((double)s->vy[slot] + k->extra_vy[i]);
+        mspringi_move_by(s, slot, (float)k->shift_x[i], (float)k->shift_y[i]);
+        k->extra_vx[i] = k->extra_vy[i] = k->shift_x[i] = k->shift_y[i] = 0.0;
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------- the work */
+
+// Moments of a component's forces are told from half the way of its mass centre. Those of contact act at the
+// beginning of the way, where bodies that touch have the same lever arms.
+static void account(const mspringi_budget_sums *all, const mspringi_contact_constraint *t, hold *c, int i) {
+    const mspring_network *network = all->network;
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    const uint32_t slot = c->slots[i], node = node_of(t, i);
+    if (slot == MSPRING_NONE || budget->of_slot[slot] == MSPRINGI_NO_COMPONENT)
+        return;
+    mspringi_component_budget *a = &budget->components[budget->of_slot[slot]];
+    const double fx = (c->across[i][0] * t->normal_impulse + c->along[i][0] * t->tangent_impulse) / (double)all->h;
+    const double fy = (c->across[i][1] * t->normal_impulse + c->along[i][1] * t->tangent_impulse) / (double)all->h;
+    const double mass = a->sums[MSPRINGI_MOMENT_MASS];
+    const double x = (double)all->motion.x[slot] + (double)all->motion.low_x[slot] - k->x[node];
+    const double y = (double)all->motion.y[slot] + (double)all->motion.low_y[slot] - k->y[node];
+    const double rx = k->x[node] - a->origin[0] + 0.5 * (a->sums[MSPRINGI_MOMENT_X] / mass - a->x);
+    const double ry = k->y[node] - a->origin[1] + 0.5 * (a->sums[MSPRINGI_MOMENT_Y] / mass - a->y);
+    a->sums[MSPRINGI_EFFECT_X] += fx;
+    a->sums[MSPRINGI_EFFECT_Y] += fy;
+    a->sums[MSPRINGI_EFFECT_TORQUE] += rx * fy - ry * fx;
+    a->sums[MSPRINGI_EFFECT_WORK] += fx * x + fy * y;
+    a->pushed += fx * x + fy * y;
+    a->is_touched = true;
+}
+
+void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all) {
+    const mspringi_contacts *contacts = all->network->contacts;
+    const uint32_t count = count_of(all->network);
+    mspringi_budget *budget = &mspringi_implicit_of(all->network)->budget;
+    for (uint32_t i = 0; i < budget->count; ++i)
+        budget->components[i].pushed = 0.0;
+    for (uint32_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3 && (contacts->constraints[i].normal_impulse != 0.0 ||
+                                  contacts->constraints[i].tangent_impulse != 0.0);
+             ++k)
+            account(all, &contacts->constraints[i], &contacts->implicit_constraints[i], k);
+}

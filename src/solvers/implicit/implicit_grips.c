@@ -1,0 +1,159 @@
+/// Grips in the linear system of an implicit substep.
+///
+/// A grip is a spring and a damper to a place, so it adds k and c to the block of its particle on the diagonal, and
+/// its force where the particle is predicted to the right-hand side. Where that is more than the grip can exert, k
+/// and c are smaller by as much. A force of constant size is so bounded from above by a spring, whatever the way is
+/// (a majorizer, as in Weiszfeld's algorithm), and points to the target. If the particle goes away all the same,
+/// the substep is solved again with the largest force in the direction that was found, and nothing in the matrix.
+/// That force is a part of the one that was found, so it leads to a place between that and where no grip would.
+#include "solvers/implicit/implicit_terms.h"
+
+#include <math.h>
+
+#include "contact/grips.h"
+
+// Whether a grip is in the system. What no spring pulls at is none of its rows; see contact/grip_stage.c.
+static bool is_held(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot) {
+    return mspringi_grip_is_active(network, grip, slot) &&
+           !network->running->ops->is_isolated(network, network->running->object, *slot);
+}
+
+// Where the target is at the end of a substep, or of a piece of it.
+static mspringi_grip_target aim_of(const mspring_network *network, const mspringi_grip *grip, float h) {
+    const mspringi_grips *grips = &network->grips;
+    const double passed = grips->passed + (double)h / (double)grips->h;
+    return mspringi_grip_target_at(network, grip, grips->begin + passed * grips->share);
+}
+
+// What it adds to the diagonal.
+static double weight_of(const mspring_network *network, const mspringi_grip *grip) {
+    const mspringi_system *s = &mspringi_implicit_of(network)->system;
+    const double whole = (double)grip->stiffness + (double)grip->damping * s->damping_rate;
+    return grip->is_bounded ? 0.0 : s->force_scale * (grip->share * whole);
+}
+
+// The force where the particle is predicted, and how much of the grip that lets act.
+static void predict_force(const mspring_network *network, mspringi_grip *grip, uint32_t slot, float h) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_grip_target to = aim_of(network, grip, h);
+    const double k = (double)grip->stiffness, c = (double)grip->damping, most = (double)grip->max_force;
+    const double x = k * (to.x - n->x[slot]) + c * (to.vx - (double)n->velocity.x[slot]);
+    const double y = k * (to.y - n->y[slot]) + c * (to.vy - (double)n->velocity.y[slot]);
+    const double size = sqrt(x * x + y * y);
+    grip->share = size > most ? most / size : 1.0;
+    grip->force_x = grip->share * x;
+    grip->force_y = grip->share * y;
+}
+
+void mspringi_grips_add_terms(mspring_network *network, float h, uint32_t pass) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    uint32_t slot;
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
+        mspringi_grip *grip = &network->grips.list[i];
+        if (!is_held(network, grip, &slot))
+            continue;
+        n->age = 0;
+        grip->is_bounded &= pass > 0;
+        if (!grip->is_bounded)
+            predict_force(network, grip, slot, h);
+        const double weight = weight_of(network, grip), scale = n->system.force_scale;
+        n->system.xx[slot] += (float)weight;
+        n->system.yy[slot] += (float)weight;
+        n->residual.x[slot] += (float)(scale * grip->force_x);
+        n->residual.y[slot] += (float)(scale * grip->force_y);
+    }
+}
+
+bool mspringi_grip_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold) {
+    const double weight = weight_of(network, &network->grips.list[i]);
+    *hold = (mspringi_slot_stiffness){.xx = weight, .yy = weight};
+    return is_held(network, &network->grips.list[i], &hold->slot);
+}
+
+bool mspringi_grips_update_active_set(mspring_network *network, float alpha) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    uint32_t slot;
+    bool again = false;
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
+        mspringi_grip *grip = &network->grips.list[i];
+        if (!is_held(network, grip, &slot) || grip->is_bounded)
+            continue;
+        const double rest_x = n->is_direct ? 0.0 : (double)alpha * (double)n->direction.x[slot];
+        const double rest_y = n->is_direct ? 0.0 : (double)alpha * (double)n->direction.y[slot];
+        const double pull = weight_of(network, grip) / n->system.force_scale; // by a displacement of 1 m
+        grip->force_x -= pull * ((double)n->displacement.x[slot] + rest_x);
+        grip->force_y -= pull * ((double)n->displacement.y[slot] + rest_y);
+        grip->is_bounded = mspringi_grip_bound(grip, &grip->force_x, &grip->force_y);
+        again |= grip->is_bounded;
+    }
+    return again;
+}
+
+void mspringi_grips_count_impulses(mspring_network *network, float h) {
+    uint32_t slot;
+    if (network->grips.count == 0)
+        return;
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
+        mspringi_grip *grip = &network->grips.list[i];
+        if (!is_held(network, grip, &slot))
+            continue;
+        grip->sum_x += (double)h * grip->force_x;
+        grip->sum_y += (double)h * grip->force_y;
+    }
+    network->grips.passed += (double)h / (double)network->grips.h;
+}
+
+/* ----------------------------------------------------------------------------------------------------- the work */
+
+static double place_x(const mspringi_motion *m, uint32_t slot) {
+    return (double)m->x[slot] + (double)m->low_x[slot];
+}
+
+static double place_y(const mspringi_motion *m, uint32_t slot) {
+    return (double)m->y[slot] + (double)m->low_y[slot];
+}
+
+// The energy of a grip's spring that is so long, with the bound of its force.
+static double energy_of(const mspringi_grip *grip, double x, double y) {
+    const double k = (double)grip->stiffness, most = (double)grip->max_force, length = sqrt(x * x + y * y);
+    return k * length <= most ? 0.5 * k * (length * length) : most * (length - 0.5 * most / k);
+}
+
+// What a grip has given by the way of its particle, (x, y): by the damper, and what the spring has lost. Where the
+// target moves, that is measured from the middle of its way, or as force times way if that is more.
+static double work_of(const mspringi_budget_sums *all, const mspringi_grip *grip, uint32_t slot, double x,
+                      double y) {
+    const mspring_network *network = all->network;
+    const double by_end = grip->force_x * x + grip->force_y * y;
+    if (grip->is_bounded)
+        return by_end;
+    const mspringi_grip_target from = aim_of(network, grip, 0.0f), to = aim_of(network, grip, all->h);
+    const double target_x = 0.5 * (from.x + to.x), target_y = 0.5 * (from.y + to.y), c = (double)grip->damping;
+    const double lost =
+        energy_of(grip, target_x - place_x(&all->before, slot), target_y - place_y(&all->before, slot)) -
+        energy_of(grip, target_x - place_x(&all->motion, slot), target_y - place_y(&all->motion, slot));
+    const double braked =
+        grip->share * c * ((to.vx - (double)all->motion.vx[slot]) * x + (to.vy - (double)all->motion.vy[slot]) * y);
+    const bool moves = to.vx != 0.0 || to.vy != 0.0;
+    return moves ? fmax(by_end, lost + braked) : lost + braked;
+}
+
+void mspringi_grips_add_impulses(const mspringi_budget_sums *all) {
+    const mspring_network *network = all->network;
+    mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    uint32_t slot;
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
+        const mspringi_grip *grip = &network->grips.list[i];
+        if (!is_held(network, grip, &slot) || budget->of_slot[slot] == MSPRINGI_NO_COMPONENT)
+            continue;
+        mspringi_component_budget *a = &budget->components[budget->of_slot[slot]];
+        const double from_x = place_x(&all->before, slot), from_y = place_y(&all->before, slot);
+        const double x = place_x(&all->motion, slot), y = place_y(&all->motion, slot);
+        const double rx = 0.5 * (x + from_x) - a->origin[0], ry = 0.5 * (y + from_y) - a->origin[1];
+        a->sums[MSPRINGI_EFFECT_X] += grip->force_x;
+        a->sums[MSPRINGI_EFFECT_Y] += grip->force_y;
+        a->sums[MSPRINGI_EFFECT_TORQUE] += rx * grip->force_y - ry * grip->force_x;
+        a->sums[MSPRINGI_EFFECT_WORK] += work_of(all, grip, slot, x - from_x, y - from_y);
+        a->is_held = true;
+    }
+}

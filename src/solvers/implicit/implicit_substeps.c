@@ -1,0 +1,263 @@
+/// A substep: one linear system, the floor, and the energy budget; or its halves.
+#include "contact/floor.h"
+#include "solvers/implicit/implicit.h"
+#include "solvers/implicit/implicit_terms.h"
+#include "stability/guard.h"
+
+/// Workers meet some forty times in a substep. Where they have to share cores, these become sleeps, and one worker
+/// is faster alone (two workers on cores with a load of 10: 2.3 times, 1800x5). So after a substep with more than
+/// so many sleeps the next ones are taken alone: so many, and twice as many each time, up to so many. The bits are
+/// the same. Few at first, as others take a core away for a moment now and then (with 64 our ship's two workers
+/// were as fast as one, where they are 1.3 to 1.7 times).
+#define BEARABLE_SLEEPS 6
+#define SHORTEST_PATIENCE 4
+#define LONGEST_PATIENCE 1024
+
+// Forget the history if the host has begun a new motion; cut tiles anew where springs broke or pins changed.
+static void follow_edits(mspring_network *network) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    if (n->seen.motion != network->edits.motion)
+        mspringi_implicit_forget(n);
+    mspringi_implicit_update(network, n);
+    n->system.parts = network->parts;
+    n->system.rest_lengths = network->rest_lengths.lengths;
+    n->system.rests_of_block = network->rest_lengths.of_block;
+}
+
+// Find d = displacement + alpha direction. Returns alpha; NaN if numbers overflowed.
+static float solve(const mspringi_implicit_substep *substep, mspringi_team_member *member) {
+    if (!mspringi_implicit_of(substep->network)->is_direct)
+        return mspringi_solve(substep, member);
+    mspringi_team_barrier(member);
+    if (member->index == 0)
+        mspringi_direct_solve(substep->network);
+    mspringi_team_barrier(member);
+    return 0.0f;
+}
+
+// Most times that a substep is solved to find out which particles the floor holds, and which rows of bodies do.
+#define MOST_PASSES 4
+#define MOST_PASSES_OF_BODIES 16
+
+// Add what floor and grips add. Returns false if particles hit the floor.
+static bool add_terms(const mspringi_implicit_substep *substep, uint32_t pass) {
+    mspring_network *network = substep->network;
+    if (network->floor && !mspringi_floor_add_terms(network, substep->h, pass))
+        return false;
+    mspringi_grips_add_terms(network, substep->h, pass);
+    mspringi_implicit_contact_add_terms(network, substep->h);
+    return true;
+}
+
+// Whether a substep in which something hits is one of another integrator than it should be.
+static bool must_begin_anew(const mspringi_implicit *n) {
+    return !n->uses_euler && n->integrator != MSPRING_INTEGRATOR_EULER;
+}
+
+// Returns whether other particles are to be held than were, or otherwise.
+static bool review_terms(mspring_network *network, float alpha, uint32_t pass) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const bool by_floor = network->floor && mspringi_floor_update_active_set(network, alpha, pass);
+    const bool by_bodies = mspringi_implicit_contact_update_active_set(network, alpha, pass);
+    n->restarts_with_euler = by_bodies && must_begin_anew(n) && mspringi_implicit_contact_is_active(network);
+    return mspringi_grips_update_active_set(network, alpha) || by_floor || by_bodies;
+}
+
+// Solve with what floor and grips add. Returns false if the substep is to be begun anew.
+static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_team_member *member, float *alpha) {
+    mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const uint32_t passes = mspringi_implicit_contact_is_near(network) ? MOST_PASSES_OF_BODIES : MOST_PASSES;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+        if (pass > 0) {
+            mspringi_predict(substep, member);
+            mspringi_assemble(substep, member);
+        }
+        mspringi_team_barrier(member);
+        if (member->index == 0)
+            n->restarts_with_euler = !add_terms(substep, pass);
+        mspringi_team_barrier(member);
+        if (n->restarts_with_euler)
+            return false;
+        *alpha = solve(substep, member);
+        mspringi_team_barrier(member);
+        if (member->index == 0)
+            n->must_solve_again = review_terms(network, *alpha, pass);
+        mspringi_team_barrier(member);
+        if (n->restarts_with_euler)
+            return false;
+        if (!n->must_solve_again)
+            break;
+    }
+    if (member->index == 0)
+        mspringi_implicit_contact_store_impulses(network, substep->h);
+    mspringi_team_barrier(member);
+    return true;
+}
+
+// A worker's part of a substep.
+static void run_share(void *argument, uint32_t index, uint32_t worker) {
+    const mspringi_implicit_substep *substep = argument;
+    mspringi_team_member member = {.index = index, .count = substep->workers, .progress = substep->progress};
+    (void)worker;
+    mspringi_predict(substep, &member);
+    mspringi_assemble(substep, &member);
+    float alpha = 0.0f;
+    if (!substep->network->floor && substep->network->grips.count == 0 &&
+        !mspringi_implicit_contact_is_near(substep->network))
+        alpha = solve(substep, &member);
+    else if (!solve_with_terms(substep, &member, &alpha))
+        return;
+    mspringi_correct(substep, &member, alpha);
+}
+
+static void choose_team(mspringi_implicit_substep *substep) {
+    const mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const bool shared = mspringi_slot_count(network) >= MSPRINGI_SMALLEST_SHARED_SLOTS && n->solo_substeps == 0;
+    n->solo_substeps -= n->solo_substeps > 0;
+    substep->workers = shared ? mspringi_tasks_concurrency(network->tasks) : 1;
+    substep->progress = substep->workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
+}
+
+// Whether the workers had a core each.
+static void judge_team(mspringi_implicit *n, uint32_t sleeps) {
+    if (sleeps <= BEARABLE_SLEEPS) {
+        n->solo_backoff = 0;
+        return;
+    }
+    const uint32_t longer = n->solo_backoff > 0 ? 2 * n->solo_backoff : SHORTEST_PATIENCE;
+    n->solo_backoff = longer < LONGEST_PATIENCE ? longer : LONGEST_PATIENCE;
+    n->solo_substeps = n->solo_backoff;
+}
+
+static void run_team(mspringi_implicit_substep *substep) {
+    mspringi_tasks *tasks = substep->progress ? substep->network->tasks : NULL;
+    mspringi_integrator_prepare(substep);
+    mspringi_tasks_run(tasks, substep->workers, run_share, substep);
+}
+
+// Solve a substep, by implicit Euler if it is a piece of another, and let the floor act.
+static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
+    mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks);
+    choose_team(substep);
+    n->is_piece = is_piece;
+    n->uses_euler = mspringi_implicit_contact_begin(network, substep->h);
+    n->restarts_with_euler = false;
+    run_team(substep);
+    if (n->restarts_with_euler) {
+        n->uses_euler = true;
+        run_team(substep);
+    }
+    if (substep->progress)
+        judge_team(n, mspringi_tasks_sleeps(network->tasks) - sleeps);
+    if (network->floor)
+        mspringi_floor_record_impulses(network, substep->h);
+    mspringi_integrator_accept(substep);
+    n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
+    mspringi_implicit_contact_fix_overlaps(network, substep->h);
+    // Last: what lay below the floor would be lifted out of it in the next piece, however short that is.
+    if (network->floor)
+        mspringi_floor_apply_all(network, substep->h);
+}
+
+/// Pieces that may be taken again in a substep, before all that is left of it is taken as it comes. (Heaps need 60.
+/// A tangle of some hundred crossing springs took 8,000 in each, and half a minute for a step.)
+#define MOST_RETAKEN 512u
+
+static void take_halves(mspringi_implicit_substep *substep, uint32_t halvings);
+
+// Take a substep of substep->h. One that gets energy from nowhere is taken again, by implicit Euler and with more
+// iterations, and then in halves.
+static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
+    mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const bool are_near = mspringi_implicit_contact_is_near(network), watches = substep->watches || are_near;
+    const bool may_halve = tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS) &&
+                           n->retry_count < MOST_RETAKEN;
+    if (tries == 0)
+        n->contact_mode = MSPRINGI_CONTACT_WITH_FRICTION;
+    if (watches)
+        mspringi_budget_begin(network);
+    else
+        n->budget.knows_elastic = false;
+    run_substep(substep, tries > 0);
+    const bool is_sound = mspringi_implicit_contact_kept_energy(network, substep->h);
+    const bool is_last = !may_halve && (is_sound || n->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES);
+    const bool is_thrown = may_halve && mspringi_implicit_contact_missed_pairs(network, substep->h);
+    if (!watches || ((is_sound || is_last) && !is_thrown &&
+                     mspringi_budget_end(network, substep->h, substep->base, may_halve))) {
+        mspringi_grips_count_impulses(network, substep->h);
+        mspringi_implicit_contact_count_impulses(network, substep->h);
+        return;
+    }
+    mspringi_budget_undo(network);
+    n->retry_count++;
+    n->history.restarts = MSPRINGI_RECOVERY_SUBSTEPS;
+    n->age = 0;
+    if (!is_sound || !may_halve)
+        n->contact_mode = may_halve ? MSPRINGI_CONTACT_FRICTIONLESS : MSPRINGI_CONTACT_BY_IMPULSES;
+    if (tries == 0 || !may_halve)
+        take_substep(substep, tries + (tries == 0));
+    else
+        take_halves(substep, tries + 1);
+}
+
+static void take_halves(mspringi_implicit_substep *substep, uint32_t tries) {
+    mspring_network *network = substep->network;
+    const float h = substep->h;
+    substep->h = 0.5f * h;
+    for (int half = 0; half < 2; ++half) {
+        mspringi_implicit_of(network)->age = 0; // the coarse matrix is one of another substep
+        if (network->floor)
+            mspringi_floor_save_positions(network, substep->h);
+        take_substep(substep, tries);
+    }
+    mspringi_implicit_of(network)->age = 0;
+    substep->h = h;
+}
+
+// Where particles would hit the floor or other bodies hard, a substep is taken in pieces.
+static void take_pieces(mspringi_implicit_substep *substep) {
+    mspring_network *network = substep->network;
+    const float h = substep->h;
+    const bool has_floor = network->floor != NULL;
+    if (has_floor)
+        mspringi_floor_save_positions(network, h);
+    const uint32_t by_floor = has_floor ? mspringi_floor_count_intervals(network, h) : 1;
+    const uint32_t by_bodies = mspringi_implicit_contact_count_intervals(network, h);
+    const uint32_t pieces = by_floor > by_bodies ? by_floor : by_bodies;
+    substep->h = h / (float)pieces;
+    for (uint32_t i = 0; i < pieces; ++i) {
+        if (pieces > 1 && has_floor)
+            mspringi_floor_save_positions(network, substep->h);
+        take_substep(substep, 0);
+        if (has_floor)
+            mspringi_floor_apply_silt(network, substep->h);
+    }
+    substep->h = h;
+}
+
+void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count) {
+    mspringi_budget_update(network);
+    if (network->floor)
+        mspringi_floor_save_isolated(network);
+    follow_edits(network);
+    if (network->plastic.yields && mspringi_implicit_of(network)->history.h != h)
+        mspringi_implicit_of(network)->age = 0; // a piece of a substep: the coarse matrix is one of another length
+    mspringi_implicit_substep substep = {
+        .network = network, .base = base, .h = h, .watches = mspringi_guard_checks_limit(network->settings.guard)};
+    for (uint32_t i = 0; i < count; ++i) {
+        mspringi_implicit_of(network)->retry_count = 0;
+        if (network->floor || mspringi_implicit_contact_is_near(network))
+            take_pieces(&substep);
+        else
+            take_substep(&substep, 0);
+    }
+    if (!network->floor)
+        return;
+    mspringi_floor_step_isolated(network, h, base, count);
+    mspringi_implicit_contact_push_free_particles(network);
+}

@@ -1,0 +1,116 @@
+/// Passes over all springs for the stability limit: those of lattices and chains by kernels, the others here.
+#include "stability/stability_limit.h"
+
+#include <math.h>
+
+#include "stability/stability.h"
+#include "store/one_way.h"
+#include "store/springs.h"
+
+/// A spring that no kernel takes, as stability_limit.h of the kernels has it.
+typedef struct single {
+    uint32_t base, tip;
+    float nx, ny, across, along, stiffness;
+} single;
+
+static single see(const mspringi_stability_limit *b, const mspringi_spring_values *values) {
+    single s = {.base = values->base, .tip = values->tip};
+    s.along = s.stiffness = b->stiffness * values->stiffness;
+    s.along += b->damping * values->damping;
+    const float dx = b->x[s.tip] - b->x[s.base], dy = b->y[s.tip] - b->y[s.base];
+    const float square = dx * dx + dy * dy;
+    const float inverse = square > MSPRINGI_NO_DIRECTION ? sqrtf(square) * (1.0f / square) : 0.0f;
+    s.nx = dx * inverse;
+    s.ny = dy * inverse;
+    s.across = 1.0f - values->rest_length * inverse;
+    return s;
+}
+
+static single see_single(const mspring_network *network, const mspringi_stability_limit *b, uint32_t irregular) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t at = t->irregular.entry[2 * (size_t)irregular], parts = network->parts;
+    const float *record = network->irregular_springs + (size_t)(at / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts;
+    record += at % MSPRINGI_WIDTH;
+    return see(b, &(mspringi_spring_values){
+                      .base = t->irregular_a[irregular],
+                      .tip = t->irregular_b[irregular],
+                      .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                      .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
+                      .damping = parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] : 0.0f});
+}
+
+// What a spring that only pulls or only pushes counts with beyond what it has.
+static single see_one_way(const mspring_network *network, const mspringi_stability_limit *b, mspring_id spring) {
+    mspringi_spring_values values = mspringi_spring_get(network, spring);
+    values.stiffness *= (float)MSPRINGI_ONE_WAY_SHARE - 1.0f;
+    values.damping = 0.0f;
+    return see(b, &values);
+}
+
+mspringi_stability_limit mspringi_stability_limit_at(const mspring_network *network, double h) {
+    const mspringi_topology *t = &network->topology;
+    return (mspringi_stability_limit){.x = network->state.x,
+                                      .y = network->state.y,
+                                      .lattice_springs = network->lattice_springs,
+                                      .rest_lengths = network->rest_lengths.lengths,
+                                      .chain_springs = network->chain_springs,
+                                      .springs_of_block = network->shared_records.of_block,
+                                      .rests_of_block = network->rest_lengths.of_block,
+                                      .up_of_block = t->up_of_block,
+                                      .lattice_first = t->lattice_first,
+                                      .lattice_blocks = t->lattice_blocks,
+                                      .chain_first = t->chain_first,
+                                      .chain_blocks = t->chain_blocks,
+                                      .is_damped = network->parts > MSPRINGI_DAMPING,
+                                      .stiffness = (float)(h * h),
+                                      .damping = (float)(2.0 * h)};
+}
+
+static void bound(const mspringi_stability_limit *b, single s) {
+    if (!(s.along > 0.0f) || !(s.nx * s.nx + s.ny * s.ny > 0.0f))
+        return;
+    const float both = b->in[0][s.base] + b->in[0][s.tip];
+    const float across = s.across > 0.0f ? s.stiffness * s.across : 0.0f, turned = both * (s.along - across);
+    const float sums[] = {0.5f * (both * (s.along + across)), 0.5f * turned * (s.nx * s.nx - s.ny * s.ny),
+                          turned * s.nx * s.ny};
+    for (size_t sum = 0; sum < 3; ++sum) {
+        b->out[sum][s.base] += sums[sum];
+        b->out[sum][s.tip] += sums[sum];
+    }
+}
+
+static void image(const mspringi_stability_limit *b, single s) {
+    if (!(s.along > 0.0f))
+        return;
+    const float dx = b->in[0][s.tip] - b->in[0][s.base], dy = b->in[1][s.tip] - b->in[1][s.base];
+    const float pull = s.along * (s.nx * dx + s.ny * dy);
+    const float shear = s.stiffness * s.across * (s.ny * dx - s.nx * dy);
+    const float x = pull * s.nx + shear * s.ny, y = pull * s.ny - shear * s.nx;
+    b->out[0][s.base] -= b->inverse_mass[s.base] * x;
+    b->out[1][s.base] -= b->inverse_mass[s.base] * y;
+    b->out[0][s.tip] += b->inverse_mass[s.tip] * x;
+    b->out[1][s.tip] += b->inverse_mass[s.tip] * y;
+}
+
+static void take_others(const mspring_network *network, const mspringi_stability_limit *b,
+                        void (*take)(const mspringi_stability_limit *b, single s)) {
+    for (uint32_t i = 0; i < network->topology.irregular_count; ++i)
+        take(b, see_single(network, b, i));
+    for (mspring_id i = 0; network->one_way.side && i < network->topology.reserve.first_spring; ++i)
+        if (mspringi_side_of(network, i) != 0 && mspringi_spring_exists(network, i))
+            take(b, see_one_way(network, b, i));
+}
+
+void mspringi_stability_limit_bound(const mspring_network *network, const mspringi_stability_limit *b) {
+    network->kernels->bound_lattice(b);
+    network->kernels->bound_chain(b);
+    take_others(network, b, bound);
+    mspringi_areas_bound(network, b);
+}
+
+void mspringi_stability_limit_image(const mspring_network *network, const mspringi_stability_limit *b) {
+    network->kernels->image_lattice(b);
+    network->kernels->image_chain(b);
+    take_others(network, b, image);
+    mspringi_areas_image(network, b);
+}

@@ -1,0 +1,141 @@
+/// Holding and releasing groups.
+#include "step/held_groups.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "store/id_pool.h"
+
+/* ------------------------------------------------------------------------------------------ what they ask for */
+
+static mspring_result refuse(mspring_network *network, const char *what) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "groups of particles need %s", what);
+}
+
+mspring_result mspringi_groups_check_settings(mspring_network *network, const mspring_settings *settings) {
+    if (network->groups.count == 0)
+        return MSPRING_OK;
+    if (settings->guard != MSPRING_GUARD_BOUNDS)
+        return refuse(network, "the guard MSPRING_GUARD_BOUNDS: others judge all of the network");
+    return settings->sleep_speed > 0.0f ? refuse(network, "sleep_speed 0") : MSPRING_OK;
+}
+
+mspring_result mspringi_groups_check_solver(mspring_network *network, const mspring_solver_def *def) {
+    if (network->groups.count == 0)
+        return MSPRING_OK;
+    if (def->solver != MSPRING_SOLVER_EXPLICIT)
+        return refuse(network, "the explicit solver: others solve for all of the network");
+    return def->substeps == MSPRING_SUBSTEPS_AUTO
+               ? refuse(network, "a number of substeps: MSPRING_SUBSTEPS_AUTO follows the stiffest of them")
+               : MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------- holding */
+
+void mspringi_groups_hold(mspring_network *network, uint32_t group) {
+    mspringi_groups *g = &network->groups;
+    const mspringi_state *s = &network->state;
+    if (g->held == 0)
+        memcpy(g->active_inverse_mass, network->inverse_mass,
+               mspringi_slot_count(network) * sizeof *g->active_inverse_mass);
+    for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        g->velocity[2 * (size_t)p] = s->vx[slot];
+        g->velocity[2 * (size_t)p + 1] = s->vy[slot];
+        s->vx[slot] = s->vy[slot] = 0.0f;
+        g->active_inverse_mass[slot] = 0.0f;
+    }
+    g->flags[group] |= MSPRINGI_HELD;
+    g->held++;
+}
+
+void mspringi_groups_release(mspring_network *network, uint32_t group) {
+    mspringi_groups *g = &network->groups;
+    const mspringi_state *s = &network->state;
+    for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        s->vx[slot] = g->velocity[2 * (size_t)p];
+        s->vy[slot] = g->velocity[2 * (size_t)p + 1];
+        g->active_inverse_mass[slot] = network->inverse_mass[slot];
+    }
+    g->flags[group] &= (uint8_t)~MSPRINGI_HELD;
+    g->held--;
+}
+
+// Somebody may have set masses and velocities since.
+void mspringi_groups_begin(mspring_network *network) {
+    mspringi_groups *g = &network->groups;
+    const mspringi_state *s = &network->state;
+    if (g->held == 0)
+        return;
+    memcpy(g->active_inverse_mass, network->inverse_mass,
+           mspringi_slot_count(network) * sizeof *g->active_inverse_mass);
+    for (uint32_t group = 0; group < g->count; ++group)
+        for (mspring_id p = g->first[group]; g->flags[group] & MSPRINGI_HELD && p < g->first[group + 1]; ++p) {
+            const uint32_t slot = network->topology.slot_of_particle[p];
+            s->vx[slot] = s->vy[slot] = g->active_inverse_mass[slot] = 0.0f;
+        }
+}
+
+/* ----------------------------------------------------------------------------------------------------- judging */
+
+// 0, MSPRINGI_SUSPECT or that with MSPRINGI_DOUBTFUL.
+static uint8_t look_at(const mspring_network *network, uint32_t group) {
+    const mspringi_groups *g = &network->groups;
+    const mspringi_state *s = &network->state;
+    const float largest = (float)MSPRING_MAX_COORDINATE, fastest = network->settings.max_speed;
+    uint8_t found = 0;
+    for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        const float place = fmaxf(fabsf(s->x[slot]), fabsf(s->y[slot])),
+                    speed = fmaxf(fabsf(s->vx[slot]), fabsf(s->vy[slot]));
+        const float sum = s->x[slot] + s->y[slot] + s->vx[slot] + s->vy[slot];
+        if (!isfinite(sum))
+            return MSPRINGI_SUSPECT | MSPRINGI_DOUBTFUL;
+        if (place > largest || speed > fastest)
+            found = MSPRINGI_SUSPECT;
+    }
+    return found;
+}
+
+void mspringi_groups_suspect(mspring_network *network) {
+    mspringi_groups *g = &network->groups;
+    for (uint32_t group = 0; group < g->count; ++group)
+        if (!(g->flags[group] & MSPRINGI_HELD))
+            g->flags[group] |= look_at(network, group);
+}
+
+bool mspringi_groups_hold_suspects(mspring_network *network) {
+    mspringi_groups *g = &network->groups;
+    bool any = false;
+    for (uint32_t group = 0; group < g->count; ++group) {
+        if ((g->flags[group] & (MSPRINGI_SUSPECT | MSPRINGI_HELD)) != MSPRINGI_SUSPECT)
+            continue;
+        mspringi_groups_hold(network, group);
+        g->flags[group] |= MSPRINGI_NEWLY;
+        any = true;
+    }
+    return any;
+}
+
+// One that is alone in it has nobody to blame.
+uint32_t mspringi_groups_next_doubtful(const mspring_network *network, uint32_t from) {
+    const mspringi_groups *g = &network->groups;
+    uint32_t suspects = 0;
+    for (uint32_t group = 0; group < g->count; ++group)
+        suspects += (g->flags[group] & MSPRINGI_NEWLY) != 0;
+    while (from < g->count && (suspects < 2 || (g->flags[from] & (MSPRINGI_DOUBTFUL | MSPRINGI_NEWLY)) !=
+                                                   (MSPRINGI_DOUBTFUL | MSPRINGI_NEWLY)))
+        ++from;
+    return from;
+}
+
+void mspringi_groups_end(mspring_network *network, bool is_taken) {
+    mspringi_groups *g = &network->groups;
+    for (uint32_t group = 0; group < g->count; ++group) {
+        const uint8_t flags = g->flags[group];
+        if (!is_taken && flags & MSPRINGI_NEWLY && flags & MSPRINGI_HELD)
+            mspringi_groups_release(network, group);
+        g->flags[group] &= MSPRINGI_HELD;
+    }
+}

@@ -1,0 +1,87 @@
+/// @file snapshot_format.h
+/// How a snapshot lies in memory: little-endian on every machine.
+///
+///   header    56 bytes: magic, version, number of sections, size, contents, prints, counts
+///   sections  each: tag (4 bytes), 0 (4), size (8), that many bytes, and 0 up to a multiple of 8
+///   0 up to a multiple of MSPRINGI_CHECKSUM_UNIT
+///   checksum  8 bytes, of all before
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_SNAPSHOT_FORMAT_H
+#define MSPRINGI_SNAPSHOT_FORMAT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "kernels/kernels.h"
+
+/// Counted up with any change of what is saved, so that no library takes what another means otherwise.
+#define MSPRINGI_SNAPSHOT_VERSION 8u
+#define MSPRINGI_SNAPSHOT_CHECKSUM_BYTES 8
+
+typedef struct mspringi_snapshot_header {
+    uint32_t version, section_count;
+    uint64_t size; ///< of all, with the checksum
+    uint32_t contents;
+    uint32_t particle_count, spring_count;
+    uint64_t topology_fingerprint, parameter_fingerprint;
+} mspringi_snapshot_header;
+#define MSPRINGI_SNAPSHOT_HEADER_BYTES ((size_t)56)
+
+#define MSPRINGI_SECTION_HEADER_BYTES ((size_t)16)
+
+static inline size_t mspringi_round_up(size_t size, size_t unit) {
+    return (size + unit - 1) / unit * unit;
+}
+
+uint64_t mspringi_checksum_value(const mspringi_checksum *checksum);
+
+/// Where the next byte goes. The checksum is taken on the way. One of zeros only counts.
+typedef struct mspringi_writer {
+    size_t counted;
+    uint8_t *at;
+    const uint8_t *unsummed; ///< the unit that is begun
+    mspringi_checksum_fn sum;
+    mspringi_checksum checksum;
+} mspringi_writer;
+
+mspringi_writer mspringi_writer_begin(uint8_t *snapshot, const mspringi_kernels *kernels);
+
+/// Write count values of width bytes (1, 2, 4 or 8).
+void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t width);
+
+/// Write zeros.
+void mspringi_put_zeros(mspringi_writer *to, size_t count);
+
+/// Copy values and turn the bytes of each around.
+void mspringi_copy_reversed(uint8_t *to, const uint8_t *from, size_t size, size_t width);
+
+/// Read values. (Inline, as many are read one by one: called, it took half of loading a frame.)
+/// @return what follows
+static inline const uint8_t *mspringi_get(const uint8_t *from, void *values, size_t count, size_t width) {
+    if (MSPRINGI_BIG_ENDIAN_HOST)
+        mspringi_copy_reversed(values, from, count * width, width);
+    else if (count > 0)
+        memcpy(values, from, count * width);
+    return from + count * width;
+}
+
+/// Values on their way into a snapshot or out of it. A function that hands them on says once what a record consists
+/// of: saving, loading and counting are three ways to call it.
+typedef struct mspringi_io {
+    mspringi_writer *to; ///< NULL: they are read
+    const uint8_t *from;
+    size_t size, left; ///< bytes there are, and of these to be read
+    bool is_short; ///< there were too few: the rest is 0
+} mspringi_io;
+
+void mspringi_hand(mspringi_io *io, void *values, size_t count, size_t width);
+#define MSPRINGI_HAND(io, value) mspringi_hand(io, &(value), 1, sizeof(value))
+
+void mspringi_put_header(mspringi_writer *to, const mspringi_snapshot_header *header);
+/// @return false if this does not begin as snapshots do; at least MSPRINGI_SNAPSHOT_HEADER_BYTES must be there
+bool mspringi_get_header(const uint8_t *from, mspringi_snapshot_header *header);
+
+#endif
