@@ -5,7 +5,7 @@
 set -eu
 cd "$1/src"
 # The first column of the table, in its order: each name in it is a folder.
-ranks=$(sed -n '/^## The folders/,/^## One/s/^| \(`[^|]*\) |.*/\1/p' README.md | tr -d '`,')
+ranks=$(sed -n '/^## The folders/,/^## Equilibrium/s/^| \(`[^|]*\) |.*/\1/p' README.md | tr -d '`,')
 [ -n "$ranks" ] || {
   echo "src/README.md has no table of folders" >&2
   exit 1
