@@ -1,4 +1,4 @@
-/// A topology as a list of plain functions, from the builder to the irregular part.
+/// List of short functions that make a topology from a builder.
 #include "layout/topology.h"
 
 #include <string.h>
@@ -13,7 +13,7 @@ mspring_result mspringi_layout_builder_fail(mspringi_layout_builder *a) {
 
 /* ------------------------------------------------------------------------------------------ the irregular part */
 
-// The attached nodes are in slot order, and each strip's begin a group.
+// Attach nodes to their strips. They are in slot order, and those of each strip begin a slice.
 static void attach_to_strips(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     for (uint32_t i = 0; i < t->irregular.attached_count; ++i) {
@@ -21,7 +21,7 @@ static void attach_to_strips(mspringi_layout_builder *a) {
             continue;
         const uint32_t number = a->sell.strip_of_block[t->irregular.attached_slot[i] / MSPRINGI_WIDTH];
         mspringi_strip *strip = &t->strips[number];
-        // Such a strip is swept with the irregular part, one substep after the other.
+        // This strip is swept with the irregular part, one substep at a time.
         if (number >= t->wavefront_strips)
             t->layer_count = 0;
         if (strip->attached_count++ == 0)
@@ -67,7 +67,7 @@ static mspring_result link_bundles(mspringi_layout_builder *a) {
 
 /* ---------------------------------------------------------------------------------------------------- the slots */
 
-// List the slots without particle, the padding in front and behind among them; runs NULL: count them only.
+// List the runs of empty slots, padding included. runs NULL: only count them.
 static uint32_t find_empty_slots(const mspringi_topology *t, mspringi_empty_run *runs) {
     uint32_t count = 0;
     bool in_run = false;

@@ -1,20 +1,19 @@
 /// @file topology.h
-/// From particles and springs to rows: which particles lie on grids, which on chains, and in which slot.
+/// Topology: the kind of row that each particle lies in, and its slot.
 ///
-/// A slot is an index into the state arrays. Slots come in blocks of MSPRINGI_WIDTH, a block being that many
-/// columns of one row. There are four kinds of row:
+/// A slot is an index into the state arrays. MSPRINGI_WIDTH consecutive slots form a block: as many columns of one
+/// row. There are four kinds of row:
 ///
-///   lattice  one row of a grid; each block has a record of four springs per slot (see mspringi_direction)
-///   chain    chains packed end to end; a record of one spring per slot, to the next slot
-///   irregular particles with other springs; records by slice column, see layout/emit/sell.h. Bundles
-///   (layout/recognise/
-///            equal_components.c) have a row of their own, whose spans have nothing to do with each other
-///   loose    particles without a spring; no record
+///   lattice    one row of a grid; each block has a record of four springs per slot, see mspringi_direction
+///   chain      chains packed end to end; a record of one spring per slot, to the next slot
+///   irregular  particles with other springs; records by slice column, see layout/emit/sell.h. Bundles
+///              (layout/recognise/equal_components.c) have a row of their own, with independent spans
+///   loose      particles without springs; no records
 ///
-/// A spring that lies in no lattice or chain row is left over: the irregular part has it. Irregular particles that
-/// hang on a lattice have an assigned strip: the strip of lattice rows that they are swept with, so that several
-/// substeps can be taken in one pass over the strips. A large irregular part without an assigned strip has layers
-/// for the same purpose, and so have the chains that hang on it: they are part of it.
+/// Springs in no lattice row and no chain row belong to the irregular part. Irregular particles connected to a
+/// lattice have an assigned strip: they are swept with that strip of lattice rows, so that one pass can take
+/// several substeps. A large irregular part without assigned strips is divided into tiers for the same purpose,
+/// together with the chains connected to it.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TOPOLOGY_H
@@ -25,8 +24,8 @@
 #include "builder/builder.h"
 #include "layout/emit/sell.h"
 
-/// The springs of a lattice slot in column c of row r. East, north and north-east start at the slot; south-east
-/// starts one row up, at (c, r + 1), so that all of them reach one column to the right at most and every load is
+/// Springs of the lattice slot in column c of row r. East, north and north-east start at the slot. South-east
+/// starts one row up, at (c, r + 1), so that every spring reaches at most one column to the right and every load is
 /// contiguous.
 typedef enum mspringi_direction {
     MSPRINGI_EAST = 0,       ///< (c, r)     to (c + 1, r)
@@ -36,10 +35,10 @@ typedef enum mspringi_direction {
     MSPRINGI_DIRECTIONS = 4
 } mspringi_direction;
 
-/// Where a spring lies: below lattice_spring_slots a lattice record, (block * MSPRINGI_DIRECTIONS + direction) *
-/// MSPRINGI_WIDTH + lane; below chain_spring_slots a chain record, lattice_spring_slots + block * MSPRINGI_WIDTH +
-/// lane; above that, chain_spring_slots + number among the irregular springs, behind which are those with spare ids
-/// (see layout/emit/spare.h) and the inactive ones. Block counts from the first of its kind.
+/// Index of a spring in the records. Below lattice_spring_slots: (block * MSPRINGI_DIRECTIONS + direction) *
+/// MSPRINGI_WIDTH + lane. Below chain_spring_slots: lattice_spring_slots + block * MSPRINGI_WIDTH + lane. From
+/// there on: chain_spring_slots + index of an irregular spring; spare springs (layout/emit/spare.h) and then
+/// inactive ones follow. Blocks count from the first of their kind.
 typedef uint32_t mspringi_spring_slot;
 
 /// Lanes of the narrowest vector register.
@@ -52,92 +51,90 @@ typedef enum mspringi_row_kind {
     MSPRINGI_ROW_LOOSE      ///< none
 } mspringi_row_kind;
 
-/// Consecutive slots of a row: whole blocks, less quarters at their ends that hold no particle and no spring.
+/// Consecutive slots of a row: whole blocks, trimmed by empty quarters at either end.
 typedef struct mspringi_span {
     uint32_t first_slot, end_slot; ///< multiples of MSPRINGI_QUARTER
-    uint32_t first_record; ///< record of the block of first_slot (lattice, chain), or its group (irregular part)
-    uint32_t record_slots; ///< springs in a record: MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH or MSPRINGI_WIDTH
-    int64_t up;            ///< from a slot to the one above it; 0 if nothing is (lattice)
-    int64_t carry;         ///< from a slot to its place in the carry row (lattice, chain)
+    uint32_t first_record;         ///< record of first_slot's block (lattice, chain), or its slice (irregular part)
+    uint32_t record_slots;         ///< springs in a record: MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH or MSPRINGI_WIDTH
+    int64_t up;                    ///< offset from a slot to the one above; 0 if there is none (lattice)
+    int64_t carry;                 ///< offset from a slot to its slot in the carry row (lattice, chain)
 } mspringi_span;
 
-/// Spans that are swept in one go.
+/// Spans swept in one kernel call.
 typedef struct mspringi_row {
-    mspringi_row_kind kind; ///< of a grid's row with nothing above any of it MSPRINGI_ROW_CHAIN
+    mspringi_row_kind kind; ///< MSPRINGI_ROW_CHAIN also for a grid's row without a row above
     uint32_t first_span, span_count;
 } mspringi_row;
 
-/// Rows that follow each other, with what the irregular part has to do with them.
+/// Consecutive rows, swept together with their irregular nodes.
 typedef struct mspringi_strip {
     uint32_t first_row, row_count;
-    uint32_t first_attached,
-        attached_count;     ///< nodes of the irregular part among the slots of its lattice and chain rows
-    uint32_t assigned_span; ///< span of the irregular part's particles that are swept with it, or MSPRING_NONE
+    uint32_t first_attached, attached_count; ///< irregular nodes in its lattice and chain rows
+    uint32_t assigned_span;                  ///< span of the irregular particles swept with it, or MSPRING_NONE
 } mspringi_strip;
 
 typedef struct mspringi_empty_run {
     uint32_t first_slot, slot_count;
 } mspringi_empty_run;
 
-/// Ids that there can be: those that a network is created with, and behind them spare ones for what is added later.
+/// Range of ids: those of the builder, then spare ones.
 typedef struct mspringi_reserve {
-    uint32_t first_particle, first_spring; ///< first spare ones
-    uint32_t particle_end, spring_end;     ///< behind the last
+    uint32_t first_particle, first_spring; ///< first spare ids
+    uint32_t particle_end, spring_end;     ///< ends of the spare ids
 } mspringi_reserve;
 
 typedef struct mspringi_topology {
-    uint32_t particle_count, spring_count; ///< ids so far
+    uint32_t particle_count, spring_count; ///< ids assigned so far
     mspringi_reserve reserve;
-    uint32_t
-        block_count; ///< with padding in front, behind, and between rows and what follows: lane + 1 can be read
-    uint32_t lattice_first, lattice_blocks; ///< blocks: first, number
+    /// Blocks, with padding in front, behind, and after the chains: lane + 1 of any block can be read.
+    uint32_t block_count;
+    uint32_t lattice_first, lattice_blocks; ///< first block and number of blocks, by kind
     uint32_t chain_first, chain_blocks;
     uint32_t irregular_first, irregular_blocks;
     uint32_t loose_first, loose_blocks;
-    uint32_t spare_first, spare_blocks; ///< behind the loose ones: a slot for each spare particle
+    uint32_t spare_first, spare_blocks; ///< a slot for each spare particle
 
     uint32_t *slot_of_particle;           ///< [reserve.particle_end]
-    uint32_t *particle_of_slot;           ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE where there is none
+    uint32_t *particle_of_slot;           ///< [block_count * MSPRINGI_WIDTH], MSPRING_NONE for empty slots
     mspringi_spring_slot *slot_of_spring; ///< [reserve.spring_end]
-    uint32_t *up_of_block; ///< [lattice_blocks] block above each lattice block; itself if there is none
+    uint32_t *up_of_block;                ///< [lattice_blocks] block above; itself if there is none
 
-    uint32_t *grid_of_row; ///< [lattice_rows] number of the grid of each of the first rows
+    uint32_t *grid_of_row; ///< [lattice_rows] grid of each lattice row
 
-    mspringi_empty_run *empty_runs; ///< slots that hold no particle, and are for none
+    mspringi_empty_run *empty_runs; ///< slots without a particle, spare ones excluded
     uint32_t empty_run_count;
 
     mspringi_spring_slot lattice_spring_slots, chain_spring_slots;
-    uint32_t irregular_count;    ///< springs of the irregular part, and as many more as spare ids have been used
-    uint32_t laid_out_count;     ///< springs of the irregular part
-    uint32_t irregular_capacity; ///< laid_out_count, and a place for each spare spring
-    uint32_t inactive_count;     ///< springs that are broken and that nothing sweeps, see network/survivors.c
+    uint32_t irregular_count;                       ///< irregular springs, and the spare ids in use
+    uint32_t laid_out_count;                        ///< irregular springs
+    uint32_t irregular_capacity;                    ///< laid_out_count, and a spring slot for each spare spring
+    uint32_t inactive_count;                        ///< broken springs outside the layout, see network/survivors.c
     uint32_t *irregular_a, *irregular_b;            ///< [irregular_capacity + inactive_count] slots
-    uint32_t *initial_slots, *initial_spring_slots; ///< of the spare ids, when the topology was made
-    uint32_t initial_particles;                     ///< of these laid out with the others: the first ones
+    uint32_t *initial_slots, *initial_spring_slots; ///< of the spare ids, at creation
+    uint32_t initial_particles;                     ///< spare particles in the layout: the first ones
     mspringi_sell irregular;
 
     mspringi_span *spans;
     uint32_t span_count;
-    mspringi_span *trimmed_spans; ///< the lattices' spans without registers that need not be swept; NULL if a
-                                  ///< register is a block
-    uint32_t *first_trimmed;      ///< [trimmed_count + 1] where those of each span begin
-    uint32_t trimmed_count;       ///< spans that they are of: the lattices'
+    mspringi_span *trimmed_spans; ///< lattice spans without idle registers; NULL if a register is a block
+    uint32_t *first_trimmed;      ///< [trimmed_count + 1] first trimmed span of each span
+    uint32_t trimmed_count;       ///< lattice spans
     mspringi_row *rows;           ///< lattice rows first
     uint32_t row_count;
     mspringi_strip *strips; ///< all rows, in order
     uint32_t strip_count;
-    uint32_t wavefront_rows;   ///< lattice rows, the first ones, that can be swept for several substeps in one pass
-    uint32_t wavefront_strips; ///< the strips that they are in
-    uint32_t skew;             ///< strips by which each substep of such a pass must stay behind the one before
+    uint32_t wavefront_rows;   ///< first lattice rows, swept for several substeps in one pass
+    uint32_t wavefront_strips; ///< strips of these rows
+    uint32_t skew;             ///< strips by which a substep of such a pass trails the one before
     uint32_t carry_blocks;     ///< blocks of the carry row
-    uint32_t
-        bundle_strip; ///< strip of the irregular part's equal components that stand in bundles, or MSPRING_NONE
-    uint32_t bundle_springs; ///< springs of these
+    /// Strip of the bundles, or MSPRING_NONE.
+    uint32_t bundle_strip;
+    uint32_t bundle_springs; ///< springs in bundles
 
-    uint32_t parallel_count; ///< springs that lie beside another
-    uint32_t
-        layer_count; ///< of the irregular row, if it is swept in layers, each with springs to the next ones only
-    uint32_t *layer_blocks; ///< [layer_count + 1] where each begins, counted from the row's first block
+    uint32_t parallel_count; ///< springs parallel to another one
+    /// Tiers of the irregular row, each with springs to its neighbours only; 0 if it has none.
+    uint32_t layer_count;
+    uint32_t *layer_blocks; ///< [layer_count + 1] first block of each, from the row's first block
 
     // For the plan.
     uint32_t lattice_count, lattice_particles, lattice_springs, lattice_rows;
@@ -145,62 +142,60 @@ typedef struct mspringi_topology {
     uint32_t irregular_particles, loose_particles;
 } mspringi_topology;
 
-/// Words of MSPRINGI_WIDTH bits that hold a bit for each place.
+/// Words of MSPRINGI_WIDTH bits, with one bit for each spring slot.
 static inline size_t mspringi_spring_slot_words(const mspringi_topology *topology) {
     return ((size_t)topology->chain_spring_slots + topology->irregular_capacity + topology->inactive_count +
             MSPRINGI_WIDTH - 1) /
            MSPRINGI_WIDTH;
 }
 
-/// Where a spring lies.
+/// Slot of a spring.
 static inline mspringi_spring_slot mspringi_slot_of_spring(const mspringi_topology *topology, mspring_id spring) {
     MSPRINGI_ASSERT(spring < topology->reserve.spring_end);
     return topology->slot_of_spring[spring];
 }
 
-/// Whether the spring in this place is inactive.
+/// True if the spring in this slot is inactive.
 static inline bool mspringi_spring_slot_is_inactive(const mspringi_topology *topology,
                                                     mspringi_spring_slot spring_slot) {
     return spring_slot - topology->chain_spring_slots >= topology->irregular_capacity &&
            spring_slot >= topology->chain_spring_slots;
 }
 
-/// Whether the spring in this place has been laid out with the others: it is neither inactive nor in a spare place.
+/// True if the spring in this slot is part of the layout: neither spare nor inactive.
 static inline bool mspringi_spring_slot_is_laid_out(const mspringi_topology *topology,
                                                     mspringi_spring_slot spring_slot) {
     return spring_slot < topology->chain_spring_slots + topology->laid_out_count;
 }
 
-/// Springs that are swept.
+/// Springs in the layout or in spare slots.
 static inline uint32_t mspringi_swept_count(const mspringi_topology *topology) {
     return topology->spring_count - topology->inactive_count;
 }
 
-/// Lay out what the builder holds, for steps that so many workers share and make with registers of so many lanes
-/// (MSPRINGI_QUARTER or more), with room for spare ids. Lanes make no difference to where anything lies.
+/// Lay out the builder's particles and springs, with room for spare ids. The layout suits `workers` threads and
+/// vector registers of `lanes` lanes (at least MSPRINGI_QUARTER). Slots do not depend on lanes.
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
                                         const mspringi_reserve *reserve, bool has_bundles, uint32_t workers,
                                         uint32_t lanes, mspringi_memory *memory, mspringi_message *message);
-/// The same as a list of plain functions: begin, run one after the other until it is done unless one fails, then
-/// finish; or abandon at any time, which allows NULL. The builder and what memory and message point to must stay;
-/// is_checked: no two of its springs join the same particles. What is finished has places for the builder's springs
-/// only, in an array with room for all ids.
+/// Lay out in short functions: begin, run until *is_done or an error, then finish; or abandon at any time (NULL is
+/// allowed). Builder, memory and message must outlive the layout. is_checked: no two springs are parallel. A
+/// finished topology has spring slots for the builder's springs only, in an array with room for all ids.
 typedef struct mspringi_layout_builder mspringi_layout_builder;
 mspring_result mspringi_topology_begin(const mspring_builder *builder, const mspringi_reserve *reserve,
                                        bool is_checked, bool has_bundles, uint32_t workers, uint32_t lanes,
                                        mspringi_memory *memory, mspringi_message *message,
                                        mspringi_layout_builder **begun);
-/// Run the next function, which takes a millisecond at most for 200,000 springs. How many there are depends neither
-/// on workers nor on lanes.
+/// Run the next function: at most 1 ms for 200,000 springs. Their number depends neither on workers nor on lanes.
 mspring_result mspringi_topology_run(mspringi_layout_builder *begun, bool *is_done);
 void mspringi_topology_finish(mspringi_layout_builder *begun, mspringi_memory *memory, mspringi_topology *topology);
 void mspringi_topology_abandon(mspringi_layout_builder *begun, mspringi_memory *memory);
 
-/// Its arrays.
+/// Arrays of a topology.
 extern const mspringi_array_table mspringi_topology_columns;
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);
 
-/// The two slots that the spring in a place of a lattice joins, in the sense of its direction.
+/// Find both slots of a lattice spring, in its direction.
 static inline void mspringi_lattice_ends(const mspringi_topology *topology, mspringi_spring_slot spring_slot,
                                          uint32_t *base, uint32_t *tip) {
     const uint32_t block = spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH),
@@ -213,7 +208,7 @@ static inline void mspringi_lattice_ends(const mspringi_topology *topology, mspr
            (direction != MSPRINGI_NORTH);
 }
 
-/// The two slots that a spring joins; where the place has a direction, base and tip in its sense.
+/// Find both slots of a spring, in its direction if it has one.
 void mspringi_topology_ends(const mspringi_topology *topology, mspringi_spring_slot spring_slot, uint32_t *base,
                             uint32_t *tip);
 

@@ -1,22 +1,21 @@
-/// Layers: a large irregular part in pieces of which each has springs to the one before and the one behind alone.
+/// Tiers of a large irregular part: each has springs to the one before and the one behind only. Together they form
+/// a rooted level structure (George 1971).
 ///
-/// An irregular part that does not fit the cache is read from memory once for each substep, unless several are
-/// taken in one pass over its layers, each substep one layer behind the one before (a wavefront, as over the strips
-/// of lattices). Layers are whole levels of a search in breadth, from a particle that is as far away as a first
-/// such search could find. A spring or rope from anywhere to anywhere is searched along like any other: there are
-/// fewer layers then.
+/// An irregular part larger than the cache is read from memory once a substep, unless a pass over its tiers takes
+/// several substeps. Each trails the one before by a tier: a wavefront, as over the strips of lattices. Tiers are
+/// whole levels of a breadth-first search. It starts at the farthest particle that a first search finds. Long
+/// springs and ropes are followed like all others, so they lead to fewer tiers.
 #include <string.h>
 
 #include "layout/analysis.h"
 
-/// Particles in a layer, or more: fewer make more calls, and levels of irregular parts that have so many particles
-/// are wider.
+/// Fewest particles in a tier: smaller ones take more calls. Levels of parts that get tiers are wider anyway.
 #define LAYER_PARTICLES 1024
 
-/// With fewer layers than these a wavefront is no more than its front.
+/// With fewer tiers a wavefront is all front.
 #define FEWEST_LAYERS 8
 
-/// Instead of a layer's number.
+/// Marks in place of a tier's number.
 #define IS_UNSEEN (MSPRING_NONE - 1)
 #define IS_SEEN (MSPRING_NONE - 2)
 
@@ -34,7 +33,7 @@ static mspring_result reserve(mspringi_layers *layers, size_t particles, mspring
     return MSPRING_OK;
 }
 
-// Begin a search, with the one particle at the place where the pieces so far end.
+// Begin a search at one particle, behind the components so far.
 static void begin_search(mspringi_layers *layers, uint32_t particle, uint32_t as) {
     layers->queue[layers->piece] = particle;
     layers->layer_of[particle] = as;
@@ -42,7 +41,7 @@ static void begin_search(mspringi_layers *layers, uint32_t particle, uint32_t as
     layers->tail = layers->piece + 1;
 }
 
-// A level is complete: with it the layer, if that has enough.
+// End a level, and its tier if that is large enough.
 static void end_level(mspringi_layers *layers) {
     layers->level_end = layers->tail;
     if (layers->tail - layers->end[layers->count] < LAYER_PARTICLES)
@@ -51,7 +50,7 @@ static void end_level(mspringi_layers *layers) {
     layers->end[layers->count] = layers->tail;
 }
 
-// Queue the neighbours of the queue's first particle that are still what they were before the search.
+// Queue the neighbours of the queue's first particle that still have the mark `before`.
 static void spread(mspringi_layers *layers, const mspringi_graph *graph, uint32_t before, uint32_t as) {
     const uint32_t p = layers->queue[layers->head++];
     for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
@@ -63,7 +62,7 @@ static void spread(mspringi_layers *layers, const mspringi_graph *graph, uint32_
     }
 }
 
-// From a particle that no search has come to, one that is far away; from that the layers of what they are part of.
+// Find a particle far from this one, and from there the tiers of their component.
 static void lay(mspringi_layers *layers, const mspringi_graph *graph, uint32_t particle) {
     begin_search(layers, particle, IS_SEEN);
     while (layers->head < layers->tail)
@@ -78,7 +77,7 @@ static void lay(mspringi_layers *layers, const mspringi_graph *graph, uint32_t p
     layers->piece = layers->tail;
 }
 
-// Particles keep their order within a layer. What was each layer's beginning becomes its end.
+// Sort particles by tier, stably. The begin of each tier becomes its end.
 static void sort(mspringi_layers *layers) {
     for (uint32_t i = 0; i < layers->particle_count; ++i)
         layers->queue[layers->end[layers->layer_of[layers->particles[i]]]++] = layers->particles[i];

@@ -1,13 +1,12 @@
-/// Ropes that hang on lattices: with which strip each of their particles is swept, and where in it.
+/// Ropes on lattices: strips of their particles, and positions in these strips.
 ///
-/// Springs between particles that lie one above the other, sixteen ropes side by side, are computed once and gather
-/// nothing (see layout/emit/sell.h). So a rope goes from the strip that one of its ends hangs on to near the
-/// other's in as few particles as the skew allows, and stays there with all others. What stays is cut into pieces
-/// of two lengths: sixteen of the same length begin and end together, and only springs between pieces, at the first
-/// and the last row, are computed at both ends.
+/// Springs between consecutive slices, with sixteen ropes side by side, are computed once and gather nothing
+/// (layout/emit/sell.h). So a rope crosses from the strip of one end to a strip near the other's in as few
+/// particles as the skew allows, and stays there. The part that stays is cut into pieces of two lengths. Sixteen
+/// pieces of equal length begin and end together, so only springs between pieces are computed at both ends.
 #include "layout/arrange/ropes.h"
 
-/// Particles in pieces.
+/// Particles in a piece.
 #define LONG_PIECE 8
 #define SHORT_PIECE 4
 
@@ -18,8 +17,8 @@ static uint32_t strip_of(const mspringi_strip_assignment *assignment, const mspr
                                 : (assignment->first_row[grid] + grids->row[particle]) / assignment->strip_rows;
 }
 
-// The strip of what a chain's first or last particle hangs on by a spring that is not the chain's own;
-// MSPRING_NONE if there is no such spring.
+// Strip of the particle to which a spring outside the chain connects its first or last one; MSPRING_NONE if there
+// is no such spring.
 static uint32_t strip_at_end(const mspringi_ropes *ropes, uint32_t particle, uint32_t own_spring) {
     const mspringi_graph *graph = ropes->graph;
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i)
@@ -33,8 +32,7 @@ static int64_t clamp(int64_t value, int64_t low, int64_t high) {
     return value < low ? low : value > high ? high : value;
 }
 
-// Give a chain's particles assigned strips that are no more than the skew from each other and from what its ends
-// hang on.
+// Assign strips to a chain's particles, at most the skew apart from each other and from the strips at its ends.
 static void settle(const mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     const uint32_t *particles = ropes->chains->particles, *springs = ropes->chains->springs;
     const int64_t skew = ropes->assignment->skew;
@@ -42,7 +40,7 @@ static void settle(const mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     uint32_t to = strip_at_end(ropes, particles[end - 1], end - begin > 1 ? springs[end - 2] : MSPRING_NONE);
     from = from == MSPRING_NONE ? to : from;
     to = to == MSPRING_NONE ? from : to;
-    // Of each 2 * skew strips one, within reach of all others, so that more ropes meet there.
+    // One strip in 2 * skew is in reach of all others, so that more ropes meet there.
     const int64_t stay = clamp((int64_t)to / (2 * skew) * (2 * skew) + skew, 0, (int64_t)ropes->strip_count - 1);
     for (uint32_t i = begin; i < end; ++i) {
         const int64_t since = skew * (i + 1 - begin), left = skew * (end - i);
@@ -61,7 +59,7 @@ static uint32_t note_piece(mspringi_ropes *ropes, uint32_t *counts, uint32_t beg
     return length;
 }
 
-// Cut what lies in one assigned strip into pieces.
+// Cut particles with the same assigned strip into pieces.
 static void cut(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     while (end - begin >= LONG_PIECE)
         begin += note_piece(ropes, ropes->long_count, begin, LONG_PIECE);
@@ -104,8 +102,8 @@ mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph
     return MSPRING_OK;
 }
 
-// Where a particle of a piece goes among those of its assigned strip, or MSPRING_NONE if it stands nowhere. Long
-// pieces that do not fill all lanes are two short ones each.
+// Position of a piece's particle among those of its strip, or MSPRING_NONE if it is not interleaved. Long pieces
+// that cannot fill all lanes count as two short ones each.
 static uint32_t standing_place(const mspringi_ropes *ropes, uint32_t assigned_strip, uint32_t particle) {
     if (ropes->piece[particle] == 0)
         return MSPRING_NONE;
@@ -135,7 +133,7 @@ static uint32_t standing_count(const mspringi_ropes *ropes, uint32_t assigned_st
     return full * LONG_PIECE + shorts / MSPRINGI_WIDTH * MSPRINGI_WIDTH * SHORT_PIECE;
 }
 
-// Assigned strip by assigned strip.
+// Interleave strip by strip.
 void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_irregular_list *list) {
     if (!ropes->piece)
         return;

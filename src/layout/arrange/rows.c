@@ -1,8 +1,8 @@
-/// Rows of spans, and strips of rows, as they are swept.
+/// Rows of spans, and strips of rows.
 #include "layout/emit/layout_builder.h"
 #include "layout/emit/spare.h"
 
-/// Chains are swept in spans of this many blocks.
+/// Blocks in a span of chains.
 #define LONGEST_CHAIN_SPAN 64
 
 // Append a row without spans.
@@ -26,7 +26,7 @@ static bool store_span(mspringi_layout_builder *a, const mspringi_span *span) {
     return grown;
 }
 
-// Append a span to the last row, or lengthen its last one if this is what that would go on with.
+// Append a span to the last row, or extend the row's last span if they are contiguous.
 static bool append_span(mspringi_layout_builder *a, const mspringi_span *span) {
     mspringi_topology *t = a->topology;
     mspringi_row *row = &t->rows[t->row_count - 1];
@@ -50,12 +50,12 @@ static mspringi_span span_of_blocks(uint32_t first_block, uint32_t block_count, 
                            .record_slots = record_slots};
 }
 
-// From the slots of one block to those of another.
+// Offset from the slots of one block to those of another.
 static int64_t offset_between(uint32_t from_block, uint32_t to_block) {
     return ((int64_t)to_block - (int64_t)from_block) * MSPRINGI_WIDTH;
 }
 
-// Where the span of bundles that begins with a group ends: bundles are whole in it.
+// End of the span of bundles that begins with this slice. Bundles are never split.
 static uint32_t end_of_bundles(const mspringi_layout_builder *a, uint32_t first) {
     uint32_t end = first + 1;
     while (end < a->bundles.slice_count && (end - first < MSPRINGI_BUNDLE_SPAN || !a->bundles.is_first[end]))
@@ -80,7 +80,7 @@ static uint32_t widest_row(const mspringi_layout_builder *a) {
     return widest;
 }
 
-// Append the row of a grid's block, or the block to its row.
+// Append a grid's block to its row. The first block of a row starts it.
 static bool append_lattice_block(mspringi_layout_builder *a, uint32_t i, uint32_t grid, uint32_t number) {
     mspringi_topology *t = a->topology;
     const uint32_t row = mspringi_row_of_key(a->blocks[i]),
@@ -112,7 +112,7 @@ mspring_result mspringi_layout_builder_append_lattice_rows(mspringi_layout_build
     return MSPRING_OK;
 }
 
-// Append the chains. Their spans are no longer than the carry row, which has no force for them.
+// Append the chain row. Its spans are no longer than the carry row, which is empty for them.
 static bool append_chain_row(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     bool ok = t->chain_blocks == 0 || append_row(a, MSPRINGI_ROW_CHAIN);
@@ -121,7 +121,7 @@ static bool append_chain_row(mspringi_layout_builder *a) {
         mspringi_span span =
             span_of_blocks(block, left < LONGEST_CHAIN_SPAN ? left : LONGEST_CHAIN_SPAN, i, MSPRINGI_WIDTH);
         span.carry = offset_between(block, 0);
-        if (left <= LONGEST_CHAIN_SPAN) // what is behind the last particle holds nothing
+        if (left <= LONGEST_CHAIN_SPAN) // slots behind the last particle are empty
             span.end_slot = t->chain_first * MSPRINGI_WIDTH +
                             (a->chains.count + MSPRINGI_QUARTER - 1) / MSPRINGI_QUARTER * MSPRINGI_QUARTER;
         ok = append_span(a, &span);
@@ -155,7 +155,7 @@ static bool append_bundle_row(mspringi_layout_builder *a) {
     return ok;
 }
 
-// Append the span of a strip's own particles of the irregular part, of which the last is in last_slot.
+// Append the span of a strip's assigned particles; the last of them is in last_slot.
 static bool append_home_span(mspringi_layout_builder *a, uint32_t strip, uint32_t last_slot) {
     mspringi_topology *t = a->topology;
     const uint32_t first_block = t->irregular_first + a->placed_blocks, end_block = last_slot / MSPRINGI_WIDTH + 1;
@@ -178,7 +178,7 @@ static bool append_home_spans(mspringi_layout_builder *a) {
     return true;
 }
 
-// The last particle of a layer says where the next one begins.
+// List the tiers. The last particle of each gives the begin of the next.
 static bool list_layers(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     if (a->layers.count == 0)
@@ -195,7 +195,7 @@ static bool list_layers(mspringi_layout_builder *a) {
     return true;
 }
 
-// Cut the rows into strips: those of the wavefront as their assigned strips want it, of the others each on its own.
+// Divide rows into strips: those of the wavefront by assigned strips, every other row on its own.
 mspring_result mspringi_layout_builder_make_strips(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     const uint32_t rows = a->assignment.strip_rows;
@@ -235,7 +235,7 @@ uint32_t *mspringi_layout_builder_list_strips_of_blocks(const mspringi_layout_bu
     return strip_of_block;
 }
 
-// Set a bit of busy for the quarter of a slot.
+// Mark the quarter of a slot.
 static void mark_busy(uint8_t *busy, uint32_t slot) {
     busy[slot / MSPRINGI_WIDTH] |= (uint8_t)(1u << slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER);
 }
@@ -244,10 +244,8 @@ static bool is_busy(const uint8_t *busy, uint32_t slot) {
     return busy[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER & 1;
 }
 
-// Find the quarters at the ends of lattice spans that need not be swept: they hold no particle, own no spring, and
-// no force is handed on through them. The latter two are so if no spring's record, and no slot to the right of a
-// north-east spring, lies in them.
-
+// Mark the quarters of lattice spans that must be swept: with a particle, with a spring's record, or to the right
+// of a north-east spring, whose force they carry. The others at the ends of spans are trimmed.
 void mspringi_layout_builder_mark_busy(mspringi_layout_builder *a) {
     const mspringi_topology *t = a->topology;
     for (uint32_t slot = 0; slot < t->chain_first * MSPRINGI_WIDTH; ++slot)
@@ -270,8 +268,8 @@ void mspringi_layout_builder_trim_spans(mspringi_layout_builder *a) {
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
     for (uint32_t s = 0; s < t->span_count && t->spans[s].first_slot < lattice_end; ++s) {
         mspringi_span *span = &t->spans[s];
-        // Within its first and its last block; one quarter is left of a block that is all idle (and is there for
-        // the slot to its right).
+        // Only within the first and last block. One quarter of an idle block stays: the block exists for the slot
+        // to its right.
         while (span->first_slot % MSPRINGI_WIDTH < MSPRINGI_WIDTH - MSPRINGI_QUARTER &&
                !is_busy(a->busy, span->first_slot))
             span->first_slot += MSPRINGI_QUARTER;
@@ -281,7 +279,7 @@ void mspringi_layout_builder_trim_spans(mspringi_layout_builder *a) {
     }
 }
 
-// Whether a register that is filled from this slot on has a quarter that has to be swept.
+// True if a register at this slot has a quarter that must be swept.
 static bool is_any_busy(const mspringi_layout_builder *a, uint32_t slot) {
     for (uint32_t end = slot + a->lanes; slot < end; slot += MSPRINGI_QUARTER)
         if (is_busy(a->busy, slot))
@@ -289,7 +287,7 @@ static bool is_any_busy(const mspringi_layout_builder *a, uint32_t slot) {
     return false;
 }
 
-// Cut a span into runs of registers that have to be swept. Returns how many there are; cut NULL: only that.
+// Cut a span into runs of registers that must be swept. Return their number; cut NULL: only count them.
 static uint32_t cut_span(const mspringi_layout_builder *a, const mspringi_span *span, mspringi_span *cut) {
     uint32_t count = 0;
     bool in_run = false;
@@ -311,10 +309,9 @@ static uint32_t cut_span(const mspringi_layout_builder *a, const mspringi_span *
     return count;
 }
 
-// Leave out what need not be swept within spans, too: registers that hold nothing, between what lies left and right
-// of a hole. That takes lists of their own, as spans without blocks in common are what all others want. (Of our
-// ship's 13,105 registers of four lanes 848 hold nothing, of 6,926 of eight 110, of 3,683 of sixteen one; a span
-// costs nothing to speak of.)
+// Omit idle registers within spans, too, between both sides of a hole. They need lists of their own: all other code
+// expects spans without common blocks. (Idle registers of our ship: 848 of 13,105 with four lanes, 110 of 6,926
+// with eight, one of 3,683 with sixteen; the cost of a span is negligible.)
 mspring_result mspringi_layout_builder_tighten_spans(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;

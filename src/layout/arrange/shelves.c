@@ -1,37 +1,37 @@
-/// Small grids side by side, as books on shelves, so that their rows fill blocks.
+/// Small grids side by side on shelves, so that their rows fill blocks.
 ///
-/// A piece of ten columns leaves six of sixteen lanes empty, and what blasts have left is of no shape at all. Rows
-/// say nothing of where particles are, so grids that have nothing to do with each other can share them: each is put
-/// where its particles find room between those that stand there and need the fewest new blocks, and all of a shelf
-/// are one grid from then on. Falling height is an old order in which to fill shelves (Coffman, Garey, Johnson and
-/// Tarjan, 1980). (Our ship with nine of ten springs broken: 362 lattice blocks instead of 564 where squares are
-/// left, 423 instead of 604 where blasts have left shapes, of which room farthest left made 501.)
+/// A component of ten columns leaves six of sixteen lanes empty, and blasts leave ragged shapes. Rows do not depend
+/// on positions, so independent grids can share them. Each grid goes where it fits between others with the fewest
+/// new blocks; a shelf is then one grid. Grids are placed by falling height (Coffman, Garey, Johnson and Tarjan
+/// 1980).
+///
+/// Lattice blocks of our ship with nine of ten springs broken: 362 instead of 564 if squares are left, 423 instead
+/// of 604 if blasts have left ragged shapes (501 with the leftmost room).
 #include <string.h>
 
 #include "layout/analysis.h"
 
-/// Widest and highest grid that is put on a shelf, others fill their blocks well enough; and the width of a shelf.
+/// Largest width and height of a grid on a shelf, as larger ones fill their blocks well enough. Width of a shelf.
 #define LARGEST 64
 #define SHELF 256
 #define SHELF_WORDS (SHELF / 64 + 1)
-/// Places that are tried for a grid, from the right end of what the shelf holds: as many times its particles, had
-/// all grids as many.
+/// Positions tried for a grid, from the right end of the shelf: this many per particle of an average grid.
 #define TRIES_PER_PARTICLE 64
 
 typedef struct mspringi_grid_shelver {
     mspringi_grids *grids;
     uint32_t *width, *height; ///< [grids]
-    uint32_t *shelf;          ///< [grids] the first grid on its shelf; itself if it is on none
-    uint32_t *number;         ///< [grids] of the first on a shelf, among what is left
-    uint32_t count;           ///< what is left
+    uint32_t *shelf;          ///< [grids] first grid on the same shelf; itself if it is on none
+    uint32_t *number;         ///< [grids] new number of a shelf's first grid
+    uint32_t count;           ///< grids after shelving
     uint64_t *keys, *scratch; ///< [grids]
     uint32_t *members, *first_member;
-    uint32_t shelf_height, shelf_end;     ///< rows of the shelf, and its columns that anything stands in
-    uint64_t taken[LARGEST][SHELF_WORDS]; ///< cells of the shelf, a bit each
-    uint32_t blocks[LARGEST];             ///< blocks of each of its rows, a bit each
-    uint64_t rows[LARGEST];               ///< cells of a grid
-    uint32_t narrow, narrow_members;      ///< grids that may be put on shelves, and their particles
-    uint32_t first_on_shelf;              ///< the grid that the shelf began with
+    uint32_t shelf_height, shelf_end;     ///< rows of the shelf, and columns in use
+    uint64_t taken[LARGEST][SHELF_WORDS]; ///< cells of the shelf in use, a bit each
+    uint32_t blocks[LARGEST];             ///< blocks in use of each row, a bit each
+    uint64_t rows[LARGEST];               ///< cells of the present grid
+    uint32_t narrow, narrow_members;      ///< grids that fit on shelves, and their particles
+    uint32_t first_on_shelf;              ///< first grid on the present shelf
 } shelver;
 
 static void measure(shelver *s) {
@@ -58,7 +58,7 @@ static void draw(shelver *s, uint32_t grid) {
         s->rows[grids->row[grids->members[m]]] |= (uint64_t)1 << grids->column[grids->members[m]];
 }
 
-// The bits of a shelf's row from a column on.
+// Bits of a shelf's row from a column on.
 static uint64_t bits_from(const uint64_t *row, uint32_t column) {
     const uint32_t word = column / 64, shift = column % 64;
     return row[word] >> shift | (shift > 0 ? row[word + 1] << (64 - shift) : 0);
@@ -71,7 +71,7 @@ static bool has_room(const shelver *s, uint32_t height, uint32_t column, uint32_
     return true;
 }
 
-// How many blocks the grid that is drawn would add to the shelf.
+// Blocks that the present grid would add to the shelf.
 static uint32_t new_blocks(const shelver *s, uint32_t height, uint32_t column, uint32_t row) {
     const uint32_t block = column / MSPRINGI_WIDTH, shift = column % MSPRINGI_WIDTH;
     uint32_t count = 0;
@@ -85,8 +85,8 @@ static uint32_t new_blocks(const shelver *s, uint32_t height, uint32_t column, u
     return count;
 }
 
-// Find room on the shelf for the grid that is drawn, where that takes the fewest new blocks, and farthest left of
-// such. Returns false if there is none.
+// Find room on the shelf for the present grid: with the fewest new blocks, then farthest left. Return false if
+// there is none.
 static bool find_room(const shelver *s, uint32_t grid, uint32_t *column, uint32_t *row) {
     if (s->shelf_height < s->height[grid])
         return false;
@@ -146,7 +146,7 @@ void mspringi_grids_shelve(mspringi_grids *grids, uint32_t first, uint32_t end) 
         put_next(s, (uint32_t)s->keys[i]);
 }
 
-// Make one grid of each shelf: count their members, then have these wander to their shelf's.
+// Make one grid of each shelf, and find where its members begin.
 static void number_shelves(shelver *s) {
     const mspringi_grids *grids = s->grids;
     uint32_t count = 0;
@@ -160,7 +160,7 @@ static void number_shelves(shelver *s) {
     s->count = count;
 }
 
-// Each number's first member wanders to where the next one's begin.
+// Move members to their new grids. The begin of each grid moves to its end.
 static void move_members(const shelver *s) {
     const mspringi_grids *grids = s->grids;
     for (uint32_t m = 0; m < grids->member_count; ++m) {

@@ -1,4 +1,4 @@
-/// Giving every particle a slot and every spring a place.
+/// Slots of particles and springs.
 #include "layout/emit/layout_builder.h"
 #include "layout/emit/spare.h"
 
@@ -63,7 +63,7 @@ mspring_result mspringi_layout_builder_begin_spring_slots(mspringi_layout_builde
     return MSPRING_OK;
 }
 
-// In an array: lattice springs where they are, and the others one after the other.
+// Assign slots to lattice springs by position, to irregular ones in order of ids.
 void mspringi_layout_builder_assign_spring_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_topology *t = a->topology;
     mspringi_spring_slot *spring_slots = a->topology->slot_of_spring;
@@ -75,7 +75,7 @@ void mspringi_layout_builder_assign_spring_slots(mspringi_layout_builder *a, uin
             spring_slots[s] = t->chain_spring_slots + t->irregular_count++;
             continue;
         }
-        // The spring's first particle is in its block, in the one to the right, or in the one above or both.
+        // The spring's first particle is in this block, or in the one to the right, above, or both.
         const uint32_t grid = a->grids.grid_of[a->builder->springs[s].a];
         const uint32_t block =
             mspringi_layout_builder_find_block(a, grid, found.row, found.column / MSPRINGI_WIDTH);

@@ -1,4 +1,4 @@
-/// Sorting of 64-bit keys.
+/// Radix sort of 64-bit keys.
 #include "layout/analysis.h"
 
 #include <string.h>
@@ -22,7 +22,7 @@ void mspringi_sort_keys(uint64_t *keys, uint64_t *scratch, size_t count) {
         differing |= keys[i] ^ keys[0];
     for (uint32_t shift = 0; shift < 64; shift += DIGIT_BITS) {
         if ((differing >> shift & (DIGIT_VALUES - 1)) == 0)
-            continue; // the same everywhere
+            continue; // all keys have this digit in common
         move_by_digit(from, to, count, shift);
         uint64_t *const sorted = to;
         to = from;

@@ -1,33 +1,32 @@
-/// Assigned strips: which lattice rows the particles of ropes and other oddments are swept with.
+/// Assigned strips: lattice rows that the irregular particles connected to them are swept with.
 ///
-/// Strips of rows are swept for several substeps in one pass, each substep some strips behind the one before: the
-/// skew. An irregular spring needs both its ends as they were at the substep before, so its ends must be swept
-/// within skew strips of each other. For a given skew, the highest and lowest strip that each particle can have
-/// follow from the lattice particles that it hangs on (the extensions of a Lipschitz function by McShane, 1934);
-/// halfway between them is a solution too, and the smoothest of the three.
+/// A pass sweeps strips for several substeps, each one `skew` strips behind the one before. An irregular spring
+/// needs both ends as of the substep before, so they must be swept within skew strips of each other. For a given
+/// skew, the connected lattice particles bound the strip of each particle from above and below (extensions of a
+/// Lipschitz function, McShane 1934). The mean of both bounds is a solution, too, and the smoothest of the three.
 #include <string.h>
 
 #include "base/union_find.h"
 #include "layout/analysis.h"
 
-/// Particles in the rows of a strip, about: few strips cost fewer calls, small ones fit the cache more often. Where
-/// something hangs on them, each has oddments to sweep, and few such sweeps are better than many (40 ropes on our
-/// ship, ratio to naive with 512: 4.2 at AVX2, 7.7 at AVX-512; with 2048: 4.5 and 8.3).
+/// Particles in a strip, approximately. Few strips take fewer calls, small ones fit the cache more often. Irregular
+/// particles add a sweep to each strip, so fewer are better: 40 ropes on our ship, speedup over the naive code with
+/// AVX2 and AVX-512: 4.5 and 8.3 with 2048, 4.2 and 7.7 with 512.
 #define BARE_STRIP_PARTICLES 512
 #define STRIP_PARTICLES 2048
 
-/// Particles of lattices from which a step is worth sharing.
+/// Lattice particles from which sharing a step among workers pays.
 #define FEWEST_SHARED 4000
 
-/// Strips that each of several workers should find, so that it need not wait for those before and behind it. With
-/// 24 of them, single rows of 96 x 96, calls took an eighth of the time: two workers came to 0.83 of what two
-/// threads that share nothing do, and with 8, 12 and 16 to 0.9.
+/// Strips of each worker, enough to avoid waiting for its neighbours. On 96 x 96, two workers reach 0.9 of the
+/// speed of two independent threads with 8, 12 and 16, but 0.83 with 24: single rows, where calls take an eighth of
+/// the time.
 #define STRIPS_PER_WORKER 12
 
-/// Particles that are spread from in one go.
+/// Particles visited by one call.
 #define SPREAD_AT_ONCE 4000
 
-/// Whether the rows of a component can be swept together.
+/// Fitness of a component: its rows can be swept together, not with this skew, or not at all.
 enum { FIT, UNFIT_FOR_SKEW, UNFIT };
 
 typedef struct mspringi_strip_assignment_finder {
@@ -35,17 +34,17 @@ typedef struct mspringi_strip_assignment_finder {
     const mspringi_grids *grids;
     const mspringi_chains *chains;
     mspringi_strip_assignment *assignment;
-    uint32_t strip_particles; ///< in a strip, about
+    uint32_t strip_particles; ///< in a strip, approximately
     uint32_t *height;         ///< [grids] rows
-    uint32_t *component;      ///< [particles] parent in a forest; its roots name the components
-    int64_t *balance;         ///< [particles] of roots: lattice particles less chains'
+    uint32_t *component;      ///< [particles] parent in a disjoint-set forest; the roots are the components
+    int64_t *balance;         ///< [particles] of roots: lattice particles less chain particles
     uint8_t *fitness;         ///< [particles] of roots
     uint32_t *attached;       ///< [attached_count] lattice particles with irregular springs
     uint32_t attached_count;
-    uint32_t *low;   ///< [particles] lowest strip that each may have
-    uint32_t *queue; ///< [strips] first particle of each strip, MSPRING_NONE at the end
-    uint32_t *next;  ///< [particles] next particle of the same strip
-    uint32_t strip;  ///< the one that is spread from: those above it have been
+    uint32_t *low;   ///< [particles] lower bound of the strip
+    uint32_t *queue; ///< [strips] first particle in each strip's list, or MSPRING_NONE
+    uint32_t *next;  ///< [particles] next particle in the list
+    uint32_t strip;  ///< present strip; those above it are done
     bool is_spreading, is_upside_down, fits;
     bool is_found;
 } finder;
@@ -61,7 +60,7 @@ void mspringi_strip_assignment_join_springs(mspringi_strip_assignment *assignmen
         mspringi_union_find_join(f->component, builder->springs[s].a, builder->springs[s].b);
 }
 
-// What shares rows fits or fits not as one.
+// Join the members of each grid: shelved grids share rows, so they fit together or not at all.
 static void join_members(const finder *f) {
     const mspringi_grids *grids = f->grids;
     for (uint32_t m = 1; m < grids->member_count; ++m)
@@ -78,7 +77,7 @@ static void weigh(const finder *f, const uint32_t *particles, uint32_t count, in
         f->balance[mspringi_union_find_root(f->component, particles[i])] += weight;
 }
 
-// Components that are more rope than lattice: their chains are better swept as chains.
+// Reject components with more chain than lattice: their chains are cheaper as chain rows.
 void mspringi_strip_assignment_choose_grids(mspringi_strip_assignment *assignment) {
     const finder *f = assignment->finder;
     if (f->is_found)
@@ -101,7 +100,7 @@ static bool has_irregular_spring(const finder *f, uint32_t particle) {
 
 /* ----------------------------------------------------------------------------------------- the assigned strips */
 
-// Number the rows of the grids: first those that are swept together, grid after grid, then the others.
+// Number the rows of all grids, grid after grid: first those that are swept together, then the others.
 static void number_rows(finder *f) {
     mspringi_strip_assignment *assignment = f->assignment;
     const mspringi_grids *grids = f->grids;
@@ -131,8 +130,7 @@ static void enqueue(finder *f, uint32_t particle, uint32_t strip) {
     f->queue[strip] = particle;
 }
 
-// Give the rows of lattices their strips, counted from the last one if it is upside down, and queue what is
-// attached.
+// Set the strips of lattice particles, counted from the last one if upside down, and queue the attached particles.
 static void begin_spreading(finder *f, uint32_t *bounds, bool upside_down) {
     const mspringi_grids *grids = f->grids;
     const mspringi_strip_assignment *assignment = f->assignment;
@@ -150,8 +148,8 @@ static void begin_spreading(finder *f, uint32_t *bounds, bool upside_down) {
             enqueue(f, f->attached[i], bounds[f->attached[i]]);
 }
 
-// From one particle to its neighbours: they have a bound lower by the skew, and the highest bound counts. False:
-// some component does not fit this skew.
+// Bound the neighbours of a particle: its strip less the skew. The highest bound counts. Return false if a
+// component does not fit this skew.
 static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
     const mspringi_graph *graph = f->graph;
     const uint32_t skew = f->assignment->skew, bound = f->strip > skew ? f->strip - skew : 0;
@@ -162,7 +160,7 @@ static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
             bounds[other] = bound;
             enqueue(f, other, bound);
         } else if (bound > bounds[other]) {
-            // Only lattice particles can be lower: all others were reached from the highest first.
+            // Only lattice particles can be lower: all others were first reached from their highest neighbour.
             *fitness_of(f, other) = UNFIT_FOR_SKEW;
             fits = false;
         }
@@ -170,9 +168,9 @@ static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
     return fits;
 }
 
-// Spread from the attached particles along irregular springs, from so many at most. Bounds of particles that are
-// not reached are MSPRING_NONE. A component in which a lattice particle would have to be higher than it is becomes
-// unfit. Strips above f->strip are done; particles are put into queues of lower ones, or of the lowest.
+// Spread bounds from at most `most` particles, starting with the attached ones. Unreached particles keep
+// MSPRING_NONE. A component becomes unfit if a lattice particle would have to lie higher than it does. Strips above
+// f->strip are done: particles are queued in lower strips, or in the lowest one.
 static void spread(finder *f, uint32_t *bounds, uint32_t most) {
     for (uint32_t n = 0; n < most; ++n) {
         while (f->queue[f->strip] == MSPRING_NONE && f->strip > 0)
@@ -186,7 +184,7 @@ static void spread(finder *f, uint32_t *bounds, uint32_t most) {
     }
 }
 
-// Halfway between both bounds.
+// Set assigned strips to the mean of both bounds.
 static void combine(const finder *f) {
     mspringi_strip_assignment *assignment = f->assignment;
     const uint32_t strips = strip_count(assignment);
@@ -197,7 +195,7 @@ static void combine(const finder *f) {
             assignment->assigned_strip[p] = (f->low[p] + (strips - 1 - assignment->assigned_strip[p])) / 2;
 }
 
-// Components that need more than the longest skew are left out; the others get a longer one.
+// Try the next skew for components that do not fit; reject them at the longest one.
 static void relent(const finder *f) {
     const bool is_longest = f->assignment->skew == MSPRINGI_LONGEST_SKEW;
     for (uint32_t p = 0; p < f->graph->builder->particle_count; ++p)
@@ -206,7 +204,7 @@ static void relent(const finder *f) {
     f->assignment->skew += !is_longest;
 }
 
-// Go on with trying a skew: downwards, then upside down, then the verdict.
+// Continue a try: spread downwards, then upside down, then decide.
 static void try_skew(finder *f) {
     uint32_t *const bounds = f->is_upside_down ? f->assignment->assigned_strip : f->low;
     if (!f->is_spreading) {
@@ -228,8 +226,8 @@ static void try_skew(finder *f) {
         relent(f);
 }
 
-// Where nothing hangs on the lattices, strips are as small as the workers want them: no slot depends on it.
-// Assigned strips must not depend on the workers, since the order of slots is that of sums.
+// Make strips as small as the workers need them, if nothing is attached to the lattices. Assigned strips must not
+// depend on the workers, since they order slots and so sums.
 static void number_rows_for(finder *f, uint32_t workers) {
     const uint32_t wanted = f->grids->member_count / workers / STRIPS_PER_WORKER;
     if (workers > 1 && f->grids->member_count >= FEWEST_SHARED && wanted < f->strip_particles)
@@ -281,7 +279,7 @@ void mspringi_strip_assignment_attach(mspringi_strip_assignment *assignment, uin
     }
 }
 
-// What it takes to find assigned strips, if anything hangs on the lattices.
+// Allocate the search, if anything is attached to the lattices.
 mspring_result mspringi_strip_assignment_prepare(mspringi_strip_assignment *assignment, uint32_t workers,
                                                  mspringi_memory *memory, mspringi_message *message) {
     finder *f = assignment->finder;
@@ -296,7 +294,7 @@ mspring_result mspringi_strip_assignment_prepare(mspringi_strip_assignment *assi
     f->fitness = mspringi_alloc(memory, particles, sizeof *f->fitness);
     f->low = mspringi_alloc(memory, particles, sizeof *f->low);
     f->next = mspringi_alloc(memory, particles, sizeof *f->next);
-    // No more rows than particles.
+    // There are no more rows than members.
     f->queue = mspringi_alloc(memory, f->grids->member_count, sizeof *f->queue);
     if (!f->component || !f->balance || !f->fitness || !f->low || !f->next || !f->queue)
         return out_of_memory(f->graph, message);
@@ -315,7 +313,7 @@ static void free_finder(finder *f, mspringi_memory *memory) {
         mspringi_free(memory, blocks[i]);
 }
 
-// At the longest skew each try leaves out a component at least.
+// This ends: at the longest skew, each try rejects at least one component.
 bool mspringi_strip_assignment_try_skews(mspringi_strip_assignment *assignment) {
     if (!assignment->finder->is_found)
         try_skew(assignment->finder);

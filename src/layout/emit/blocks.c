@@ -1,10 +1,10 @@
-/// Which blocks of slots the grids take, and where those of chains and of the irregular part begin.
+/// Blocks of the grids, and the first blocks of chains and irregular part.
 #include "layout/emit/layout_builder.h"
 #include "layout/emit/spare.h"
 
 static bool append_block(mspringi_layout_builder *a, uint32_t row, uint32_t column_block) {
     if (a->block_count > a->grid_begin && a->blocks[a->block_count - 1] == mspringi_make_key(row, column_block))
-        return true; // most particles are in the block of the one before; sorting drops the other repetitions
+        return true; // consecutive particles mostly share a block; sorting drops the remaining duplicates
     void *blocks = a->blocks;
     const bool grown = mspringi_grow(a->memory, &blocks, &a->block_capacity, a->block_count + 1, sizeof *a->blocks);
     a->blocks = blocks;
@@ -13,15 +13,15 @@ static bool append_block(mspringi_layout_builder *a, uint32_t row, uint32_t colu
     return grown;
 }
 
-// List the blocks of one of a grid's particles: its own; those that own a spring; and, where a block's last slot
-// has a north-east spring, the block to its right, through which the spring's force is handed on to the row above,
-// and the block above it, so that the slot to the right of that is the spring's other end.
+// List the blocks of a grid's particle: its own, and those with its springs' records. If a block's last slot has a
+// north-east spring, also list the block to its right, which carries the force to the row above, and the block
+// above, next to whose end lies the spring's other end.
 static bool list_blocks(mspringi_layout_builder *a, uint32_t p) {
     const mspringi_grids *grids = &a->grids;
     const uint32_t column = grids->column[p];
     if (!append_block(a, grids->row[p], column / MSPRINGI_WIDTH))
         return false;
-    // Springs reach one column to the right at most, so only those of a block's first and last slot leave it.
+    // Springs reach at most one column to the right, so only those of a block's first and last slot leave it.
     if ((column + 1) % MSPRINGI_WIDTH > 1)
         return true;
     for (uint32_t i = a->graph.first[p]; i < a->graph.first[p + 1]; ++i) {
@@ -39,7 +39,7 @@ static bool list_blocks(mspringi_layout_builder *a, uint32_t p) {
     return true;
 }
 
-// Of the grid that has been listed and sorted.
+// Drop duplicates of the present grid's sorted blocks.
 static void drop_repeated(mspringi_layout_builder *a) {
     const size_t count = a->block_count - a->grid_begin;
     mspringi_block_key *keys = a->blocks + a->grid_begin;
@@ -129,7 +129,7 @@ mspring_result mspringi_layout_builder_number_the_rest(mspringi_layout_builder *
     t->loose_particles = loose;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->spare_blocks = (mspringi_spare_particles(t) + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    // One of padding: vectors at the end of the rows before reach into it, while other threads move what is behind.
+    // One block of padding: vectors at the end of a chain row reach into it while other threads move the next row.
     t->irregular_first =
         t->chain_first + t->chain_blocks + (t->irregular_blocks + t->loose_blocks + t->spare_blocks > 0);
     t->loose_first = t->irregular_first + t->irregular_blocks;

@@ -1,17 +1,17 @@
-/// The order of the irregular part's particles.
+/// Order of the irregular particles.
 #include <math.h>
 #include <string.h>
 
 #include "layout/analysis.h"
 
-/// Nodes are sorted by degree within windows of about so many: wide enough that groups hold nodes of like degree,
-/// narrow enough that a window's nodes stay near each other. In a random graph of about 8 neighbours the wider
-/// ones, for irregular parts that are swept in layers, fill 0.97 of the slice columns instead of 0.94.
+/// Window in which nodes are sorted by degree: wide enough for slices of similar degree, narrow enough to keep
+/// neighbours together. The wider one, for tiers, fills 0.97 instead of 0.94 of the slice columns of a random graph
+/// of degree 8.
 #define WINDOW 256
 #define LAYERED_WINDOW 512
 #define WIDEST_WINDOW (LAYERED_WINDOW / 2 * 3)
 
-/// Particles with more springs than that are sorted as if they had that many.
+/// Larger degrees sort as this one.
 #define MOST_SPRINGS 0xffffu
 
 /* --------------------------------------------------------------------------------------------------- ordering */
@@ -20,7 +20,7 @@ static uint32_t degree_of(const mspringi_graph *graph, uint32_t particle) {
     return graph->first[particle + 1] - graph->first[particle];
 }
 
-// Spread the lower 16 bits of a number over the even bits of 32.
+// Spread the lower 16 bits over the even bits of 32.
 static uint32_t spread_bits(uint32_t n) {
     n = (n | n << 8) & 0x00ff00ffu;
     n = (n | n << 4) & 0x0f0f0f0fu;
@@ -28,7 +28,7 @@ static uint32_t spread_bits(uint32_t n) {
     return (n | n << 1) & 0x55555555u;
 }
 
-// Where in [low, high] a coordinate is, in 65536 steps.
+// Map a coordinate from [low, high] to 16 bits.
 static uint32_t quantise(double value, double low, double high) {
     return high > low ? (uint32_t)((value - low) / (high - low) * 65535.0) : 0;
 }
@@ -47,8 +47,8 @@ static void order_window_by_degree(uint32_t *particles, uint32_t count, const ms
         particles[i] = before[(uint32_t)keys[i]];
 }
 
-// Particles in the window that begins at a particle without an assigned strip. Those of a layer are about equal, in
-// whole groups.
+// Size of the window that starts at a particle without an assigned strip. Windows of a tier are about equal, in
+// whole slices.
 static uint32_t window_from(const uint32_t *particles, uint32_t at, uint32_t end, const mspringi_layers *layers) {
     if (layers->count == 0)
         return end - at < WINDOW ? end - at : WINDOW;
@@ -86,7 +86,7 @@ mspring_result mspringi_irregular_list_reserve(mspringi_irregular_list *list, co
                : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a web of %u particles", list->count);
 }
 
-// Those with an assigned strip, and behind them those without, with a box around the latter.
+// List particles with an assigned strip, then those without. Find the bounding box of the latter.
 void mspringi_irregular_list_fill(mspringi_irregular_list *list, const mspringi_graph *graph,
                                   const mspringi_strip_assignment *assignment, uint8_t *kinds) {
     const mspringi_particle *all = graph->builder->particles;
@@ -112,7 +112,7 @@ static uint32_t key_of(const mspringi_irregular_list *list, const mspringi_parti
            spread_bits(quantise(particle->y, list->min_y, list->max_y)) << 1;
 }
 
-// Those with an assigned strip are sorted by that, the others by place on the Z-order curve (Morton 1966).
+// Sort by assigned strip; the others by the Z-order curve (Morton 1966).
 void mspringi_irregular_list_sort(mspringi_irregular_list *list, const mspringi_graph *graph,
                                   const mspringi_strip_assignment *assignment) {
     for (uint32_t i = 0; i < list->count; ++i) {

@@ -1,5 +1,5 @@
 /// @file layout_builder.h
-/// A topology that is being made: blocks of grids, then slots and places, then rows, as a list of plain functions.
+/// Layout builder: blocks of grids, then slots and spring slots, then rows, in a list of short functions.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_LAYOUT_BUILDER_H
@@ -8,7 +8,7 @@
 #include "base/passes.h"
 #include "layout/arrange/ropes.h"
 
-/// A block of a grid on its way to a number: row, then column block.
+/// Sort key of a grid's block: row, then column block.
 typedef uint64_t mspringi_block_key;
 
 static inline mspringi_block_key mspringi_make_key(uint32_t row, uint32_t column_block) {
@@ -23,9 +23,9 @@ static inline uint32_t mspringi_column_block_of_key(mspringi_block_key key) {
     return (uint32_t)key;
 }
 
-/// What is needed while a topology is made.
+/// Intermediate results of a layout.
 struct mspringi_layout_builder {
-    mspringi_topology made, *topology; ///< the latter is the former
+    mspringi_topology made, *topology; ///< topology points to made
     mspringi_memory *memory;
     mspringi_message *message;
     const mspring_builder *builder;
@@ -41,27 +41,27 @@ struct mspringi_layout_builder {
     mspringi_ropes ropes;
     mspringi_irregular_list irregular;
     mspringi_layers layers;
-    mspringi_block_key *blocks; ///< of all grids, grid after grid in the order of their rows, each sorted
+    mspringi_block_key *blocks; ///< blocks of all grids, grid after grid in grid_order, each sorted
     size_t block_count, block_capacity;
-    uint32_t grid, grid_members; ///< of grid_order, the one that is being listed, and its members so far
-    size_t grid_begin;           ///< where its blocks begin
+    uint32_t grid, grid_members; ///< index in grid_order of the present grid, and its members listed so far
+    size_t grid_begin;           ///< first block of the present grid
     uint32_t *first_block;       ///< [grids] in blocks
     uint32_t *end_block;         ///< [grids] in blocks
-    uint32_t bundle_row;         ///< number of the row of bundles, if there are any
-    uint32_t placed_blocks;      ///< blocks of the irregular part that have been given to rows
+    uint32_t bundle_row;         ///< row of the bundles, if there are any
+    uint32_t placed_blocks;      ///< blocks of the irregular part that already have a row
     size_t row_capacity, span_capacity;
-    bool is_checked; ///< no two springs join the same particles
+    bool is_checked; ///< no two springs are parallel
     bool has_bundles;
     mspringi_cursor cursor;
-    uint32_t loose;                 ///< the next loose slot
-    uint32_t irregular_spring_slot; ///< of the irregular part's last particle so far
-    uint32_t assigned_blocks;       ///< blocks of the irregular part's particles with an assigned strip
-    uint32_t loner_blocks;          ///< and of all that are in no bundle
-    uint8_t *busy;                  ///< [blocks] bits of quarters that have to be swept
+    uint32_t loose;                 ///< next free slot of a loose particle
+    uint32_t irregular_spring_slot; ///< slot of the last irregular particle so far, from the first one
+    uint32_t assigned_blocks;       ///< blocks of irregular particles with an assigned strip
+    uint32_t loner_blocks;          ///< blocks of irregular particles outside bundles
+    uint8_t *busy;                  ///< [blocks] a bit for each quarter that must be swept
     mspringi_sell_builder sell;
 };
 
-/// Say that there is no memory, and return that.
+/// Report that memory is out; return the error.
 mspring_result mspringi_layout_builder_fail(mspringi_layout_builder *a);
 
 /* Blocks, in this order; a range is of members of grids, in the order of grids. */
@@ -69,14 +69,13 @@ mspring_result mspringi_layout_builder_begin_blocks(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_number_blocks(mspringi_layout_builder *a, uint32_t first, uint32_t end);
 mspring_result mspringi_layout_builder_number_the_rest(mspringi_layout_builder *a);
 
-/// Where the irregular part's particle i goes among its slots: those of each assigned strip and of each layer begin
-/// a block, and so do those without, and bundles.
+/// Slot of irregular particle i, from the slot of the one before. A new assigned strip, tier or bundle starts a
+/// block, and so do the particles without an assigned strip.
 uint32_t mspringi_layout_builder_irregular_slot(const mspringi_layout_builder *a, uint32_t i,
                                                 uint32_t place_before);
-/// Whether a particle lies in the loose row. One that is absent has the first slot, which holds none, or a spare
-/// one.
+/// True if a particle lies in the loose row. An absent one has slot 0, always empty, or a spare slot.
 bool mspringi_layout_builder_is_loose(const mspringi_layout_builder *a, uint32_t particle);
-/// The number of a grid's block among all lattice blocks; MSPRING_NONE if it is not stored.
+/// Number of a grid's block among all lattice blocks; MSPRING_NONE if it is not stored.
 uint32_t mspringi_layout_builder_find_block(const mspringi_layout_builder *a, uint32_t grid, uint32_t row,
                                             uint32_t column_block);
 
@@ -97,7 +96,7 @@ void mspringi_layout_builder_trim_spans(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_tighten_spans(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_make_strips(mspringi_layout_builder *a);
 
-/// The strip of each block that one has, a new array of [block_count]; NULL if there is no memory.
+/// List the strip of each block in a new array of [block_count]; NULL if memory is out.
 uint32_t *mspringi_layout_builder_list_strips_of_blocks(const mspringi_layout_builder *a);
 
 #endif

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-/// Springs of a slice that make an upright slice column worth it, which costs as much as another: each of these
-/// saves two entries of others.
+/// Fewest springs of an interleaved slice column. It costs as much as any other, and each of its springs saves two
+/// entries.
 #define FEWEST_UPRIGHT 8
 
 static mspring_result out_of_memory(const mspringi_sell_builder *w, mspringi_message *message) {
@@ -25,7 +25,7 @@ static void count_degrees(const mspringi_sell_builder *w) {
     }
 }
 
-// Where a spring could stand upright: the slice of its lower node; MSPRING_NONE if it could not.
+// Slice of a spring's lower node if the spring can be interleaved, else MSPRING_NONE.
 static uint32_t upright_group(const mspringi_sell_builder *w, uint32_t spring) {
     const uint32_t a = w->a[spring], b = w->b[spring], low = a < b ? a : b, high = a < b ? b : a;
     if (high - low != MSPRINGI_WIDTH || low < w->first_slot || high - w->first_slot >= w->assigned_count ||
@@ -40,7 +40,7 @@ static bool is_upright(const mspringi_sell_builder *w, uint32_t spring) {
     return slice != MSPRING_NONE && w->upright[slice] >= FEWEST_UPRIGHT;
 }
 
-// What stands upright needs no other slice columns: from then on degrees are without it.
+// Interleave chains. Degrees then exclude their springs, which need no other slice columns.
 static void stand_upright(mspringi_sell_builder *w) {
     for (uint32_t s = 0; s < w->count; ++s) {
         const uint32_t slice = upright_group(w, s);
@@ -56,8 +56,8 @@ static void stand_upright(mspringi_sell_builder *w) {
     }
 }
 
-// The slots of other rows than the irregular part's that have springs, in slot order, each strip's filled up to
-// whole slices: write them to attached_slot, if that is there. Returns how many they are.
+// List the slots with irregular springs in lattice and chain rows, by rising slot; each strip fills whole slices.
+// Write them to attached_slot unless it is NULL. Return their number.
 static uint32_t list_attached(const mspringi_sell_builder *w, uint32_t *attached_slot) {
     uint32_t attached = 0, strip = MSPRING_NONE;
     for (uint32_t slot = 0; slot < w->block_count * MSPRINGI_WIDTH; ++slot) {
@@ -124,7 +124,7 @@ static uint32_t slot_of_node(const mspringi_sell *irregular, uint32_t node, uint
     return node < irregular->own_count ? first_slot + node : irregular->attached_slot[node - irregular->own_count];
 }
 
-// Give every slice the slice columns of its busiest node.
+// Give each slice as many slice columns as its busiest node needs.
 static mspring_result count_slice_columns(const mspringi_sell_builder *w, mspringi_message *message) {
     const mspringi_sell *irregular = w->irregular;
     for (uint32_t slice = 0; slice < irregular->slice_count; ++slice) {
@@ -181,7 +181,8 @@ mspring_result mspringi_sell_size_slices(mspringi_sell_builder *w, mspringi_memo
         result = reserve_links(w, memory, message);
     if (result != MSPRING_OK)
         return result;
-    for (uint32_t slice = 0; slice < irregular->slice_count; ++slice) // every node is its own neighbour at first
+    // Entries without a spring join a node to itself.
+    for (uint32_t slice = 0; slice < irregular->slice_count; ++slice)
         for (uint32_t slice_column = irregular->first_slice_column[slice];
              slice_column < irregular->first_slice_column[slice + 1]; ++slice_column)
             for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
@@ -194,7 +195,7 @@ static uint32_t entry_at(const mspringi_sell *irregular, uint32_t node, uint32_t
            node % MSPRINGI_WIDTH;
 }
 
-// The next free entry of a node.
+// Take the next free entry of a node.
 static uint32_t take_entry(const mspringi_sell_builder *w, uint32_t node) {
     const mspringi_sell *irregular = w->irregular;
     const bool has_upright = irregular->is_interleaved && irregular->is_interleaved[node / MSPRINGI_WIDTH];
@@ -220,8 +221,8 @@ void mspringi_sell_fill(const mspringi_sell_builder *w, uint32_t first, uint32_t
     }
 }
 
-// The slice above of a spring in the first lane of a bundle, counted from the first that is in one; MSPRING_NONE if
-// the spring lies elsewhere. All lanes are alike.
+// Upper slice of a spring in the first lane of a bundle, from the first slice in bundles; MSPRING_NONE for any
+// other spring. All lanes are equal.
 static uint32_t slice_above(const mspringi_sell_builder *w, uint32_t spring) {
     const uint32_t a = w->node_of_slot[w->a[spring]], b = w->node_of_slot[w->b[spring]], above = a < b ? a : b;
     const bool is_in_bundle = above < w->own_count && above / MSPRINGI_WIDTH >= w->irregular->first_bundle;
@@ -236,7 +237,7 @@ void mspringi_sell_link_bundles(const mspringi_sell_builder *w) {
             irregular->first_link[slice_above(w, s) + 1]++;
     for (uint32_t slice = 0; slice < w->bundle_groups; ++slice)
         irregular->first_link[slice + 1] += irregular->first_link[slice];
-    // Each slice's first moves up to its end, which is where the next one begins.
+    // The first link of each slice moves up to its end, the first link of the next one.
     for (uint32_t s = 0; irregular->links && s < w->count; ++s) {
         const uint32_t slice = slice_above(w, s);
         if (slice == MSPRING_NONE)

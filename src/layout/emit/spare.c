@@ -1,9 +1,9 @@
-/// Places and slots for what is added to a network after its topology was made.
+/// Slots and spring slots of particles and springs added to an existing topology.
 #include "layout/emit/spare.h"
 
 #include <string.h>
 
-// Copy an array of old_count elements into a longer one; false: there is no memory for it.
+// Grow an array of old_count elements; false if memory is out.
 static bool lengthen(uint32_t **array, size_t old_count, size_t count, mspringi_memory *memory) {
     uint32_t *longer = mspringi_alloc(memory, count, sizeof *longer);
     if (!longer)

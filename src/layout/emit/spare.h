@@ -1,13 +1,11 @@
 /// @file spare.h
-/// Places and slots for what is added to a network after its topology was made.
+/// Slots and spring slots of particles and springs added to an existing topology.
 ///
-/// Spare particles have a slot each behind the loose ones, and the loose row ends behind the last of them that is
-/// in use. Spare springs have a place each behind the irregular part's springs; nothing in the irregular part
-/// itself is made for them: which slots they pull at is found out when a step begins (see store/added_springs.h).
-/// So an id of the reserve has its slot or place for good, and taking it into use is a matter of some stores.
+/// Each spare particle has a slot behind the loose ones; the loose row ends behind the last one in use. Each spare
+/// spring has a spring slot behind the irregular springs, but no slice column: store/added_springs.h finds its
+/// nodes when a step begins. So every spare id keeps its slot, and using it takes a few stores.
 ///
-/// A topology that is made anew (see network/survivors.c) lays what is in use by then out as if it had always been
-/// there, and has slots and places for all spare ids again.
+/// A new layout (network/survivors.c) treats the ids in use as its own, and has slots for all spare ids again.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SPARE_H
@@ -23,7 +21,7 @@ static inline uint32_t mspringi_spare_springs(const mspringi_topology *t) {
     return t->reserve.spring_end - t->reserve.first_spring;
 }
 
-/// The slot that is kept for a spare particle, and the place that is kept for a spare spring.
+/// Slots reserved for a spare particle and a spare spring.
 static inline uint32_t mspringi_spare_slot(const mspringi_topology *t, mspring_id particle) {
     return t->spare_first * MSPRINGI_WIDTH + (particle - t->reserve.first_particle);
 }
@@ -32,25 +30,25 @@ static inline mspringi_spring_slot mspringi_spare_spring_slot(const mspringi_top
 }
 
 static inline bool mspringi_slot_is_spare(const mspringi_topology *t, uint32_t slot) {
-    return slot / MSPRINGI_WIDTH - t->spare_first < t->spare_blocks; // unsigned: slots before it are not
+    return slot / MSPRINGI_WIDTH - t->spare_first < t->spare_blocks; // unsigned: false also for earlier slots
 }
 
-/// Give the spare springs, and so many inactive ones behind them, room among the irregular springs; then
-/// records behind the irregular part's slice columns, of which one serves both ends; then let the springs with
-/// spare ids that are behind the last have theirs, and note it. On error the topology is still to be destroyed.
+/// Make room for the spare springs, then `inactive` ones, behind the irregular springs; give them records behind
+/// the slice columns, one record for both ends; give unused spare springs their slots, and save the layout. After
+/// an error the topology must still be destroyed.
 mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, mspringi_memory *memory,
                                       mspringi_message *message);
 void mspringi_spare_enter(mspringi_topology *t);
 mspring_result mspringi_spare_keep(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message);
 
-/// Put a particle into the slot that is kept for it, or take a particle out of its slot.
+/// Put a particle into its reserved slot, or take it out of its slot.
 void mspringi_spare_put_particle(mspringi_topology *t, mspring_id particle);
 void mspringi_spare_take_particle(mspringi_topology *t, mspring_id particle);
 
-/// Put a spring into the place that is kept for it.
+/// Put a spring into its reserved slot.
 void mspringi_spare_put_spring(mspringi_topology *t, mspring_id spring, mspring_id a, mspring_id b);
 
-/// Set how many ids are in use, and have the loose row end behind the last slot in use.
+/// Set the ids in use, and end the loose row behind the last used slot.
 void mspringi_spare_count(mspringi_topology *t, uint32_t particle_count, uint32_t spring_count);
 
 #endif

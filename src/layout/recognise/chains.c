@@ -1,11 +1,11 @@
-/// Ropes and other single chains: particles in a row that have no more than two springs each.
+/// Ropes and other chains: paths of particles with at most two springs each.
 #include "layout/analysis.h"
 
 #define SHORTEST_ATTACHED_CHAIN 3
 
-/// Beside bundles, chains on the irregular part that have fewer springs cost less as a part of it: its pull at two
-/// places of another row costs about as much as so many springs take more at both ends. (Those of our ship with one
-/// spring of ten left have 3 on average: 18.7 % of the whole ship's step instead of 19.2.)
+/// In networks with bundles, shorter chains are cheaper as a part of the irregular part that they are connected to:
+/// its pull at both their ends costs as much as this many springs computed twice. (Our ship with one spring of ten
+/// left, 3 in a chain on average: 18.7 % of the whole ship's step instead of 19.2.)
 #define SHORT_IN_WRECK 16
 
 static uint32_t degree(const mspringi_graph *graph, uint32_t particle) {
@@ -16,7 +16,7 @@ static bool may_be_in_chain(const mspringi_graph *graph, uint32_t particle) {
     return degree(graph, particle) == 1 || degree(graph, particle) == 2;
 }
 
-// The spring of particle, other than came_by, that leads on along the chain; MSPRING_NONE at its end.
+// Next spring of a particle along its chain, after came_by; MSPRING_NONE at the end.
 static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint32_t came_by) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
         const uint32_t spring = graph->springs[i];
@@ -27,7 +27,7 @@ static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint
     return MSPRING_NONE;
 }
 
-// Walk from any particle of a chain to one of its ends. In a ring, end where the walk started.
+// Walk from any particle of a chain to one of its ends. In a ring, stop at the start.
 static uint32_t find_end(const mspringi_graph *graph, uint32_t start) {
     uint32_t at = start, came_by = MSPRING_NONE;
     for (;;) {
@@ -41,7 +41,7 @@ static uint32_t find_end(const mspringi_graph *graph, uint32_t start) {
     }
 }
 
-// Whether some spring of the particle leads to one that can be in no chain.
+// True if the particle has a spring to one that can be in no chain.
 static bool is_attached(const mspringi_graph *graph, uint32_t particle) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i)
         if (!may_be_in_chain(graph, mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle)))
@@ -49,7 +49,7 @@ static bool is_attached(const mspringi_graph *graph, uint32_t particle) {
     return false;
 }
 
-// Append the chain that begins at end; take it back if it is too short.
+// Append the chain that begins at end; drop it if it is too short.
 static void append_chain(mspringi_chains *chains, const mspringi_graph *graph, uint32_t end, uint8_t *kinds) {
     const uint32_t begin = chains->count;
     uint8_t *visited = chains->visited;
@@ -102,7 +102,7 @@ mspring_result mspringi_chains_find(mspringi_chains *chains, const mspringi_grap
     return MSPRING_OK;
 }
 
-// Whether some spring of the particle leads to one of the irregular part that has no assigned strip.
+// True if the particle has a spring to an irregular one without an assigned strip.
 static bool hangs_on_irregular_part(const mspringi_graph *graph, const mspringi_strip_assignment *assignment,
                                     const uint8_t *kinds, uint32_t particle) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
@@ -131,7 +131,7 @@ static void keep_chain(mspringi_chains *chains, uint32_t begin, uint32_t end) {
     chains->spring_count += end - begin - 1;
 }
 
-// Chain by chain: what has an assigned strip has it as a whole.
+// Keep or drop whole chains: all particles of one have an assigned strip, or none.
 void mspringi_chains_drop(mspringi_chains *chains, const mspringi_graph *graph,
                           const mspringi_strip_assignment *assignment, bool has_bundles, uint8_t *kinds,
                           mspringi_irregular_list *list) {

@@ -1,22 +1,22 @@
-/// Equal components side by side, sixteen to a bundle: many copies of a robot, a rag doll, a tree.
+/// Equal components side by side, sixteen to a bundle: copies of a robot, a rag doll or a tree.
 ///
-/// Two components are equal if a search from the lowest id of each, which goes through the springs of a particle by
-/// rising id, meets the same graph. So copies that were built by the same calls are found, wherever they lie and
-/// whatever their springs are, without comparing graphs of any order.
+/// Two components are equal if breadth-first searches from the lowest id of each, through incident springs by
+/// rising id, meet the same graph. This finds copies that the same calls built, wherever they lie and whatever
+/// their springs are, without a general test of isomorphism.
 ///
-/// Each shape is laid out alone to see what it consists of. One that is all lattice or all chain stays so: rows of
-/// lattices side by side take as long for 3x3 particles, and 0.7 of the time for 6x6. A spring that is left over
-/// costs as much as twenty of a lattice's where it pulls at rows, and as much as two in a bundle.
+/// One component of each shape is laid out alone. If it is all lattice or all chain, it stays so: lattice rows side
+/// by side take as long as bundles for 3x3 particles, and 0.7 of the time for 6x6. An irregular spring costs as
+/// much as twenty lattice springs if it joins rows, and as two in a bundle.
 #include "base/hash.h"
 #include "layout/emit/layout_builder.h"
 
-/// Of shapes that are partly lattice or chain: springs of these for each that is left over, up to which a
-/// component is better off in a bundle, and copies from which it stands there. With another copy, or one less, bits
-/// must not change in batches of which a host compares robots one by one.
+/// Shapes that are partly lattice or chain: most lattice and chain springs for each irregular one in a bundle, and
+/// fewest copies. A host may compare the robots of a batch one by one, so one copy more or less must not change
+/// bits.
 #define MOST_REGULAR 20
 #define FEWEST_MIXED 64
 
-/// What is known of a particle: nothing, that its component is none of these, or one more than its number there.
+/// State of a particle: not visited, in no such component, or 1 + its number in one.
 #define UNKNOWN 0
 #define IN_OTHER UINT16_MAX
 
@@ -37,7 +37,7 @@ mspring_result mspringi_equal_components_begin(mspringi_equal_components *equal,
     return equal->number ? MSPRING_OK : out_of_memory(equal, message);
 }
 
-// Number all that a particle is joined with, in queue. Returns how many these are; 0 if they are too many.
+// Number the particles of a component, and list them in queue. Return their number, or 0 if there are too many.
 static uint32_t explore(const mspringi_equal_components *equal, const mspringi_graph *graph, uint32_t start,
                         uint32_t *queue) {
     uint32_t count = 1, ends = 0;
@@ -88,7 +88,7 @@ mspring_result mspringi_equal_components_reserve(mspringi_equal_components *equa
                : out_of_memory(equal, message);
 }
 
-// List a component's particles by number. Returns a hash of its graph.
+// List a component's particles by number. Return a hash of its graph.
 static uint64_t list_component(const mspringi_equal_components *equal, const mspringi_graph *graph, uint32_t start,
                                uint32_t *to, uint32_t *count) {
     uint64_t hash = MSPRINGI_HASH_START;
@@ -153,7 +153,7 @@ static uint32_t springs_of(const mspringi_equal_components *equal, const mspring
     return ends / 2;
 }
 
-// A builder of a component alone, with no more than a layout looks at.
+// Fill a builder with one component, as far as the layout reads it.
 static void fill_builder(const mspringi_equal_components *equal, const mspringi_graph *graph, uint32_t component,
                          struct mspring_builder *alone) {
     const uint32_t *particles = equal->in_order + equal->first[component];
@@ -167,7 +167,7 @@ static void fill_builder(const mspringi_equal_components *equal, const mspringi_
     }
 }
 
-// Lay out a component alone, to see how many of its springs are left over.
+// Lay out a component alone and count its irregular springs.
 static mspring_result lay_out(mspringi_layout_builder *a, struct mspring_builder *alone, uint32_t *irregular) {
     const mspringi_reserve reserve = {.particle_end = (uint32_t)alone->particle_count,
                                       .spring_end = (uint32_t)alone->spring_count};
@@ -205,7 +205,7 @@ static bool stand_in_bundles(uint32_t equal, uint32_t springs, uint32_t irregula
     return irregular > 0 && (regular == 0 || (equal >= FEWEST_MIXED && regular <= MOST_REGULAR * irregular));
 }
 
-// Choose whole bundles of the components that have the same hash, and the same shape as the first one.
+// Choose whole bundles from components of equal hash that have the shape of the first one.
 static mspring_result choose(mspringi_layout_builder *a, uint32_t begin, uint32_t end) {
     mspringi_equal_components *equal = &a->equal_components;
     const uint32_t model = component_of(equal->keys[begin]);
@@ -225,7 +225,7 @@ static mspring_result choose(mspringi_layout_builder *a, uint32_t begin, uint32_
     return result;
 }
 
-// Where the components end that have the same hash as this one.
+// End of the components with the same hash as this one.
 static uint32_t end_of_run(const mspringi_equal_components *equal, uint32_t begin) {
     uint32_t end = begin + 1;
     while (end < equal->count && equal->keys[end] >> 32 == equal->keys[begin] >> 32)
@@ -233,7 +233,7 @@ static uint32_t end_of_run(const mspringi_equal_components *equal, uint32_t begi
     return end;
 }
 
-// One shape at a time; those of which there are too few are passed over.
+// Visit one shape at a time. Skip those with too few components.
 mspring_result mspringi_equal_components_choose(mspringi_layout_builder *a) {
     mspringi_equal_components *equal = &a->equal_components;
     if (!equal->in_order)
@@ -248,7 +248,7 @@ mspring_result mspringi_equal_components_choose(mspringi_layout_builder *a) {
     return choose(a, begin, end);
 }
 
-// Put a bundle of chosen components behind the others.
+// Append a bundle of chosen components.
 static void stand(mspringi_layout_builder *a, const uint32_t *chosen) {
     mspringi_bundles *bundles = &a->bundles;
     const uint32_t size = size_of(&a->equal_components, chosen[0]);
@@ -262,7 +262,7 @@ static void stand(mspringi_layout_builder *a, const uint32_t *chosen) {
     }
 }
 
-// Of the components that are left of the chosen shapes.
+// Set the kind of the components that share a chosen shape but fill no bundle.
 static void mark_left(mspringi_layout_builder *a, mspringi_row_kind kind) {
     const mspringi_equal_components *equal = &a->equal_components;
     for (uint32_t i = equal->count - equal->left_count; i < equal->count; ++i)

@@ -1,4 +1,4 @@
-/// Springs by particle, and those that lie beside another.
+/// Incident springs of particles, and parallel springs.
 #include "layout/analysis.h"
 
 static mspring_result reserve(mspringi_graph *graph, bool is_checked, mspringi_memory *memory,
@@ -15,8 +15,8 @@ static mspring_result reserve(mspringi_graph *graph, bool is_checked, mspringi_m
     return MSPRING_OK;
 }
 
-// Counting sort: first[p + 2] counts, then becomes the place to write the next spring of p at, so that in the end
-// first[p + 1] is where those of p end.
+// Counting sort: first[p + 2] counts, then first[p + 1] is the index of p's next spring, at last the end of p's
+// springs.
 static void sort_springs(mspringi_graph *graph) {
     const mspring_builder *builder = graph->builder;
     const uint32_t springs = (uint32_t)builder->spring_count;
@@ -36,7 +36,7 @@ static bool is_one_way(const mspringi_spring *spring) {
     return spring->flags & MSPRINGI_ONE_WAY_FLAGS;
 }
 
-// The later of two springs that join the same particles.
+// Mark the later of two parallel springs.
 static mspring_result note_second(mspringi_graph *graph, uint32_t spring, mspringi_memory *memory,
                                   mspringi_message *message) {
     const size_t springs = graph->builder->spring_count;
@@ -49,8 +49,8 @@ static mspring_result note_second(mspringi_graph *graph, uint32_t spring, msprin
     return MSPRING_OK;
 }
 
-// Each particle's neighbours with higher ids are stamped with the spring that leads there, and a stamp that is
-// there already names the first of the two: the one that acts both ways, if there is one.
+// Stamp each particle's neighbours of higher id with the spring to them. An existing stamp names a parallel spring,
+// preferably one that acts in both directions.
 static mspring_result check(mspringi_graph *graph, mspringi_memory *memory, mspringi_message *message) {
     const mspring_builder *builder = graph->builder;
     uint32_t *stamp_of = graph->stamp_of, *spring_to = graph->spring_to;
@@ -76,7 +76,7 @@ static mspring_result check(mspringi_graph *graph, mspringi_memory *memory, mspr
     return MSPRING_OK;
 }
 
-// What is recognised has one spring between two particles.
+// Drop parallel springs: grids and chains have one spring between two particles.
 static void drop_seconds(mspringi_graph *graph) {
     uint32_t kept = 0, begin = 0;
     for (size_t p = 0; p < graph->builder->particle_count; ++p) {

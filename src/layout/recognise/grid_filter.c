@@ -1,39 +1,40 @@
-/// Sheets that only look like grids: meshes whose particles lie near the nodes of one, but joined otherwise or too
-/// far off for all of it to be found. Parts of them are, and what is left ties these together and to themselves.
+/// Filter of grids that cost more than they save. Some meshes resemble grids: their particles lie near lattice
+/// nodes, but have other springs, or lie too far off for one grid. Only parts are recognised, tied together by
+/// irregular springs.
 ///
-/// An irregular spring that pulls at rows costs about five times as much as one among irregular particles, two or
-/// three of those in rows. Where there are many, the whole piece is cheaper as an irregular part.
+/// An irregular spring to lattice rows costs about five times as much as one between irregular particles, and that
+/// one as much as two or three in rows. If there are many, the whole component is cheaper as an irregular part.
 #include <string.h>
 
 #include "base/union_find.h"
 #include "layout/analysis.h"
 
-/// Members of a piece's grids from which it is worth looking at.
+/// Fewest members of a component's grids worth a check.
 #define FEWEST_MEMBERS 1000
 
-/// A piece's grids are given up if there is an irregular spring for this many inside of them. (Of sheets with 8 to
-/// 11 % irregular springs each spring took 0.58 to 0.86 times as long as it would in an irregular part, with 31 to
-/// 46 % 1.3 to 1.65 times.)
+/// Drop a component's grids if there is an irregular spring for this many within them. (A spring of sheets with 8
+/// to 11 % irregular springs takes 0.58 to 0.86 times as long as in an irregular part; with 31 to 46 %, 1.3 to 1.65
+/// times.)
 #define INNER_PER_OUTER 4
 
-/// The same for pieces that are so large, and in several grids, that strips tied together are too far apart to be
-/// swept for several substeps in one pass; and for springs from grid to grid of these alone. (A sheet with 10 %
-/// irregular springs, hardly any from grid to grid, took 0.8 times as long as it would in an irregular part; with
-/// as many, or more, and a third of them from grid to grid it took 2 to 3 times as long.)
+/// Bounds for large components of several grids, whose strips are tied too far apart for passes of several
+/// substeps; and for springs between these grids alone. (A sheet with 10 % irregular springs, few of them between
+/// grids, takes 0.8 times as long as in an irregular part; with at least as many, a third of them between grids, 2
+/// to 3 times.)
 #define LARGE_INNER_PER_OUTER 8
 #define LARGE_INNER_PER_ACROSS 32
 
-/// Particles of an irregular part that would get layers, for each member of the grids that it hangs on: these have
-/// too few strips for so large an irregular part.
+/// Drop grids connected to an irregular part that would get tiers, if it has more particles for each grid member:
+/// the grids have too few strips for it.
 #define IRREGULAR_PER_MEMBER 4
 
-/// What a piece of the network has, counted at the root of its tree.
+/// Sums of a component, at its root.
 struct mspringi_grid_cost {
-    uint32_t inner;     ///< springs that the grids' rows have
-    uint32_t outer;     ///< others, of their particles, but to chains
-    uint32_t across;    ///< of these from grid to grid
+    uint32_t inner;     ///< springs in lattice rows
+    uint32_t outer;     ///< other springs of grid members, except to chains
+    uint32_t across;    ///< springs of these between grids
     uint32_t members;   ///< particles in grids
-    uint32_t irregular; ///< in the irregular part
+    uint32_t irregular; ///< irregular particles
 };
 
 typedef enum spring_kind { ELSEWHERE, INNER, OUTER, ACROSS } spring_kind;
@@ -132,7 +133,7 @@ static bool is_small_irregular_part(const struct mspringi_grid_cost *sums) {
            (uint64_t)sums->members * IRREGULAR_PER_MEMBER < sums->irregular;
 }
 
-// Give up a grid: its particles become loose. Or keep it, with a new number.
+// Drop a grid, so that its particles become loose, or keep it with a new number.
 static void move_grid(mspringi_grid_filter *filter, mspringi_grids *grids, uint8_t *kinds, uint32_t end) {
     const struct mspringi_grid_cost *sums = sums_of(filter, grids->members[filter->next_member]);
     const bool gives_up = is_tied_together(sums) || is_small_irregular_part(sums);

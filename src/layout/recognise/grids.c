@@ -1,10 +1,10 @@
-/// Grids, found from positions and springs whatever the order in which they were added.
+/// Search for grids by positions and springs, whatever the order of ids.
 ///
-/// From a seed particle the search follows springs: the way from one end of a spring to the other says, in the
-/// frame of the first, which cell the other is in. A grid is kept if sweeping its rows costs less than handling its
-/// springs one by one. There are three searches, each among what those before left: for upright grids that have
-/// nearly all springs of their particles, for such that lie at any angle, are oblong or bend, and for upright ones
-/// that have half of the springs.
+/// A search follows springs from a seed. The vector along a spring, in the lattice basis of one end, gives the cell
+/// of the other end. A grid is kept if sweeping its rows costs less than computing its springs one by one. There
+/// are three searches, each among the particles that the ones before left: for axis-aligned grids with nearly all
+/// springs of their particles, for curved ones at any angle and with oblong cells, and for axis-aligned ones with
+/// half of the springs.
 #include "layout/analysis.h"
 #include "layout/recognise/lattice_basis.h"
 
@@ -12,53 +12,53 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// How far a spring may lead across an axis, as a fraction of how far along it, to lie along it.
+/// Largest slope of a spring along an axis.
 #define AXIAL_TOLERANCE 0.3f
 
-/// A grid is kept if one slot in this many of its records holds a spring: a spring on its own costs about that
-/// many times a slot of a swept record (measured: 6 to 12, by instruction set).
+/// A grid is kept if a spring lies in at least one in this many slots of its records. An irregular spring costs as
+/// much as 6 to 12 slots, by instruction set.
 #define SLOTS_PER_SPRING 6
 
-/// A grid is kept by the first two searches if one in this many of its particles' springs, or fewer, is not between
-/// neighbouring cells. (Sheets of triangles, 200 x 200, whose particles are off by up to a fraction of a cell, in
-/// ns for each spring and substep at AVX-512: 0.2 off, in upright grids 0.9, in bent ones 0.6; 0.3 off,
-/// upright 1.2, bent, in 15 pieces, 4.3; a ring of 36 x 6 1.9 and 0.7.)
+/// The first two searches keep a grid if at most one in this many springs of its particles joins no neighbouring
+/// cells. (Sheets of 200 x 200 triangles, displaced by up to a fraction of a cell, ns per spring and substep with
+/// AVX-512: by 0.2, aligned 0.9, curved 0.6; by 0.3, aligned 1.2, curved 4.3, in 15 parts; a ring of 36 x 6: 1.9
+/// and 0.7.)
 #define SPRINGS_PER_OUTER_UPRIGHT 64
 #define SPRINGS_PER_OUTER_BENT 16
 
-/// A particle with more springs is no seed of a bent grid: its neighbours have eight, and some ropes.
+/// Most springs of a curved grid's seed: to eight neighbours, and some ropes.
 #define MOST_SEED_SPRINGS 16
 
 typedef enum grid_search { FOR_UPRIGHT, FOR_BENT, FOR_PARTS } grid_search;
 
 /// Springs of a grid's particles.
 typedef struct grid_springs {
-    uint32_t inner_ends; ///< ends of those between neighbouring cells
-    uint32_t ends;       ///< ends of all that are at one of its particles
+    uint32_t inner_ends; ///< ends of springs between neighbouring cells
+    uint32_t ends;       ///< ends of all springs of its particles
 } grid_springs;
 
-/// Grids from grids->count on are candidates: found by the search that is under way, and not judged yet.
+/// Search for grids. Grids from grids->count on are candidates: found by the present search, not yet judged.
 typedef struct mspringi_grid_finder {
     const mspringi_graph *graph;
     mspringi_grids *grids;
     uint8_t *kinds;
     grid_search search;
-    uint8_t *given_up; ///< [particles] 1 + the last search that had it in a grid which was not worth it
+    uint8_t *given_up; ///< [particles] 1 + last search that rejected their grid
     int32_t *column;   ///< [particles] relative to the seed
     int32_t *row;      ///< [particles]
     uint32_t *cell;    ///< hash table of the candidates' particles
     size_t cell_mask;
     uint64_t *keys, *scratch; ///< [particles]
-    mspringi_grid_step
-        *steps[2]; ///< [particles] of frames, in the memory of keys and scratch, which are wanted later
-    mspringi_lattice_basis upright; ///< the frame of all particles of an upright grid
+    /// [particles] Lattice bases, in the memory of keys and scratch, which are needed later.
+    mspringi_grid_step *steps[2];
+    mspringi_lattice_basis upright; ///< basis of an axis-aligned grid
     grid_springs *springs;          ///< [candidates]
 
     uint32_t first, end;         ///< candidates
-    uint32_t seed;               ///< the particle to be looked at next
-    uint32_t next_member;        ///< members from here on have not been gone through
-    int32_t min_column, min_row; ///< of the grid that is judged
-    uint32_t blocks, runs;       ///< of blocks, in one orientation
+    uint32_t seed;               ///< next particle to try as a seed
+    uint32_t next_member;        ///< first member not yet visited
+    int32_t min_column, min_row; ///< of the grid being judged
+    uint32_t blocks, runs;       ///< blocks, and runs of consecutive ones, in one orientation
 } finder;
 
 static mspring_result out_of_memory(const mspringi_graph *graph, mspringi_message *message) {
@@ -70,14 +70,14 @@ static mspring_result out_of_memory(const mspringi_graph *graph, mspringi_messag
 
 static size_t hash_cell(uint32_t grid, int32_t column, int32_t row, size_t mask) {
     uint64_t key = (uint64_t)(uint32_t)column << 32 | (uint32_t)row;
-    key ^= grid * 0x9e3779b97f4a7c15u; // another such as the one below
+    key ^= grid * 0x9e3779b97f4a7c15u; // as below
     key ^= key >> 33;
     key *= 0xff51afd7ed558ccdu; // an odd number with well spread bits
     key ^= key >> 33;
     return (size_t)key & mask;
 }
 
-// Put a particle into a cell of the last candidate; false if somebody is there.
+// Put a particle into a cell of the last candidate; false if the cell is taken.
 static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row) {
     mspringi_grids *grids = f->grids;
     const uint32_t grid = f->end - 1;
@@ -118,7 +118,7 @@ static mspringi_grid_step way_between(const finder *f, uint32_t from, uint32_t t
                                 (float)(builder->particles[to].y - builder->particles[from].y)};
 }
 
-// The frame of a seed from the shortest of its springs that lie along an axis.
+// Set the basis from the shortest of a seed's springs along an axis.
 static bool find_upright_frame(finder *f, uint32_t seed) {
     float shortest = 0.0f;
     for (uint32_t i = f->graph->first[seed]; i < f->graph->first[seed + 1]; ++i) {
@@ -133,8 +133,8 @@ static bool find_upright_frame(finder *f, uint32_t seed) {
     return shortest > 0.0f;
 }
 
-// The ways along a seed's springs to particles that are free, shortest first. Returns how many; 0 if they are more
-// than a seed's.
+// List the vectors along a seed's springs to free particles, shortest first. Return their number, or 0 if the seed
+// has too many springs.
 static uint32_t list_ways(const finder *f, uint32_t seed, mspringi_grid_step ways[MOST_SEED_SPRINGS]) {
     const uint32_t first = f->graph->first[seed], end = f->graph->first[seed + 1];
     uint32_t count = 0;
@@ -159,8 +159,8 @@ static uint32_t count_rounded(mspringi_lattice_basis frame, const mspringi_grid_
     return rounded;
 }
 
-// The frame of a seed from the shortest of its springs and the one with which most of them lead to neighbouring
-// cells: of a slanted cell's side and diagonal, which may be as long, the side.
+// Set a seed's basis from its shortest spring and the one that rounds most springs to neighbouring cells. Side and
+// diagonal of a slanted cell may be equally long; this finds the side.
 static bool find_any_frame(finder *f, uint32_t seed) {
     mspringi_grid_step ways[MOST_SEED_SPRINGS];
     const uint32_t count = list_ways(f, seed, ways);
@@ -178,7 +178,7 @@ static bool find_any_frame(finder *f, uint32_t seed) {
     return most > 0;
 }
 
-// Begin a grid with a particle, if one can be found from there.
+// Begin a grid with a particle that has a basis.
 static void seed_from(finder *f, uint32_t seed) {
     if (!is_free(f, seed) || !(f->search == FOR_BENT ? find_any_frame(f, seed) : find_upright_frame(f, seed)))
         return;
@@ -186,7 +186,7 @@ static void seed_from(finder *f, uint32_t seed) {
     (void)occupy(f, seed, 0, 0);
 }
 
-// Fit a particle's frame to its neighbours, those of the nearest eight cells that are members already.
+// Fit a particle's basis to the members in the nearest eight cells.
 static mspringi_lattice_basis fitted_frame(finder *f, uint32_t at) {
     mspringi_basis_fit fit = {.count = 0};
     for (uint32_t i = f->graph->first[at]; i < f->graph->first[at + 1]; ++i) {
@@ -202,7 +202,7 @@ static mspringi_lattice_basis fitted_frame(finder *f, uint32_t at) {
     return frame_of(f, at);
 }
 
-// Collect what can be reached from a member of the last candidate, cell by cell.
+// Add the free neighbours of a member to the last candidate, each to its cell.
 static void spread_from(finder *f, uint32_t at) {
     const mspringi_graph *graph = f->graph;
     const mspringi_lattice_basis frame = f->search == FOR_BENT ? fitted_frame(f, at) : f->upright;
@@ -230,7 +230,7 @@ void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end) {
 
 /* --------------------------------------------------------------------------------------------- is it worth it */
 
-// Whether a grid has as many of its particles' springs as the search is for.
+// True if a grid has the proportion of its particles' springs that the search requires.
 static bool has_enough(const finder *f, size_t neighbours, size_t all) {
     const size_t outer = all - neighbours;
     switch (f->search) {
@@ -279,17 +279,17 @@ void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_
     }
 }
 
-// The lowest column and row.
+// Find the lowest column and row.
 static void bound(finder *f, const uint32_t *members, uint32_t count) {
-    f->min_column = f->min_row = 0; // where the seed is
+    f->min_column = f->min_row = 0; // of the seed
     for (uint32_t m = 0; m < count; ++m) {
         f->min_column = f->column[members[m]] < f->min_column ? f->column[members[m]] : f->min_column;
         f->min_row = f->row[members[m]] < f->min_row ? f->row[members[m]] : f->min_row;
     }
 }
 
-// What it costs to sweep a grid with its columns along the rows, or the other way round, in blocks: those it has,
-// and about one for each run of neighbouring ones to start with.
+// Cost of sweeping a grid, in blocks: its blocks, and about one to start each run of consecutive blocks.
+// transposed: with columns and rows swapped.
 static uint64_t count_runs(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
     for (uint32_t m = 0; m < count; ++m) {
         const uint32_t column = (uint32_t)(f->column[members[m]] - f->min_column);
@@ -306,7 +306,7 @@ static uint64_t count_runs(finder *f, const uint32_t *members, uint32_t count, b
     return (uint64_t)f->blocks + f->runs;
 }
 
-// Whether sweeping a candidate's rows is worth it, and in which orientation.
+// True if sweeping a candidate's rows pays. Sets the better orientation.
 static bool is_worth_it(finder *f, uint32_t candidate, const uint32_t *members, uint32_t count, bool *transposed) {
     const grid_springs *springs = &f->springs[candidate];
     const size_t neighbours = springs->inner_ends / 2;
@@ -327,7 +327,7 @@ static void give_up(finder *f, const uint32_t *members, uint32_t count) {
     }
 }
 
-// Keep a grid, behind those that have been kept.
+// Keep a grid, behind those already kept.
 static void keep(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
     mspringi_grids *grids = f->grids;
     uint32_t to = grids->first_member[grids->count];
@@ -431,7 +431,7 @@ bool mspringi_grids_place(const mspringi_grids *grids, const mspringi_spring *sp
     uint32_t base = spring->a, tip = spring->b;
     if (grids->grid_of[base] == MSPRING_NONE || grids->grid_of[base] != grids->grid_of[tip])
         return false;
-    // The base is in the column to the left or, in the same column, in the row below.
+    // The base is in the left column or, if both are equal, in the lower row.
     if (grids->column[base] > grids->column[tip] ||
         (grids->column[base] == grids->column[tip] && grids->row[base] > grids->row[tip])) {
         base = spring->b;

@@ -1,15 +1,15 @@
-/// Frames of grids.
+/// Lattice bases.
 #include "layout/recognise/lattice_basis.h"
 
 #include <math.h>
 
-/// How far, in cells, a neighbour may lie off its cell's centre.
+/// Largest distance of a neighbour from its cell's centre, in cells.
 #define CELL_TOLERANCE 0.3f
 
-/// What the mean of the neighbours' frames weighs, in neighbours.
+/// Weight of the mean of the neighbours' bases, in neighbours.
 #define MEAN_WEIGHT 4.0f
 
-/// Least sine of the angle between two steps.
+/// Smallest sine of the angle between basis vectors.
 #define LEAST_SINE 0.8f
 
 static mspringi_grid_step scaled(mspringi_grid_step a, float by) {
@@ -69,7 +69,7 @@ void mspringi_basis_fit_add(mspringi_basis_fit *fit, mspringi_lattice_basis fram
     fit->count++;
 }
 
-// Least squares of columns * column + rows * row - way, and of the difference to the mean frame.
+// Minimise the squares of columns * column + rows * row - way, and of the difference from the mean basis.
 mspringi_lattice_basis mspringi_basis_fit_result(const mspringi_basis_fit *fit) {
     const float share = 1.0f / (float)fit->count;
     const mspringi_lattice_basis mean = {scaled(fit->frames.column, share), scaled(fit->frames.row, share)};

@@ -1,8 +1,7 @@
 /// @file lattice_basis.h
-/// In which directions, and how far away, a particle's neighbours in a grid lie: the steps to the next column and
-/// to the next row. The frame of a grid's first particle follows from its springs; from there each particle has the
-/// one that it was reached with, turned and stretched half way to where it was found to lie. So grids may lie at
-/// any angle, have oblong or slanted cells, and bend.
+/// Lattice basis of a grid's particle: vectors to the next column and to the next row. The first particle's basis
+/// follows from its springs. Each other particle inherits a basis, turned and stretched half way to the positions
+/// of its neighbours. So grids may lie at any angle, bend, and have oblong or slanted cells.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_LATTICE_BASIS_H
@@ -16,28 +15,28 @@ typedef struct mspringi_grid_step {
 } mspringi_grid_step;
 
 typedef struct mspringi_lattice_basis {
-    mspringi_grid_step column, row; ///< no multiples of each other
+    mspringi_grid_step column, row; ///< not parallel
 } mspringi_lattice_basis;
 
 float mspringi_step_square(mspringi_grid_step step);
 
-/// Upright and square.
+/// Axis-aligned square basis.
 mspringi_lattice_basis mspringi_lattice_basis_upright(float spacing);
 
-/// Of two steps that span one. The column leads to the right rather than up, the row up.
+/// Basis of two vectors that span one. The column vector leads right rather than up, the row vector up.
 mspringi_lattice_basis mspringi_lattice_basis_from(mspringi_grid_step a, mspringi_grid_step b);
 
-/// Whether two steps can be those of a frame: 53 to 127 degrees from each other, which takes in the sides of
-/// squares and of triangles, and leaves out a square's side and its diagonal.
+/// True if two vectors can form a basis: 53 to 127 degrees apart. The sides of squares and of triangles can, a
+/// square's side and its diagonal cannot.
 bool mspringi_lattice_basis_is_spanned(mspringi_grid_step column, mspringi_grid_step row);
 
-/// Columns and rows to somewhere; false if that is none of the nearest eight, or too far off it.
+/// Round a vector to columns and rows, -1 to 1; false if it is too far off.
 bool mspringi_lattice_basis_round(mspringi_lattice_basis frame, mspringi_grid_step way, int32_t *columns,
                                   int32_t *rows);
 
-/// Ways to neighbours whose cells are known, and the frames of these.
+/// Vectors to neighbours in known cells, and their bases.
 typedef struct mspringi_basis_fit {
-    mspringi_lattice_basis frames, ways; ///< sums: of frames, of ways times columns and times rows
+    mspringi_lattice_basis frames, ways; ///< sums: of bases; of vectors times columns, times rows
     float columns, rows, both_counts;    ///< sums of squares and products of columns and rows
     uint32_t count;
 } mspringi_basis_fit;
@@ -45,7 +44,7 @@ typedef struct mspringi_basis_fit {
 void mspringi_basis_fit_add(mspringi_basis_fit *fit, mspringi_lattice_basis frame, mspringi_grid_step way,
                             int32_t columns, int32_t rows);
 
-/// The frame that fits best: near the mean of the neighbours', and with them where they are.
+/// Best fit: close to the mean of the neighbours' bases, and to their positions.
 mspringi_lattice_basis mspringi_basis_fit_result(const mspringi_basis_fit *fit);
 
 #endif
