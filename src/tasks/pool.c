@@ -5,9 +5,9 @@
 #include "tasks/progress.h"
 
 typedef struct pool_worker {
-    mspringi_progress called;   ///< runs that this worker is to take part in, so far
-    mspringi_progress finished; ///< those that it has finished
-    uint32_t calls;             ///< what called is at, for the thread that calls
+    mspringi_progress called;   ///< runs started for this worker so far
+    mspringi_progress finished; ///< runs that it has finished
+    uint32_t calls;             ///< value of called, for the calling thread
     uint32_t number;
     bool has_counters, has_thread;
     mspringi_pool *pool;
@@ -16,11 +16,11 @@ typedef struct pool_worker {
 } pool_worker;
 
 struct mspringi_pool {
-    uint64_t process; ///< that has the threads
+    uint64_t process; ///< process that owns the threads
     uint32_t worker_count, count;
-    mspring_task_fn fn; ///< NULL: the worker is to end
+    mspring_task_fn fn; ///< NULL ends the worker
     void *argument;
-    pool_worker *workers; ///< worker 0, the caller, has neither counters nor a thread
+    pool_worker *workers; ///< worker 0, the caller, has no counters and no thread
 };
 
 static void run_share(const mspringi_pool *pool, uint32_t worker) {
@@ -68,7 +68,7 @@ static mspring_result start_workers(mspringi_pool *pool, mspringi_message *messa
 static void end_workers(mspringi_pool *pool) {
     pool->fn = NULL;
     for (uint32_t w = 1; w < pool->worker_count; ++w)
-        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): without them their number is 0
+        // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): without workers their number is 0
         if (pool->workers[w].has_thread)
             mspringi_progress_advance(&pool->workers[w].called, ++pool->workers[w].calls);
     for (uint32_t w = 1; w < pool->worker_count; ++w) {
@@ -101,8 +101,8 @@ mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memo
     return result;
 }
 
-// What the parent's threads have waited on stays as it was when the process forked: nobody wakes those sleepers, so
-// it can be neither used nor destroyed, and is made anew in place.
+// After a fork, locks and conditions that the parent's threads wait on can be neither used nor destroyed. So the
+// child initialises them again in place.
 mspring_result mspringi_pool_restart_after_fork(mspringi_pool *pool, mspringi_message *message) {
     const uint64_t before = pool->process;
     if (before == mspringi_process())
@@ -140,7 +140,7 @@ void mspringi_pool_run(mspringi_pool *pool, uint32_t count, mspring_task_fn fn, 
 
 #else
 
-// mspringi_tasks_create() makes no pool without threads.
+// Never called: mspringi_tasks_create() makes a pool only if there are threads.
 
 mspring_result mspringi_pool_create(uint32_t worker_count, mspringi_memory *memory, mspringi_message *message,
                                     mspringi_pool **pool) {

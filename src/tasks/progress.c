@@ -8,23 +8,22 @@
 #include <immintrin.h>
 #endif
 
-/// Most and fewest looks before going to sleep, 200 and 3 microseconds on a Zen 4: the most is longer than what one
-/// thread of an implicit step does alone while the others wait, as waking up costs them as much again (544 x 68
-/// with two workers: 1.4 times as fast as one with half of that, 0.95 with an eighth; a ship of 158,000 springs
-/// sleeps in one substep of seven instead of in each).
+/// Bounds on polls before sleeping: 200 and 3 us on a Zen 4. The upper one exceeds the serial parts of an implicit
+/// step, since waking up costs as much again. (544 x 68 with two workers: 1.4 times as fast as one worker with half
+/// of it, 0.95 with an eighth; on a ship of 158,000 springs, one substep in seven sleeps instead of each.)
 #define MOST_SPINS 8000
 #define FEWEST_SPINS 100
 
-/// Of so many sleeps, one makes the next wait spin for as long as any again: the other may have got a core of its
-/// own, or what it does alone may take less than that, and more than what spins have come down to.
+/// After this many sleeps, a wait again polls up to the upper bound. The other thread may have its own core by now,
+/// or its serial part may take less than that, but more than the present number of polls.
 #define SLEEPS_BEFORE_TRIAL 16
 
-// Tell the processor that this is a loop that waits.
+// Tell the processor that this loop waits.
 static inline void pause_thread(void) {
 #if defined(MSPRINGI_X86)
     _mm_pause();
 #elif defined(__aarch64__) && defined(__GNUC__)
-    __asm__ volatile("isb" : : : "memory"); // unlike yield it does take time
+    __asm__ volatile("isb" : : : "memory"); // yield returns immediately
 #endif
 }
 
@@ -62,19 +61,19 @@ uint32_t mspringi_progress_sleeps(const mspringi_progress *progress) {
     return progress->sleeps;
 }
 
-// Value and sleepers are written by different threads, each of which then reads the other: sequentially consistent,
-// so at least one of the two sees what the other wrote (Dekker).
+// Both threads write one of value and sleepers, then read the other. With sequential consistency, at least one of
+// them sees the other's write (Dekker).
 void mspringi_progress_advance(mspringi_progress *progress, uint32_t value) {
     atomic_store(&progress->value, value);
     if (atomic_load(&progress->sleepers) == 0)
         return;
-    // Whoever sleeps has had the mutex from before its last look until it slept.
+    // A thread that sleeps held the mutex from its last check until it slept.
     mspringi_mutex_lock(&progress->mutex);
     mspringi_mutex_unlock(&progress->mutex);
     mspringi_condition_wake_all(&progress->condition);
 }
 
-// Spinning for spins looks was in vain.
+// Sleep after `spins` polls in vain; return the counter.
 static uint32_t sleep_until(mspringi_progress *progress, uint32_t target, uint32_t spins) {
     uint32_t value;
     mspringi_mutex_lock(&progress->mutex);
@@ -93,7 +92,7 @@ uint32_t mspringi_progress_wait(mspringi_progress *progress, uint32_t target) {
     for (uint32_t look = 0; look < spins; ++look) {
         const uint32_t value = atomic_load_explicit(&progress->value, memory_order_acquire);
         if (is_reached(value, target)) {
-            // The other thread came along while this one was running: they do have a core each.
+            // The other thread advanced while this one ran, so each has a core.
             if (look > 0 && spins < MOST_SPINS)
                 set_spins(progress, 2 * spins < MOST_SPINS ? 2 * spins : MOST_SPINS);
             return value;
@@ -105,7 +104,7 @@ uint32_t mspringi_progress_wait(mspringi_progress *progress, uint32_t target) {
 
 #else
 
-// One thread does everything, in order: it has been there already.
+// A single thread runs everything in order, so each value is reached before anybody waits for it.
 
 bool mspringi_progress_init(mspringi_progress *progress) {
     progress->value = 0;

@@ -1,9 +1,9 @@
 /// @file progress.h
-/// A counter by which one thread tells others how far it is.
+/// Progress counter of a thread, for others to wait on.
 ///
-/// Who waits spins for some microseconds, since the other is usually about to arrive, and then sleeps: where
-/// threads share a core, spinning is what keeps the other from arriving. So a counter spins for less time when
-/// spinning was in vain, and for more when it was not.
+/// A wait polls for some microseconds, since the other thread is usually about to arrive, then sleeps. If both
+/// threads share a core, polling only delays the other. So polls that were in vain make the next ones shorter, and
+/// the others make them longer.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_PROGRESS_H
@@ -14,7 +14,7 @@
 
 #include "tasks/thread.h"
 
-/// Counters of different threads lie in different cache lines.
+/// Alignment: counters of different threads lie in different cache lines.
 #define MSPRINGI_CACHE_LINE 64
 
 #if defined(MSPRINGI_THREADS)
@@ -23,9 +23,9 @@
 
 typedef struct mspringi_progress {
     _Alignas(MSPRINGI_CACHE_LINE) atomic_uint value;
-    atomic_uint sleepers; ///< threads that wait, or are about to, on the condition
-    atomic_uint spins;    ///< looks before going to sleep
-    uint32_t sleeps;      ///< so far; the mutex guards it
+    atomic_uint sleepers; ///< threads that wait on the condition, or are about to
+    atomic_uint spins;    ///< polls before sleeping
+    uint32_t sleeps;      ///< sleeps so far; guarded by the mutex
     mspringi_mutex mutex;
     mspringi_condition condition;
 } mspringi_progress;
@@ -38,22 +38,22 @@ typedef struct mspringi_progress {
 
 #endif
 
-/// Make a counter at 0. False if the system refuses.
+/// Initialise a counter to 0. Return false if the system has no lock left.
 bool mspringi_progress_init(mspringi_progress *progress);
 void mspringi_progress_destroy(mspringi_progress *progress);
 
-/// Set a counter while nobody waits on it.
+/// Set a counter that no thread waits on.
 void mspringi_progress_reset(mspringi_progress *progress, uint32_t value);
 
-/// How many waits have ended up asleep so far. Nobody may be waiting.
+/// Number of waits that slept. No thread may be waiting.
 uint32_t mspringi_progress_sleeps(const mspringi_progress *progress);
 
-/// Say how far this thread is. What it has written before is seen by those who waited for it. Only one thread
-/// advances a counter; values grow, and go on from 0 after the largest.
+/// Publish progress. A thread that waits for it sees everything written before. Only one thread advances a counter;
+/// values grow and wrap around.
 void mspringi_progress_advance(mspringi_progress *progress, uint32_t value);
 
-/// Wait until the counter is at target or further (by less than 2^31).
-/// @return where it is: whoever remembers that need not ask again before
+/// Wait until the counter reaches target, or is less than 2^31 past it. @return the counter; no further wait is
+/// needed up to this value
 uint32_t mspringi_progress_wait(mspringi_progress *progress, uint32_t target);
 
 #endif

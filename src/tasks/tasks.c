@@ -7,7 +7,7 @@ struct mspringi_tasks {
     mspringi_pool *pool; ///< NULL: the host's threads
     mspring_tasks host;
     uint32_t worker_count, concurrency;
-    uint32_t counter_count; ///< counters that have been made
+    uint32_t counter_count; ///< initialised counters
     mspringi_progress *counters;
 };
 
@@ -62,7 +62,7 @@ mspring_result mspringi_tasks_create(uint32_t worker_count, const mspring_tasks 
     if (!created)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers", (unsigned)worker_count);
     if (host)
-        created->host = *host; // as far as this library knows it
+        created->host = *host; // as far as this version knows it
     created->worker_count = worker_count;
     created->concurrency = host ? host->concurrent_count : worker_count;
     mspring_result result = make_counters(created, memory, message);
@@ -96,7 +96,7 @@ typedef struct job {
     void *argument;
 } job;
 
-// A body on a thread that may have any floating-point environment.
+// Run a body in the floating-point environment of a step; its thread may have any other.
 static void run_body(void *argument, uint32_t index, uint32_t worker) {
     const job *of = argument;
     const mspringi_fp_state before = mspringi_fp_enter();
@@ -146,7 +146,7 @@ void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn f
         tasks->host.run(count, run_body, &of, tasks->host.user);
 }
 
-/// Shortest range that is worth a worker's while.
+/// Shortest range worth a worker.
 #define SHORTEST_RANGE 16384
 
 typedef struct ranges {

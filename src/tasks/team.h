@@ -1,6 +1,6 @@
 /// @file team.h
-/// The workers of a substep: each runs the whole of it, on its share of everything, and meets the others where it
-/// needs what they have done.
+/// Workers of a substep. Each runs all of it on its share of the data, with barriers before it needs the others'
+/// results.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TEAM_H
@@ -8,14 +8,14 @@
 
 #include "tasks/tasks.h"
 
-/// One of them.
+/// Member of a team.
 typedef struct mspringi_team_member {
-    uint32_t index, count;       ///< which of how many
-    mspringi_progress *progress; ///< [count]; NULL for one
-    uint32_t barriers;           ///< so far
+    uint32_t index, count;       ///< number in the team, members
+    mspringi_progress *progress; ///< [count]; NULL for one member
+    uint32_t barriers;           ///< barriers passed so far
 } mspringi_team_member;
 
-/// Where a team member's share of so many things begins; the next one's share begins where it ends.
+/// Begin and end of a member's share. Each share begins where the one before ends.
 static inline size_t mspringi_range_begin(const mspringi_team_member *member, size_t things) {
     return things * member->index / member->count;
 }
@@ -23,7 +23,7 @@ static inline size_t mspringi_range_end(const mspringi_team_member *member, size
     return things * (member->index + 1) / member->count;
 }
 
-/// Wait until all have come here.
+/// Wait for all members.
 static inline void mspringi_team_barrier(mspringi_team_member *member) {
     if (member->count == 1)
         return;

@@ -81,7 +81,7 @@ static void *thread_main(void *argument) {
 }
 
 bool mspringi_thread_create(mspringi_thread *thread, mspringi_thread_start *start) {
-    // A thread starts with the signal mask of the one that makes it.
+    // A thread inherits the signal mask of its creator.
     sigset_t all, before;
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -130,7 +130,7 @@ void mspringi_condition_wake_all(mspringi_condition *condition) {
 
 #else
 
-// Strict C has no empty file.
+// Strict C allows no empty file.
 typedef int mspringi_no_threads;
 
 #endif

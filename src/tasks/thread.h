@@ -1,6 +1,6 @@
 /// @file thread.h
-/// Threads, locks and conditions of the platform: POSIX threads or those of Windows. MSPRINGI_THREADS is not
-/// defined where the build found neither; then there is nothing here.
+/// Threads, locks and conditions of the platform: POSIX or Windows. MSPRINGI_THREADS is undefined, and this header
+/// empty, if the build found neither.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_THREAD_H
@@ -24,17 +24,18 @@ typedef pthread_mutex_t mspringi_mutex;
 typedef pthread_cond_t mspringi_condition;
 #endif
 
-/// What a thread runs. Lives until the thread is joined.
+/// Start of a thread. Must outlive it.
 typedef struct mspringi_thread_start {
     void (*fn)(void *argument);
     void *argument;
 } mspringi_thread_start;
 
-/// The number of the process: another one in a child that fork() has made, where no thread but the caller's goes
-/// on. The same in all on platforms without fork().
+/// Number of this process. After fork(), the child has another one and only the caller's thread. Constant on
+/// platforms without fork().
 uint64_t mspringi_process(void);
 
-/// Start a thread that takes no signals: they go to the host's. False if the system refuses.
+/// Start a thread that blocks all signals, so that the host's threads handle them. Return false if the system has
+/// no more.
 bool mspringi_thread_create(mspringi_thread *thread, mspringi_thread_start *start);
 void mspringi_thread_join(mspringi_thread thread);
 
@@ -45,7 +46,7 @@ void mspringi_mutex_unlock(mspringi_mutex *mutex);
 
 bool mspringi_condition_init(mspringi_condition *condition);
 void mspringi_condition_destroy(mspringi_condition *condition);
-/// Wait, with the mutex given back meanwhile. May return for no reason.
+/// Release the mutex and wait. May wake up spuriously.
 void mspringi_condition_wait(mspringi_condition *condition, mspringi_mutex *mutex);
 void mspringi_condition_wake_all(mspringi_condition *condition);
 
