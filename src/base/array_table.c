@@ -1,4 +1,4 @@
-/// What is done to all arrays of a struct alike.
+/// Operations on all arrays of a struct.
 #include "base/array_table.h"
 
 #include "base/assert.h"

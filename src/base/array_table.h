@@ -1,5 +1,5 @@
 /// @file array_table.h
-/// The arrays that a struct holds, as a table: freeing them, and finding them in a copy, is a loop over it.
+/// Tables of a struct's arrays: freeing, copying and relocating them is a loop over the table.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ARRAY_TABLE_H
@@ -8,10 +8,10 @@
 #include "base/memory.h"
 
 typedef enum mspringi_column_kind {
-    MSPRINGI_ARRAY,  ///< a block of memory of its own
-    MSPRINGI_PLANES, ///< likewise, of whole planes by slot, which a relayout moves
-    MSPRINGI_VIEW,   ///< points into another array
-    MSPRINGI_GROUP   ///< no array: those that follow are reserved and freed together
+    MSPRINGI_ARRAY,  ///< block of memory of its own
+    MSPRINGI_PLANES, ///< likewise, planes indexed by slot, which a new layout moves
+    MSPRINGI_VIEW,   ///< pointer into another array
+    MSPRINGI_GROUP   ///< no array: the following ones are reserved and freed together
 } mspringi_column_kind;
 
 typedef struct mspringi_array_entry {
@@ -25,26 +25,26 @@ typedef struct mspringi_array_table {
     size_t count;
 } mspringi_array_table;
 
-/// A row for a member of a type of struct.
+/// Entry of a struct's member.
 #define MSPRINGI_ARRAY_ENTRY(type, member, kind)                                                                   \
     { offsetof(type, member), sizeof *((type *)0)->member, (kind) }
 
-/// The table of an array of rows.
+/// Table of an array of entries.
 #define MSPRINGI_ARRAY_TABLE(rows)                                                                                 \
     { rows, sizeof(rows) / sizeof(rows)[0] }
 
-/// The pointer itself. (All pointers to objects are represented alike where the library runs.)
+/// Get or set the pointer of an entry. (All object pointers have the same representation on supported platforms.)
 void *mspringi_column_get(const mspringi_array_entry *column, const void *owner);
 void mspringi_column_set(const mspringi_array_entry *column, void *owner, void *array);
 
-/// Free the arrays, and have all pointers be NULL.
+/// Free the arrays and set all pointers to NULL.
 void mspringi_array_table_free(mspringi_array_table columns, void *owner, mspringi_memory *memory);
 
-/// Have pointers that were copied lead to copies of their own. False: no memory, and some still lead to the
-/// originals. There may be no views.
+/// Replace copied pointers by copies of their arrays. The table has no views. Return false if memory is out; some
+/// pointers then still lead to the originals.
 bool mspringi_array_table_duplicate(mspringi_array_table columns, void *owner, mspringi_memory *memory);
 
-/// Have pointers that were copied lead to where mspringi_memory_copy() has copied to what they point to.
+/// Redirect copied pointers to the blocks that mspringi_memory_copy() has made.
 void mspringi_array_table_relocate(mspringi_array_table columns, void *owner, const mspringi_memory *from,
                                    const mspringi_memory *to);
 

@@ -1,18 +1,16 @@
 /// @file assert.h
-/// Conditions that fail only if the library itself is wrong. What a caller can get wrong is an error with a message
-/// instead.
+/// Conditions that fail only if the library itself is wrong. A caller's mistake is an error with a message instead.
 ///
-/// MSPRINGI_ASSERTS turns them on: in debug builds and under sanitizers (MASSSPRING_ASSERTS). Elsewhere the
-/// compiler checks the condition and drops it.
+/// MSPRINGI_ASSERTS enables them: in debug builds and under sanitizers (MASSSPRING_ASSERTS). Otherwise the compiler
+/// only parses the condition.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ASSERT_H
 #define MSPRINGI_ASSERT_H
 
 #if defined(MSPRINGI_ASSERTS)
-/// Called for a condition that does not hold; must not return. Whoever builds the library may define this as the
-/// name of a function of their own. The library's writes to stderr and aborts, or loops where there is no C
-/// library.
+/// Handler of a failed condition; must not return. A build may define this as the name of its own function. The
+/// library's handler writes to stderr and aborts, or loops if there is no C library.
 #if !defined(MSPRINGI_ASSERT_HANDLER)
 #define MSPRINGI_ASSERT_HANDLER mspringi_assert_failed
 #endif

@@ -1,5 +1,5 @@
 /// @file bytes.h
-/// Looking for a byte. (memchr() is not among what a host without C library has to give.)
+/// Search for a byte. (A host without a C library need not provide memchr().)
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_BYTES_H
@@ -8,10 +8,10 @@
 #include <stdint.h>
 #include <string.h>
 
-/// The index of the first byte of that value from first to end - 1; end if there is none.
+/// Index of the first byte of this value from first to end - 1; end if there is none.
 static inline uint32_t mspringi_find_byte(const uint8_t *bytes, uint8_t value, uint32_t first, uint32_t end) {
     const uint64_t ones = UINT64_C(0x0101010101010101);
-    // Eight at a time: a byte that is 0 borrows from its high bit, which was not set.
+    // Eight at a time: a zero byte borrows from its high bit, which was not set.
     for (; end - first >= 8; first += 8) {
         uint64_t word;
         memcpy(&word, bytes + first, sizeof word);

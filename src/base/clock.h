@@ -1,11 +1,12 @@
 /// @file clock.h
-/// Time that only goes forward, where the system has it.
+/// Monotonic clock of the system.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CLOCK_H
 #define MSPRINGI_CLOCK_H
 
-/// A clock as hosts give one: seconds since some moment, user is not looked at. NULL: there is none here.
+/// Clock with the signature of a host's clock: seconds since some moment; `user` is ignored. NULL if the system has
+/// none.
 double (*mspringi_clock(void))(void *user);
 
 #endif

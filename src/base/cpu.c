@@ -21,7 +21,7 @@
 
 /* ------------------------------------------------------------------------------------------------ levels */
 
-// Those of this build, lowest first.
+// Levels of this build, lowest first.
 static const mspring_simd levels[] = {
 #define LEVEL(name, number) MSPRING_SIMD_##number,
 #include "base/levels.def"
@@ -51,7 +51,7 @@ static cpuid_words cpuid(uint32_t leaf) {
     return words;
 }
 
-// Which registers the operating system saves: bits 1 and 2 for the 256-bit ones, 5 to 7 for the 512-bit ones.
+// Registers saved by the operating system: bits 1 and 2 for the 256-bit ones, 5 to 7 for the 512-bit ones.
 static uint64_t saved_registers(void) {
 #if defined(_MSC_VER) && !defined(__clang__)
     return _xgetbv(0);
@@ -62,7 +62,7 @@ static uint64_t saved_registers(void) {
 #endif
 }
 
-// The best level of the CPU, whatever this build has.
+// Best level of the CPU, even if this build lacks it.
 static mspring_simd best_of_cpu(void) {
     const uint32_t osxsave = 1u << 27, avx = 1u << 28, avx2 = 1u << 5, avx512f = 1u << 16;
     const uint64_t saves_256 = 0x06, saves_512 = 0xe6;
@@ -77,8 +77,7 @@ static mspring_simd best_of_cpu(void) {
 
 #else
 
-// NEON is part of every 64-bit ARM CPU; what there is on 32-bit ones flushes denormals, so it cannot give the same
-// bits.
+// Every 64-bit ARM CPU has NEON. Vector units of 32-bit ones flush denormals, so they cannot give the same bits.
 static mspring_simd best_of_cpu(void) {
     return levels[LEVEL_COUNT - 1];
 }
@@ -118,7 +117,7 @@ const char *mspring_simd_name(mspring_simd level) {
     }
 }
 
-// Who asks for scalar code gets that, or the lowest level of this build.
+// MSPRING_SIMD_SCALAR selects scalar code, or the lowest level of this build.
 mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
     mspring_simd level = mspring_simd_supported();
     if (wanted == MSPRING_SIMD_SCALAR)
@@ -180,7 +179,7 @@ void mspringi_fp_leave(mspringi_fp_state before) {
 
 #elif defined(__wasm__)
 
-// There is one mode, the right one.
+// WebAssembly has one mode, the right one.
 mspringi_fp_state mspringi_fp_enter(void) {
     return 0;
 }
@@ -191,7 +190,7 @@ void mspringi_fp_leave(mspringi_fp_state before) {
 
 #else
 
-// What the C library can do; modes that flush denormals are beyond it.
+// Set as much as the C library can; it cannot change modes that flush denormals.
 mspringi_fp_state mspringi_fp_enter(void) {
     const int before = fegetround();
     fesetround(FE_TONEAREST);

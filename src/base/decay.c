@@ -3,7 +3,7 @@
 float mspringi_decay(float rate, float h) {
     double x = (double)rate * (double)h;
     if (x == 0.0)
-        return 1.0f; // as below, but at once
+        return 1.0f; // the result below, without the work
     // exp(-104) is below the smallest float.
     if (!(x < 104.0))
         return 0.0f;

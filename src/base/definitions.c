@@ -1,4 +1,4 @@
-/// The defaults of every public definition.
+/// Defaults of all public definitions.
 #include <math.h>
 
 #include <massspring/massspring_contact.h>
@@ -8,7 +8,7 @@
 #include "base/definitions.h"
 #include "base/message.h"
 
-// Springs neither break nor are stressed, nor do they yield.
+// Springs that never break, yield or count as stressed.
 #define NO_LIMITS                                                                                                  \
     .break_strain = MSPRING_NEVER, .stress_strain = MSPRING_NEVER, .relax_strain = MSPRING_RELAX_STRAIN_DEFAULT,   \
     .yield_strain = MSPRING_NEVER, .hardening = MSPRING_HARDENING_DEFAULT,                                         \

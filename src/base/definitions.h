@@ -1,5 +1,5 @@
 /// @file definitions.h
-/// What definitions have in common.
+/// Parts that definitions have in common.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_DEFINITIONS_H
@@ -7,7 +7,7 @@
 
 #include <massspring/massspring.h>
 
-/// The settings that a network begins with.
+/// Initial settings of a network.
 static inline mspring_settings mspringi_settings_of(const mspring_network_def *def) {
     return (mspring_settings){.struct_size = sizeof(mspring_settings),
                               .guard = def->guard,
@@ -20,7 +20,7 @@ static inline mspring_settings mspringi_settings_of(const mspring_network_def *d
                               .relax_fraction = def->relax_fraction};
 }
 
-/// The solver that it begins with.
+/// Initial solver of a network.
 static inline mspring_solver_def mspringi_solver_of(const mspring_network_def *def) {
     return (mspring_solver_def){.struct_size = sizeof(mspring_solver_def),
                                 .solver = def->solver,

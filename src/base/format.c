@@ -64,7 +64,7 @@ typedef struct decimal {
     int count, exponent;
 } decimal;
 
-/// All digits of a finite number above 0.
+/// Expand a finite number above 0 to all its decimal digits.
 static void expand(decimal *d, uint64_t mantissa, int exponent) {
     natural n = {.words = {(uint32_t)(mantissa % WORD_BASE), (uint32_t)(mantissa / WORD_BASE)}, .count = 2};
     multiply_by_power(&n, 2, exponent);
@@ -159,14 +159,14 @@ static void put_number(output *to, double value, int significant) {
 
 /* ------------------------------------------------------------------------------------------------------ formats */
 
-/// What stands between % and the letter of a conversion.
+/// Part of a conversion between % and its letter, and the letter.
 typedef struct conversion {
     bool is_alternate, is_size, is_wide;
     int precision; ///< -1 if there is none
     char letter;
 } conversion;
 
-/// Read a conversion from behind its %. Returns where the format goes on.
+/// Read a conversion from behind its %. Return the rest of the format.
 static const char *read_conversion(const char *format, conversion *c) {
     *c = (conversion){.precision = -1};
     for (; *format == '#'; ++format)

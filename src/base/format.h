@@ -1,5 +1,5 @@
 /// @file format.h
-/// Text from formats, the same on every host: without stdio, whatever the locale.
+/// Formatted text, equal on every host: without stdio, in any locale.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FORMAT_H
@@ -16,9 +16,9 @@
 #define MSPRINGI_PRINTF(format_index, first_index)
 #endif
 
-/// Write text, cut to fit size bytes, of which there is at least one. The format has a part of what printf has:
-/// %u %x %#x, each also with z and ll; %d, %g with or without a precision above 0, %s and %%. Digits of %g are the
-/// right ones to the last, as glibc's are; a NaN is "nan" whatever its sign.
+/// Write text, cut to fit size bytes, at least one. Conversions are a subset of printf's: %u %x %#x, each also with
+/// z and ll; %d, %g with or without a precision above 0, %s and %%. Digits of %g are correctly rounded, as in
+/// glibc; a NaN is "nan" whatever its sign.
 void mspringi_format(char *text, size_t size, const char *format, va_list arguments) MSPRINGI_PRINTF(3, 0);
 
 #endif

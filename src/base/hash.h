@@ -1,6 +1,6 @@
 /// @file hash.h
-/// A 64-bit hash over words: FNV-1a (Fowler, Noll, Vo 1991) taken over 64-bit words instead of bytes, with the
-/// upper half folded in so that every bit of a word reaches every bit of the hash.
+/// 64-bit hash of words: FNV-1a (Fowler, Noll, Vo 1991) on 64-bit words instead of bytes, with the upper half
+/// folded in, so that every bit of a word reaches every bit of the hash.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_HASH_H
@@ -9,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/// The hash of nothing.
+/// Hash of an empty sequence.
 #define MSPRINGI_HASH_START UINT64_C(0xcbf29ce484222325)
 
 static inline uint64_t mspringi_hash(uint64_t hash, uint64_t word) {

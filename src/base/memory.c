@@ -1,5 +1,5 @@
 #if !defined(_WIN32) && !defined(__APPLE__) && !defined(_POSIX_C_SOURCE)
-#define _POSIX_C_SOURCE 200809L // posix_memalign, which strict C hides
+#define _POSIX_C_SOURCE 200809L // posix_memalign, hidden in strict C
 #endif
 
 #include "base/memory.h"
@@ -15,17 +15,17 @@
 #endif
 #endif
 
-/// In front of every block, so that the size that was asked for is known when it is freed.
+/// Header of a block, with its size for the allocator's free function.
 typedef struct mspringi_block {
     struct mspringi_block *previous, *next;
-    size_t size; ///< with this header, which takes one alignment unit, or half of the only one
+    size_t size; ///< with this header: one alignment unit, or half of it if the block is a single unit
 } block;
 
-/// Half of an alignment unit: room for a header, or for contents that no vector is loaded from.
+/// Half of an alignment unit: room for a header, or for contents that no vector load reads.
 #define HALF (MSPRINGI_ALIGNMENT / 2)
 _Static_assert(sizeof(block) <= HALF, "a header takes half of a unit");
 
-/// Elements of the smallest array that grows: a network of a few particles has a few rows.
+/// Fewest elements of a growing array: a network of few particles has few rows.
 #define FEWEST_ELEMENTS 8
 
 #if !defined(MSPRINGI_FREESTANDING)
@@ -87,7 +87,7 @@ static void append(mspringi_memory *memory, block *taken, size_t size) {
     memory->used += size;
 }
 
-// A block of this size, header included, with nothing in it yet.
+// Allocate a block of this size, header included.
 static block *take(mspringi_memory *memory, size_t size) {
     block *taken = memory->allocator.alloc(size, MSPRINGI_ALIGNMENT, memory->allocator.user);
     if (taken)
@@ -96,7 +96,7 @@ static block *take(mspringi_memory *memory, size_t size) {
 }
 
 static void give_back(mspringi_memory *memory, block *taken) {
-    // Neither freed already nor another memory's.
+    // Neither freed already nor of another memory.
     MSPRINGI_ASSERT(taken->previous ? taken->previous->next == taken : memory->first == taken);
     MSPRINGI_ASSERT(taken->next ? taken->next->previous == taken : memory->last == taken);
     if (taken->previous)
@@ -114,7 +114,7 @@ static void give_back(mspringi_memory *memory, block *taken) {
         memory->allocator.free(taken, taken->size, memory->allocator.user);
 }
 
-// A small network has a dozen arrays of a few bytes: they share a unit with their header.
+// Size of a block's header. Small networks have a dozen arrays of a few bytes; each shares a unit with its header.
 static size_t header_of(size_t size) {
     return size > MSPRINGI_ALIGNMENT ? MSPRINGI_ALIGNMENT : HALF;
 }
@@ -132,7 +132,7 @@ static block *block_of(const void *contents) {
     return (block *)(void *)((char *)(uintptr_t)contents - header);
 }
 
-// Whole units, so that every block ends where the next may begin. 0: too many.
+// Size of a block: whole units, so that each block ends where the next may begin; 0 on overflow.
 static size_t size_of(size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - 2 * MSPRINGI_ALIGNMENT) / size)
         return 0;
@@ -200,12 +200,12 @@ void *mspringi_memory_moved(const mspringi_memory *from, const mspringi_memory *
     const block *copy = to->first;
     for (const block *of = from->first; pointer && of; of = of->next, copy = copy->next) {
         MSPRINGI_ASSERT(copy && copy->size >= of->size);
-        // The end counts, too: an array may begin where its block ends if it has no element.
+        // The end counts, too: an empty array may begin where its block ends.
         const uintptr_t begin = (uintptr_t)contents_of(of), end = (uintptr_t)of + of->size;
         if (place >= begin && place <= end)
             return contents_of(copy) + (place - begin);
     }
-    MSPRINGI_ASSERT(!pointer); // it was in none of from's blocks
+    MSPRINGI_ASSERT(!pointer); // in none of from's blocks
     return NULL;
 }
 

@@ -57,7 +57,7 @@ mspring_result mspringi_shared_take(mspringi_shared_message *shared, mspring_res
     return result;
 }
 
-/// No struct is larger, ever: a size that is has not been set.
+/// Larger than any struct: a larger size is uninitialised memory.
 #define LARGEST_STRUCT 4000
 
 static bool is_possible(size_t size, size_t known) {

@@ -1,5 +1,5 @@
 /// @file passes.h
-/// Work as a list of short functions, so that a host with one thread may stop between any two of them.
+/// Work in a list of short functions, so that a host with one thread may pause between any two of them.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_PASSES_H
@@ -9,14 +9,14 @@
 
 #include "base/message.h"
 
-/// How far a list has come.
+/// Position in a list.
 typedef struct mspringi_cursor {
-    uint32_t pass, at; ///< the function that is next, and where its next range begins
-    bool again;        ///< set by a function: it is to be called once more, or pass, if it has set that, too
+    uint32_t pass, at; ///< next function, and begin of its next range
+    bool again;        ///< set by a function that must be called again; it may set pass, too, to continue there
 } mspringi_cursor;
 
-/// Declare the type of a list's functions, name_pass, and name_run(), which calls the next. A function is called
-/// once, or with one range of so many things after the other.
+/// Declare the type of a list's functions, name_pass, and name_run(), which calls the next one. A function is
+/// called once, or for one range after another of at most `most` elements.
 // NOLINTBEGIN(bugprone-macro-parentheses): of a type
 #define MSPRINGI_PASSES(name, type)                                                                                \
     typedef struct name##_pass {                                                                                   \
@@ -50,7 +50,7 @@ typedef struct mspringi_cursor {
 #define MSPRINGI_EACH(function, count, most)                                                                       \
     { NULL, function, count, most }
 
-/// How many functions an array of them has.
+/// Number of functions in a list.
 #define MSPRINGI_PASS_COUNT(list) ((uint32_t)(sizeof(list) / sizeof(list)[0]))
 
 #endif

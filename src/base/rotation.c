@@ -1,15 +1,15 @@
-/// Cosine and sine: the nearest number of quarter turns is taken off, and Taylor's series do the rest.
+/// Cosine and sine: subtract the nearest number of quarter turns, then sum the Taylor series.
 #include "base/rotation.h"
 
 #include <math.h>
 
 #include "base/assert.h"
 
-/// A quarter turn in two parts. The first has 33 bits, so that up to 2^20 times it is exact.
+/// A quarter turn in two parts. The first has 33 bits, so its products up to 2^20 are exact.
 #define QUARTER_HIGH 0x1.921fb544p+0
 #define QUARTER_LOW 0x1.0b4611a626331p-34
 
-/// Terms up to this power: beyond a quarter of pi the next is below 1e-17.
+/// Last power of the series: up to a quarter of pi, the next term is below 1e-17.
 #define LAST_POWER 18
 
 mspringi_rotation mspringi_turn_by(double angle) {
@@ -34,7 +34,8 @@ mspringi_rotation mspringi_turn_by(double angle) {
     }
 }
 
-// With t = tan(x / 2) of a turn by x, tan(x / 4) is t / (1 + sqrt(1 + t^2)). The series is for at most pi / 16.
+// With t = tan(x / 2) for a rotation by x, tan(x / 4) is t / (1 + sqrt(1 + t^2)). Halving twice leaves at most pi /
+// 16 for the series.
 double mspringi_angle_of(mspringi_rotation rotation) {
     const double pi = 2.0 * (QUARTER_HIGH + QUARTER_LOW), cosine = fabs(rotation.cosine);
     double tangent = rotation.sine / (cosine + 1.0), sum = 0.0;

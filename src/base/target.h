@@ -1,6 +1,6 @@
 /// @file target.h
-/// What the compiler makes code for: which kernels there can be. By the compiler's own macros, so that one build
-/// can be for several CPUs (macOS), and so that the sources need no build system.
+/// Target of the compiler, and so the kernels of a build. It follows from the compiler's macros: one build can be
+/// for several CPUs (macOS), and the sources need no build system.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TARGET_H
@@ -8,8 +8,8 @@
 
 #include <float.h>
 
-// The same bits on every machine take arithmetic in the types as written. Of 16 and 32 bits: types narrower than these
-// alone are computed in them (ISO/IEC TS 18661-3), as _Float16 of CPUs with AVX512-FP16.
+// Equal bits on every machine require arithmetic in the types as written. 16 and 32 are allowed: then only types
+// narrower than these are computed in them (ISO/IEC TS 18661-3), as _Float16 on CPUs with AVX512-FP16.
 #if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16 && FLT_EVAL_METHOD != 32
 #error "this target computes in wider types than the source has: on i386 use -msse2 -mfpmath=sse"
 #endif
@@ -22,7 +22,7 @@
 #define MSPRINGI_WASM 1
 #endif
 
-// Without better kernels there are the scalar ones.
+// A build without vector kernels has scalar ones.
 #if defined(MSPRINGI_WITHOUT_SCALAR) && !defined(MSPRINGI_X86) && !defined(MSPRINGI_AARCH64) &&                    \
     !defined(MSPRINGI_WASM)
 #undef MSPRINGI_WITHOUT_SCALAR
@@ -35,7 +35,7 @@
 #define MSPRINGI_BIG_ENDIAN_HOST 0
 #endif
 
-// For small functions of inner loops: a compiler that has seen many uses may call them otherwise.
+// For small functions of inner loops: compilers stop inlining after many uses.
 #if defined(_MSC_VER) && !defined(__clang__)
 #define MSPRINGI_INLINE static __forceinline
 #else
