@@ -1,4 +1,4 @@
-/// Who is told of a change.
+/// Notification of edits.
 #include "store/changed.h"
 
 #include "base/hash.h"
@@ -8,7 +8,7 @@
 #include "sleep/sleep.h"
 #include "store/springs.h"
 
-/// Longest log of broken and restored springs: more than a burst of them in one frame.
+/// Longest log of broken and restored springs: more than break in one frame.
 #define LONGEST_LOG 4096
 
 mspring_result mspringi_changed_reserve_log(mspring_network *network) {

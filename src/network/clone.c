@@ -1,19 +1,19 @@
-/// A copy of a network: all its blocks of memory, and then every pointer from one block into another.
+/// Clone of a network: copy all blocks of memory, then relocate every pointer from one block into another.
 ///
-/// Those of the network are in store/network.def, those of topologies and solvers in tables beside their functions
-/// that destroy, those of contact in contact/contacts.c, of floor and hooks here. One that is forgotten leads back
-/// into the original, which test_clone finds by looking at every word of a clone.
+/// Pointers of the network are listed in store/network.def, those of topologies and solvers in tables next to their
+/// destroy functions, those of contact in contact/contacts.c, those of floor and hooks here. A forgotten one points
+/// into the original; test_clone checks every word of a clone for that.
 #include "contact/contacts.h"
 #include "contact/floor.h"
 #include "store/network.h"
 #include "store/store.h"
 
-/// The original's memory and the copy's.
+/// Memories of the original and of the copy.
 typedef struct moving {
     const mspringi_memory *from, *to;
 } moving;
 
-/// Have a pointer that was copied lead to where what it points to was copied to.
+/// Redirect a copied pointer to the copy of its block.
 #define MOVE(pointer) ((pointer) = mspringi_memory_moved(m->from, m->to, (pointer)))
 
 static void move_field(const moving *m, mspringi_field *field) {
@@ -77,7 +77,7 @@ static bool has_hook_with_storage(const mspring_network *network) {
     return false;
 }
 
-// Give a copy threads of its own, and what they work in.
+// Give a clone its own threads and their working memory.
 static mspring_result employ(mspring_network *network, const mspring_clone_def *def) {
     mspring_result result = mspringi_shared_reserve(network);
     if (result == MSPRING_OK)

@@ -1,4 +1,4 @@
-/// What a network holds, put into a builder: to store it, to join it to others, to split it.
+/// Conversion of a network into a builder: to store it, join it to others, or split it.
 #include "base/cpu.h"
 #include "builder/builder.h"
 #include "store/areas.h"
@@ -6,7 +6,7 @@
 #include "store/properties.h"
 #include "store/springs.h"
 
-// Ids in the builder by those in the network; MSPRING_NONE for what is left out.
+// Ids in the builder by id in the network; MSPRING_NONE for particles and springs left out.
 typedef struct id_maps {
     mspring_id *particles, *springs;
 } id_maps;
@@ -20,7 +20,7 @@ static mspring_result allocate(mspring_builder *builder, const mspring_network *
                          (unsigned)network->topology.particle_count);
 }
 
-// Number what is added. Returns how many particles and springs these are.
+// Number the particles, then the springs, that are added, and count them.
 
 static mspring_result number_particles(mspring_builder *builder, const mspring_network *network,
                                        const mspring_id *particles, uint32_t count, mspring_id *map,
@@ -120,7 +120,7 @@ static void append_spring(mspring_builder *builder, const mspring_network *netwo
     mspringi_builder_put_limits(builder, builder->spring_count - 1, limits);
 }
 
-// Make room for the limits of the springs that are added, if one of them has any.
+// Make room for the limits of the added springs, if any has limits.
 static mspring_result reserve_limits(mspring_builder *builder, const mspring_network *network, const id_maps *maps,
                                      uint32_t added) {
     mspring_result result = MSPRING_OK;
@@ -130,7 +130,7 @@ static mspring_result reserve_limits(mspring_builder *builder, const mspring_net
     return result;
 }
 
-// Whether an area, or an angle, is added: all of its corners are, and it is whole.
+// True if an area or angle is added: all of its corners are, and it is intact.
 static bool goes_along(const mspring_network *network, const id_maps *maps, const mspringi_area *area) {
     for (uint32_t i = 0; i < area->count; ++i)
         if (maps->particles[network->areas.corners[area->first + i].particle] == MSPRING_NONE)

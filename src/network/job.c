@@ -1,4 +1,4 @@
-/// Making another layout of a network beside it: begin, run, finish.
+/// Job that computes a new layout of a network: begin, run, finish.
 #include "network/job.h"
 
 #include "base/cpu.h"
@@ -15,7 +15,7 @@ mspring_result mspringi_job_no_memory(mspring_job *job) {
 
 void mspringi_job_track(const mspring_network *network, mspringi_spring_slot spring_slot) {
     mspring_job *job = network->job;
-    if (!job || !job->changed) // it was begun with nothing to do (run writes is_needless, on any thread)
+    if (!job || !job->changed) // needless from the start (run also writes is_needless, on any thread)
         return;
     job->changed[spring_slot / MSPRINGI_WIDTH] |= (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     job->has_changed = true;
@@ -32,14 +32,14 @@ void mspringi_job_invalidate(mspring_network *network) {
     network->job = NULL;
 }
 
-// Whether a spring that is live is in the layout.
+// True if a spring is in the new layout or broken.
 static bool has_spring(const mspring_job *job, const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &job->to.topology;
     return !mspringi_spring_slot_is_inactive(t, mspringi_slot_of_spring(t, spring)) ||
            !mspringi_spring_is_live(network, spring);
 }
 
-// Whether the layout sweeps every spring that is live now. It may sweep some that have broken since.
+// True if the new layout contains every live spring. It may contain springs that broke since.
 static bool is_valid(const mspring_job *job, const mspring_network *network) {
     const mspringi_edits *edits = &network->edits;
     bool is_valid = job->growth == edits->growth;
@@ -65,7 +65,7 @@ static bool copy_topologies(mspring_job *job, const mspring_network *network) {
            mspringi_array_table_duplicate(mspringi_topology_columns, &job->first, &job->memory);
 }
 
-// What springs are, and what tells which there are; for a solver also what particles are.
+// Copy the spring arrays and the live bits, and the masses if a solver is to be built.
 static bool copy_arrays(mspring_job *job, const mspring_network *network) {
     static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,    MSPRINGI_STORE_IRREGULAR, MSPRINGI_STORE_RESTS,
                                             MSPRINGI_STORE_STRAIN,  MSPRINGI_STORE_STRESS,    MSPRINGI_STORE_RELAX,
@@ -89,7 +89,7 @@ static void ask_for_solver(mspringi_job_solver *asked, const mspringi_solver *so
     asked->tile_size = tile_size;
 }
 
-// Whether it was found to have nothing to do, and is as it was then.
+// True if an earlier job found nothing to do, and no spring was edited since.
 static bool is_seen_compact(const mspring_network *network) {
     return network->is_seen_compact && network->seen_links == network->edits.links &&
            network->seen_growth == network->edits.growth;
@@ -99,7 +99,7 @@ static bool copy_all(mspring_job *job, const mspring_network *network) {
     const bool is_whole = job->layout == MSPRING_LAYOUT_WHOLE;
     job->to = mspringi_relayout_shell(network);
     job->to.memory = (mspringi_memory){.allocator = network->memory.allocator};
-    job->to.tasks = NULL; // they are the network's; what more workers need, it reserves at the finish
+    job->to.tasks = NULL; // owned by the network; finish reserves what more workers need
     job->to.message = (mspringi_message){0};
     job->shape = *network;
     job->shape.hooks = NULL;
@@ -162,7 +162,7 @@ mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout
 static mspring_result take_whole(mspring_job *job) {
     job->to.topology = job->first;
     job->fingerprint = job->from.whole_fingerprint;
-    // What is made belongs to to's memory, of which there is nothing yet.
+    // Results belong to the memory of `to`, which is still empty.
     return mspringi_array_table_duplicate(mspringi_topology_columns, &job->to.topology, &job->to.memory)
                ? MSPRING_OK
                : mspringi_job_no_memory(job);
@@ -230,7 +230,7 @@ static MSPRINGI_NOINLINE mspring_result run(mspring_job *job, uint32_t at_most) 
 mspring_result mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left) {
     if (!job)
         return MSPRING_ERROR_ARGUMENT;
-    if (job->failure != MSPRING_OK) // what is said of it stays
+    if (job->failure != MSPRING_OK) // keep the message of the failure
         return MSPRING_ERROR_ARGUMENT;
     if (job->is_spent)
         return mspringi_fail(&job->to.message, MSPRING_ERROR_ARGUMENT, "the job is finished: destroy it");
@@ -248,7 +248,7 @@ const char *mspring_job_error(const mspring_job *job) {
 
 /* ------------------------------------------------------------------------------------------------------ finish */
 
-// Keep the layout that the network was created with, or free the one that it has.
+// Move the network. Keep its initial layout, free any other old one.
 static mspring_result exchange(mspring_network *network, mspring_job *job) {
     const bool was_compact = network->is_compact, is_whole = job->layout == MSPRING_LAYOUT_WHOLE;
     const uint64_t fingerprint = network->topology_fingerprint;
@@ -290,7 +290,7 @@ static mspring_result finish(mspring_network *network, mspring_job *job) {
         }
         return MSPRING_OK;
     }
-    network->memory.bin = &job->memory; // to free a direct solver's factor takes milliseconds
+    network->memory.bin = &job->memory; // freeing the factor of a direct solver takes milliseconds
     mspring_result result = exchange(network, job);
     network->memory.bin = NULL;
     if (result != MSPRING_OK)
@@ -334,7 +334,7 @@ void mspring_job_destroy(mspring_job *job) {
 
 /* ----------------------------------------------------------------------------------------------------- at once */
 
-// Begin, run and finish. A job that is under way goes by the layout that was: it is lost.
+// Begin, run and finish a job at once. A job in progress depends on the old layout, and is lost.
 static mspring_result change_layout(mspring_network *network, mspring_layout layout) {
     mspring_job *job = NULL;
     mspring_result result = begin(network, layout, &job);

@@ -1,14 +1,12 @@
 /// @file job.h
-/// Another layout of a network, made beside it.
+/// Job: a new layout of a network, computed while the network steps.
 ///
-///   begin    copies what the layout follows from: where springs lie, what they are like, which are live
-///   run      plain functions on these copies: a topology of what is left (survivors.c), its arrays, springs and
-///   solver
-///            (relayout.c); any thread may run them while the network goes on
-///   finish   moves the network: what its particles are now, and springs that were set since (relayout.c)
+///   begin   copies the input of the layout: spring slots, the springs' values, live bits
+///   run     short functions on these copies: a topology of the surviving springs (survivors.c), then its arrays,
+///           springs and solver (relayout.c). Any thread may run them while the network steps
+///   finish  moves the network to the new layout: present particles, and springs set since (relayout.c)
 ///
-/// A job owns all that it reads, so the network may be edited, stepped, saved, cloned, even destroyed while it
-/// runs.
+/// A job owns all that it reads. So the network may be edited, stepped, saved, cloned or destroyed while it runs.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_JOB_H
@@ -18,51 +16,51 @@
 #include "store/network.h"
 #include "store/rest_lengths.h"
 
-/// What becomes of one of the network's solvers.
+/// Request for one of the new network's solvers.
 typedef struct mspringi_job_solver {
-    mspring_solver_def def; ///< as it was asked for
-    uint32_t tile_size;     ///< 0: by plan
+    mspring_solver_def def; ///< of the present solver
+    uint32_t tile_size;     ///< 0: by layout
 } mspringi_job_solver;
 
 struct mspring_job {
-    mspringi_memory memory;   ///< the job itself, and copies; what is made is in to's memory
-    mspring_network *network; ///< NULL: it has been destroyed, has moved, or the job is finished
+    mspringi_memory memory;   ///< job itself, and copies; results are in the memory of `to`
+    mspring_network *network; ///< NULL if it was destroyed or moved, or the job is finished
     mspring_layout layout;
-    bool is_needless;       ///< the network has this layout
-    bool is_spent;          ///< it has failed or is finished: it can only be destroyed
+    bool is_needless;       ///< network already has this layout
+    bool is_spent;          ///< failed or finished: can only be destroyed
     mspring_result failure; ///< of run
 
-    mspring_network from;    ///< what begin has copied, and nothing else that lies elsewhere
-    mspring_network to;      ///< what has been made so far
-    mspring_network shape;   ///< the network at begin: its arrays are not read, but for whether they are there
-    mspringi_topology first; ///< the layout that the network was created with; empty if from has it
-    mspringi_job_solver solvers[2]; ///< the chosen one and the fallback
+    mspring_network from;           ///< copies by begin; owns all that it points to
+    mspring_network to;             ///< results so far
+    mspring_network shape;          ///< network at begin: only the presence of its arrays is read
+    mspringi_topology first;        ///< initial layout of the network; empty if from has it
+    mspringi_job_solver solvers[2]; ///< present solver and fallback
     uint32_t workers;
     uint64_t links, growth; ///< edits.links and edits.growth
     mspringi_cursor cursor; ///< in the list in job.c
 
     // survivors.c
-    bool has_work;               ///< some spring that is swept is broken, or one was added that the layout lacks
+    bool has_work;               ///< some spring in the layout is broken, or some live one is outside
     uint16_t *was_live;          ///< [springs / 16] a bit for each spring
-    struct mspring_builder left; ///< particles in the first layout's rows and columns, live springs
-    mspring_id *ids;             ///< [left.spring_count] of the live springs, rising
-    uint32_t live, listed;       ///< of these counted, and listed so far
+    struct mspring_builder left; ///< particles by row and column of the initial layout, live springs
+    mspring_id *ids;             ///< [left.spring_count] ids of the live springs, rising
+    uint32_t live, listed;       ///< live springs; those listed so far
     mspringi_layout_builder *assembly;
     mspringi_spring_slot *laid_out_spring_slots; ///< [left.spring_count] of the live springs
     mspringi_spring_slot next_inactive;
     uint64_t fingerprint; ///< of the layout, so far
 
     // relayout.c
-    mspringi_spring_slot *there;     ///< by place in from, that in to
-    mspringi_rest_pattern *of_block; ///< [lattice blocks] while rest lengths are looked at
-    uint16_t *changed;               ///< a bit for each place in from: set since begin, by who edits
+    mspringi_spring_slot *there;     ///< spring slot in `to`, by spring slot in `from`
+    mspringi_rest_pattern *of_block; ///< [lattice blocks] while rest lengths are compared
+    uint16_t *changed;               ///< a bit for each spring slot in `from`, set by edits since begin
     bool has_changed, has_all_changed;
 };
 
-/// The spring in this place has changed, or others that nobody names. The network may have no job.
+/// Record a change of the spring in this slot, or of unnamed springs. The network need not have a job.
 void mspringi_job_track(const mspring_network *network, mspringi_spring_slot spring_slot);
 void mspringi_job_track_all(const mspring_network *network);
-/// The network's layout has changed, or it is no more: the job is outdated.
+/// Mark the job as outdated: the network's layout has changed, or the network was destroyed.
 void mspringi_job_invalidate(mspring_network *network);
 
 static inline const mspringi_topology *mspringi_job_first(const mspring_job *job) {
@@ -71,7 +69,7 @@ static inline const mspringi_topology *mspringi_job_first(const mspring_job *job
 
 mspring_result mspringi_job_no_memory(mspring_job *job);
 
-/// A network without what lies by slot or place.
+/// Copy a network without its arrays by slot or spring slot.
 mspring_network mspringi_relayout_shell(const mspring_network *network);
 
 /* survivors.c: a topology of the springs that are left, in this order. Ranges are of springs, but for particles
@@ -99,7 +97,7 @@ mspring_result mspringi_relayout_copy_springs(mspring_job *job, uint32_t first, 
 mspring_result mspringi_relayout_reserve_others(mspring_job *job);
 mspring_result mspringi_relayout_make_solver(mspring_job *job);
 mspring_result mspringi_relayout_make_fallback(mspring_job *job);
-/// Move the network. On error it is as it was, and the job has failed.
+/// Move the network to the new layout. On error it is unchanged, and the job has failed.
 mspring_result mspringi_relayout_network(mspring_network *network, mspring_job *job);
 
 #endif

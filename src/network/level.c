@@ -1,17 +1,17 @@
-/// The instruction set that suits a layout: registers of 16 lanes take longer than those of 8, and gain nothing
-/// where rows of eight particles fill one of either. (Grids of 5 x 5 to 8 x 8, a network each, on a Zen 4 take 5 to
-/// 13 % longer at AVX-512 than at AVX2; grids of 9 x 9 to 16 x 16 a quarter less. Two such grids in one network
+/// Instruction set that suits a layout. Registers of 16 lanes take longer than those of 8, and gain nothing if rows
+/// of eight particles fill one of either. (A network of one grid of 5 x 5 to 8 x 8 takes 5 to 13 % longer with
+/// AVX-512 than with AVX2 on a Zen 4, one of 9 x 9 to 16 x 16 a quarter less. Two of the small grids in one network
 /// share registers, and take 10 to 30 % less.)
 #include "network/level.h"
 
-/// Registers of the narrower level that a layout may fill for each of the wider one, in eighths: a rope beside a
-/// narrow lattice changes nothing.
+/// Most registers of the narrower level for each of the wider one, in eighths: a rope next to a narrow lattice
+/// changes nothing.
 #define MOST_EIGHTHS 9u
 
-/// Particles of the largest network that is narrow.
+/// Most particles of a narrow network.
 #define MOST_PARTICLES 64u
 
-// How many registers a substep fills.
+// Registers that a substep fills.
 static uint64_t registers(const mspringi_topology *t, uint32_t lanes) {
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
     const uint64_t slice_columns =

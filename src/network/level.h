@@ -1,5 +1,5 @@
 /// @file level.h
-/// The instruction set that suits a layout.
+/// Instruction set that suits a layout.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_LEVEL_H
@@ -7,7 +7,7 @@
 
 #include "layout/topology.h"
 
-/// The level to run at, where the host leaves that to the library: the widest, or one with narrower registers if
+/// Level for a layout if the host leaves the choice to the library: the widest, or one of narrower registers if
 /// rows fill no more of these.
 mspring_simd mspringi_level_for(const mspringi_topology *topology, mspring_simd widest);
 

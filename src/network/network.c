@@ -1,4 +1,4 @@
-/// Making, describing and destroying a network.
+/// Creation and destruction of a network.
 #include "store/network.h"
 
 #include <math.h>
@@ -122,7 +122,7 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
     return mspringi_halos_reserve(network);
 }
 
-// What the springs have in common decides what a network has to hold for them.
+// Check which arrays the springs need.
 static void look_at_springs(const mspring_builder *builder, bool *damped, bool *relative) {
     *damped = *relative = false;
     for (size_t s = 0; s < builder->spring_count; ++s) {
@@ -188,7 +188,7 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
     }
 }
 
-// What tells this network's snapshots from those of others.
+// Update the fingerprints, which tell this network's snapshots from those of others.
 static void take_fingerprints(mspring_network *network, const mspringi_spring *spring,
                               mspringi_spring_slot spring_slot) {
     uint64_t fingerprint = network->topology_fingerprint;
@@ -222,7 +222,7 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
     }
 }
 
-// Springs are given with the lower id first as a rule.
+// Mark springs whose first end has the higher id, which are few.
 static mspring_result note_turned(mspring_network *network, const mspring_builder *builder) {
     for (size_t s = 0; s < builder->spring_count; ++s) {
         if (builder->springs[s].a < builder->springs[s].b)
@@ -235,7 +235,7 @@ static mspring_result note_turned(mspring_network *network, const mspring_builde
     return MSPRING_OK;
 }
 
-// Give springs the strains at which something happens to them.
+// Set the strain limits of springs.
 static mspring_result set_limits(mspring_network *network, const mspring_builder *builder) {
     mspring_result result = mspringi_one_way_create(network, builder);
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
@@ -251,12 +251,12 @@ static mspring_result set_limits(mspring_network *network, const mspring_builder
 
 /* -------------------------------------------------------------------------------------------------- lifecycle */
 
-// Fill a network that knows its memory and nothing else. Its message tells what failed.
+// Fill a network whose memory is initialised. Its message describes a failure.
 static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const mspring_builder *builder,
                                              const mspring_network_def *def) {
     bool damped, relative;
     mspringi_reserve reserve = {0};
-    const mspringi_solver_ops *const solver_ops = mspringi_solver_ops_of(def->solver); // NULL: is refused below
+    const mspringi_solver_ops *const solver_ops = mspringi_solver_ops_of(def->solver); // NULL: rejected below
     const bool has_bundles = solver_ops && solver_ops->has_bundles;
     network->solver.ops = mspringi_solver_ops_of(MSPRING_SOLVER_EXPLICIT);
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
@@ -296,7 +296,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = note_turned(network, builder);
     if (result != MSPRING_OK)
         return result;
-    network->guard.speed = network->guard.coordinate = INFINITY; // are not known
+    network->guard.speed = network->guard.coordinate = INFINITY; // unknown
     network->steps.outcome = mspringi_outcome_none();
     fill_particles(network, builder);
     fill_springs(network, builder);

@@ -1,7 +1,7 @@
-/// Moving a network to another layout of the same particles and springs.
+/// Move of a network to a new layout of the same particles and springs.
 ///
-/// What lies by slot or by place is made anew, in a second network that shares with the first what lies by id. The
-/// greater part of that is the job's; what a step changes is moved in the end.
+/// Arrays by slot or spring slot are made in a second network, which shares arrays by id with the first. The job
+/// makes most of them; arrays that a step changes are moved at the finish.
 #include <math.h>
 #include <string.h>
 
@@ -38,7 +38,7 @@ mspring_result mspringi_relayout_note_rest_lengths(mspring_job *job, uint32_t fi
     return MSPRING_OK;
 }
 
-// Rest lengths are shared by blocks as they are at creation, unless the network has them apart already.
+// Blocks share rest lengths as at creation, unless the network has unshared them.
 mspring_result mspringi_relayout_reserve_springs(mspring_job *job) {
     mspring_network *to = &job->to;
     mspring_result result = mspringi_layout_reserve(to);
@@ -52,7 +52,7 @@ mspring_result mspringi_relayout_reserve_springs(mspring_job *job) {
     return result == MSPRING_OK ? mspringi_plastic_match_layout(to, &job->from) : result;
 }
 
-// Copy all that there is of a spring, from its place here to its place there, whatever is there.
+// Copy all values of a spring from its old slot to its new one.
 static void copy_spring(mspring_network *to, mspringi_spring_slot spring_slot, const mspring_network *from,
                         mspringi_spring_slot before) {
     mspringi_spring_slot_copy(from, before, to, spring_slot);
@@ -70,7 +70,7 @@ mspring_result mspringi_relayout_copy_springs(mspring_job *job, uint32_t first, 
     return MSPRING_OK;
 }
 
-// Those that were set since the job began.
+// Copy springs that were set since the job began.
 static void copy_changed(mspring_network *to, const mspring_network *from, const mspring_job *job) {
     const size_t words = mspringi_spring_slot_words(&from->topology);
     if (job->has_all_changed) {
@@ -89,10 +89,10 @@ static void copy_changed(mspring_network *to, const mspring_network *from, const
 /* --------------------------------------------------------------------------------------------------- others */
 
 mspring_result mspringi_relayout_reserve_others(mspring_job *job) {
-    // Which arrays there are is all that is asked of from's: begin has marked those that it has not copied.
+    // Only the presence of the source's arrays matters here; their contents may be missing.
     if (!mspringi_store_match_layout(&job->to, &job->shape))
         return no_memory_to_move(&job->to);
-    mspringi_store_move_slots(&job->to, &job->from); // inverse masses, which tell what is pinned
+    mspringi_store_move_slots(&job->to, &job->from); // inverse masses, to tell pinned particles
     return job->shape.guard_scratch ? mspringi_stability_limit_reserve(&job->to) : MSPRING_OK;
 }
 
@@ -117,7 +117,7 @@ mspring_result mspringi_relayout_make_fallback(mspring_job *job) {
     return make_solver(job, &job->to.fallback, &job->solvers[1]);
 }
 
-// The solver that the job has made, if it is still the one that is wanted; else another.
+// Adopt the solver that the job has made if it still fits; else make another.
 static mspring_result adopt_solver(mspring_network *to, mspringi_solver *solver, const mspringi_solver *made,
                                    const mspringi_solver *had, uint32_t tile_size) {
     const mspringi_solver_ops *ops = had->ops;
@@ -155,7 +155,7 @@ static mspring_result make_floor(mspring_network *to, const mspring_network *fro
     return to->floor ? MSPRING_OK : mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for a floor");
 }
 
-// What the network has and the job has not made: it came since, or is small.
+// Make what the network has and the job has not made: recent or small things.
 static mspring_result make_others(mspring_network *to, const mspring_network *from, mspring_job *job) {
     mspring_result result = MSPRING_OK;
     if (to->rest_lengths.shared_count > 0 && from->rest_lengths.shared_count == 0)
@@ -188,7 +188,7 @@ static void move_values(const float *from, float *to, const mspring_network *old
         to[there[p]] = from[here[p]];
 }
 
-// Free what lies by slot or by place.
+// Free all arrays by slot or spring slot.
 static void free_layout(mspring_network *network, mspringi_memory *memory) {
     for (size_t i = 0; network->hooks && i < network->hook_count; ++i)
         mspringi_free(memory, network->hooks[i].held.x);
@@ -211,7 +211,7 @@ mspring_network mspringi_relayout_shell(const mspring_network *network) {
     return to;
 }
 
-// The network with what the job has made by slot and place in the stead of its own.
+// Network with the arrays by slot and spring slot that the job has made.
 static mspring_network with_layout_of(const mspring_network *network, const mspring_network *made) {
     mspring_network to = mspringi_relayout_shell(network);
     to.memory = made->memory;
@@ -245,7 +245,7 @@ static mspring_result fill(mspring_network *to, const mspring_network *network, 
 mspring_result mspringi_relayout_network(mspring_network *network, mspring_job *job) {
     mspring_network to = with_layout_of(network, &job->to);
     mspring_result result = fill(&to, network, job);
-    job->is_spent = true; // all that it has made is to's, or freed with it
+    job->is_spent = true; // its results belong to `to`, or are freed with it
     job->to.memory = to.memory;
     if (result != MSPRING_OK) {
         job->to.message = to.message;

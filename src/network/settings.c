@@ -1,4 +1,4 @@
-/// What may change between steps: the solver, and the settings.
+/// Solver and settings: all that may change between steps.
 #include <math.h>
 #include <string.h>
 
@@ -70,7 +70,7 @@ mspring_result mspring_network_get_solver(const mspring_network *network, msprin
     return MSPRING_OK;
 }
 
-// Exchange the solver for that of the definition, or have it go on with other settings.
+// Replace the solver by the one defined, or adjust it if it fits.
 static mspring_result change_solver(mspring_network *network, const mspring_solver_def *def) {
     mspringi_solver made = {mspringi_solver_ops_of(def->solver), NULL};
     if (made.ops == network->solver.ops && (!made.ops->fits || made.ops->fits(network->solver.object, def))) {
@@ -149,7 +149,7 @@ mspring_result mspring_network_get_settings(const mspring_network *network, mspr
     return result;
 }
 
-// Allocate what the network does not need with the settings that it has.
+// Allocate memory that the new settings need in addition.
 static mspring_result reserve_for(mspring_network *network, const mspring_settings *settings) {
     const mspringi_fp_state before = mspringi_fp_enter();
     mspring_result result = MSPRING_OK;

@@ -1,12 +1,12 @@
-/// A topology of the springs that are left.
+/// Survivors: topology of the live springs.
 ///
-/// The layout that a network is created with sweeps all springs, broken ones too. This one lays out the live ones
-/// alone: lattices where squares are left, chains, an irregular part of what is between, and loose particles.
-/// Springs that are broken are inactive: they keep a place and a record, so that everything that can be asked or
-/// set of a broken spring goes on as it did, but nothing sweeps them.
+/// The initial layout of a network contains all springs, and sweeps those that break, too. This one contains only
+/// live springs: lattices of surviving squares, chains, the irregular part between them, and loose particles.
+/// Broken springs become inactive: they keep a spring slot and a record, so that queries and edits still work, but
+/// are not swept.
 ///
-/// Grids are looked for where the first topology has found some, by row and column: where the particles are by then
-/// says nothing.
+/// The search for grids uses rows and columns of the initial layout as positions, since present positions mean
+/// nothing.
 #include "network/job.h"
 
 #include "base/hash.h"
@@ -48,9 +48,8 @@ mspring_result mspringi_survivors_reserve(mspring_job *job) {
     return left->particles && left->springs && job->ids ? MSPRING_OK : mspringi_job_no_memory(job);
 }
 
-// Where a particle is in its grid: grids lie one above the other, too far apart to be taken for one. Particles
-// of no grid lie on a diagonal on the other side, where no two can be taken for neighbours on a grid, in the order
-// in which they lie in memory.
+// Positions for the search. Grids lie one above the other, far enough apart to stay separate. All other particles
+// lie on a diagonal on the other side, in the order of their slots: no two of them are neighbours in a grid.
 
 mspring_result mspringi_survivors_place_on_diagonal(mspring_job *job, uint32_t first, uint32_t end) {
     const mspringi_topology *first_one = mspringi_job_first(job);
@@ -95,14 +94,14 @@ mspring_result mspringi_survivors_list(mspring_job *job, uint32_t first, uint32_
             .a = t->particle_of_slot[base],
             .b = t->particle_of_slot[tip],
             .flags =
-                t->parallel_count > 0 ? MSPRINGI_ONE_WAY_FLAGS : 0, // all may be beside another: that was checked
+                t->parallel_count > 0 ? MSPRINGI_ONE_WAY_FLAGS : 0, // all may be parallel: the builder was checked
         };
     }
     return MSPRING_OK;
 }
 
-// Bundles are for the explicit solver: the implicit one takes the springs of the irregular part one by one, and
-// twice as long for a wreck that mostly stands in such.
+// Bundles suit the explicit solver only. The implicit one takes irregular springs one by one, and so takes twice as
+// long for a wreck that is mostly bundles.
 mspring_result mspringi_survivors_begin_layout(mspring_job *job) {
     const bool has_bundles = job->from.solver.ops->has_bundles;
     const mspringi_topology *t = mspringi_job_first(job);
@@ -119,7 +118,7 @@ mspring_result mspringi_survivors_lay_out(mspring_job *job) {
 
 /* ----------------------------------------------------------------------------------------- inactive springs */
 
-// How many of the live springs are not spare ones.
+// Number of live springs that are not spare.
 static uint32_t count_laid_out(const mspring_job *job, uint32_t first_spare) {
     uint32_t low = 0, high = (uint32_t)job->left.spring_count;
     while (low < high) {
@@ -150,8 +149,8 @@ mspring_result mspringi_survivors_finish_layout(mspring_job *job) {
     return result;
 }
 
-// Give the springs that are not left places behind those that are: spare ones those that are kept for them, the
-// others behind these.
+// Number the springs outside the layout after those in it. Spare springs get their reserved slots, broken ones the
+// slots behind.
 mspring_result mspringi_survivors_number_spring_slots(mspring_job *job, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &job->to.topology;
     for (mspring_id s = first; s < end; ++s) {
@@ -164,8 +163,8 @@ mspring_result mspringi_survivors_number_spring_slots(mspring_job *job, uint32_t
     return MSPRING_OK;
 }
 
-// Write down what springs outside of the plan join. Those that have been removed keep whatever ends: their
-// particles may be gone, too.
+// Save the ends of springs outside the layout. Removed springs may have any ends, as their particles may be gone,
+// too.
 mspring_result mspringi_survivors_note_ends(mspring_job *job, uint32_t first, uint32_t end) {
     const mspringi_topology *first_one = mspringi_job_first(job);
     mspringi_topology *t = &job->to.topology;
