@@ -1,4 +1,4 @@
-/// Collecting particles and springs: every value is checked here, so that nothing behind it has to.
+/// Builder of particles and springs. All values are checked here, so later code can rely on them.
 #include "builder/builder.h"
 
 #include <math.h>
@@ -103,8 +103,8 @@ void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, 
 
 /* ----------------------------------------------------------------------------------------------- checking */
 
-// Comparisons are written so that NaN fails them. What computes values for the network runs in the floating-point
-// environment of a step.
+// Comparisons are written to reject NaN. Values for the network are computed in the floating-point environment of a
+// step.
 
 mspring_result mspringi_check_struct_of(mspringi_message *message, const char *what, size_t index, const char *name,
                                         const void *given, size_t known, size_t struct_size) {
@@ -116,7 +116,7 @@ mspring_result mspringi_check_struct_of(mspringi_message *message, const char *w
                                 : mspringi_fail(message, result, "%s %zu: %s", what, index, reason.text);
 }
 
-// Put the place in the caller's array in front of what was wrong with it.
+// Prefix the message with the index in the caller's array.
 static mspring_result name_definition(mspring_builder *builder, mspring_result result, size_t index) {
     const mspringi_message reason = builder->message;
     return mspringi_fail(&builder->message, result, "definition %zu: %s", index, reason.text);

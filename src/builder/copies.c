@@ -1,4 +1,4 @@
-/// Copies of all that a builder holds, in another one.
+/// Copies of a whole builder within another one.
 #include "base/cpu.h"
 #include "builder/builder.h"
 
@@ -15,7 +15,7 @@ static double y_of(const offsets *by, uint32_t i) {
     return by->y ? by->y[i * by->stride] : 0.0;
 }
 
-// A box around all particles, of at least one.
+// Bounding box of at least one particle.
 static void find_bounds(const mspring_builder *from, double low[2], double high[2]) {
     const mspringi_particle *p = from->particles;
     low[0] = high[0] = p->x;
@@ -43,7 +43,7 @@ static mspring_result check(mspring_builder *builder, const mspring_builder *fro
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the builder to copy has no particle");
     const uint64_t particles = (uint64_t)from->particle_count * count,
                    springs = (uint64_t)from->spring_count * count;
-    if (particles > MSPRING_MAX_PARTICLES || springs > MSPRING_MAX_SPRINGS) // before each copy is looked at
+    if (particles > MSPRING_MAX_PARTICLES || springs > MSPRING_MAX_SPRINGS) // before a loop over copies
         return mspringi_fail(message, MSPRING_ERROR_LIMIT,
                              "%u copies of %zu particles and %zu springs are over the limits", (unsigned)count,
                              from->particle_count, from->spring_count);

@@ -1,13 +1,14 @@
-/// A disc: rings around a centre, joined to a mesh of triangles.
+/// Disc: rings around a centre, in a mesh of triangles.
 ///
-/// Ring i has 6 i particles. The disc is a hexagon of equilateral triangles, bent so that its rings become round.
+/// Ring i has 6 i particles. The disc is a hexagon of equilateral triangles, deformed so that its rings become
+/// circles.
 #include "builder/builder.h"
 
 #include <math.h>
 
 #include "base/cpu.h"
 
-// Most rings: 1 + 3 n (n + 1) particles are within MSPRING_MAX_PARTICLES.
+// Most rings: 1 + 3 n (n + 1) particles do not exceed MSPRING_MAX_PARTICLES.
 #define MOST_RINGS 4729u
 
 #define SECTORS 6u
@@ -25,12 +26,12 @@ static mspring_result check_disc(mspringi_message *message, const mspring_disc_d
     return MSPRING_OK;
 }
 
-// Particle number k of a ring, counted round and round.
+// Vertex k of a ring, modulo the ring's size.
 static uint32_t vertex_at(uint32_t ring, uint32_t k) {
     return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1) + k % (SECTORS * ring);
 }
 
-// The direction at this part of a sixth of a turn: Taylor's series, which have the same bits on every machine.
+// Direction at a fraction of a sector (60 degrees), by Taylor series: equal bits on every machine.
 static void direction_in_sector(double part, double *x, double *y) {
     const double angle = part * 1.0471975511965977, square = angle * angle;
     double cosine = 1.0, sine = 1.0;
@@ -43,7 +44,7 @@ static void direction_in_sector(double part, double *x, double *y) {
 }
 
 static void place_vertices(const mspring_disc_def *def, double *x, double *y) {
-    static const double root = 0.8660254037844386; // of 3/4
+    static const double root = 0.8660254037844386; // sqrt(3/4)
     static const double turns[SECTORS][2] = {{1, 0},  {0.5, root},   {-0.5, root},
                                              {-1, 0}, {-0.5, -root}, {0.5, -root}};
     x[0] = def->x;

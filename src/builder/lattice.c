@@ -1,9 +1,9 @@
-/// A lattice: cells become particles, neighbours are joined.
+/// Lattice: cells become particles, neighbours get springs.
 #include "builder/builder.h"
 
 #include "base/cpu.h"
 
-// The materials, whatever their size.
+// Material of an array of structs of any size.
 static const mspring_material *material_at(const mspring_lattice_def *def, uint32_t i) {
     return mspringi_element(def->materials, mspringi_struct_size(def->materials), i);
 }
@@ -38,12 +38,12 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
     return MSPRING_OK;
 }
 
-// Whether neighbouring cells between two coordinates would round to the same place.
+// True if neighbouring cells would have equal coordinates after rounding.
 static bool is_lost(double spacing, size_t cells, double low, double high) {
     return cells > 1 && (low + spacing == low || high - spacing == high);
 }
 
-// Whether a cell that is not empty has a bend spring to the second one on its right, or below.
+// True if a full cell has a bend spring to the second cell to its right, or below it.
 
 static bool reaches_right(const mspring_lattice_def *def, size_t row, size_t column) {
     const uint16_t *cell = def->cells + row * def->width + column;
@@ -56,7 +56,7 @@ static bool reaches_down(const mspring_lattice_def *def, size_t row, size_t colu
     return row + 2 < def->height && cell[width] != MSPRING_CELL_EMPTY && cell[2 * width] != MSPRING_CELL_EMPTY;
 }
 
-// Check a lattice's cells and count what it will add.
+// Check a lattice's cells and count its particles and springs.
 static mspring_result check_lattice(mspring_builder *builder, const mspring_lattice_def *def, size_t *particles,
                                     size_t *springs) {
     mspringi_message *message = &builder->message;
@@ -119,7 +119,7 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
     return MSPRING_OK;
 }
 
-// The limits of springs between two materials: those of the weaker one.
+// Limits of springs between two materials: those of the weaker one.
 static mspringi_limits join_limits(const mspring_material *a, const mspring_material *b) {
     const mspring_material *stressed = b->stress_strain < a->stress_strain ? b : a;
     const mspring_material *yields = b->yield_strain < a->yield_strain ? b : a;
@@ -131,7 +131,7 @@ static mspringi_limits join_limits(const mspring_material *a, const mspring_mate
                              .plastic_limit = yields->plastic_limit};
 }
 
-// Make room for the limits of springs, if any of the materials has some.
+// Make room for the springs' limits, if a material has any.
 static mspring_result reserve_limits(mspring_builder *builder, const mspring_lattice_def *def, size_t springs) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; result == MSPRING_OK && i < def->material_count; ++i)
@@ -141,7 +141,7 @@ static mspring_result reserve_limits(mspring_builder *builder, const mspring_lat
 
 typedef enum join { STRUCTURAL, SHEAR, BEND } join;
 
-// The ids of a lattice's particles are dense in cell order, so those of two rows are enough to join them.
+// Add the spring between two cells. Ids are dense in cell order, so two rows of ids suffice to find neighbours.
 static void join_cells(mspring_builder *builder, const mspring_lattice_def *def, mspring_id a, uint16_t material_a,
                        mspring_id b, uint16_t material_b, join kind) {
     static const double cells[] = {[STRUCTURAL] = 1.0, [SHEAR] = 1.4142135623730951, [BEND] = 2.0};
@@ -172,7 +172,7 @@ static void append_lattice(mspring_builder *builder, const mspring_lattice_def *
     for (size_t row = 0; row < height; ++row) {
         const uint16_t *cells = def->cells + row * width;
         const uint16_t *below = row + 1 < height ? cells + width : NULL;
-        // The id that the cell below this one has, if it is not empty.
+        // Id of the cell below this one, if that is not empty.
         mspring_id below_id = next_below;
         for (size_t column = 0; column < width; ++column) {
             const bool has_below = below && below[column] != MSPRING_CELL_EMPTY;

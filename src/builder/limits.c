@@ -1,5 +1,4 @@
-/// Strains at which springs break, are stressed, relax and yield. Most builders have none: then nothing is kept of
-/// them.
+/// Strain limits of springs: break, stress, relax and yield. A builder without any stores none.
 #include "builder/builder.h"
 
 static const mspringi_limits none = {MSPRING_NEVER,

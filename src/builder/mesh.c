@@ -1,4 +1,4 @@
-/// A mesh of triangles: vertices become particles, edges become springs.
+/// Mesh of triangles: vertices become particles, edges become springs.
 ///
 /// Stiffness from Young's modulus: k = E h (sum of the areas of the edge's triangles) / length^2 (Van Gelder,
 /// "Approximate simulation of elastic membranes by triangulated spring meshes", Journal of Graphics Tools 3(2),
@@ -9,17 +9,17 @@
 
 #include "base/cpu.h"
 
-// A triangle's height over its longest side, as a part of that side, below which it has no area.
+// Smallest ratio of a triangle's height over its longest side to that side. Thinner ones have no area.
 #define THINNEST 1e-9
 
-// Sides of triangles. Side 3 t + i of triangle t leads from its corner i to the next one.
+// Sides of triangles. Side 3 t + i of triangle t joins its corner i to the next one.
 typedef struct mesh_work {
-    uint32_t *first_of_vertex; // [vertices + 1] where the sides whose lower vertex this is begin in sides
-    uint32_t *sides;           // [sides] grouped by their lower vertex, in order
-    uint32_t *same;            // [sides] the first side that joins the same vertices
-    uint32_t *seen_from;       // [vertices] the lower vertex, plus 1, that led here last
-    uint32_t *seen_by;         // [vertices] and by which side
-    double *area;              // [sides] m^2, of the triangles around the edge: of the first side of each
+    uint32_t *first_of_vertex; // [vertices + 1] first side with this lower vertex
+    uint32_t *sides;           // [sides] by lower vertex, in order
+    uint32_t *same;            // [sides] first side between the same vertices
+    uint32_t *seen_from;       // [vertices] 1 + lower vertex of the last side to this vertex
+    uint32_t *seen_by;         // [vertices] that side
+    double *area;              // [sides] area of the triangles at an edge, m^2, for its first side
     double *mass;              // [vertices] kg
 } mesh_work;
 
@@ -114,7 +114,7 @@ static mspring_result check_vertices(mspringi_message *message, const mspring_me
     return MSPRING_OK;
 }
 
-// Share the triangles' masses among their corners.
+// Distribute the triangles' masses to their corners, a third each.
 static mspring_result weigh(mspringi_message *message, const mspring_mesh_def *def, const mesh_work *work) {
     for (uint32_t t = 0; t < def->triangle_count; ++t) {
         double area;
@@ -143,7 +143,7 @@ static void side_ends(const mspring_mesh_def *def, uint32_t side, uint32_t *low,
     *high = a < b ? b : a;
 }
 
-// Find the first side of each edge. Returns how many edges there are.
+// Find the first side of each edge. Return the number of edges.
 static uint32_t find_edges(const mspring_mesh_def *def, const mesh_work *work) {
     const uint32_t sides = 3 * def->triangle_count;
     uint32_t low, high, edges = 0, *const first = work->first_of_vertex;
@@ -153,7 +153,7 @@ static uint32_t find_edges(const mspring_mesh_def *def, const mesh_work *work) {
     }
     for (uint32_t v = 0, sum = 0; v <= def->vertex_count; ++v) {
         sum += first[v];
-        first[v] = sum; // the end of its group
+        first[v] = sum; // end of its group
     }
     for (uint32_t s = sides; s-- > 0;) {
         side_ends(def, s, &low, &high);

@@ -1,9 +1,9 @@
-/// Materials that look like real ones.
+/// Materials that resemble real ones.
 ///
-/// A square lattice whose springs have stiffness k, the diagonal ones, too, has Young's modulus times thickness 3 k
-/// / 2 along its rows. With k = s m / (2 h^2), and m / spacing^2 = density times thickness, the square of the speed
-/// of sound is (3 s / 4) (spacing / h)^2. A relative lattice of equal masses is stable in any shape if 2 s + 4 d is
-/// at most 1, with d the relative damping: 2 zeta sqrt(s) for the damping ratio zeta.
+/// A square lattice of springs of stiffness k, diagonals included, has Young's modulus times thickness 3 k / 2
+/// along its rows. With k = s m / (2 h^2) and m / spacing^2 = density times thickness, the squared speed of sound
+/// is (3 s / 4) (spacing / h)^2. A relative lattice of equal masses is stable in any shape if 2 s + 4 d is at most
+/// 1. Its relative damping d is 2 zeta sqrt(s) for the damping ratio zeta.
 #include <massspring/massspring_tools.h>
 
 #include "base/message.h"
@@ -15,8 +15,8 @@ typedef struct preset {
     double damping_ratio;
 } preset;
 
-// Densities and speeds are those of structural steel, pine along its grain, soft rubber and gelatine. Largest
-// shares keep the order of the materials where substeps are too long for all of them.
+// Densities and speeds of structural steel, pine along the grain, soft rubber and gelatine. If substeps are too
+// long for all materials, the largest shares keep their order.
 static const preset presets[] = {
     [MSPRING_PRESET_STEEL] = {7850.0, 5000.0, 0.4, 0.01},
     [MSPRING_PRESET_WOOD] = {600.0, 4000.0, 0.2, 0.03},

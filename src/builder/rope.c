@@ -1,4 +1,4 @@
-/// A rope: equal springs in a row.
+/// Rope: a chain of equal springs.
 #include "builder/builder.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
-/// Strain limits: springs that lie beside others, and act beyond a strain of theirs.
+/// Strain limits: parallel springs that act only beyond a strain of the original spring.
 #include "base/cpu.h"
 #include "builder/builder.h"
 
-/// Beyond that a substep short enough to be stable still gains energy where a spring meets its limit.
+/// Largest stiffening. Beyond it, even a stable substep gains energy when a spring meets its limit.
 #define MOST_STIFFENING 30.0f
 
 static mspring_result check_range(mspring_builder *builder, mspring_id first, uint32_t count, float strain,
@@ -21,7 +21,7 @@ static mspring_result check_range(mspring_builder *builder, mspring_id first, ui
     return MSPRING_OK;
 }
 
-// The strain of the limit at which the spring beside it breaks: both have the same length then.
+// Break strain of the limit, so that it breaks at the same length as the original spring.
 static float break_strain_of(float break_strain, float strain) {
     const double length = 1.0 + (strain > 0.0f ? (double)break_strain : -(double)break_strain);
     const double beyond = length / (1.0 + (double)strain) - 1.0;
