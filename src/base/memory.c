@@ -70,7 +70,7 @@ mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_alloc
         if (result != MSPRING_OK)
             return result;
         if (!allocator->alloc || !allocator->free)
-            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "mspring_allocator lacks alloc or free");
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "alloc or free of mspring_allocator is NULL");
     }
     *memory = (mspringi_memory){.allocator = allocator ? *allocator : defaults};
     memory->allocator.struct_size = sizeof memory->allocator;

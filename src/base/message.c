@@ -84,7 +84,7 @@ mspring_result mspringi_check_struct(mspringi_message *message, const char *name
             return !message ? MSPRING_ERROR_STRUCT
                             : mspringi_fail(message, MSPRING_ERROR_STRUCT,
                                             "%s has %zu bytes, of which this library knows %zu, and byte %zu is "
-                                            "not 0: it asks for what a later library has",
+                                            "not 0: it uses a feature of a later version",
                                             name, size, known, i);
     return MSPRING_OK;
 }
@@ -92,7 +92,7 @@ mspring_result mspringi_check_struct(mspringi_message *message, const char *name
 mspring_result mspringi_check_output(mspringi_message *message, const char *name, const void *out, size_t known) {
     if (!out)
         return !message ? MSPRING_ERROR_ARGUMENT
-                        : mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the place for %s is NULL", name);
+                        : mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s is NULL", name);
     const size_t size = mspringi_struct_size(out);
     return is_possible(size, known) ? MSPRING_OK : refuse_size(message, name, size, known);
 }
@@ -171,9 +171,9 @@ const char *mspring_result_string(mspring_result result) {
     case MSPRING_ERROR_BUSY:
         return "not allowed now";
     case MSPRING_ERROR_OUTDATED:
-        return "the network is another by now";
+        return "the network has changed since the job began";
     case MSPRING_ERROR_THREAD:
-        return "no thread to be had";
+        return "no thread available";
     case MSPRING_ERROR_EQUILIBRIUM:
         return "no equilibrium found";
     case MSPRING_ERROR_SNAPSHOT:

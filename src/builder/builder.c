@@ -54,7 +54,7 @@ uint32_t mspring_builder_spring_count(const mspring_builder *builder) {
 mspring_result mspringi_builder_reserve_particles(mspring_builder *builder, size_t count) {
     if (count > MSPRING_MAX_PARTICLES - builder->particle_count)
         return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT,
-                             "%zu particles more on top of %zu are over the limit of %u (MSPRING_MAX_PARTICLES)",
+                             "%zu particles in addition to %zu exceed the limit of %u (MSPRING_MAX_PARTICLES)",
                              count, builder->particle_count, (unsigned)MSPRING_MAX_PARTICLES);
     void *particles = builder->particles;
     bool grown = mspringi_grow(&builder->memory, &particles, &builder->particle_capacity,
@@ -62,26 +62,26 @@ mspring_result mspringi_builder_reserve_particles(mspring_builder *builder, size
     builder->particles = particles;
     return grown
                ? MSPRING_OK
-               : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu particles more", count);
+               : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu more particles", count);
 }
 
 mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t count) {
     if (count > MSPRING_MAX_SPRINGS - builder->spring_count)
         return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT,
-                             "%zu springs more on top of %zu are over the limit of %u (MSPRING_MAX_SPRINGS)", count,
+                             "%zu springs in addition to %zu exceed the limit of %u (MSPRING_MAX_SPRINGS)", count,
                              builder->spring_count, (unsigned)MSPRING_MAX_SPRINGS);
     void *springs = builder->springs;
     bool grown = mspringi_grow(&builder->memory, &springs, &builder->spring_capacity, builder->spring_count + count,
                                sizeof *builder->springs);
     builder->springs = springs;
     return grown ? MSPRING_OK
-                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu springs more", count);
+                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu more springs", count);
 }
 
 mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t areas, size_t corners) {
     void *list = builder->areas, *all = builder->corners;
     if (areas >= MSPRING_NONE - builder->area_count || corners >= MSPRING_NONE - builder->corner_count)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT, "%zu areas more on top of %zu are too many",
+        return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT, "%zu areas in addition to %zu are too many",
                              areas, builder->area_count);
     bool grown = areas == 0 || mspringi_grow(&builder->memory, &list, &builder->area_capacity,
                                              builder->area_count + areas, sizeof *builder->areas);
@@ -90,7 +90,7 @@ mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t a
                                                   builder->corner_count + corners, sizeof *builder->corners));
     builder->corners = all;
     return grown ? MSPRING_OK
-                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu areas more", areas);
+                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu more areas", areas);
 }
 
 void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, const mspring_id *corners,

@@ -52,7 +52,7 @@ mspring_result mspringi_builder_reserve_limits(mspring_builder *builder, size_t 
     builder->limits = grown;
     return is_grown ? MSPRING_OK
                     : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY,
-                                    "no memory for the break strains of %zu springs more", count);
+                                    "no memory for the limits of %zu more springs", count);
 }
 
 void mspringi_builder_put_limits(mspring_builder *builder, size_t first, mspringi_limits limits) {

@@ -120,7 +120,7 @@ static mspring_result copy(const mspring_network *network, const mspring_clone_d
 static mspring_result check_clone(const mspring_network *network, const mspring_clone_def *def,
                                   mspring_network *const *clone, mspringi_message *message) {
     if (!clone)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the place for the clone is NULL");
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "clone is NULL");
     if (network->in_hook != MSPRINGI_IN_NO_HOOK)
         return mspringi_fail(message, MSPRING_ERROR_BUSY, "no clone is made inside a hook");
     mspring_result result = mspringi_check_struct(message, "mspring_clone_def", def, sizeof *def);

@@ -145,8 +145,8 @@ mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout
     if (result != MSPRING_OK)
         return result;
     if (!job || (layout != MSPRING_LAYOUT_COMPACT && layout != MSPRING_LAYOUT_WHOLE))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the place for the job is NULL, or layout %d is none", (int)layout);
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the job is NULL, or layout %d is unknown",
+                             (int)layout);
     if (network->job)
         return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, "the network has a job that is not finished");
     result = begin(network, layout, job);
@@ -314,7 +314,7 @@ mspring_result mspring_job_finish(mspring_network *network, mspring_job *job) {
         return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, "the job has not been run to its end");
     if (!job->network)
         return mspringi_fail(&network->message, MSPRING_ERROR_OUTDATED,
-                             "the job was begun for a layout that is no more");
+                             "the layout has changed since the job began: begin another job");
     mspringi_job_invalidate(network);
     const mspringi_fp_state before = mspringi_fp_enter();
     result = finish(network, job);

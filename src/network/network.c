@@ -71,7 +71,7 @@ static mspring_result check_def(const mspring_network_def *def, mspringi_message
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_WASM)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is no level",
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is unknown",
                              (int)def->simd_level);
     if (def->flags &
         ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE | MSPRING_NETWORK_PRECISE))
@@ -115,7 +115,7 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
     const size_t values = (size_t)2 * rows * network->topology.carry_blocks * MSPRINGI_WIDTH;
     float *carry = mspringi_alloc(&network->memory, values, sizeof *carry);
     if (!carry)
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for what rows hand on to rows");
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for forces between rows");
     mspringi_free(&network->memory, network->carry);
     network->carry = carry;
     network->carry_rows = rows;
@@ -328,7 +328,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     mspringi_message *message = &builder->message;
     mspringi_message_clear(message);
     if (!network)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the place for the network is NULL");
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network is NULL");
     if (!def) {
         (void)mspring_network_def_init(&defaults, sizeof defaults);
         def = &defaults;

@@ -13,7 +13,7 @@
 
 static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {
     if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "integrator is %d, which is none",
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "integrator is %d, which is unknown",
                              (int)def->integrator);
     if (def->solver == MSPRING_SOLVER_DIRECT)
         return MSPRING_OK;

@@ -59,7 +59,7 @@ static mspring_result start_workers(mspringi_pool *pool, mspringi_message *messa
         *worker = (pool_worker){.pool = pool, .number = w};
         if (!start_worker(worker))
             return mspringi_fail(message, MSPRING_ERROR_THREAD,
-                                 "the system refuses the thread of worker %u (of %u: 0 to %u)", (unsigned)w,
+                                 "the system has no thread for worker %u (of %u: 0 to %u)", (unsigned)w,
                                  (unsigned)pool->worker_count, (unsigned)(pool->worker_count - 1));
     }
     return MSPRING_OK;

@@ -20,7 +20,7 @@ static mspring_result check_host(const mspring_tasks *host, mspringi_message *me
     if (result != MSPRING_OK)
         return result;
     if (!host->run)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "mspring_tasks lacks run");
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "mspring_tasks.run is NULL");
     if (host->concurrent_count < 1 || host->concurrent_count > host->worker_count)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "mspring_tasks.concurrent_count is %u, it must be 1 to worker_count, which is %u",
@@ -35,7 +35,7 @@ static mspring_result make_counters(mspringi_tasks *tasks, mspringi_memory *memo
                              (unsigned)tasks->worker_count);
     for (; tasks->counter_count < tasks->concurrency; ++tasks->counter_count)
         if (!mspringi_progress_init(&tasks->counters[tasks->counter_count]))
-            return mspringi_fail(message, MSPRING_ERROR_THREAD, "the system refuses a lock for worker %u",
+            return mspringi_fail(message, MSPRING_ERROR_THREAD, "the system has no lock for worker %u",
                                  (unsigned)tasks->counter_count);
     return MSPRING_OK;
 }

@@ -201,7 +201,7 @@ static mspring_result reserve(mspringi_grids *grids, mspringi_memory *memory, ms
     }
     if (!s || !s->width || !s->height || !s->shelf || !s->number || !s->keys || !s->scratch || !s->members ||
         !s->first_member)
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to put %zu grids side by side", count);
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu lattices", count);
     return MSPRING_OK;
 }
 

@@ -238,7 +238,7 @@ static void number_rows_for(finder *f, uint32_t workers) {
 /* ---------------------------------------------------------------------------------------------------- the whole */
 
 static mspring_result out_of_memory(const mspringi_graph *graph, mspringi_message *message) {
-    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the homes of %zu particles",
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu particles",
                          graph->builder->particle_count);
 }
 

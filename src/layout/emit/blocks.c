@@ -138,7 +138,7 @@ mspring_result mspringi_layout_builder_number_the_rest(mspringi_layout_builder *
     if ((uint64_t)t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + a->chains.count + MSPRINGI_WIDTH +
             t->reserve.spring_end >=
         MSPRING_NONE)
-        return mspringi_fail(a->message, MSPRING_ERROR_LIMIT, "%u blocks of lattice are more than can be numbered",
+        return mspringi_fail(a->message, MSPRING_ERROR_LIMIT, "%u lattice blocks exceed the limit of the layout",
                              (unsigned)t->lattice_blocks);
     t->lattice_spring_slots = t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
     t->chain_spring_slots = t->lattice_spring_slots + t->chain_blocks * MSPRINGI_WIDTH;

@@ -83,7 +83,7 @@ mspring_result mspringi_irregular_list_reserve(mspringi_irregular_list *list, co
     list->max_x = list->max_y = -INFINITY;
     return list->particles && list->keys && list->scratch
                ? MSPRING_OK
-               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a web of %u particles", list->count);
+               : mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u irregular particles", list->count);
 }
 
 // List particles with an assigned strip, then those without. Find the bounding box of the latter.

@@ -7,7 +7,7 @@
 #define FEWEST_UPRIGHT 8
 
 static mspring_result out_of_memory(const mspringi_sell_builder *w, mspringi_message *message) {
-    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a web of %u springs", (unsigned)w->count);
+    return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u irregular springs", (unsigned)w->count);
 }
 
 static mspring_result begin(mspringi_sell_builder *w, mspringi_memory *memory, mspringi_message *message) {
@@ -140,8 +140,7 @@ static mspring_result count_slice_columns(const mspringi_sell_builder *w, msprin
         }
         slice_columns += has_upright;
         if (slice_columns > UINT32_MAX / MSPRINGI_WIDTH - irregular->first_slice_column[slice])
-            return mspringi_fail(message, MSPRING_ERROR_LIMIT,
-                                 "some particles have so many springs that the web's entries cannot be numbered");
+            return mspringi_fail(message, MSPRING_ERROR_LIMIT, "a particle has too many springs");
         irregular->first_slice_column[slice + 1] = irregular->first_slice_column[slice] + slice_columns;
     }
     return MSPRING_OK;

@@ -36,7 +36,7 @@ mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, m
         t->irregular.slice_count > 0 ? t->irregular.first_slice_column[t->irregular.slice_count] : 0;
     if ((uint64_t)t->chain_spring_slots + count >= MSPRING_NONE ||
         (uint64_t)slice_columns * MSPRINGI_WIDTH + springs + inactive >= MSPRING_NONE)
-        return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u springs are more than can be numbered",
+        return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u springs exceed the limit of the layout",
                              (unsigned)t->spring_count);
     t->irregular_capacity = laid_out + springs;
     t->inactive_count = inactive;
@@ -44,7 +44,7 @@ mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, m
         (!lengthen(&t->irregular_a, laid_out, count, memory) ||
          !lengthen(&t->irregular_b, laid_out, count, memory) ||
          !lengthen(&t->irregular.entry, (size_t)2 * (t->irregular.entry ? laid_out : 0), 2 * count, memory)))
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for the places of %zu springs", count);
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu springs", count);
     t->irregular_count = laid_out + (t->spring_count - t->reserve.first_spring);
     return MSPRING_OK;
 }

@@ -93,7 +93,7 @@ mspring_result mspringi_chains_find(mspringi_chains *chains, const mspringi_grap
     chains->particles = mspringi_alloc(memory, candidates, sizeof *chains->particles);
     chains->springs = mspringi_alloc(memory, candidates, sizeof *chains->springs);
     if (!chains->visited || !chains->particles || !chains->springs)
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for strands of %u particles", candidates);
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for ropes of %u particles", candidates);
     for (uint32_t p = 0; p < particles; ++p)
         if (may_be_in_chain(graph, p) && kinds[p] == MSPRINGI_ROW_LOOSE && !chains->visited[p])
             append_chain(chains, graph, find_end(graph, p), kinds);

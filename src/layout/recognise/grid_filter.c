@@ -75,8 +75,7 @@ mspring_result mspringi_grid_filter_reserve(mspringi_grid_filter *filter, const 
     filter->piece = mspringi_alloc(memory, particles, sizeof *filter->piece);
     filter->sums = mspringi_alloc(memory, particles, sizeof *filter->sums);
     if (!filter->piece || !filter->sums)
-        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to look at the sheets of %zu particles",
-                             particles);
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu particles", particles);
     for (uint32_t p = 0; p < particles; ++p)
         filter->piece[p] = p;
     return MSPRING_OK;
