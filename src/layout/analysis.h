@@ -119,7 +119,7 @@ void mspringi_grids_end_search(mspringi_grids *grids, mspringi_memory *memory);
 void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
 
 /// Particles without an assigned strip from which they get tiers. Fewer fit a fast cache.
-#define MSPRINGI_FEWEST_LAYERED 60000
+#define MSPRINGI_MIN_TIERED 60000
 
 /// Grid filter: drops the grids of components that cost less as irregular parts.
 typedef struct mspringi_grid_filter {
@@ -231,10 +231,10 @@ void mspringi_chains_drop(mspringi_chains *chains, const mspringi_graph *graph,
 
 /// Tiers of the irregular particles without an assigned strip. Springs join particles of one tier or of two
 /// consecutive ones.
-typedef struct mspringi_layers {
-    uint32_t count;     ///< 0: no tiers
-    uint32_t *end;      ///< [count] end of each tier, from the first particle without an assigned strip
-    uint32_t *layer_of; ///< [particles] tier of each particle of the network
+typedef struct mspringi_tiers {
+    uint32_t count;    ///< 0: no tiers
+    uint32_t *end;     ///< [count] end of each tier, from the first particle without an assigned strip
+    uint32_t *tier_of; ///< [particles] tier of each particle of the network
 
     // Scratch.
     uint32_t *particles;     ///< list of particles
@@ -242,15 +242,14 @@ typedef struct mspringi_layers {
     uint32_t *queue;         ///< [particle_count] breadth-first order, component after component
     uint32_t piece;          ///< start of the present search in the queue
     uint32_t head, tail, level_end;
-} mspringi_layers;
+} mspringi_tiers;
 /// Find the tiers and sort the list by tier.
-mspring_result mspringi_layers_find(mspringi_layers *layers, const mspringi_irregular_list *list,
-                                    const mspringi_graph *graph, mspringi_memory *memory,
-                                    mspringi_message *message);
-void mspringi_layers_destroy(mspringi_layers *layers, mspringi_memory *memory);
+mspring_result mspringi_tiers_find(mspringi_tiers *tiers, const mspringi_irregular_list *list,
+                                   const mspringi_graph *graph, mspringi_memory *memory, mspringi_message *message);
+void mspringi_tiers_destroy(mspringi_tiers *tiers, mspringi_memory *memory);
 
 /// Sort particles by degree within windows; a window lies in one tier.
-void mspringi_irregular_list_order_windows(mspringi_irregular_list *list, const mspringi_layers *layers,
+void mspringi_irregular_list_order_windows(mspringi_irregular_list *list, const mspringi_tiers *tiers,
                                            const mspringi_graph *graph, mspringi_memory *memory);
 
 #endif

@@ -23,7 +23,7 @@ static void attach_to_strips(mspringi_layout_builder *a) {
         mspringi_strip *strip = &t->strips[number];
         // This strip is swept with the irregular part, one substep at a time.
         if (number >= t->wavefront_strips)
-            t->layer_count = 0;
+            t->tier_count = 0;
         if (strip->attached_count++ == 0)
             strip->first_attached = i;
     }
@@ -261,12 +261,12 @@ static mspring_result sort_irregular(mspringi_layout_builder *a) {
     return MSPRING_OK;
 }
 
-static mspring_result find_layers(mspringi_layout_builder *a) {
-    return mspringi_layers_find(&a->layers, &a->irregular, &a->graph, a->memory, a->message);
+static mspring_result find_tiers(mspringi_layout_builder *a) {
+    return mspringi_tiers_find(&a->tiers, &a->irregular, &a->graph, a->memory, a->message);
 }
 
 static mspring_result order_irregular(mspringi_layout_builder *a) {
-    mspringi_irregular_list_order_windows(&a->irregular, &a->layers, &a->graph, a->memory);
+    mspringi_irregular_list_order_windows(&a->irregular, &a->tiers, &a->graph, a->memory);
     mspringi_irregular_list_append_bundles(&a->irregular, &a->bundles);
     return MSPRING_OK;
 }
@@ -340,7 +340,7 @@ static const layout_pass layout_passes[] = {
     MSPRINGI_ONCE(settle_ropes),
     MSPRINGI_ONCE(list_irregular),
     MSPRINGI_ONCE(sort_irregular),
-    MSPRINGI_ONCE(find_layers),
+    MSPRINGI_ONCE(find_tiers),
     MSPRINGI_ONCE(order_irregular),
     MSPRINGI_ONCE(mspringi_layout_builder_begin_blocks),
     MSPRINGI_EACH(mspringi_layout_builder_number_blocks, members_of, 8000),
@@ -411,7 +411,7 @@ void mspringi_topology_abandon(mspringi_layout_builder *begun, mspringi_memory *
     mspringi_strip_assignment_destroy(&begun->assignment, memory);
     mspringi_ropes_destroy(&begun->ropes, memory);
     mspringi_irregular_list_destroy(&begun->irregular, memory);
-    mspringi_layers_destroy(&begun->layers, memory);
+    mspringi_tiers_destroy(&begun->tiers, memory);
     mspringi_free(memory, begun);
 }
 
@@ -482,7 +482,7 @@ static const mspringi_array_entry columns[] = {
     ARRAY(first_trimmed),
     ARRAY(rows),
     ARRAY(strips),
-    ARRAY(layer_blocks),
+    ARRAY(tier_blocks),
 };
 const mspringi_array_table mspringi_topology_columns = MSPRINGI_ARRAY_TABLE(columns);
 

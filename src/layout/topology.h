@@ -133,8 +133,8 @@ typedef struct mspringi_topology {
 
     uint32_t parallel_count; ///< springs parallel to another one
     /// Tiers of the irregular row, each with springs to its neighbours only; 0 if it has none.
-    uint32_t layer_count;
-    uint32_t *layer_blocks; ///< [layer_count + 1] first block of each, from the row's first block
+    uint32_t tier_count;
+    uint32_t *tier_blocks; ///< [tier_count + 1] first block of each, from the row's first block
 
     // For the plan.
     uint32_t lattice_count, lattice_particles, lattice_springs, lattice_rows;

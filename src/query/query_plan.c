@@ -89,7 +89,7 @@ mspring_result mspring_network_get_plan(const mspring_network *network, mspring_
         .has_damping = network->parts > MSPRINGI_DAMPING,
         .has_relative = network->fractions.values != NULL,
         .simd_level = network->kernels->level,
-        .irregular_layers = t->layer_count,
+        .irregular_layers = t->tier_count,
         .pass_workers = mspringi_explicit_workers(network),
     };
     if (network->solver.ops->describe)

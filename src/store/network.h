@@ -343,7 +343,7 @@ typedef struct mspringi_halos {
     uint32_t count;       ///< halos: borders between lattice strips
     uint32_t substeps;    ///< in the deepest pass
     uint32_t row_spans;   ///< spans in a row, at most
-    uint32_t strips;      ///< or layers, whichever are more
+    uint32_t strips;      ///< or tiers, whichever are more
     size_t segment;       ///< slots of the widest row, and a block to be read behind
     float *values;        ///< [count][MSPRINGI_STATE_ARRAYS][rows of a halo][segment]
     mspringi_span *spans; ///< [count][2][2][row_spans]

@@ -179,19 +179,19 @@ static bool append_home_spans(mspringi_layout_builder *a) {
 }
 
 // List the tiers. The last particle of each gives the begin of the next.
-static bool list_layers(mspringi_layout_builder *a) {
+static bool list_tiers(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
-    if (a->layers.count == 0)
+    if (a->tiers.count == 0)
         return true;
     const uint32_t *particles = a->irregular.particles + a->irregular.assigned_count;
-    t->layer_blocks = mspringi_alloc(a->memory, (size_t)a->layers.count + 1, sizeof *t->layer_blocks);
-    if (!t->layer_blocks)
+    t->tier_blocks = mspringi_alloc(a->memory, (size_t)a->tiers.count + 1, sizeof *t->tier_blocks);
+    if (!t->tier_blocks)
         return false;
-    t->layer_blocks[0] = 0;
-    for (uint32_t i = 0; i < a->layers.count; ++i)
-        t->layer_blocks[i + 1] = t->slot_of_particle[particles[a->layers.end[i] - 1]] / MSPRINGI_WIDTH + 1 -
-                                 t->irregular_first - a->assigned_blocks;
-    t->layer_count = a->layers.count;
+    t->tier_blocks[0] = 0;
+    for (uint32_t i = 0; i < a->tiers.count; ++i)
+        t->tier_blocks[i + 1] = t->slot_of_particle[particles[a->tiers.end[i] - 1]] / MSPRINGI_WIDTH + 1 -
+                                t->irregular_first - a->assigned_blocks;
+    t->tier_count = a->tiers.count;
     return true;
 }
 
@@ -215,7 +215,7 @@ mspring_result mspringi_layout_builder_make_strips(mspringi_layout_builder *a) {
         t->strips[s] = (mspringi_strip){.first_row = row, .row_count = count, .assigned_span = MSPRING_NONE};
         row += count;
     }
-    return append_home_spans(a) && list_layers(a) ? MSPRING_OK : mspringi_layout_builder_fail(a);
+    return append_home_spans(a) && list_tiers(a) ? MSPRING_OK : mspringi_layout_builder_fail(a);
 }
 
 uint32_t *mspringi_layout_builder_list_strips_of_blocks(const mspringi_layout_builder *a) {

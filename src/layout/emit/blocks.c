@@ -55,9 +55,9 @@ uint32_t mspringi_layout_builder_irregular_slot(const mspringi_layout_builder *a
     const uint32_t *particles = a->irregular.particles, *assigned_strip = a->assignment.assigned_strip;
     if (i == 0)
         return 0;
-    const uint32_t *layer_of = a->layers.count > 0 ? a->layers.layer_of : assigned_strip;
+    const uint32_t *tier_of = a->tiers.count > 0 ? a->tiers.tier_of : assigned_strip;
     const bool goes_on = assigned_strip[particles[i]] == assigned_strip[particles[i - 1]] &&
-                         layer_of[particles[i]] == layer_of[particles[i - 1]] && i != a->irregular.first_in_bundles;
+                         tier_of[particles[i]] == tier_of[particles[i - 1]] && i != a->irregular.first_in_bundles;
     return goes_on ? place_before + 1 : (place_before / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
 }
 

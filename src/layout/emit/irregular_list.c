@@ -8,8 +8,8 @@
 /// neighbours together. The wider one, for tiers, fills 0.97 instead of 0.94 of the slice columns of a random graph
 /// of degree 8.
 #define WINDOW 256
-#define LAYERED_WINDOW 512
-#define WIDEST_WINDOW (LAYERED_WINDOW / 2 * 3)
+#define TIERED_WINDOW 512
+#define WIDEST_WINDOW (TIERED_WINDOW / 2 * 3)
 
 /// Larger degrees sort as this one.
 #define MOST_SPRINGS 0xffffu
@@ -49,11 +49,11 @@ static void order_window_by_degree(uint32_t *particles, uint32_t count, const ms
 
 // Size of the window that starts at a particle without an assigned strip. Windows of a tier are about equal, in
 // whole slices.
-static uint32_t window_from(const uint32_t *particles, uint32_t at, uint32_t end, const mspringi_layers *layers) {
-    if (layers->count == 0)
+static uint32_t window_from(const uint32_t *particles, uint32_t at, uint32_t end, const mspringi_tiers *tiers) {
+    if (tiers->count == 0)
         return end - at < WINDOW ? end - at : WINDOW;
-    const uint32_t left = layers->end[layers->layer_of[particles[at]]] - at;
-    const uint32_t windows = (left + LAYERED_WINDOW / 2) / LAYERED_WINDOW;
+    const uint32_t left = tiers->end[tiers->tier_of[particles[at]]] - at;
+    const uint32_t windows = (left + TIERED_WINDOW / 2) / TIERED_WINDOW;
     return windows > 1 ? left / windows / MSPRINGI_WIDTH * MSPRINGI_WIDTH : left;
 }
 
@@ -127,12 +127,12 @@ void mspringi_irregular_list_sort(mspringi_irregular_list *list, const mspringi_
         list->particles[i] = (uint32_t)list->keys[i];
 }
 
-void mspringi_irregular_list_order_windows(mspringi_irregular_list *list, const mspringi_layers *layers,
+void mspringi_irregular_list_order_windows(mspringi_irregular_list *list, const mspringi_tiers *tiers,
                                            const mspringi_graph *graph, mspringi_memory *memory) {
     const uint32_t free_count = list->count - list->assigned_count;
     uint32_t *free_ones = list->particles + list->assigned_count;
     for (uint32_t at = 0, count; at < free_count; at += count) {
-        count = window_from(free_ones, at, free_count, layers);
+        count = window_from(free_ones, at, free_count, tiers);
         order_window_by_degree(free_ones + at, count, graph);
     }
     mspringi_free(memory, list->keys);

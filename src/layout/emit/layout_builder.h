@@ -40,7 +40,7 @@ struct mspringi_layout_builder {
     mspringi_strip_assignment assignment;
     mspringi_ropes ropes;
     mspringi_irregular_list irregular;
-    mspringi_layers layers;
+    mspringi_tiers tiers;
     mspringi_block_key *blocks; ///< blocks of all grids, grid after grid in grid_order, each sorted
     size_t block_count, block_capacity;
     uint32_t grid, grid_members; ///< index in grid_order of the present grid, and its members listed so far

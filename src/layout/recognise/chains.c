@@ -136,7 +136,7 @@ void mspringi_chains_drop(mspringi_chains *chains, const mspringi_graph *graph,
                           const mspringi_strip_assignment *assignment, bool has_bundles, uint8_t *kinds,
                           mspringi_irregular_list *list) {
     const uint32_t homeless = list->count - list->assigned_count;
-    const bool drops_webbed = homeless >= MSPRINGI_FEWEST_LAYERED && chains->count <= homeless;
+    const bool drops_webbed = homeless >= MSPRINGI_MIN_TIERED && chains->count <= homeless;
     const uint32_t *particles = chains->particles;
     chains->chain_count = chains->spring_count = 0;
     for (uint32_t begin = 0, last; begin < chains->count; begin = last + 1) {

@@ -69,7 +69,7 @@ mspring_result mspringi_grid_filter_reserve(mspringi_grid_filter *filter, const 
     const size_t particles = graph->builder->particle_count;
     const bool has_tied =
         grids->member_count >= FEWEST_MEMBERS && (uint64_t)filter->outer * LARGE_INNER_PER_ACROSS > filter->inner;
-    const bool has_irregular = particles - grids->member_count >= MSPRINGI_FEWEST_LAYERED;
+    const bool has_irregular = particles - grids->member_count >= MSPRINGI_MIN_TIERED;
     if (grids->count == 0 || (!has_tied && !has_irregular))
         return MSPRING_OK;
     filter->piece = mspringi_alloc(memory, particles, sizeof *filter->piece);
@@ -121,14 +121,14 @@ static void count_particles(mspringi_grid_filter *filter, const mspringi_graph *
 static bool is_tied_together(const struct mspringi_grid_cost *sums) {
     if (sums->members < FEWEST_MEMBERS)
         return false;
-    if (sums->members < MSPRINGI_FEWEST_LAYERED || sums->across == 0)
+    if (sums->members < MSPRINGI_MIN_TIERED || sums->across == 0)
         return (uint64_t)sums->outer * INNER_PER_OUTER > sums->inner;
     return (uint64_t)sums->outer * LARGE_INNER_PER_OUTER > sums->inner ||
            (uint64_t)sums->across * LARGE_INNER_PER_ACROSS > sums->inner;
 }
 
 static bool is_small_irregular_part(const struct mspringi_grid_cost *sums) {
-    return sums->irregular >= MSPRINGI_FEWEST_LAYERED &&
+    return sums->irregular >= MSPRINGI_MIN_TIERED &&
            (uint64_t)sums->members * IRREGULAR_PER_MEMBER < sums->irregular;
 }
 

@@ -96,10 +96,10 @@ static void sweep_strip(const job *wavefront, const mspringi_substep *substep, u
         add_extrema(wavefront, worker, mspringi_strip_end(wavefront->network, strip));
 }
 
-// A layer of the irregular row, as a span of its own.
-static mspringi_span layer_span(const job *wavefront, uint32_t layer) {
+// A tier of the irregular row, as a span of its own.
+static mspringi_span tier_span(const job *wavefront, uint32_t tier) {
     const mspringi_topology *t = &wavefront->network->topology;
-    const uint32_t begin = t->layer_blocks[layer], end = t->layer_blocks[layer + 1];
+    const uint32_t begin = t->tier_blocks[tier], end = t->tier_blocks[tier + 1];
     mspringi_span span = t->spans[t->rows[wavefront->irregular->first_row].first_span];
     span.first_slot += begin * MSPRINGI_WIDTH;
     span.end_slot = span.first_slot + (end - begin) * MSPRINGI_WIDTH;
@@ -107,10 +107,10 @@ static mspringi_span layer_span(const job *wavefront, uint32_t layer) {
     return span;
 }
 
-// The same of a layer of the irregular row.
-static void sweep_layer(const job *wavefront, const mspringi_substep *substep, uint32_t layer) {
+// The same of a tier of the irregular row.
+static void sweep_tier(const job *wavefront, const mspringi_substep *substep, uint32_t tier) {
     const mspring_network *network = wavefront->network;
-    const mspringi_span span = layer_span(wavefront, layer);
+    const mspringi_span span = tier_span(wavefront, tier);
     mspringi_floor_save_velocities(network, wavefront->irregular, &span, 1);
     mspringi_irregular_sweep(network, substep, &span);
     mspringi_floor_apply(network, wavefront->irregular, &span, 1, substep->sweep.h);
@@ -128,7 +128,7 @@ static void take_strip(const job *wavefront, mspringi_pass_task *task, uint32_t 
     if (task->progress)
         mspringi_pass_task_wait_above(task, number, strip);
     if (wavefront->irregular) {
-        sweep_layer(wavefront, substep, strip);
+        sweep_tier(wavefront, substep, strip);
     } else {
         const mspringi_strip *here = &network->topology.strips[strip];
         const mspringi_halo below = {is_first ? mspringi_pass_task_halo_below(task, number) : MSPRING_NONE, number};
@@ -268,27 +268,27 @@ static const mspringi_strip *find_irregular_strip(const mspringi_topology *t) {
     return NULL;
 }
 
-// Substeps, at least one, whose layers fit the cache: a pass keeps two more layers than substeps in it.
+// Substeps, at least one, whose tiers fit the cache: a pass keeps two more tiers than substeps in it.
 static uint32_t irregular_depth_within(const job *wavefront, size_t cache_bytes) {
     const mspringi_topology *t = &wavefront->network->topology;
     const uint32_t first = t->spans[t->rows[wavefront->irregular->first_row].first_span].first_record;
-    const uint32_t groups = t->layer_blocks[t->layer_count];
+    const uint32_t groups = t->tier_blocks[t->tier_count];
     const uint64_t slice_columns =
         t->irregular.first_slice_column[first + groups] - t->irregular.first_slice_column[first];
     const uint64_t parts = wavefront->network->parts + 1; // and the neighbour
     const uint64_t floats = slice_columns * parts + (uint64_t)groups * (MSPRINGI_STATE_ARRAYS + 1 +
                                                                         2 * 4); // state, inverse mass, packed twice
-    const uint64_t layers = cache_bytes * t->layer_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
-    return layers < 3 ? 1 : layers - 2 < MSPRINGI_DEEPEST_PASS ? (uint32_t)layers - 2 : MSPRINGI_DEEPEST_PASS;
+    const uint64_t tiers = cache_bytes * t->tier_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
+    return tiers < 3 ? 1 : tiers - 2 < MSPRINGI_DEEPEST_PASS ? (uint32_t)tiers - 2 : MSPRINGI_DEEPEST_PASS;
 }
 
-// Sweep the irregular row in layers for several substeps, if the wavefront has work for all workers. (Zen 4, shared
+// Sweep the irregular row in tiers for several substeps, if the wavefront has work for all workers. (Zen 4, shared
 // third-level cache, 100,000 particles of about 8 neighbours, 40 substeps: 28 ms; without 60 to 75.)
-static bool sweep_layers(const mspring_network *network, float h, mspringi_field base, uint32_t count,
-                         mspringi_extrema *all_extrema) {
+static bool sweep_tiers(const mspring_network *network, float h, mspringi_field base, uint32_t count,
+                        mspringi_extrema *all_extrema) {
     const mspringi_topology *t = &network->topology;
     const mspringi_strip *irregular = find_irregular_strip(t);
-    if (!irregular || t->layer_count == 0 || count == 1 || network->added_springs.count > 0)
+    if (!irregular || t->tier_count == 0 || count == 1 || network->added_springs.count > 0)
         return false;
     job wavefront = {.network = network,
                      .base = base,
@@ -528,7 +528,7 @@ static void sweep_rest(mspring_network *network, float h, mspringi_field base, u
     if (t->wavefront_strips == t->strip_count)
         return;
     job rest = {.network = network, .base = base, .h = h, .count = count, .workers = 1, .all_extrema = all_extrema};
-    if (sweep_layers(network, h, base, count, all_extrema))
+    if (sweep_tiers(network, h, base, count, all_extrema))
         rest.irregular = find_irregular_strip(t);
     rest.bundles_are_apart = mspringi_bundles_are_apart(network);
     if (t->wavefront_strips + (rest.irregular != NULL) + rest.bundles_are_apart == t->strip_count)

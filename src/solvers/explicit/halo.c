@@ -33,7 +33,7 @@ static mspringi_halos plan_halos(const mspring_network *network) {
     const uint32_t used = most < partition ? most : partition;
     // Independent shares have one at the lower end, too.
     halos.count = used < 2 ? 0 : mspringi_tasks_are_independent(network->tasks) ? used : used - 1;
-    halos.strips = t->wavefront_strips > t->layer_count ? t->wavefront_strips : t->layer_count;
+    halos.strips = t->wavefront_strips > t->tier_count ? t->wavefront_strips : t->tier_count;
     return halos;
 }
 

@@ -54,11 +54,11 @@ static uint64_t weight_of_strip(const mspring_network *network, const mspringi_s
     return weight;
 }
 
-static uint64_t weight_of_layer(const mspring_network *network, const mspringi_strip *irregular, uint32_t layer) {
+static uint64_t weight_of_tier(const mspring_network *network, const mspringi_strip *irregular, uint32_t tier) {
     const mspringi_topology *t = &network->topology;
     const uint32_t first = t->spans[t->rows[irregular->first_row].first_span].first_record;
     return SLICE_COLUMN_WEIGHT *
-           slice_columns_between(t, first + t->layer_blocks[layer], first + t->layer_blocks[layer + 1]);
+           slice_columns_between(t, first + t->tier_blocks[tier], first + t->tier_blocks[tier + 1]);
 }
 
 // What the strips below each have together.
@@ -66,7 +66,7 @@ static void weigh(const mspring_network *network, const mspringi_strip *irregula
     uint64_t *weights = network->halos.weights;
     weights[0] = 0;
     for (uint32_t s = 0; s < strips; ++s)
-        weights[s + 1] = weights[s] + (irregular ? weight_of_layer(network, irregular, s)
+        weights[s + 1] = weights[s] + (irregular ? weight_of_tier(network, irregular, s)
                                                  : weight_of_strip(network, &network->topology.strips[s]));
 }
 
@@ -141,7 +141,7 @@ static uint64_t least_work_of_pass(const mspringi_partition *partition) {
 mspringi_partition mspringi_partition_count(const mspring_network *network, const mspringi_strip *irregular,
                                             uint32_t count, uint32_t depth) {
     const mspringi_topology *t = &network->topology;
-    mspringi_partition partition = {.strips = irregular ? t->layer_count : t->wavefront_strips,
+    mspringi_partition partition = {.strips = irregular ? t->tier_count : t->wavefront_strips,
                                     .skew = irregular ? 1 : t->skew,
                                     .count = count,
                                     .workers = mspringi_tasks_partition_size(network->tasks),

@@ -1,5 +1,5 @@
 /// @file partition.h
-/// How workers divide strips of rows, or layers of an irregular part, among each other.
+/// How workers divide strips of rows, or tiers of an irregular part, among each other.
 ///
 /// Each worker has a share: strips that follow each other. It takes several substeps in a pass over its share, by
 /// itself but for what it needs of its neighbours' shares at the borders, see halo.h. In a pass borders move up by
@@ -23,7 +23,7 @@
 #define MSPRINGI_PLANNED_PASSES 16u
 
 typedef struct mspringi_partition {
-    uint32_t strips, skew; ///< strips or layers; by how many substeps follow each other
+    uint32_t strips, skew; ///< strips or tiers; by how many substeps follow each other
     uint32_t count;        ///< substeps
     uint32_t group;        ///< substeps in a pass; the last one may have fewer
     uint32_t workers;      ///< shares: share 0 is the lowest one
@@ -32,7 +32,7 @@ typedef struct mspringi_partition {
                            ///< independent shares [workers + 1], of all passes, and what is behind the last
 } mspringi_partition;
 
-/// Divide count substeps of strips of the wavefront or, if irregular part is not NULL, of the layers of its row, in
+/// Divide count substeps of strips of the wavefront or, if irregular part is not NULL, of the tiers of its row, in
 /// passes of at most depth.
 mspringi_partition mspringi_partition_make(const mspring_network *network, const mspringi_strip *irregular,
                                            uint32_t count, uint32_t depth);

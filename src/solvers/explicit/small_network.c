@@ -27,7 +27,7 @@ static bool has_plain_rows(const mspringi_topology *t) {
     if (t->row_count == 0 || t->rows[t->row_count - 1].kind == MSPRINGI_ROW_LOOSE)
         return false;
     return t->irregular.slice_count == 0 || (t->row_count == 1 && t->bundle_strip == MSPRING_NONE &&
-                                             t->layer_count == 0 && t->irregular.attached_count == 0);
+                                             t->tier_count == 0 && t->irregular.attached_count == 0);
 }
 
 // A small irregular part is not shared either, but that depends on its substeps.

@@ -1,5 +1,5 @@
-/// @file test_layers.c
-/// A large web is swept in layers: several substeps in one pass give the bits of substeps taken one by one, for any
+/// @file test_tiers.c
+/// A large web is swept in tiers: several substeps in one pass give the bits of substeps taken one by one, for any
 /// number of workers, whatever else is in the network.
 ///
 /// SPDX-License-Identifier: MIT
@@ -13,12 +13,12 @@
 #include "store/network.h"
 #include "support.h"
 
-/// A few more than a web needs to get layers.
+/// A few more than a web needs to get tiers.
 #define PARTICLES 60100
 
 #define SUBSTEPS 6
 
-/// So many allocations before the last, at most, the places where layers begin are listed.
+/// So many allocations before the last, at most, the places where tiers begin are listed.
 #define LAST_ALLOCATIONS 20
 
 /// What there is in a network.
@@ -93,29 +93,29 @@ static void take_one_by_one(mspring_network *network) {
 
 /// How steps are to be taken.
 typedef struct manner {
-    bool one_by_one, forced, on_floor, has_layers;
+    bool one_by_one, forced, on_floor, has_tiers;
     bool independent; ///< workers are bodies of a host that wait for nobody, the last one first
     uint32_t workers;
 } manner;
 
-/// Springs join particles of one layer or of two that follow each other, and each has its particles.
-static void check_layers(const mspring_network *network) {
+/// Springs join particles of one tier or of two that follow each other, and each has its particles.
+static void check_tiers(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    const uint32_t first_block = t->irregular_first + t->irregular_blocks - t->layer_blocks[t->layer_count];
-    uint32_t *layer_of_block = calloc(t->block_count, sizeof *layer_of_block);
-    assert_non_null(layer_of_block);
-    for (uint32_t layer = 0; layer < t->layer_count; layer++) {
-        assert_true(t->layer_blocks[layer] < t->layer_blocks[layer + 1]);
-        for (uint32_t i = t->layer_blocks[layer]; i < t->layer_blocks[layer + 1]; i++) {
-            layer_of_block[first_block + i] = layer + 1;
+    const uint32_t first_block = t->irregular_first + t->irregular_blocks - t->tier_blocks[t->tier_count];
+    uint32_t *tier_of_block = calloc(t->block_count, sizeof *tier_of_block);
+    assert_non_null(tier_of_block);
+    for (uint32_t tier = 0; tier < t->tier_count; tier++) {
+        assert_true(t->tier_blocks[tier] < t->tier_blocks[tier + 1]);
+        for (uint32_t i = t->tier_blocks[tier]; i < t->tier_blocks[tier + 1]; i++) {
+            tier_of_block[first_block + i] = tier + 1;
         }
     }
     for (uint32_t i = 0; i < t->irregular_count; i++) {
-        const int64_t a = layer_of_block[t->irregular_a[i] / MSPRINGI_WIDTH];
-        const int64_t b = layer_of_block[t->irregular_b[i] / MSPRINGI_WIDTH];
+        const int64_t a = tier_of_block[t->irregular_a[i] / MSPRINGI_WIDTH];
+        const int64_t b = tier_of_block[t->irregular_b[i] / MSPRINGI_WIDTH];
         assert_true((a == 0) == (b == 0) && a - b <= 1 && b - a <= 1);
     }
-    free(layer_of_block);
+    free(tier_of_block);
 }
 
 static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
@@ -127,20 +127,20 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     if (how.independent)
         def.tasks = &hosts[1].tasks;
     mspring_network *network = recipe_network(made, &def);
-    // Ropes that hang on layers, or on a lattice, are no strands.
+    // Ropes that hang on tiers, or on a lattice, are no strands.
     assert_int_equal(network->topology.chain_count, of == WITH_CABLES ? 1 : of == IN_RIGGING ? 61 : 0);
     mspring_plan plan = {.struct_size = sizeof plan};
     check_ok(mspring_network_get_plan(network, &plan));
-    assert_int_equal(plan.irregular_layers > 0, how.has_layers || of <= ON_A_RAFT);
+    assert_int_equal(plan.irregular_layers > 0, how.has_tiers || of <= ON_A_RAFT);
     // The raft is part of the web, another lattice is not.
     assert_int_equal(network->topology.lattice_count, of == WITH_CABLES || of >= ON_A_RAFT ? of != IN_RIGGING : 0);
     if (how.one_by_one) {
         take_one_by_one(network);
-    } else if (how.has_layers) {
-        assert_true(network->topology.layer_count >= 20);
-        check_layers(network);
+    } else if (how.has_tiers) {
+        assert_true(network->topology.tier_count >= 20);
+        check_tiers(network);
     } else {
-        assert_int_equal(network->topology.layer_count, 0);
+        assert_int_equal(network->topology.tier_count, 0);
     }
     const double planes[2][4] = {{0, 0.5, 0.01, 1}, {700, 0, -1, 0.2}};
     mspring_floor_def floor;
@@ -170,7 +170,7 @@ static void skip_where_races_are_looked_for(void) {
         skip();
 }
 
-static void layers_give_the_bits_of_single_substeps(void **state) {
+static void tiers_give_the_bits_of_single_substeps(void **state) {
     (void)state;
     static const content contents[] = {ONE_PIECE, WITH_CABLES, ON_A_RAFT, IN_RIGGING, ON_A_TIED_LATTICE};
     for (size_t i = 0; i < COUNT_OF(contents); i++) {
@@ -183,12 +183,12 @@ static void layers_give_the_bits_of_single_substeps(void **state) {
         manner how = {.one_by_one = true, .forced = of == ONE_PIECE, .on_floor = of == WITH_CABLES, .workers = 1};
         const uint64_t expected = LOOKS_FOR_RACES ? 0 : hash_after_steps(&made, of, how);
         how.one_by_one = false;
-        how.has_layers = of <= ON_A_RAFT;
+        how.has_tiers = of <= ON_A_RAFT;
         for (how.workers = LOOKS_FOR_RACES ? 3 : 1; how.workers <= most_workers; how.workers += step) {
             const uint64_t hash = hash_after_steps(&made, of, how);
             assert_true(LOOKS_FOR_RACES || hash == expected);
         }
-        if (how.has_layers && !LOOKS_FOR_RACES) {
+        if (how.has_tiers && !LOOKS_FOR_RACES) {
             how.workers = 3;
             how.independent = true;
             assert_true(hash_after_steps(&made, of, how) == expected);
@@ -199,7 +199,7 @@ static void layers_give_the_bits_of_single_substeps(void **state) {
 
 /// Particles with about as many springs share a group, so few places of rungs are empty. Here they have 2 to 8 in
 /// any order: grouped as they come, the largest of 16 would leave three places of ten empty.
-static void rungs_of_layers_are_filled(void **state) {
+static void rungs_of_tiers_are_filled(void **state) {
     (void)state;
     skip_where_races_are_looked_for();
     uint64_t seed = 7;
@@ -214,7 +214,7 @@ static void rungs_of_layers_are_filled(void **state) {
     }
     mspring_network *network = recipe_network(&made, NULL);
     const mspringi_topology *t = &network->topology;
-    assert_true(t->layer_count > 20);
+    assert_true(t->tier_count > 20);
     const double places = (double)t->irregular.first_slice_column[t->irregular.slice_count] * MSPRINGI_WIDTH;
     const double filled = 2.0 * t->laid_out_count / places;
     print_message("%.3f of the places of rungs are filled\n", filled);
@@ -223,7 +223,7 @@ static void rungs_of_layers_are_filled(void **state) {
     recipe_free(&made);
 }
 
-static void small_webs_have_no_layers(void **state) {
+static void small_webs_have_no_tiers(void **state) {
     (void)state;
     skip_where_races_are_looked_for();
     recipe made = {0};
@@ -236,13 +236,13 @@ static void small_webs_have_no_layers(void **state) {
         }
     }
     mspring_network *network = recipe_network(&made, NULL);
-    assert_int_equal(network->topology.layer_count, 0);
+    assert_int_equal(network->topology.tier_count, 0);
     mspring_network_destroy(network);
     recipe_free(&made);
 }
 
 /// Every second piece moves, the others sleep, and a step that is refused wakes none of them.
-static void pieces_sleep_in_layers(void **state) {
+static void pieces_sleep_in_tiers(void **state) {
     (void)state;
     skip_where_races_are_looked_for();
     recipe made = heap_of(MANY_PIECES);
@@ -278,8 +278,8 @@ static void pieces_sleep_in_layers(void **state) {
     recipe_free(&made);
 }
 
-/// Allocations that laying out takes fail once, each up to those of layers, lattices that are given up among them;
-/// and the last ones, among them where each layer begins.
+/// Allocations that laying out takes fail once, each up to those of tiers, lattices that are given up among them;
+/// and the last ones, among them where each tier begins.
 static void failing_memory_is_said_and_freed(void **state) {
     (void)state;
     skip_where_races_are_looked_for();
@@ -290,7 +290,7 @@ static void failing_memory_is_said_and_freed(void **state) {
     watched_allocator watched = {0};
     const mspring_allocator allocator = watched_interface(&watched);
     size_t count = 0;
-    bool of_layers = false;
+    bool of_tiers = false;
     for (size_t n = 0; n <= count; n++) {
         mspringi_memory memory;
         mspringi_message message = {""};
@@ -298,19 +298,19 @@ static void failing_memory_is_said_and_freed(void **state) {
         check_ok(mspringi_memory_init(&memory, &allocator, &message));
         watched.calls = 0;
         watched.fail_at = n;
-        const mspring_result result = mspringi_topology_create(&topology, builder, &reserve, false, 1,
-                                                               MSPRINGI_WIDTH, &memory, &message);
+        const mspring_result result =
+            mspringi_topology_create(&topology, builder, &reserve, false, 1, MSPRINGI_WIDTH, &memory, &message);
         if (n == 0) {
             check_ok(result);
-            assert_true(topology.layer_count > 0);
+            assert_true(topology.tier_count > 0);
             count = watched.calls;
         } else {
             check_error(result, MSPRING_ERROR_MEMORY);
             assert_non_null(strstr(message.text, "no memory"));
-            if (of_layers && !strstr(message.text, "layers") && n + LAST_ALLOCATIONS < count) {
+            if (of_tiers && !strstr(message.text, "layers") && n + LAST_ALLOCATIONS < count) {
                 n = count - LAST_ALLOCATIONS;
             }
-            of_layers = strstr(message.text, "layers") != NULL;
+            of_tiers = strstr(message.text, "layers") != NULL;
         }
         mspringi_topology_destroy(&topology, &memory);
         assert_int_equal(watched.live, 0);
@@ -320,8 +320,8 @@ static void failing_memory_is_said_and_freed(void **state) {
     recipe_free(&made);
 }
 
-/// A clone, and what a compaction leaves, have layers of their own.
-static void clones_and_compact_ones_have_layers(void **state) {
+/// A clone, and what a compaction leaves, have tiers of their own.
+static void clones_and_compact_ones_have_tiers(void **state) {
     (void)state;
     skip_where_races_are_looked_for();
     recipe made = heap_of(ONE_PIECE);
@@ -335,8 +335,8 @@ static void clones_and_compact_ones_have_layers(void **state) {
             check_ok(mspring_network_compact(network));
         }
         check_ok(mspring_network_clone(network, NULL, &clone));
-        assert_true(clone->topology.layer_count > 0);
-        check_layers(clone);
+        assert_true(clone->topology.tier_count > 0);
+        check_tiers(clone);
         take_one_by_one(clone);
         support_steps(network, 2, 1.0 / 64);
         support_steps(clone, 2, 1.0 / 64);
@@ -349,12 +349,12 @@ static void clones_and_compact_ones_have_layers(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_give_the_bits_of_single_substeps),
-        cmocka_unit_test(rungs_of_layers_are_filled),
-        cmocka_unit_test(small_webs_have_no_layers),
-        cmocka_unit_test(pieces_sleep_in_layers),
+        cmocka_unit_test(tiers_give_the_bits_of_single_substeps),
+        cmocka_unit_test(rungs_of_tiers_are_filled),
+        cmocka_unit_test(small_webs_have_no_tiers),
+        cmocka_unit_test(pieces_sleep_in_tiers),
         cmocka_unit_test(failing_memory_is_said_and_freed),
-        cmocka_unit_test(clones_and_compact_ones_have_layers),
+        cmocka_unit_test(clones_and_compact_ones_have_tiers),
     };
-    return cmocka_run_group_tests_name("layers", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("tiers", tests, NULL, NULL);
 }
