@@ -70,9 +70,9 @@ static mspring_result check_particle(mspring_network *network, mspring_id id, co
 
 static void put_particle(mspring_network *network, mspring_id p, const mspring_particle_def *def) {
     const bool is_pinned = def->flags & MSPRING_PARTICLE_PINNED;
-    mspringi_spare_put_particle(&network->topology, p);
+    mspringi_spare_add_particle(&network->topology, p);
     if (network->is_compact)
-        mspringi_spare_put_particle(&network->whole, p);
+        mspringi_spare_add_particle(&network->whole, p);
     const uint32_t slot = network->topology.slot_of_particle[p];
     network->growth.particles[p] = MSPRINGI_THERE;
     network->mass[p] = def->mass;
@@ -215,9 +215,9 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
     float rest_length = 0.0f;
     (void)find_rest_length(network, s, def, &rest_length);
     mspringi_solvers_clear_spring(network, mspringi_slot_of_spring(&network->topology, s));
-    mspringi_spare_put_spring(&network->topology, s, def->a, def->b);
+    mspringi_spare_add_spring(&network->topology, s, def->a, def->b);
     if (network->is_compact)
-        mspringi_spare_put_spring(&network->whole, s, def->a, def->b);
+        mspringi_spare_add_spring(&network->whole, s, def->a, def->b);
     network->growth.springs[s] = MSPRINGI_THERE;
     const bool relative = def->flags & MSPRING_SPRING_RELATIVE;
     if (network->fractions.values)

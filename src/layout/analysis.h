@@ -81,8 +81,8 @@ typedef struct mspringi_equal_components {
     uint64_t *keys, *scratch;       ///< [count] hash of the graph, and component
     /// [count] components in bundles, by sixteen of a shape; from the end, the rest of the same shapes.
     uint32_t *chosen;
-    uint32_t chosen_count, left_count, slice_count;
-    uint32_t listed, looked_at;
+    uint32_t chosen_count, rest_count, slice_count;
+    uint32_t listed, next_key;
 } mspringi_equal_components;
 struct mspringi_layout_builder;
 
@@ -97,24 +97,24 @@ mspring_result mspringi_equal_components_reserve(mspringi_equal_components *equa
                                                  mspringi_message *message);
 void mspringi_equal_components_list(mspringi_equal_components *equal, const mspringi_graph *graph, uint32_t first,
                                     uint32_t end);
-mspring_result mspringi_equal_components_choose(struct mspringi_layout_builder *assembly);
-mspring_result mspringi_equal_components_fill(struct mspringi_layout_builder *assembly);
-mspring_result mspringi_equal_components_release(struct mspringi_layout_builder *assembly);
+mspring_result mspringi_equal_components_choose(struct mspringi_layout_builder *builder);
+mspring_result mspringi_equal_components_fill(struct mspringi_layout_builder *builder);
+mspring_result mspringi_equal_components_release(struct mspringi_layout_builder *builder);
 void mspringi_equal_components_destroy(mspringi_equal_components *equal, mspringi_memory *memory);
 
 /// Find the grids among loose particles and set their kinds to MSPRINGI_ROW_LATTICE. Graph and kinds must outlive
 /// the search. For each of MSPRINGI_GRID_SEARCHES: flood, in at most two steps a particle; count the springs of
-/// candidates; judge the candidates; end the search.
+/// candidates; evaluate the candidates; end the search.
 #define MSPRINGI_GRID_SEARCHES 3
 mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph *graph, uint8_t *kinds,
                                     mspringi_memory *memory, mspringi_message *message);
 void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end);
-mspring_result mspringi_grids_begin_judging(mspringi_grids *grids, mspringi_memory *memory,
-                                            mspringi_message *message);
-uint32_t mspringi_grids_candidates(const mspringi_grids *grids);
-uint32_t mspringi_grids_candidate_members(const mspringi_grids *grids);
+mspring_result mspringi_grids_begin_evaluation(mspringi_grids *grids, mspringi_memory *memory,
+                                               mspringi_message *message);
+uint32_t mspringi_grids_candidate_count(const mspringi_grids *grids);
+uint32_t mspringi_grids_candidate_member_count(const mspringi_grids *grids);
 void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_t end);
-void mspringi_grids_judge(mspringi_grids *grids, uint32_t first, uint32_t end);
+void mspringi_grids_evaluate(mspringi_grids *grids, uint32_t first, uint32_t end);
 void mspringi_grids_end_search(mspringi_grids *grids, mspringi_memory *memory);
 void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
 
@@ -124,7 +124,7 @@ void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory);
 /// Grid filter: drops the grids of components that cost less as irregular parts.
 typedef struct mspringi_grid_filter {
     uint32_t inner, outer; ///< springs within grids, and other springs of their particles
-    uint32_t *piece;       ///< [particles] parent in a disjoint-set forest; NULL if nothing can be dropped
+    uint32_t *component;   ///< [particles] parent in a disjoint-set forest; NULL if nothing can be dropped
     struct mspringi_grid_cost *sums; ///< [particles] of roots
     uint32_t next_member;            ///< first member of the next grid
     uint32_t kept_grids, kept_members;
@@ -148,7 +148,7 @@ void mspringi_grid_filter_destroy(mspringi_grid_filter *filter, mspringi_memory 
 /// Put small grids side by side in the same rows, as one grid. found_count stays. Call in this order; a range is of
 /// narrow grids.
 mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_memory *memory, mspringi_message *message);
-uint32_t mspringi_grids_narrow(const mspringi_grids *grids);
+uint32_t mspringi_grids_narrow_count(const mspringi_grids *grids);
 void mspringi_grids_shelve(mspringi_grids *grids, uint32_t first, uint32_t end);
 void mspringi_grids_number(mspringi_grids *grids, mspringi_memory *memory);
 void mspringi_shelver_destroy(struct mspringi_grid_shelver *shelver, mspringi_memory *memory);
@@ -160,15 +160,15 @@ typedef struct mspringi_lattice_spring {
 } mspringi_lattice_spring;
 
 /// Find the position of a spring; false if it does not join neighbouring cells of one grid.
-bool mspringi_grids_place(const mspringi_grids *grids, const mspringi_spring *spring,
-                          mspringi_lattice_spring *found);
+bool mspringi_grids_locate_spring(const mspringi_grids *grids, const mspringi_spring *spring,
+                                  mspringi_lattice_spring *found);
 
 /// Find the position of a spring by id; false also if it is parallel to another one.
-bool mspringi_graph_place(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
-                          mspringi_lattice_spring *found);
+bool mspringi_graph_locate_spring(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
+                                  mspringi_lattice_spring *found);
 
 /// Largest useful skew. With a larger one, too few substeps of too many strips share the cache.
-#define MSPRINGI_LONGEST_SKEW 16
+#define MSPRINGI_MAX_SKEW 16
 
 /// Grids swept for several substeps in one pass, and the strips of the irregular particles connected to them.
 typedef struct mspringi_strip_assignment {
@@ -188,8 +188,8 @@ typedef struct mspringi_strip_assignment {
 mspring_result mspringi_strip_assignment_begin(mspringi_strip_assignment *assignment, const mspringi_graph *graph,
                                                const mspringi_grids *grids, const mspringi_chains *chains,
                                                mspringi_memory *memory, mspringi_message *message);
-void mspringi_strip_assignment_attach(mspringi_strip_assignment *assignment, uint32_t first, uint32_t end);
-mspring_result mspringi_strip_assignment_prepare(mspringi_strip_assignment *assignment, uint32_t workers,
+void mspringi_strip_assignment_find_attached(mspringi_strip_assignment *assignment, uint32_t first, uint32_t end);
+mspring_result mspringi_strip_assignment_reserve(mspringi_strip_assignment *assignment, uint32_t workers,
                                                  mspringi_memory *memory, mspringi_message *message);
 void mspringi_strip_assignment_join_springs(mspringi_strip_assignment *assignment, uint32_t first, uint32_t end);
 void mspringi_strip_assignment_choose_grids(mspringi_strip_assignment *assignment);
@@ -237,10 +237,10 @@ typedef struct mspringi_tiers {
     uint32_t *tier_of; ///< [particles] tier of each particle of the network
 
     // Scratch.
-    uint32_t *particles;     ///< list of particles
-    uint32_t particle_count; ///< in it
-    uint32_t *queue;         ///< [particle_count] breadth-first order, component after component
-    uint32_t piece;          ///< start of the present search in the queue
+    uint32_t *particles;      ///< list of particles
+    uint32_t particle_count;  ///< in it
+    uint32_t *queue;          ///< [particle_count] breadth-first order, component after component
+    uint32_t component_begin; ///< start of the present search in the queue
     uint32_t head, tail, level_end;
 } mspringi_tiers;
 /// Find the tiers and sort the list by tier.

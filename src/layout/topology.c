@@ -31,7 +31,7 @@ static void attach_to_strips(mspringi_layout_builder *a) {
 
 static mspring_result begin_irregular(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
-    a->sell = (mspringi_sell_builder){.irregular = &t->irregular,
+    a->sell = (mspringi_sell_builder){.sell = &t->irregular,
                                       .a = t->irregular_a,
                                       .b = t->irregular_b,
                                       .count = t->irregular_count,
@@ -40,7 +40,7 @@ static mspring_result begin_irregular(mspringi_layout_builder *a) {
                                       .assigned_count = a->assigned_blocks * MSPRINGI_WIDTH,
                                       .has_parallel = t->parallel_count > 0,
                                       .block_count = t->block_count,
-                                      .bundle_groups = a->bundles.slice_count,
+                                      .bundle_slices = a->bundles.slice_count,
                                       .bundle_springs = a->bundles.spring_count,
                                       .strip_of_block = mspringi_layout_builder_list_strips_of_blocks(a)};
     if (!a->sell.strip_of_block)
@@ -51,7 +51,7 @@ static mspring_result begin_irregular(mspringi_layout_builder *a) {
     return result;
 }
 
-static mspring_result lay_slice_columns(mspringi_layout_builder *a) {
+static mspring_result size_slices(mspringi_layout_builder *a) {
     return mspringi_sell_size_slices(&a->sell, a->memory, a->message);
 }
 
@@ -99,7 +99,7 @@ static mspring_result assign_other_slots(mspringi_layout_builder *a) {
     return MSPRING_OK;
 }
 
-static mspring_result assign_places(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+static mspring_result assign_spring_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_layout_builder_assign_spring_slots(a, first, end);
     return MSPRING_OK;
 }
@@ -107,7 +107,7 @@ static mspring_result assign_places(mspringi_layout_builder *a, uint32_t first, 
 static mspring_result trim_spans(mspringi_layout_builder *a) {
     mspringi_layout_builder_mark_busy(a);
     mspringi_layout_builder_trim_spans(a);
-    return mspringi_layout_builder_tighten_spans(a);
+    return mspringi_layout_builder_list_trimmed_spans(a);
 }
 
 /* ------------------------------------------------------------------------------- what there is to be laid out */
@@ -126,23 +126,23 @@ static mspring_result make_graph(mspringi_layout_builder *a) {
     return result;
 }
 
-static mspring_result begin_copies(mspringi_layout_builder *a) {
+static mspring_result begin_equal_components(mspringi_layout_builder *a) {
     return !a->has_bundles
                ? MSPRING_OK
                : mspringi_equal_components_begin(&a->equal_components, &a->graph, a->memory, a->message);
 }
 
-static mspring_result explore_copies(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+static mspring_result explore_equal_components(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     if (a->equal_components.number)
         mspringi_equal_components_explore(&a->equal_components, &a->graph, a->kinds, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result reserve_copies(mspringi_layout_builder *a) {
+static mspring_result reserve_equal_components(mspringi_layout_builder *a) {
     return mspringi_equal_components_reserve(&a->equal_components, a->memory, a->message);
 }
 
-static mspring_result list_copies(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+static mspring_result list_equal_components(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_equal_components_list(&a->equal_components, &a->graph, first, end);
     return MSPRING_OK;
 }
@@ -160,8 +160,8 @@ static mspring_result flood_grids(mspringi_layout_builder *a, uint32_t first, ui
     return MSPRING_OK;
 }
 
-static mspring_result begin_judging(mspringi_layout_builder *a) {
-    return mspringi_grids_begin_judging(&a->grids, a->memory, a->message);
+static mspring_result begin_evaluation(mspringi_layout_builder *a) {
+    return mspringi_grids_begin_evaluation(&a->grids, a->memory, a->message);
 }
 
 static mspring_result count_grid_springs(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
@@ -169,8 +169,8 @@ static mspring_result count_grid_springs(mspringi_layout_builder *a, uint32_t fi
     return MSPRING_OK;
 }
 
-static mspring_result judge_grids(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
-    mspringi_grids_judge(&a->grids, first, end);
+static mspring_result evaluate_grids(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+    mspringi_grids_evaluate(&a->grids, first, end);
     return MSPRING_OK;
 }
 
@@ -179,26 +179,26 @@ static mspring_result end_search(mspringi_layout_builder *a) {
     return MSPRING_OK;
 }
 
-static mspring_result survey_sheets(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+static mspring_result count_for_grid_filter(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_grid_filter_count(&a->grid_filter, &a->graph, &a->grids, a->kinds, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result begin_sheets(mspringi_layout_builder *a) {
+static mspring_result reserve_grid_filter(mspringi_layout_builder *a) {
     return mspringi_grid_filter_reserve(&a->grid_filter, &a->graph, &a->grids, a->memory, a->message);
 }
 
-static mspring_result join_sheets(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+static mspring_result join_grid_components(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_grid_filter_join(&a->grid_filter, &a->graph, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result count_sheet_springs(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+static mspring_result count_component_springs(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_grid_filter_count_springs(&a->grid_filter, &a->graph, &a->grids, a->kinds, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result give_up_sheets(mspringi_layout_builder *a) {
+static mspring_result apply_grid_filter(mspringi_layout_builder *a) {
     mspringi_grid_filter_apply(&a->grid_filter, &a->graph, &a->grids, a->kinds, a->memory);
     return mspringi_grids_measure(&a->grids, a->memory, a->message);
 }
@@ -208,26 +208,26 @@ static mspring_result shelve_grids(mspringi_layout_builder *a, uint32_t first, u
     return MSPRING_OK;
 }
 
-static mspring_result begin_homes(mspringi_layout_builder *a) {
+static mspring_result begin_assignment(mspringi_layout_builder *a) {
     mspringi_grids_number(&a->grids, a->memory);
     return mspringi_strip_assignment_begin(&a->assignment, &a->graph, &a->grids, &a->chains, a->memory, a->message);
 }
 
-static mspring_result attach_homes(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
-    mspringi_strip_assignment_attach(&a->assignment, first, end);
+static mspring_result find_attached(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+    mspringi_strip_assignment_find_attached(&a->assignment, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result prepare_homes(mspringi_layout_builder *a) {
-    return mspringi_strip_assignment_prepare(&a->assignment, a->workers, a->memory, a->message);
+static mspring_result reserve_assignment(mspringi_layout_builder *a) {
+    return mspringi_strip_assignment_reserve(&a->assignment, a->workers, a->memory, a->message);
 }
 
-static mspring_result join_homes(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
+static mspring_result join_assignment_springs(mspringi_layout_builder *a, uint32_t first, uint32_t end) {
     mspringi_strip_assignment_join_springs(&a->assignment, first, end);
     return MSPRING_OK;
 }
 
-static mspring_result judge_homes(mspringi_layout_builder *a) {
+static mspring_result choose_assigned_grids(mspringi_layout_builder *a) {
     mspringi_strip_assignment_choose_grids(&a->assignment);
     return MSPRING_OK;
 }
@@ -237,11 +237,11 @@ static mspring_result try_skews(mspringi_layout_builder *a) {
     return MSPRING_OK;
 }
 
-static mspring_result settle_ropes(mspringi_layout_builder *a) {
+static mspring_result assign_ropes(mspringi_layout_builder *a) {
     mspringi_strip_assignment_end(&a->assignment, a->memory);
     mspringi_irregular_list_count(&a->irregular, &a->graph, &a->assignment, a->kinds);
-    mspring_result result =
-        mspringi_ropes_settle(&a->ropes, &a->graph, &a->grids, &a->chains, &a->assignment, a->memory, a->message);
+    mspring_result result = mspringi_ropes_assign_strips(&a->ropes, &a->graph, &a->grids, &a->chains,
+                                                         &a->assignment, a->memory, a->message);
     if (result == MSPRING_OK)
         mspringi_chains_drop(&a->chains, &a->graph, &a->assignment, a->bundles.slice_count > 0, a->kinds,
                              &a->irregular);
@@ -257,7 +257,7 @@ static mspring_result list_irregular(mspringi_layout_builder *a) {
 
 static mspring_result sort_irregular(mspringi_layout_builder *a) {
     mspringi_irregular_list_sort(&a->irregular, &a->graph, &a->assignment);
-    mspringi_ropes_stand(&a->ropes, &a->irregular);
+    mspringi_ropes_interleave(&a->ropes, &a->irregular);
     return MSPRING_OK;
 }
 
@@ -286,15 +286,15 @@ static uint32_t flood_steps_of(const mspringi_layout_builder *a) {
 }
 
 static uint32_t candidates_of(const mspringi_layout_builder *a) {
-    return mspringi_grids_candidates(&a->grids);
+    return mspringi_grids_candidate_count(&a->grids);
 }
 
 static uint32_t candidate_members_of(const mspringi_layout_builder *a) {
-    return mspringi_grids_candidate_members(&a->grids);
+    return mspringi_grids_candidate_member_count(&a->grids);
 }
 
 static uint32_t narrow_grids_of(const mspringi_layout_builder *a) {
-    return mspringi_grids_narrow(&a->grids);
+    return mspringi_grids_narrow_count(&a->grids);
 }
 
 static uint32_t members_of(const mspringi_layout_builder *a) {
@@ -307,16 +307,16 @@ static uint32_t irregular_springs_of(const mspringi_layout_builder *a) {
 
 MSPRINGI_PASSES(layout, mspringi_layout_builder)
 #define SEARCH                                                                                                     \
-    MSPRINGI_EACH(flood_grids, flood_steps_of, 4000), MSPRINGI_ONCE(begin_judging),                                \
+    MSPRINGI_EACH(flood_grids, flood_steps_of, 4000), MSPRINGI_ONCE(begin_evaluation),                             \
         MSPRINGI_EACH(count_grid_springs, candidate_members_of, 8000),                                             \
-        MSPRINGI_EACH(judge_grids, candidates_of, 64), MSPRINGI_ONCE(end_search)
+        MSPRINGI_EACH(evaluate_grids, candidates_of, 64), MSPRINGI_ONCE(end_search)
 
 static const layout_pass layout_passes[] = {
     MSPRINGI_ONCE(make_graph),
-    MSPRINGI_ONCE(begin_copies),
-    MSPRINGI_EACH(explore_copies, particles_of, 16000),
-    MSPRINGI_ONCE(reserve_copies),
-    MSPRINGI_EACH(list_copies, particles_of, 8000),
+    MSPRINGI_ONCE(begin_equal_components),
+    MSPRINGI_EACH(explore_equal_components, particles_of, 16000),
+    MSPRINGI_ONCE(reserve_equal_components),
+    MSPRINGI_EACH(list_equal_components, particles_of, 8000),
     MSPRINGI_ONCE(mspringi_equal_components_choose),
     MSPRINGI_ONCE(mspringi_equal_components_fill),
     MSPRINGI_ONCE(find_chains),
@@ -324,40 +324,40 @@ static const layout_pass layout_passes[] = {
     SEARCH,
     SEARCH,
     SEARCH,
-    MSPRINGI_EACH(survey_sheets, springs_of, 32000),
-    MSPRINGI_ONCE(begin_sheets),
-    MSPRINGI_EACH(join_sheets, springs_of, 32000),
-    MSPRINGI_EACH(count_sheet_springs, springs_of, 16000),
-    MSPRINGI_ONCE(give_up_sheets),
+    MSPRINGI_EACH(count_for_grid_filter, springs_of, 32000),
+    MSPRINGI_ONCE(reserve_grid_filter),
+    MSPRINGI_EACH(join_grid_components, springs_of, 32000),
+    MSPRINGI_EACH(count_component_springs, springs_of, 16000),
+    MSPRINGI_ONCE(apply_grid_filter),
     MSPRINGI_ONCE(mspringi_equal_components_release),
     MSPRINGI_EACH(shelve_grids, narrow_grids_of, 64),
-    MSPRINGI_ONCE(begin_homes),
-    MSPRINGI_EACH(attach_homes, members_of, 8000),
-    MSPRINGI_ONCE(prepare_homes),
-    MSPRINGI_EACH(join_homes, springs_of, 32000),
-    MSPRINGI_ONCE(judge_homes),
+    MSPRINGI_ONCE(begin_assignment),
+    MSPRINGI_EACH(find_attached, members_of, 8000),
+    MSPRINGI_ONCE(reserve_assignment),
+    MSPRINGI_EACH(join_assignment_springs, springs_of, 32000),
+    MSPRINGI_ONCE(choose_assigned_grids),
     MSPRINGI_ONCE(try_skews),
-    MSPRINGI_ONCE(settle_ropes),
+    MSPRINGI_ONCE(assign_ropes),
     MSPRINGI_ONCE(list_irregular),
     MSPRINGI_ONCE(sort_irregular),
     MSPRINGI_ONCE(find_tiers),
     MSPRINGI_ONCE(order_irregular),
     MSPRINGI_ONCE(mspringi_layout_builder_begin_blocks),
     MSPRINGI_EACH(mspringi_layout_builder_number_blocks, members_of, 8000),
-    MSPRINGI_ONCE(mspringi_layout_builder_number_the_rest),
+    MSPRINGI_ONCE(mspringi_layout_builder_number_other_blocks),
     MSPRINGI_ONCE(mspringi_layout_builder_reserve_maps),
     MSPRINGI_EACH(assign_slots, particles_of, 16000),
     MSPRINGI_ONCE(assign_other_slots),
     MSPRINGI_ONCE(mspringi_layout_builder_begin_spring_slots),
-    MSPRINGI_EACH(assign_places, springs_of, 16000),
-    MSPRINGI_ONCE(mspringi_layout_builder_note_ends),
+    MSPRINGI_EACH(assign_spring_slots, springs_of, 16000),
+    MSPRINGI_ONCE(mspringi_layout_builder_save_ends),
     MSPRINGI_ONCE(mspringi_layout_builder_begin_rows),
     MSPRINGI_ONCE(mspringi_layout_builder_append_lattice_rows),
     MSPRINGI_ONCE(mspringi_layout_builder_append_other_rows),
     MSPRINGI_ONCE(trim_spans),
     MSPRINGI_ONCE(mspringi_layout_builder_make_strips),
     MSPRINGI_ONCE(begin_irregular),
-    MSPRINGI_ONCE(lay_slice_columns),
+    MSPRINGI_ONCE(size_slices),
     MSPRINGI_EACH(fill_irregular, irregular_springs_of, 16000),
     MSPRINGI_ONCE(link_bundles),
 };
@@ -430,12 +430,12 @@ void mspringi_topology_finish(mspringi_layout_builder *begun, mspringi_memory *m
     mspringi_topology_abandon(begun, memory);
 }
 
-static mspring_result keep_spare(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message) {
+static mspring_result assign_spare(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message) {
     mspring_result result = mspringi_spare_reserve(t, 0, memory, message);
     if (result != MSPRING_OK)
         return result;
-    mspringi_spare_enter(t);
-    return mspringi_spare_keep(t, memory, message);
+    mspringi_spare_set_entries(t);
+    return mspringi_spare_assign_slots(t, memory, message);
 }
 
 mspring_result mspringi_topology_create(mspringi_topology *topology, const mspring_builder *builder,
@@ -451,14 +451,14 @@ mspring_result mspringi_topology_create(mspringi_topology *topology, const mspri
         return result;
     }
     mspringi_topology_finish(begun, memory, topology);
-    result = keep_spare(topology, memory, message);
+    result = assign_spare(topology, memory, message);
     if (result != MSPRING_OK)
         mspringi_topology_destroy(topology, memory);
     return result;
 }
 
 #define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_topology, member, MSPRINGI_ARRAY)
-static const mspringi_array_entry columns[] = {
+static const mspringi_array_entry arrays[] = {
     ARRAY(slot_of_particle),
     ARRAY(particle_of_slot),
     ARRAY(slot_of_spring),
@@ -484,9 +484,9 @@ static const mspringi_array_entry columns[] = {
     ARRAY(strips),
     ARRAY(tier_blocks),
 };
-const mspringi_array_table mspringi_topology_columns = MSPRINGI_ARRAY_TABLE(columns);
+const mspringi_array_table mspringi_topology_arrays = MSPRINGI_ARRAY_TABLE(arrays);
 
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory) {
-    mspringi_array_table_free(mspringi_topology_columns, topology, memory);
+    mspringi_array_table_free(mspringi_topology_arrays, topology, memory);
     *topology = (mspringi_topology){0};
 }

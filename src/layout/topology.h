@@ -192,7 +192,7 @@ void mspringi_topology_finish(mspringi_layout_builder *begun, mspringi_memory *m
 void mspringi_topology_abandon(mspringi_layout_builder *begun, mspringi_memory *memory);
 
 /// Arrays of a topology.
-extern const mspringi_array_table mspringi_topology_columns;
+extern const mspringi_array_table mspringi_topology_arrays;
 void mspringi_topology_destroy(mspringi_topology *topology, mspringi_memory *memory);
 
 /// Find both slots of a lattice spring, in its direction.

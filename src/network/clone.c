@@ -48,8 +48,8 @@ static void move_floor(const moving *m, mspringi_floor *floor) {
 }
 
 static void move_network(const moving *m, mspring_network *n) {
-    mspringi_array_table_relocate(mspringi_topology_columns, &n->topology, m->from, m->to);
-    mspringi_array_table_relocate(mspringi_topology_columns, &n->whole, m->from, m->to);
+    mspringi_array_table_relocate(mspringi_topology_arrays, &n->topology, m->from, m->to);
+    mspringi_array_table_relocate(mspringi_topology_arrays, &n->whole, m->from, m->to);
     mspringi_store_relocate(n, m->from, m->to);
     for (size_t i = 0; i < n->hook_count; ++i)
         move_field(m, &n->hooks[i].held);

@@ -61,8 +61,8 @@ static bool copy_topologies(mspring_job *job, const mspring_network *network) {
     job->from.topology = network->topology;
     if (network->is_compact)
         job->first = network->whole;
-    return mspringi_array_table_duplicate(mspringi_topology_columns, &job->from.topology, &job->memory) &&
-           mspringi_array_table_duplicate(mspringi_topology_columns, &job->first, &job->memory);
+    return mspringi_array_table_duplicate(mspringi_topology_arrays, &job->from.topology, &job->memory) &&
+           mspringi_array_table_duplicate(mspringi_topology_arrays, &job->first, &job->memory);
 }
 
 // Copy the spring arrays and the live bits, and the masses if a solver is to be built.
@@ -163,7 +163,7 @@ static mspring_result take_whole(mspring_job *job) {
     job->to.topology = job->first;
     job->fingerprint = job->from.whole_fingerprint;
     // Results belong to the memory of `to`, which is still empty.
-    return mspringi_array_table_duplicate(mspringi_topology_columns, &job->to.topology, &job->to.memory)
+    return mspringi_array_table_duplicate(mspringi_topology_arrays, &job->to.topology, &job->to.memory)
                ? MSPRING_OK
                : mspringi_job_no_memory(job);
 }

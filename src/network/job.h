@@ -45,7 +45,7 @@ struct mspring_job {
     struct mspring_builder left; ///< particles by row and column of the initial layout, live springs
     mspring_id *ids;             ///< [left.spring_count] ids of the live springs, rising
     uint32_t live, listed;       ///< live springs; those listed so far
-    mspringi_layout_builder *assembly;
+    mspringi_layout_builder *layout_builder;
     mspringi_spring_slot *laid_out_spring_slots; ///< [left.spring_count] of the live springs
     mspringi_spring_slot next_inactive;
     uint64_t fingerprint; ///< of the layout, so far

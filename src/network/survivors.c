@@ -106,12 +106,13 @@ mspring_result mspringi_survivors_begin_layout(mspring_job *job) {
     const bool has_bundles = job->from.solver.ops->has_bundles;
     const mspringi_topology *t = mspringi_job_first(job);
     return mspringi_topology_begin(&job->left, &t->reserve, t->parallel_count == 0, has_bundles, job->workers,
-                                   job->from.kernels->lanes, &job->to.memory, &job->to.message, &job->assembly);
+                                   job->from.kernels->lanes, &job->to.memory, &job->to.message,
+                                   &job->layout_builder);
 }
 
 mspring_result mspringi_survivors_lay_out(mspring_job *job) {
     bool is_done;
-    mspring_result result = mspringi_topology_run(job->assembly, &is_done);
+    mspring_result result = mspringi_topology_run(job->layout_builder, &is_done);
     job->cursor.again = !is_done;
     return result;
 }
@@ -133,8 +134,8 @@ static uint32_t count_laid_out(const mspring_job *job, uint32_t first_spare) {
 
 mspring_result mspringi_survivors_finish_layout(mspring_job *job) {
     mspringi_topology *t = &job->to.topology;
-    mspringi_topology_finish(job->assembly, &job->to.memory, t);
-    job->assembly = NULL;
+    mspringi_topology_finish(job->layout_builder, &job->to.memory, t);
+    job->layout_builder = NULL;
     job->laid_out_spring_slots = t->slot_of_spring;
     const uint32_t inactive = t->reserve.first_spring - count_laid_out(job, t->reserve.first_spring);
     t->slot_of_spring = mspringi_alloc(&job->to.memory, t->reserve.spring_end, sizeof *t->slot_of_spring);
@@ -145,7 +146,7 @@ mspring_result mspringi_survivors_finish_layout(mspring_job *job) {
     job->listed = 0;
     mspring_result result = mspringi_spare_reserve(t, inactive, &job->to.memory, &job->to.message);
     if (result == MSPRING_OK)
-        mspringi_spare_enter(t);
+        mspringi_spare_set_entries(t);
     return result;
 }
 
@@ -185,9 +186,9 @@ mspring_result mspringi_survivors_keep_spare(mspring_job *job) {
     mspringi_free(&job->to.memory, job->laid_out_spring_slots);
     job->laid_out_spring_slots = NULL;
     mspringi_topology *t = &job->to.topology;
-    mspring_result result = mspringi_spare_keep(t, &job->to.memory, &job->to.message);
+    mspring_result result = mspringi_spare_assign_slots(t, &job->to.memory, &job->to.message);
     if (result == MSPRING_OK)
-        mspringi_spare_count(t, t->particle_count, t->spring_count);
+        mspringi_spare_set_counts(t, t->particle_count, t->spring_count);
     job->fingerprint = job->from.is_compact ? job->from.whole_fingerprint : job->from.topology_fingerprint;
     return result;
 }

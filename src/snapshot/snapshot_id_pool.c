@@ -253,9 +253,9 @@ static void load_spring(mspring_network *network, const growth *g, mspring_id s)
     network->growth.springs[s] = g->springs[s];
     if (is_new) {
         mspringi_id_pool_link(network, s, a, b);
-        mspringi_spare_put_spring(t, s, a, b);
+        mspringi_spare_add_spring(t, s, a, b);
         if (network->is_compact)
-            mspringi_spare_put_spring(&network->whole, s, a, b);
+            mspringi_spare_add_spring(&network->whole, s, a, b);
         if (network->fractions.values)
             mspringi_fractions_set(&network->fractions, s,
                                    (mspringi_relative){g->kinds[i] & IS_RELATIVE ? 0.0f : -1.0f, 0.0f});

@@ -81,9 +81,9 @@ void mspringi_id_pool_take_particle(mspring_network *network, mspring_id particl
         network->inverse_mass_scale[particle] = 0.0f;
     clear_field(network->forces.held, slot);
     mspringi_notify_change(network, MSPRINGI_CHANGED_SLOT, slot);
-    mspringi_spare_take_particle(&network->topology, particle);
+    mspringi_spare_remove_particle(&network->topology, particle);
     if (network->is_compact)
-        mspringi_spare_take_particle(&network->whole, particle);
+        mspringi_spare_remove_particle(&network->whole, particle);
 }
 
 /* ------------------------------------------------------------------------------------------------------ numbers */
@@ -107,9 +107,9 @@ uint32_t mspringi_id_pool_added_springs(const mspring_network *network) {
 }
 
 void mspringi_id_pool_count(mspring_network *network, uint32_t particle_count, uint32_t spring_count) {
-    mspringi_spare_count(&network->topology, particle_count, spring_count);
+    mspringi_spare_set_counts(&network->topology, particle_count, spring_count);
     if (network->is_compact)
-        mspringi_spare_count(&network->whole, particle_count, spring_count);
+        mspringi_spare_set_counts(&network->whole, particle_count, spring_count);
     mspringi_notify_change(network, MSPRINGI_CHANGED_COUNTS, 0);
 }
 

@@ -33,7 +33,7 @@ static int64_t clamp(int64_t value, int64_t low, int64_t high) {
 }
 
 // Assign strips to a chain's particles, at most the skew apart from each other and from the strips at its ends.
-static void settle(const mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
+static void assign_strips(const mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     const uint32_t *particles = ropes->chains->particles, *springs = ropes->chains->springs;
     const int64_t skew = ropes->assignment->skew;
     uint32_t from = strip_at_end(ropes, particles[begin], springs[begin]);
@@ -41,16 +41,16 @@ static void settle(const mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     from = from == MSPRING_NONE ? to : from;
     to = to == MSPRING_NONE ? from : to;
     // One strip in 2 * skew is in reach of all others, so that more ropes meet there.
-    const int64_t stay = clamp((int64_t)to / (2 * skew) * (2 * skew) + skew, 0, (int64_t)ropes->strip_count - 1);
+    const int64_t target = clamp((int64_t)to / (2 * skew) * (2 * skew) + skew, 0, (int64_t)ropes->strip_count - 1);
     for (uint32_t i = begin; i < end; ++i) {
-        const int64_t since = skew * (i + 1 - begin), left = skew * (end - i);
-        const int64_t low = from - since > to - left ? from - since : to - left;
-        const int64_t high = from + since < to + left ? from + since : to + left;
-        ropes->assignment->assigned_strip[particles[i]] = (uint32_t)clamp(stay, low, high);
+        const int64_t from_reach = skew * (i + 1 - begin), to_reach = skew * (end - i);
+        const int64_t low = from - from_reach > to - to_reach ? from - from_reach : to - to_reach;
+        const int64_t high = from + from_reach < to + to_reach ? from + from_reach : to + to_reach;
+        ropes->assignment->assigned_strip[particles[i]] = (uint32_t)clamp(target, low, high);
     }
 }
 
-static uint32_t note_piece(mspringi_ropes *ropes, uint32_t *counts, uint32_t begin, uint32_t length) {
+static uint32_t add_piece(mspringi_ropes *ropes, uint32_t *counts, uint32_t begin, uint32_t length) {
     const uint32_t assigned_strip = ropes->assignment->assigned_strip[ropes->chains->particles[begin]];
     for (uint32_t row = 0; row < length; ++row)
         ropes->piece[ropes->chains->particles[begin + row]] =
@@ -60,11 +60,11 @@ static uint32_t note_piece(mspringi_ropes *ropes, uint32_t *counts, uint32_t beg
 }
 
 // Cut particles with the same assigned strip into pieces.
-static void cut(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
+static void cut_run(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     while (end - begin >= LONG_PIECE)
-        begin += note_piece(ropes, ropes->long_count, begin, LONG_PIECE);
+        begin += add_piece(ropes, ropes->long_count, begin, LONG_PIECE);
     while (end - begin >= SHORT_PIECE)
-        begin += note_piece(ropes, ropes->short_count, begin, SHORT_PIECE);
+        begin += add_piece(ropes, ropes->short_count, begin, SHORT_PIECE);
 }
 
 static void cut_chain(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
@@ -72,14 +72,14 @@ static void cut_chain(mspringi_ropes *ropes, uint32_t begin, uint32_t end) {
     for (uint32_t last; begin < end; begin = last) {
         for (last = begin + 1; last < end && assigned_strip[particles[last]] == assigned_strip[particles[begin]];)
             ++last;
-        cut(ropes, begin, last);
+        cut_run(ropes, begin, last);
     }
 }
 
-mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph *graph,
-                                     const mspringi_grids *grids, const mspringi_chains *chains,
-                                     mspringi_strip_assignment *assignment, mspringi_memory *memory,
-                                     mspringi_message *message) {
+mspring_result mspringi_ropes_assign_strips(mspringi_ropes *ropes, const mspringi_graph *graph,
+                                            const mspringi_grids *grids, const mspringi_chains *chains,
+                                            mspringi_strip_assignment *assignment, mspringi_memory *memory,
+                                            mspringi_message *message) {
     *ropes = (mspringi_ropes){.graph = graph, .grids = grids, .chains = chains, .assignment = assignment};
     if (chains->count == 0 || assignment->row_count == 0)
         return MSPRING_OK;
@@ -96,7 +96,7 @@ mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph
             ++end;
         if (assignment->assigned_strip[chains->particles[begin]] == MSPRING_NONE)
             continue;
-        settle(ropes, begin, end);
+        assign_strips(ropes, begin, end);
         cut_chain(ropes, begin, end);
     }
     return MSPRING_OK;
@@ -104,7 +104,7 @@ mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph
 
 // Position of a piece's particle among those of its strip, or MSPRING_NONE if it is not interleaved. Long pieces
 // that cannot fill all lanes count as two short ones each.
-static uint32_t standing_place(const mspringi_ropes *ropes, uint32_t assigned_strip, uint32_t particle) {
+static uint32_t interleaved_position(const mspringi_ropes *ropes, uint32_t assigned_strip, uint32_t particle) {
     if (ropes->piece[particle] == 0)
         return MSPRING_NONE;
     const uint32_t piece = ropes->piece[particle] - 1;
@@ -126,7 +126,7 @@ static uint32_t standing_place(const mspringi_ropes *ropes, uint32_t assigned_st
            number % MSPRINGI_WIDTH;
 }
 
-static uint32_t standing_count(const mspringi_ropes *ropes, uint32_t assigned_strip) {
+static uint32_t interleaved_count(const mspringi_ropes *ropes, uint32_t assigned_strip) {
     const uint32_t full = ropes->long_count[assigned_strip] / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
     const uint32_t shorts =
         ropes->short_count[assigned_strip] + LONG_PIECE / SHORT_PIECE * (ropes->long_count[assigned_strip] - full);
@@ -134,17 +134,17 @@ static uint32_t standing_count(const mspringi_ropes *ropes, uint32_t assigned_st
 }
 
 // Interleave strip by strip.
-void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_irregular_list *list) {
+void mspringi_ropes_interleave(const mspringi_ropes *ropes, mspringi_irregular_list *list) {
     if (!ropes->piece)
         return;
     for (uint32_t begin = 0, end; begin < list->assigned_count; begin = end) {
         const uint32_t assigned_strip = ropes->assignment->assigned_strip[list->particles[begin]];
-        uint32_t lying = begin + standing_count(ropes, assigned_strip);
+        uint32_t next = begin + interleaved_count(ropes, assigned_strip);
         for (end = begin; end < list->assigned_count &&
                           ropes->assignment->assigned_strip[list->particles[end]] == assigned_strip;
              ++end) {
-            const uint32_t place = standing_place(ropes, assigned_strip, list->particles[end]);
-            list->scratch[place == MSPRING_NONE ? lying++ : begin + place] = list->particles[end];
+            const uint32_t position = interleaved_position(ropes, assigned_strip, list->particles[end]);
+            list->scratch[position == MSPRING_NONE ? next++ : begin + position] = list->particles[end];
         }
         for (uint32_t i = begin; i < end; ++i)
             list->particles[i] = (uint32_t)list->scratch[i];

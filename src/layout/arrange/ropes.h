@@ -19,12 +19,12 @@ typedef struct mspringi_ropes {
 
 /// Assign strips to the ropes' particles and cut ropes into pieces, before chains with an assigned strip are
 /// dropped.
-mspring_result mspringi_ropes_settle(mspringi_ropes *ropes, const mspringi_graph *graph,
-                                     const mspringi_grids *grids, const mspringi_chains *chains,
-                                     mspringi_strip_assignment *assignment, mspringi_memory *memory,
-                                     mspringi_message *message);
+mspring_result mspringi_ropes_assign_strips(mspringi_ropes *ropes, const mspringi_graph *graph,
+                                            const mspringi_grids *grids, const mspringi_chains *chains,
+                                            mspringi_strip_assignment *assignment, mspringi_memory *memory,
+                                            mspringi_message *message);
 /// Interleave the pieces, after the irregular particles are listed by assigned strip.
-void mspringi_ropes_stand(const mspringi_ropes *ropes, mspringi_irregular_list *list);
+void mspringi_ropes_interleave(const mspringi_ropes *ropes, mspringi_irregular_list *list);
 void mspringi_ropes_destroy(mspringi_ropes *ropes, mspringi_memory *memory);
 
 #endif

@@ -3,7 +3,7 @@
 #include "layout/emit/spare.h"
 
 /// Blocks in a span of chains.
-#define LONGEST_CHAIN_SPAN 64
+#define MAX_CHAIN_SPAN 64
 
 // Append a row without spans.
 static bool append_row(mspringi_layout_builder *a, mspringi_row_kind kind) {
@@ -64,13 +64,12 @@ static uint32_t end_of_bundles(const mspringi_layout_builder *a, uint32_t first)
 }
 
 static uint32_t widest_row(const mspringi_layout_builder *a) {
-    uint32_t widest =
-        a->topology->chain_blocks < LONGEST_CHAIN_SPAN ? a->topology->chain_blocks : LONGEST_CHAIN_SPAN;
+    uint32_t widest = a->topology->chain_blocks < MAX_CHAIN_SPAN ? a->topology->chain_blocks : MAX_CHAIN_SPAN;
     for (uint32_t first = 0, end, slice_columns = 0; first < a->bundles.slice_count;
          first = end, slice_columns = 0) {
         end = end_of_bundles(a, first);
-        for (uint32_t group = first; group < end; ++group)
-            slice_columns += mspringi_degree_of(&a->graph, a->bundles.particles[group * MSPRINGI_WIDTH]);
+        for (uint32_t slice = first; slice < end; ++slice)
+            slice_columns += mspringi_degree_of(&a->graph, a->bundles.particles[slice * MSPRINGI_WIDTH]);
         widest = slice_columns > widest ? slice_columns : widest;
     }
     for (size_t i = 0; i < a->block_count; ++i)
@@ -116,12 +115,12 @@ mspring_result mspringi_layout_builder_append_lattice_rows(mspringi_layout_build
 static bool append_chain_row(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     bool ok = t->chain_blocks == 0 || append_row(a, MSPRINGI_ROW_CHAIN);
-    for (uint32_t i = 0; ok && i < t->chain_blocks; i += LONGEST_CHAIN_SPAN) {
+    for (uint32_t i = 0; ok && i < t->chain_blocks; i += MAX_CHAIN_SPAN) {
         const uint32_t left = t->chain_blocks - i, block = t->chain_first + i;
         mspringi_span span =
-            span_of_blocks(block, left < LONGEST_CHAIN_SPAN ? left : LONGEST_CHAIN_SPAN, i, MSPRINGI_WIDTH);
+            span_of_blocks(block, left < MAX_CHAIN_SPAN ? left : MAX_CHAIN_SPAN, i, MSPRINGI_WIDTH);
         span.carry = offset_between(block, 0);
-        if (left <= LONGEST_CHAIN_SPAN) // slots behind the last particle are empty
+        if (left <= MAX_CHAIN_SPAN) // slots behind the last particle are empty
             span.end_slot = t->chain_first * MSPRINGI_WIDTH +
                             (a->chains.count + MSPRINGI_QUARTER - 1) / MSPRINGI_QUARTER * MSPRINGI_QUARTER;
         ok = append_span(a, &span);
@@ -139,16 +138,16 @@ static bool append_simple_row(mspringi_layout_builder *a, mspringi_row_kind kind
 // Append the bundles, several to a span.
 static bool append_bundle_row(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
-    const uint32_t groups = a->bundles.slice_count;
-    if (groups == 0)
+    const uint32_t slices = a->bundles.slice_count;
+    if (slices == 0)
         return true;
     a->bundle_row = t->row_count;
     bool ok = append_row(a, MSPRINGI_ROW_IRREGULAR);
     t->bundle_springs = a->bundles.spring_count * MSPRINGI_WIDTH;
-    for (uint32_t first = 0, end; ok && first < groups; first = end) {
+    for (uint32_t first = 0, end; ok && first < slices; first = end) {
         end = end_of_bundles(a, first);
-        const mspringi_span span = span_of_blocks(t->irregular_first + a->loner_blocks + first, end - first,
-                                                  a->loner_blocks + first, MSPRINGI_WIDTH);
+        const mspringi_span span = span_of_blocks(t->irregular_first + a->unbundled_blocks + first, end - first,
+                                                  a->unbundled_blocks + first, MSPRINGI_WIDTH);
         t->rows[a->bundle_row].span_count++;
         ok = store_span(a, &span);
     }
@@ -156,7 +155,7 @@ static bool append_bundle_row(mspringi_layout_builder *a) {
 }
 
 // Append the span of a strip's assigned particles; the last of them is in last_slot.
-static bool append_home_span(mspringi_layout_builder *a, uint32_t strip, uint32_t last_slot) {
+static bool append_assigned_span(mspringi_layout_builder *a, uint32_t strip, uint32_t last_slot) {
     mspringi_topology *t = a->topology;
     const uint32_t first_block = t->irregular_first + a->placed_blocks, end_block = last_slot / MSPRINGI_WIDTH + 1;
     mspringi_span span = span_of_blocks(first_block, end_block - first_block, a->placed_blocks, MSPRINGI_WIDTH);
@@ -166,13 +165,13 @@ static bool append_home_span(mspringi_layout_builder *a, uint32_t strip, uint32_
     return store_span(a, &span);
 }
 
-static bool append_home_spans(mspringi_layout_builder *a) {
+static bool append_assigned_spans(mspringi_layout_builder *a) {
     const mspringi_topology *t = a->topology;
     const uint32_t *particles = a->irregular.particles, *assigned_strip = a->assignment.assigned_strip;
     for (uint32_t i = 0; i < a->irregular.assigned_count; ++i) {
         const bool is_last =
             i + 1 == a->irregular.count || assigned_strip[particles[i + 1]] != assigned_strip[particles[i]];
-        if (is_last && !append_home_span(a, assigned_strip[particles[i]], t->slot_of_particle[particles[i]]))
+        if (is_last && !append_assigned_span(a, assigned_strip[particles[i]], t->slot_of_particle[particles[i]]))
             return false;
     }
     return true;
@@ -215,7 +214,7 @@ mspring_result mspringi_layout_builder_make_strips(mspringi_layout_builder *a) {
         t->strips[s] = (mspringi_strip){.first_row = row, .row_count = count, .assigned_span = MSPRING_NONE};
         row += count;
     }
-    return append_home_spans(a) && list_tiers(a) ? MSPRING_OK : mspringi_layout_builder_fail(a);
+    return append_assigned_spans(a) && list_tiers(a) ? MSPRING_OK : mspringi_layout_builder_fail(a);
 }
 
 uint32_t *mspringi_layout_builder_list_strips_of_blocks(const mspringi_layout_builder *a) {
@@ -228,8 +227,8 @@ uint32_t *mspringi_layout_builder_list_strips_of_blocks(const mspringi_layout_bu
                 strip_of_block[slot / MSPRINGI_WIDTH] = s;
         if (t->strips[s].assigned_span == MSPRING_NONE)
             continue;
-        const mspringi_span *assigned_strip = &t->spans[t->strips[s].assigned_span];
-        for (uint32_t slot = assigned_strip->first_slot; slot < assigned_strip->end_slot; slot += MSPRINGI_WIDTH)
+        const mspringi_span *assigned = &t->spans[t->strips[s].assigned_span];
+        for (uint32_t slot = assigned->first_slot; slot < assigned->end_slot; slot += MSPRINGI_WIDTH)
             strip_of_block[slot / MSPRINGI_WIDTH] = s;
     }
     return strip_of_block;
@@ -312,7 +311,7 @@ static uint32_t cut_span(const mspringi_layout_builder *a, const mspringi_span *
 // Omit idle registers within spans, too, between both sides of a hole. They need lists of their own: all other code
 // expects spans without common blocks. (Idle registers of our ship: 848 of 13,105 with four lanes, 110 of 6,926
 // with eight, one of 3,683 with sixteen; the cost of a span is negligible.)
-mspring_result mspringi_layout_builder_tighten_spans(mspringi_layout_builder *a) {
+mspring_result mspringi_layout_builder_list_trimmed_spans(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
     uint32_t spans = 0, count = 0;

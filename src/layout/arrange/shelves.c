@@ -12,9 +12,9 @@
 #include "layout/analysis.h"
 
 /// Largest width and height of a grid on a shelf, as larger ones fill their blocks well enough. Width of a shelf.
-#define LARGEST 64
-#define SHELF 256
-#define SHELF_WORDS (SHELF / 64 + 1)
+#define MAX_SIDE 64
+#define SHELF_WIDTH 256
+#define SHELF_WORDS (SHELF_WIDTH / 64 + 1)
 /// Positions tried for a grid, from the right end of the shelf: this many per particle of an average grid.
 #define TRIES_PER_PARTICLE 64
 
@@ -26,12 +26,12 @@ typedef struct mspringi_grid_shelver {
     uint32_t count;           ///< grids after shelving
     uint64_t *keys, *scratch; ///< [grids]
     uint32_t *members, *first_member;
-    uint32_t shelf_height, shelf_end;     ///< rows of the shelf, and columns in use
-    uint64_t taken[LARGEST][SHELF_WORDS]; ///< cells of the shelf in use, a bit each
-    uint32_t blocks[LARGEST];             ///< blocks in use of each row, a bit each
-    uint64_t rows[LARGEST];               ///< cells of the present grid
-    uint32_t narrow, narrow_members;      ///< grids that fit on shelves, and their particles
-    uint32_t first_on_shelf;              ///< first grid on the present shelf
+    uint32_t shelf_height, shelf_end;           ///< rows of the shelf, and columns in use
+    uint64_t used_cells[MAX_SIDE][SHELF_WORDS]; ///< cells of the shelf in use, a bit each
+    uint32_t blocks[MAX_SIDE];                  ///< blocks in use of each row, a bit each
+    uint64_t rows[MAX_SIDE];                    ///< cells of the present grid
+    uint32_t narrow_count, narrow_member_count; ///< grids that fit on shelves, and their particles
+    uint32_t first_on_shelf;                    ///< first grid on the present shelf
 } shelver;
 
 static void measure(shelver *s) {
@@ -43,15 +43,16 @@ static void measure(shelver *s) {
         if (m + 1 < grids->first_member[g + 1])
             continue;
         s->shelf[g] = g;
-        if (s->width[g] <= LARGEST && s->height[g] <= LARGEST) {
-            s->narrow_members += grids->first_member[g + 1] - grids->first_member[g];
-            s->keys[s->narrow++] = (uint64_t)((LARGEST - s->height[g]) << 8 | (LARGEST - s->width[g])) << 32 | g;
+        if (s->width[g] <= MAX_SIDE && s->height[g] <= MAX_SIDE) {
+            s->narrow_member_count += grids->first_member[g + 1] - grids->first_member[g];
+            s->keys[s->narrow_count++] =
+                (uint64_t)((MAX_SIDE - s->height[g]) << 8 | (MAX_SIDE - s->width[g])) << 32 | g;
         }
         ++g;
     }
 }
 
-static void draw(shelver *s, uint32_t grid) {
+static void load_cells(shelver *s, uint32_t grid) {
     const mspringi_grids *grids = s->grids;
     memset(s->rows, 0, sizeof s->rows);
     for (uint32_t m = grids->first_member[grid]; m < grids->first_member[grid + 1]; ++m)
@@ -66,7 +67,7 @@ static uint64_t bits_from(const uint64_t *row, uint32_t column) {
 
 static bool has_room(const shelver *s, uint32_t height, uint32_t column, uint32_t row) {
     for (uint32_t r = 0; r < height; ++r)
-        if (bits_from(s->taken[row + r], column) & s->rows[r])
+        if (bits_from(s->used_cells[row + r], column) & s->rows[r])
             return false;
     return true;
 }
@@ -76,11 +77,11 @@ static uint32_t new_blocks(const shelver *s, uint32_t height, uint32_t column, u
     const uint32_t block = column / MSPRINGI_WIDTH, shift = column % MSPRINGI_WIDTH;
     uint32_t count = 0;
     for (uint32_t r = 0; r < height; ++r) {
-        const uint32_t there = s->blocks[row + r] >> block;
+        const uint32_t used = s->blocks[row + r] >> block;
         uint64_t cells = s->rows[r] << shift;
         for (uint32_t k = 0; k < 64 / MSPRINGI_WIDTH; ++k, cells >>= MSPRINGI_WIDTH)
-            count += (cells & 0xffff) != 0 && !(there >> k & 1);
-        count += shift > 0 && s->rows[r] >> (64 - shift) != 0 && !(there >> 64 / MSPRINGI_WIDTH & 1);
+            count += (cells & 0xffff) != 0 && !(used >> k & 1);
+        count += shift > 0 && s->rows[r] >> (64 - shift) != 0 && !(used >> 64 / MSPRINGI_WIDTH & 1);
     }
     return count;
 }
@@ -91,10 +92,11 @@ static bool find_room(const shelver *s, uint32_t grid, uint32_t *column, uint32_
     if (s->shelf_height < s->height[grid])
         return false;
     const uint32_t rows = s->shelf_height - s->height[grid] + 1;
-    const uint32_t reach = (uint32_t)((uint64_t)TRIES_PER_PARTICLE * s->narrow_members / s->narrow / rows);
+    const uint32_t reach =
+        (uint32_t)((uint64_t)TRIES_PER_PARTICLE * s->narrow_member_count / s->narrow_count / rows);
     uint32_t fewest = UINT32_MAX;
     for (uint32_t c = s->shelf_end > reach ? s->shelf_end - reach : 0;
-         c <= s->shelf_end && c + s->width[grid] <= SHELF && fewest > 0; ++c) {
+         c <= s->shelf_end && c + s->width[grid] <= SHELF_WIDTH && fewest > 0; ++c) {
         for (uint32_t r = 0; r < rows; ++r) {
             if (!has_room(s, s->height[grid], c, r))
                 continue;
@@ -109,22 +111,22 @@ static bool find_room(const shelver *s, uint32_t grid, uint32_t *column, uint32_
     return fewest < UINT32_MAX;
 }
 
-static void put(shelver *s, uint32_t grid, uint32_t column, uint32_t row) {
+static void place_grid(shelver *s, uint32_t grid, uint32_t column, uint32_t row) {
     const mspringi_grids *grids = s->grids;
     for (uint32_t m = grids->first_member[grid]; m < grids->first_member[grid + 1]; ++m) {
         const uint32_t p = grids->members[m];
         grids->column[p] += column;
         grids->row[p] += row;
-        s->taken[grids->row[p]][grids->column[p] / 64] |= (uint64_t)1 << grids->column[p] % 64;
+        s->used_cells[grids->row[p]][grids->column[p] / 64] |= (uint64_t)1 << grids->column[p] % 64;
         s->blocks[grids->row[p]] |= 1u << grids->column[p] / MSPRINGI_WIDTH;
     }
 }
 
-static void put_next(shelver *s, uint32_t g) {
+static void shelve_grid(shelver *s, uint32_t g) {
     uint32_t column = 0, row = 0;
-    draw(s, g);
+    load_cells(s, g);
     if (!find_room(s, g, &column, &row)) {
-        memset(s->taken, 0, sizeof s->taken);
+        memset(s->used_cells, 0, sizeof s->used_cells);
         memset(s->blocks, 0, sizeof s->blocks);
         s->shelf_height = s->height[g];
         s->shelf_end = 0;
@@ -133,17 +135,17 @@ static void put_next(shelver *s, uint32_t g) {
     }
     s->shelf[g] = s->first_on_shelf;
     s->shelf_end = column + s->width[g] > s->shelf_end ? column + s->width[g] : s->shelf_end;
-    put(s, g, column, row);
+    place_grid(s, g, column, row);
 }
 
-uint32_t mspringi_grids_narrow(const mspringi_grids *grids) {
-    return grids->shelver && grids->shelver->narrow > 1 ? grids->shelver->narrow : 0;
+uint32_t mspringi_grids_narrow_count(const mspringi_grids *grids) {
+    return grids->shelver && grids->shelver->narrow_count > 1 ? grids->shelver->narrow_count : 0;
 }
 
 void mspringi_grids_shelve(mspringi_grids *grids, uint32_t first, uint32_t end) {
     shelver *s = grids->shelver;
     for (uint32_t i = first; i < end; ++i)
-        put_next(s, (uint32_t)s->keys[i]);
+        shelve_grid(s, (uint32_t)s->keys[i]);
 }
 
 // Make one grid of each shelf, and find where its members begin.
@@ -172,7 +174,7 @@ static void move_members(const shelver *s) {
 
 void mspringi_grids_number(mspringi_grids *grids, mspringi_memory *memory) {
     shelver *s = grids->shelver;
-    if (mspringi_grids_narrow(grids) > 0) {
+    if (mspringi_grids_narrow_count(grids) > 0) {
         number_shelves(s);
         move_members(s);
         memmove(s->first_member + 1, s->first_member, s->count * sizeof *s->first_member);
@@ -213,7 +215,7 @@ mspring_result mspringi_grids_measure(mspringi_grids *grids, mspringi_memory *me
         return result;
     shelver *s = grids->shelver;
     measure(s);
-    mspringi_sort_keys(s->keys, s->scratch, s->narrow);
+    mspringi_sort_keys(s->keys, s->scratch, s->narrow_count);
     return MSPRING_OK;
 }
 

@@ -39,12 +39,12 @@ void mspringi_layout_builder_assign_slots(mspringi_layout_builder *a, uint32_t f
 
 void mspringi_layout_builder_assign_other_slots(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
-    uint32_t irregular_spring_slot = 0;
+    uint32_t irregular_slot = 0;
     for (uint32_t i = 0; i < a->chains.count; ++i)
         place_particle(t, a->chains.particles[i], t->chain_first * MSPRINGI_WIDTH + i);
     for (uint32_t i = 0; i < a->irregular.count; ++i) {
-        irregular_spring_slot = mspringi_layout_builder_irregular_slot(a, i, irregular_spring_slot);
-        place_particle(t, a->irregular.particles[i], t->irregular_first * MSPRINGI_WIDTH + irregular_spring_slot);
+        irregular_slot = mspringi_layout_builder_irregular_slot(a, i, irregular_slot);
+        place_particle(t, a->irregular.particles[i], t->irregular_first * MSPRINGI_WIDTH + irregular_slot);
     }
     for (mspring_id p = t->particle_count; p < t->reserve.particle_end; ++p)
         t->slot_of_particle[p] = mspringi_spare_slot(t, p);
@@ -71,7 +71,7 @@ void mspringi_layout_builder_assign_spring_slots(mspringi_layout_builder *a, uin
         mspringi_lattice_spring found;
         if (spring_slots[s] != MSPRING_NONE)
             continue;
-        if (!mspringi_graph_place(&a->graph, &a->grids, s, &found)) {
+        if (!mspringi_graph_locate_spring(&a->graph, &a->grids, s, &found)) {
             spring_slots[s] = t->chain_spring_slots + t->irregular_count++;
             continue;
         }
@@ -85,7 +85,7 @@ void mspringi_layout_builder_assign_spring_slots(mspringi_layout_builder *a, uin
     }
 }
 
-mspring_result mspringi_layout_builder_note_ends(mspringi_layout_builder *a) {
+mspring_result mspringi_layout_builder_save_ends(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     t->laid_out_count = t->irregular_capacity = t->irregular_count;
     t->irregular_a = mspringi_alloc(a->memory, t->irregular_count, sizeof *t->irregular_a);

@@ -16,7 +16,7 @@
 #define STRIP_PARTICLES 2048
 
 /// Lattice particles from which sharing a step among workers pays.
-#define FEWEST_SHARED 4000
+#define MIN_SHARED_PARTICLES 4000
 
 /// Strips of each worker, enough to avoid waiting for its neighbours. On 96 x 96, two workers reach 0.9 of the
 /// speed of two independent threads with 8, 12 and 16, but 0.83 with 24: single rows, where calls take an eighth of
@@ -24,7 +24,7 @@
 #define STRIPS_PER_WORKER 12
 
 /// Particles visited by one call.
-#define SPREAD_AT_ONCE 4000
+#define PARTICLES_PER_CALL 4000
 
 /// Fitness of a component: its rows can be swept together, not with this skew, or not at all.
 enum { FIT, UNFIT_FOR_SKEW, UNFIT };
@@ -45,7 +45,7 @@ typedef struct mspringi_strip_assignment_finder {
     uint32_t *queue; ///< [strips] first particle in each strip's list, or MSPRING_NONE
     uint32_t *next;  ///< [particles] next particle in the list
     uint32_t strip;  ///< present strip; those above it are done
-    bool is_spreading, is_upside_down, fits;
+    bool is_spreading, is_upside_down, is_fit;
     bool is_found;
 } finder;
 
@@ -72,7 +72,7 @@ static uint8_t *fitness_of(const finder *f, uint32_t particle) {
     return &f->fitness[mspringi_union_find_root(f->component, particle)];
 }
 
-static void weigh(const finder *f, const uint32_t *particles, uint32_t count, int64_t weight) {
+static void add_balance(const finder *f, const uint32_t *particles, uint32_t count, int64_t weight) {
     for (uint32_t i = 0; i < count; ++i)
         f->balance[mspringi_union_find_root(f->component, particles[i])] += weight;
 }
@@ -83,8 +83,8 @@ void mspringi_strip_assignment_choose_grids(mspringi_strip_assignment *assignmen
     if (f->is_found)
         return;
     join_members(f);
-    weigh(f, f->grids->members, f->grids->member_count, 1);
-    weigh(f, f->chains->particles, f->chains->count, -1);
+    add_balance(f, f->grids->members, f->grids->member_count, 1);
+    add_balance(f, f->chains->particles, f->chains->count, -1);
     for (uint32_t p = 0; p < f->graph->builder->particle_count; ++p)
         f->fitness[p] = f->balance[p] < 0 ? UNFIT : FIT;
 }
@@ -92,7 +92,7 @@ void mspringi_strip_assignment_choose_grids(mspringi_strip_assignment *assignmen
 static bool has_irregular_spring(const finder *f, uint32_t particle) {
     for (uint32_t i = f->graph->first[particle]; i < f->graph->first[particle + 1]; ++i) {
         mspringi_lattice_spring found;
-        if (!mspringi_grids_place(f->grids, &f->graph->builder->springs[f->graph->springs[i]], &found))
+        if (!mspringi_grids_locate_spring(f->grids, &f->graph->builder->springs[f->graph->springs[i]], &found))
             return true;
     }
     return false;
@@ -153,7 +153,7 @@ static void begin_spreading(finder *f, uint32_t *bounds, bool upside_down) {
 static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
     const mspringi_graph *graph = f->graph;
     const uint32_t skew = f->assignment->skew, bound = f->strip > skew ? f->strip - skew : 0;
-    bool fits = true;
+    bool is_fit = true;
     for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
         const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], p);
         if (bounds[other] == MSPRING_NONE) {
@@ -162,17 +162,17 @@ static bool spread_from(finder *f, uint32_t p, uint32_t *bounds) {
         } else if (bound > bounds[other]) {
             // Only lattice particles can be lower: all others were first reached from their highest neighbour.
             *fitness_of(f, other) = UNFIT_FOR_SKEW;
-            fits = false;
+            is_fit = false;
         }
     }
-    return fits;
+    return is_fit;
 }
 
 // Spread bounds from at most `most` particles, starting with the attached ones. Unreached particles keep
 // MSPRING_NONE. A component becomes unfit if a lattice particle would have to lie higher than it does. Strips above
 // f->strip are done: particles are queued in lower strips, or in the lowest one.
-static void spread(finder *f, uint32_t *bounds, uint32_t most) {
-    for (uint32_t n = 0; n < most; ++n) {
+static void spread(finder *f, uint32_t *bounds, uint32_t max_particles) {
+    for (uint32_t n = 0; n < max_particles; ++n) {
         while (f->queue[f->strip] == MSPRING_NONE && f->strip > 0)
             f->strip--;
         const uint32_t p = f->queue[f->strip];
@@ -180,12 +180,12 @@ static void spread(finder *f, uint32_t *bounds, uint32_t most) {
         if (!f->is_spreading)
             return;
         f->queue[f->strip] = f->next[p];
-        f->fits = spread_from(f, p, bounds) && f->fits;
+        f->is_fit = spread_from(f, p, bounds) && f->is_fit;
     }
 }
 
 // Set assigned strips to the mean of both bounds.
-static void combine(const finder *f) {
+static void average_bounds(const finder *f) {
     mspringi_strip_assignment *assignment = f->assignment;
     const uint32_t strips = strip_count(assignment);
     for (uint32_t p = 0; p < f->graph->builder->particle_count; ++p)
@@ -196,8 +196,8 @@ static void combine(const finder *f) {
 }
 
 // Try the next skew for components that do not fit; reject them at the longest one.
-static void relent(const finder *f) {
-    const bool is_longest = f->assignment->skew == MSPRINGI_LONGEST_SKEW;
+static void extend_skew(const finder *f) {
+    const bool is_longest = f->assignment->skew == MSPRINGI_MAX_SKEW;
     for (uint32_t p = 0; p < f->graph->builder->particle_count; ++p)
         if (f->fitness[p] == UNFIT_FOR_SKEW)
             f->fitness[p] = is_longest ? UNFIT : FIT;
@@ -210,27 +210,27 @@ static void try_skew(finder *f) {
     if (!f->is_spreading) {
         if (!f->is_upside_down)
             number_rows(f);
-        f->fits = f->is_spreading = true;
+        f->is_fit = f->is_spreading = true;
         f->strip = strip_count(f->assignment) > 0 ? strip_count(f->assignment) - 1 : 0;
         begin_spreading(f, bounds, f->is_upside_down);
         return;
     }
-    spread(f, bounds, SPREAD_AT_ONCE);
+    spread(f, bounds, PARTICLES_PER_CALL);
     if (f->is_spreading)
         return;
-    f->is_found = f->fits && f->is_upside_down;
-    f->is_upside_down = f->fits && !f->is_upside_down;
+    f->is_found = f->is_fit && f->is_upside_down;
+    f->is_upside_down = f->is_fit && !f->is_upside_down;
     if (f->is_found)
-        combine(f);
+        average_bounds(f);
     else if (!f->is_upside_down)
-        relent(f);
+        extend_skew(f);
 }
 
 // Make strips as small as the workers need them, if nothing is attached to the lattices. Assigned strips must not
 // depend on the workers, since they order slots and so sums.
 static void number_rows_for(finder *f, uint32_t workers) {
     const uint32_t wanted = f->grids->member_count / workers / STRIPS_PER_WORKER;
-    if (workers > 1 && f->grids->member_count >= FEWEST_SHARED && wanted < f->strip_particles)
+    if (workers > 1 && f->grids->member_count >= MIN_SHARED_PARTICLES && wanted < f->strip_particles)
         f->strip_particles = wanted;
     number_rows(f);
 }
@@ -267,7 +267,7 @@ mspring_result mspringi_strip_assignment_begin(mspringi_strip_assignment *assign
     return MSPRING_OK;
 }
 
-void mspringi_strip_assignment_attach(mspringi_strip_assignment *assignment, uint32_t first, uint32_t end) {
+void mspringi_strip_assignment_find_attached(mspringi_strip_assignment *assignment, uint32_t first, uint32_t end) {
     finder *f = assignment->finder;
     const mspringi_grids *grids = f->grids;
     for (uint32_t m = first; m < end; ++m) {
@@ -280,7 +280,7 @@ void mspringi_strip_assignment_attach(mspringi_strip_assignment *assignment, uin
 }
 
 // Allocate the search, if anything is attached to the lattices.
-mspring_result mspringi_strip_assignment_prepare(mspringi_strip_assignment *assignment, uint32_t workers,
+mspring_result mspringi_strip_assignment_reserve(mspringi_strip_assignment *assignment, uint32_t workers,
                                                  mspringi_memory *memory, mspringi_message *message) {
     finder *f = assignment->finder;
     const size_t particles = f->graph->builder->particle_count;

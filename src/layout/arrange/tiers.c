@@ -16,8 +16,8 @@
 #define MIN_TIERS 8
 
 /// Marks in place of a tier's number.
-#define IS_UNSEEN (MSPRING_NONE - 1)
-#define IS_SEEN (MSPRING_NONE - 2)
+#define NOT_VISITED (MSPRING_NONE - 1)
+#define VISITED (MSPRING_NONE - 2)
 
 static mspring_result reserve(mspringi_tiers *tiers, size_t particles, mspringi_memory *memory,
                               mspringi_message *message) {
@@ -29,16 +29,16 @@ static mspring_result reserve(mspringi_tiers *tiers, size_t particles, mspringi_
                              (unsigned)tiers->particle_count);
     memset(tiers->tier_of, 0xff, particles * sizeof *tiers->tier_of);
     for (uint32_t i = 0; i < tiers->particle_count; ++i)
-        tiers->tier_of[tiers->particles[i]] = IS_UNSEEN;
+        tiers->tier_of[tiers->particles[i]] = NOT_VISITED;
     return MSPRING_OK;
 }
 
 // Begin a search at one particle, behind the components so far.
-static void begin_search(mspringi_tiers *tiers, uint32_t particle, uint32_t as) {
-    tiers->queue[tiers->piece] = particle;
-    tiers->tier_of[particle] = as;
-    tiers->head = tiers->piece;
-    tiers->tail = tiers->piece + 1;
+static void begin_search(mspringi_tiers *tiers, uint32_t particle, uint32_t mark) {
+    tiers->queue[tiers->component_begin] = particle;
+    tiers->tier_of[particle] = mark;
+    tiers->head = tiers->component_begin;
+    tiers->tail = tiers->component_begin + 1;
 }
 
 // End a level, and its tier if that is large enough.
@@ -51,34 +51,34 @@ static void end_level(mspringi_tiers *tiers) {
 }
 
 // Queue the neighbours of the queue's first particle that still have the mark `before`.
-static void spread(mspringi_tiers *tiers, const mspringi_graph *graph, uint32_t before, uint32_t as) {
+static void queue_neighbours(mspringi_tiers *tiers, const mspringi_graph *graph, uint32_t before, uint32_t mark) {
     const uint32_t p = tiers->queue[tiers->head++];
     for (uint32_t i = graph->first[p]; i < graph->first[p + 1]; ++i) {
         const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], p);
         if (tiers->tier_of[other] != before)
             continue;
-        tiers->tier_of[other] = as;
+        tiers->tier_of[other] = mark;
         tiers->queue[tiers->tail++] = other;
     }
 }
 
 // Find a particle far from this one, and from there the tiers of their component.
-static void lay(mspringi_tiers *tiers, const mspringi_graph *graph, uint32_t particle) {
-    begin_search(tiers, particle, IS_SEEN);
+static void find_component_tiers(mspringi_tiers *tiers, const mspringi_graph *graph, uint32_t particle) {
+    begin_search(tiers, particle, VISITED);
     while (tiers->head < tiers->tail)
-        spread(tiers, graph, IS_UNSEEN, IS_SEEN);
+        queue_neighbours(tiers, graph, NOT_VISITED, VISITED);
     begin_search(tiers, tiers->queue[tiers->tail - 1], tiers->count);
     end_level(tiers);
     while (tiers->head < tiers->tail) {
-        spread(tiers, graph, IS_SEEN, tiers->count);
+        queue_neighbours(tiers, graph, VISITED, tiers->count);
         if (tiers->head == tiers->level_end)
             end_level(tiers);
     }
-    tiers->piece = tiers->tail;
+    tiers->component_begin = tiers->tail;
 }
 
 // Sort particles by tier, stably. The begin of each tier becomes its end.
-static void sort(mspringi_tiers *tiers) {
+static void sort_by_tier(mspringi_tiers *tiers) {
     for (uint32_t i = 0; i < tiers->particle_count; ++i)
         tiers->queue[tiers->end[tiers->tier_of[tiers->particles[i]]]++] = tiers->particles[i];
     memcpy(tiers->particles, tiers->queue, tiers->particle_count * sizeof *tiers->particles);
@@ -95,13 +95,13 @@ mspring_result mspringi_tiers_find(mspringi_tiers *tiers, const mspringi_irregul
     if (result != MSPRING_OK)
         return result;
     for (uint32_t i = 0; i < tiers->particle_count; ++i)
-        if (tiers->tier_of[tiers->particles[i]] == IS_UNSEEN)
-            lay(tiers, graph, tiers->particles[i]);
+        if (tiers->tier_of[tiers->particles[i]] == NOT_VISITED)
+            find_component_tiers(tiers, graph, tiers->particles[i]);
     tiers->count += tiers->end[tiers->count] < tiers->particle_count;
     if (tiers->count < MIN_TIERS)
         tiers->count = 0;
     else
-        sort(tiers);
+        sort_by_tier(tiers);
     mspringi_free(memory, tiers->queue);
     tiers->queue = NULL;
     return MSPRING_OK;

@@ -26,7 +26,7 @@ static bool list_blocks(mspringi_layout_builder *a, uint32_t p) {
         return true;
     for (uint32_t i = a->graph.first[p]; i < a->graph.first[p + 1]; ++i) {
         mspringi_lattice_spring spring;
-        if (!mspringi_grids_place(grids, &a->builder->springs[a->graph.springs[i]], &spring) ||
+        if (!mspringi_grids_locate_spring(grids, &a->builder->springs[a->graph.springs[i]], &spring) ||
             spring.column % MSPRINGI_WIDTH != MSPRINGI_WIDTH - 1)
             continue;
         const uint32_t column_block = spring.column / MSPRINGI_WIDTH;
@@ -51,14 +51,15 @@ static void drop_repeated(mspringi_layout_builder *a) {
 }
 
 uint32_t mspringi_layout_builder_irregular_slot(const mspringi_layout_builder *a, uint32_t i,
-                                                uint32_t place_before) {
+                                                uint32_t previous_slot) {
     const uint32_t *particles = a->irregular.particles, *assigned_strip = a->assignment.assigned_strip;
     if (i == 0)
         return 0;
     const uint32_t *tier_of = a->tiers.count > 0 ? a->tiers.tier_of : assigned_strip;
-    const bool goes_on = assigned_strip[particles[i]] == assigned_strip[particles[i - 1]] &&
-                         tier_of[particles[i]] == tier_of[particles[i - 1]] && i != a->irregular.first_in_bundles;
-    return goes_on ? place_before + 1 : (place_before / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
+    const bool is_consecutive = assigned_strip[particles[i]] == assigned_strip[particles[i - 1]] &&
+                                tier_of[particles[i]] == tier_of[particles[i - 1]] &&
+                                i != a->irregular.first_in_bundles;
+    return is_consecutive ? previous_slot + 1 : (previous_slot / MSPRINGI_WIDTH + 1) * MSPRINGI_WIDTH;
 }
 
 bool mspringi_layout_builder_is_loose(const mspringi_layout_builder *a, uint32_t particle) {
@@ -105,17 +106,17 @@ mspring_result mspringi_layout_builder_number_blocks(mspringi_layout_builder *a,
 }
 
 static void count_irregular_blocks(mspringi_layout_builder *a) {
-    a->irregular_spring_slot = 0;
+    a->irregular_slot = 0;
     for (uint32_t i = 0; i < a->irregular.count; ++i) {
-        a->irregular_spring_slot = mspringi_layout_builder_irregular_slot(a, i, a->irregular_spring_slot);
+        a->irregular_slot = mspringi_layout_builder_irregular_slot(a, i, a->irregular_slot);
         if (i + 1 == a->irregular.assigned_count)
-            a->assigned_blocks = a->irregular_spring_slot / MSPRINGI_WIDTH + 1;
+            a->assigned_blocks = a->irregular_slot / MSPRINGI_WIDTH + 1;
         if (i + 1 == a->irregular.first_in_bundles)
-            a->loner_blocks = a->irregular_spring_slot / MSPRINGI_WIDTH + 1;
+            a->unbundled_blocks = a->irregular_slot / MSPRINGI_WIDTH + 1;
     }
 }
 
-mspring_result mspringi_layout_builder_number_the_rest(mspringi_layout_builder *a) {
+mspring_result mspringi_layout_builder_number_other_blocks(mspringi_layout_builder *a) {
     mspringi_topology *t = a->topology;
     uint32_t loose = 0;
     for (uint32_t p = 0; p < a->builder->particle_count; ++p)
@@ -125,7 +126,7 @@ mspring_result mspringi_layout_builder_number_the_rest(mspringi_layout_builder *
     t->lattice_blocks = (uint32_t)a->block_count;
     t->chain_first = t->lattice_first + t->lattice_blocks;
     t->chain_blocks = (a->chains.count + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
-    t->irregular_blocks = a->irregular.count > 0 ? a->irregular_spring_slot / MSPRINGI_WIDTH + 1 : 0;
+    t->irregular_blocks = a->irregular.count > 0 ? a->irregular_slot / MSPRINGI_WIDTH + 1 : 0;
     t->loose_particles = loose;
     t->loose_blocks = (loose + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;
     t->spare_blocks = (mspringi_spare_particles(t) + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH;

@@ -9,10 +9,10 @@
 /// of degree 8.
 #define WINDOW 256
 #define TIERED_WINDOW 512
-#define WIDEST_WINDOW (TIERED_WINDOW / 2 * 3)
+#define MAX_WINDOW (TIERED_WINDOW / 2 * 3)
 
 /// Larger degrees sort as this one.
-#define MOST_SPRINGS 0xffffu
+#define MAX_DEGREE 0xffffu
 
 /* --------------------------------------------------------------------------------------------------- ordering */
 
@@ -34,13 +34,13 @@ static uint32_t quantise(double value, double low, double high) {
 }
 
 static void order_window_by_degree(uint32_t *particles, uint32_t count, const mspringi_graph *graph) {
-    uint64_t keys[WIDEST_WINDOW], scratch[WIDEST_WINDOW];
-    uint32_t before[WIDEST_WINDOW];
+    uint64_t keys[MAX_WINDOW], scratch[MAX_WINDOW];
+    uint32_t before[MAX_WINDOW];
     for (uint32_t i = 0; i < count; ++i) {
         before[i] = particles[i];
         const uint32_t degree = degree_of(graph, particles[i]);
-        const uint32_t lacks = degree < MOST_SPRINGS ? MOST_SPRINGS - degree : 0;
-        keys[i] = (uint64_t)lacks << 32 | i;
+        const uint32_t missing = degree < MAX_DEGREE ? MAX_DEGREE - degree : 0;
+        keys[i] = (uint64_t)missing << 32 | i;
     }
     mspringi_sort_keys(keys, scratch, count);
     for (uint32_t i = 0; i < count; ++i)
@@ -129,11 +129,11 @@ void mspringi_irregular_list_sort(mspringi_irregular_list *list, const mspringi_
 
 void mspringi_irregular_list_order_windows(mspringi_irregular_list *list, const mspringi_tiers *tiers,
                                            const mspringi_graph *graph, mspringi_memory *memory) {
-    const uint32_t free_count = list->count - list->assigned_count;
-    uint32_t *free_ones = list->particles + list->assigned_count;
-    for (uint32_t at = 0, count; at < free_count; at += count) {
-        count = window_from(free_ones, at, free_count, tiers);
-        order_window_by_degree(free_ones + at, count, graph);
+    const uint32_t unassigned_count = list->count - list->assigned_count;
+    uint32_t *unassigned = list->particles + list->assigned_count;
+    for (uint32_t at = 0, count; at < unassigned_count; at += count) {
+        count = window_from(unassigned, at, unassigned_count, tiers);
+        order_window_by_degree(unassigned + at, count, graph);
     }
     mspringi_free(memory, list->keys);
     mspringi_free(memory, list->scratch);

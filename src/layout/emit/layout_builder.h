@@ -53,11 +53,11 @@ struct mspringi_layout_builder {
     bool is_checked; ///< no two springs are parallel
     bool has_bundles;
     mspringi_cursor cursor;
-    uint32_t loose;                 ///< next free slot of a loose particle
-    uint32_t irregular_spring_slot; ///< slot of the last irregular particle so far, from the first one
-    uint32_t assigned_blocks;       ///< blocks of irregular particles with an assigned strip
-    uint32_t loner_blocks;          ///< blocks of irregular particles outside bundles
-    uint8_t *busy;                  ///< [blocks] a bit for each quarter that must be swept
+    uint32_t loose;            ///< next free slot of a loose particle
+    uint32_t irregular_slot;   ///< slot of the last irregular particle so far, from the first one
+    uint32_t assigned_blocks;  ///< blocks of irregular particles with an assigned strip
+    uint32_t unbundled_blocks; ///< blocks of irregular particles outside bundles
+    uint8_t *busy;             ///< [blocks] a bit for each quarter that must be swept
     mspringi_sell_builder sell;
 };
 
@@ -67,12 +67,12 @@ mspring_result mspringi_layout_builder_fail(mspringi_layout_builder *a);
 /* Blocks, in this order; a range is of members of grids, in the order of grids. */
 mspring_result mspringi_layout_builder_begin_blocks(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_number_blocks(mspringi_layout_builder *a, uint32_t first, uint32_t end);
-mspring_result mspringi_layout_builder_number_the_rest(mspringi_layout_builder *a);
+mspring_result mspringi_layout_builder_number_other_blocks(mspringi_layout_builder *a);
 
 /// Slot of irregular particle i, from the slot of the one before. A new assigned strip, tier or bundle starts a
 /// block, and so do the particles without an assigned strip.
 uint32_t mspringi_layout_builder_irregular_slot(const mspringi_layout_builder *a, uint32_t i,
-                                                uint32_t place_before);
+                                                uint32_t previous_slot);
 /// True if a particle lies in the loose row. An absent one has slot 0, always empty, or a spare slot.
 bool mspringi_layout_builder_is_loose(const mspringi_layout_builder *a, uint32_t particle);
 /// Number of a grid's block among all lattice blocks; MSPRING_NONE if it is not stored.
@@ -85,7 +85,7 @@ void mspringi_layout_builder_assign_slots(mspringi_layout_builder *a, uint32_t f
 void mspringi_layout_builder_assign_other_slots(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_begin_spring_slots(mspringi_layout_builder *a);
 void mspringi_layout_builder_assign_spring_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end);
-mspring_result mspringi_layout_builder_note_ends(mspringi_layout_builder *a);
+mspring_result mspringi_layout_builder_save_ends(mspringi_layout_builder *a);
 
 /* Rows and strips, in this order. */
 mspring_result mspringi_layout_builder_begin_rows(mspringi_layout_builder *a);
@@ -93,7 +93,7 @@ mspring_result mspringi_layout_builder_append_lattice_rows(mspringi_layout_build
 mspring_result mspringi_layout_builder_append_other_rows(mspringi_layout_builder *a);
 void mspringi_layout_builder_mark_busy(mspringi_layout_builder *a);
 void mspringi_layout_builder_trim_spans(mspringi_layout_builder *a);
-mspring_result mspringi_layout_builder_tighten_spans(mspringi_layout_builder *a);
+mspring_result mspringi_layout_builder_list_trimmed_spans(mspringi_layout_builder *a);
 mspring_result mspringi_layout_builder_make_strips(mspringi_layout_builder *a);
 
 /// List the strip of each block in a new array of [block_count]; NULL if memory is out.

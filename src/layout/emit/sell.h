@@ -59,18 +59,18 @@ typedef struct mspringi_sell {
 
 /// Builder of the irregular part, with its scratch.
 typedef struct mspringi_sell_builder {
-    mspringi_sell *irregular;
+    mspringi_sell *sell;
     const uint32_t *a, *b; ///< [count] slots of the springs' ends
     uint32_t count;
     uint32_t first_slot, own_count;         ///< slots of irregular rows
     uint32_t block_count;                   ///< blocks of all slots
-    uint32_t bundle_groups, bundle_springs; ///< last own slices, in bundles; springs of one component of each
+    uint32_t bundle_slices, bundle_springs; ///< last own slices, in bundles; springs of one component of each
     uint32_t *strip_of_block;               ///< [block_count] strip of a block; freed with the builder
     uint32_t *degree, *node_of_slot, *used; ///< by slot, by slot and by node
     uint32_t assigned_count;                ///< first own nodes, with an assigned strip
     bool has_parallel;                      ///< some springs are parallel: no chain is interleaved
-    uint8_t *upright;                       ///< [own slices] springs that can be interleaved
-    uint32_t upright_count;                 ///< springs that are
+    uint8_t *interleaved;                   ///< [own slices] springs that can be interleaved
+    uint32_t interleaved_count;             ///< springs that are
 } mspringi_sell_builder;
 
 /// Build the irregular part, in this order: list the attached nodes, size the slices, fill them with the springs

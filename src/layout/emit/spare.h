@@ -38,17 +38,18 @@ static inline bool mspringi_slot_is_spare(const mspringi_topology *t, uint32_t s
 /// an error the topology must still be destroyed.
 mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, mspringi_memory *memory,
                                       mspringi_message *message);
-void mspringi_spare_enter(mspringi_topology *t);
-mspring_result mspringi_spare_keep(mspringi_topology *t, mspringi_memory *memory, mspringi_message *message);
+void mspringi_spare_set_entries(mspringi_topology *t);
+mspring_result mspringi_spare_assign_slots(mspringi_topology *t, mspringi_memory *memory,
+                                           mspringi_message *message);
 
 /// Put a particle into its reserved slot, or take it out of its slot.
-void mspringi_spare_put_particle(mspringi_topology *t, mspring_id particle);
-void mspringi_spare_take_particle(mspringi_topology *t, mspring_id particle);
+void mspringi_spare_add_particle(mspringi_topology *t, mspring_id particle);
+void mspringi_spare_remove_particle(mspringi_topology *t, mspring_id particle);
 
 /// Put a spring into its reserved slot.
-void mspringi_spare_put_spring(mspringi_topology *t, mspring_id spring, mspring_id a, mspring_id b);
+void mspringi_spare_add_spring(mspringi_topology *t, mspring_id spring, mspring_id a, mspring_id b);
 
 /// Set the ids in use, and end the loose row behind the last used slot.
-void mspringi_spare_count(mspringi_topology *t, uint32_t particle_count, uint32_t spring_count);
+void mspringi_spare_set_counts(mspringi_topology *t, uint32_t particle_count, uint32_t spring_count);
 
 #endif

@@ -1,27 +1,27 @@
 /// Ropes and other chains: paths of particles with at most two springs each.
 #include "layout/analysis.h"
 
-#define SHORTEST_ATTACHED_CHAIN 3
+#define MIN_ATTACHED_CHAIN 3
 
 /// In networks with bundles, shorter chains are cheaper as a part of the irregular part that they are connected to:
 /// its pull at both their ends costs as much as this many springs computed twice. (Our ship with one spring of ten
 /// left, 3 in a chain on average: 18.7 % of the whole ship's step instead of 19.2.)
-#define SHORT_IN_WRECK 16
+#define MIN_CHAIN_WITH_BUNDLES 16
 
-static uint32_t degree(const mspringi_graph *graph, uint32_t particle) {
+static uint32_t degree_of(const mspringi_graph *graph, uint32_t particle) {
     return graph->first[particle + 1] - graph->first[particle];
 }
 
-static bool may_be_in_chain(const mspringi_graph *graph, uint32_t particle) {
-    return degree(graph, particle) == 1 || degree(graph, particle) == 2;
+static bool can_be_in_chain(const mspringi_graph *graph, uint32_t particle) {
+    return degree_of(graph, particle) == 1 || degree_of(graph, particle) == 2;
 }
 
-// Next spring of a particle along its chain, after came_by; MSPRING_NONE at the end.
-static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint32_t came_by) {
+// Next spring of a particle along its chain, after previous_spring; MSPRING_NONE at the end.
+static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint32_t previous_spring) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
         const uint32_t spring = graph->springs[i];
-        if (spring != came_by &&
-            may_be_in_chain(graph, mspringi_other_end(&graph->builder->springs[spring], particle)))
+        if (spring != previous_spring &&
+            can_be_in_chain(graph, mspringi_other_end(&graph->builder->springs[spring], particle)))
             return spring;
     }
     return MSPRING_NONE;
@@ -29,13 +29,13 @@ static uint32_t next_spring(const mspringi_graph *graph, uint32_t particle, uint
 
 // Walk from any particle of a chain to one of its ends. In a ring, stop at the start.
 static uint32_t find_end(const mspringi_graph *graph, uint32_t start) {
-    uint32_t at = start, came_by = MSPRING_NONE;
+    uint32_t at = start, previous_spring = MSPRING_NONE;
     for (;;) {
-        const uint32_t spring = next_spring(graph, at, came_by);
+        const uint32_t spring = next_spring(graph, at, previous_spring);
         if (spring == MSPRING_NONE)
             return at;
         at = mspringi_other_end(&graph->builder->springs[spring], at);
-        came_by = spring;
+        previous_spring = spring;
         if (at == start)
             return at;
     }
@@ -44,7 +44,7 @@ static uint32_t find_end(const mspringi_graph *graph, uint32_t start) {
 // True if the particle has a spring to one that can be in no chain.
 static bool is_attached(const mspringi_graph *graph, uint32_t particle) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i)
-        if (!may_be_in_chain(graph, mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle)))
+        if (!can_be_in_chain(graph, mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle)))
             return true;
     return false;
 }
@@ -53,23 +53,23 @@ static bool is_attached(const mspringi_graph *graph, uint32_t particle) {
 static void append_chain(mspringi_chains *chains, const mspringi_graph *graph, uint32_t end, uint8_t *kinds) {
     const uint32_t begin = chains->count;
     uint8_t *visited = chains->visited;
-    bool attached = false;
-    uint32_t at = end, came_by = MSPRING_NONE;
+    bool is_anchored = false;
+    uint32_t at = end, previous_spring = MSPRING_NONE;
     for (;;) {
         visited[at] = 1;
-        attached = attached || is_attached(graph, at);
+        is_anchored = is_anchored || is_attached(graph, at);
         chains->particles[chains->count] = at;
-        const uint32_t spring = next_spring(graph, at, came_by);
+        const uint32_t spring = next_spring(graph, at, previous_spring);
         const bool leads_on =
             spring != MSPRING_NONE && !visited[mspringi_other_end(&graph->builder->springs[spring], at)];
         chains->springs[chains->count++] = leads_on ? spring : MSPRING_NONE;
         if (!leads_on)
             break;
         at = mspringi_other_end(&graph->builder->springs[spring], at);
-        came_by = spring;
+        previous_spring = spring;
     }
     const uint32_t length = chains->count - begin;
-    if (attached && length < SHORTEST_ATTACHED_CHAIN) {
+    if (is_anchored && length < MIN_ATTACHED_CHAIN) {
         chains->count = begin;
         return;
     }
@@ -82,7 +82,7 @@ static void append_chain(mspringi_chains *chains, const mspringi_graph *graph, u
 static uint32_t count_candidates(const mspringi_graph *graph) {
     uint32_t count = 0;
     for (uint32_t p = 0; p < graph->builder->particle_count; ++p)
-        count += may_be_in_chain(graph, p);
+        count += can_be_in_chain(graph, p);
     return count;
 }
 
@@ -95,7 +95,7 @@ mspring_result mspringi_chains_find(mspringi_chains *chains, const mspringi_grap
     if (!chains->visited || !chains->particles || !chains->springs)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for ropes of %u particles", candidates);
     for (uint32_t p = 0; p < particles; ++p)
-        if (may_be_in_chain(graph, p) && kinds[p] == MSPRINGI_ROW_LOOSE && !chains->visited[p])
+        if (can_be_in_chain(graph, p) && kinds[p] == MSPRINGI_ROW_LOOSE && !chains->visited[p])
             append_chain(chains, graph, find_end(graph, p), kinds);
     mspringi_free(memory, chains->visited);
     chains->visited = NULL;
@@ -103,8 +103,8 @@ mspring_result mspringi_chains_find(mspringi_chains *chains, const mspringi_grap
 }
 
 // True if the particle has a spring to an irregular one without an assigned strip.
-static bool hangs_on_irregular_part(const mspringi_graph *graph, const mspringi_strip_assignment *assignment,
-                                    const uint8_t *kinds, uint32_t particle) {
+static bool is_on_irregular_part(const mspringi_graph *graph, const mspringi_strip_assignment *assignment,
+                                 const uint8_t *kinds, uint32_t particle) {
     for (uint32_t i = graph->first[particle]; i < graph->first[particle + 1]; ++i) {
         const uint32_t other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], particle);
         if (kinds[other] == MSPRINGI_ROW_LOOSE && assignment->assigned_strip[other] == MSPRING_NONE)
@@ -135,18 +135,19 @@ static void keep_chain(mspringi_chains *chains, uint32_t begin, uint32_t end) {
 void mspringi_chains_drop(mspringi_chains *chains, const mspringi_graph *graph,
                           const mspringi_strip_assignment *assignment, bool has_bundles, uint8_t *kinds,
                           mspringi_irregular_list *list) {
-    const uint32_t homeless = list->count - list->assigned_count;
-    const bool drops_webbed = homeless >= MSPRINGI_MIN_TIERED && chains->count <= homeless;
+    const uint32_t unassigned_count = list->count - list->assigned_count;
+    const bool drops_tiered = unassigned_count >= MSPRINGI_MIN_TIERED && chains->count <= unassigned_count;
     const uint32_t *particles = chains->particles;
     chains->chain_count = chains->spring_count = 0;
     for (uint32_t begin = 0, last; begin < chains->count; begin = last + 1) {
         for (last = begin; chains->springs[last] != MSPRING_NONE;)
             ++last;
         const bool is_assigned = assignment->assigned_strip[particles[begin]] != MSPRING_NONE;
-        const bool may_drop = drops_webbed || (has_bundles && last - begin < SHORT_IN_WRECK);
-        const bool is_webbed = may_drop && (hangs_on_irregular_part(graph, assignment, kinds, particles[begin]) ||
-                                            hangs_on_irregular_part(graph, assignment, kinds, particles[last]));
-        if (is_assigned || is_webbed)
+        const bool can_drop = drops_tiered || (has_bundles && last - begin < MIN_CHAIN_WITH_BUNDLES);
+        const bool is_on_irregular =
+            can_drop && (is_on_irregular_part(graph, assignment, kinds, particles[begin]) ||
+                         is_on_irregular_part(graph, assignment, kinds, particles[last]));
+        if (is_assigned || is_on_irregular)
             drop_chain(chains, assignment, kinds, list, begin, last + 1);
         else
             keep_chain(chains, begin, last + 1);

@@ -13,12 +13,12 @@
 /// Shapes that are partly lattice or chain: most lattice and chain springs for each irregular one in a bundle, and
 /// fewest copies. A host may compare the robots of a batch one by one, so one copy more or less must not change
 /// bits.
-#define MOST_REGULAR 20
-#define FEWEST_MIXED 64
+#define MAX_REGULAR_PER_IRREGULAR 20
+#define MIN_MIXED_COMPONENTS 64
 
 /// State of a particle: not visited, in no such component, or 1 + its number in one.
-#define UNKNOWN 0
-#define IN_OTHER UINT16_MAX
+#define NOT_VISITED 0
+#define NOT_ELIGIBLE UINT16_MAX
 
 static mspring_result out_of_memory(const mspringi_equal_components *equal, mspringi_message *message) {
     return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to compare %u components",
@@ -49,16 +49,16 @@ static uint32_t explore(const mspringi_equal_components *equal, const mspringi_g
         is_small = ends <= MSPRINGI_MAX_SPRING_ENDS;
         for (uint32_t i = 0; is_small && i < mspringi_degree_of(graph, queue[at]); ++i) {
             const uint32_t other = neighbour(graph, queue[at], i);
-            is_small = equal->number[other] != IN_OTHER &&
-                       (equal->number[other] != UNKNOWN || count < MSPRINGI_MAX_COMPONENT);
-            if (!is_small || equal->number[other] != UNKNOWN)
+            is_small = equal->number[other] != NOT_ELIGIBLE &&
+                       (equal->number[other] != NOT_VISITED || count < MSPRINGI_MAX_COMPONENT);
+            if (!is_small || equal->number[other] != NOT_VISITED)
                 continue;
             queue[count++] = other;
             equal->number[other] = (uint16_t)count;
         }
     }
     for (uint32_t i = 0; !is_small && i < count; ++i)
-        equal->number[queue[i]] = IN_OTHER;
+        equal->number[queue[i]] = NOT_ELIGIBLE;
     return is_small ? count : 0;
 }
 
@@ -66,7 +66,7 @@ void mspringi_equal_components_explore(mspringi_equal_components *equal, const m
                                        const uint8_t *kinds, uint32_t first, uint32_t end) {
     uint32_t queue[MSPRINGI_MAX_COMPONENT];
     for (uint32_t p = first; p < end; ++p) {
-        if (equal->number[p] != UNKNOWN || kinds[p] != MSPRINGI_ROW_LOOSE || mspringi_degree_of(graph, p) == 0)
+        if (equal->number[p] != NOT_VISITED || kinds[p] != MSPRINGI_ROW_LOOSE || mspringi_degree_of(graph, p) == 0)
             continue;
         const uint32_t count = explore(equal, graph, p, queue);
         equal->count += count > 0;
@@ -181,7 +181,7 @@ static mspring_result lay_out(mspringi_layout_builder *a, struct mspring_builder
     return result;
 }
 
-static mspring_result look_at_shape(mspringi_layout_builder *a, uint32_t component, uint32_t *irregular) {
+static mspring_result count_irregular_springs(mspringi_layout_builder *a, uint32_t component, uint32_t *irregular) {
     struct mspring_builder alone = {.particle_count = size_of(&a->equal_components, component)};
     const uint32_t springs = springs_of(&a->equal_components, &a->graph, component);
     alone.particles = mspringi_alloc(a->memory, alone.particle_count, sizeof *alone.particles);
@@ -200,13 +200,14 @@ static mspring_result look_at_shape(mspringi_layout_builder *a, uint32_t compone
 
 /* ------------------------------------------------------------------------------------------------------ bundles */
 
-static bool stand_in_bundles(uint32_t equal, uint32_t springs, uint32_t irregular) {
+static bool is_worth_bundling(uint32_t equal, uint32_t springs, uint32_t irregular) {
     const uint32_t regular = springs - irregular;
-    return irregular > 0 && (regular == 0 || (equal >= FEWEST_MIXED && regular <= MOST_REGULAR * irregular));
+    return irregular > 0 &&
+           (regular == 0 || (equal >= MIN_MIXED_COMPONENTS && regular <= MAX_REGULAR_PER_IRREGULAR * irregular));
 }
 
 // Choose whole bundles from components of equal hash that have the shape of the first one.
-static mspring_result choose(mspringi_layout_builder *a, uint32_t begin, uint32_t end) {
+static mspring_result choose_bundles(mspringi_layout_builder *a, uint32_t begin, uint32_t end) {
     mspringi_equal_components *equal = &a->equal_components;
     const uint32_t model = component_of(equal->keys[begin]);
     uint32_t *chosen = equal->chosen + equal->chosen_count, count = 0, irregular = 0;
@@ -214,10 +215,10 @@ static mspring_result choose(mspringi_layout_builder *a, uint32_t begin, uint32_
         if (are_equal(equal, &a->graph, model, component_of(equal->keys[i])))
             chosen[count++] = component_of(equal->keys[i]);
     const uint32_t bundles = count / MSPRINGI_WIDTH, springs = springs_of(equal, &a->graph, model);
-    const mspring_result result = bundles > 0 ? look_at_shape(a, model, &irregular) : MSPRING_OK;
-    if (stand_in_bundles(count, springs, irregular)) {
+    const mspring_result result = bundles > 0 ? count_irregular_springs(a, model, &irregular) : MSPRING_OK;
+    if (is_worth_bundling(count, springs, irregular)) {
         for (uint32_t i = bundles * MSPRINGI_WIDTH; i < count; ++i)
-            equal->chosen[equal->count - ++equal->left_count] = chosen[i];
+            equal->chosen[equal->count - ++equal->rest_count] = chosen[i];
         equal->chosen_count += bundles * MSPRINGI_WIDTH;
         equal->slice_count += bundles * size_of(equal, model);
         a->bundles.spring_count += bundles * springs;
@@ -238,18 +239,18 @@ mspring_result mspringi_equal_components_choose(mspringi_layout_builder *a) {
     mspringi_equal_components *equal = &a->equal_components;
     if (!equal->in_order)
         return MSPRING_OK;
-    if (equal->looked_at == 0)
+    if (equal->next_key == 0)
         mspringi_sort_keys(equal->keys, equal->scratch, equal->count);
-    uint32_t begin = equal->looked_at, end = end_of_run(equal, begin);
+    uint32_t begin = equal->next_key, end = end_of_run(equal, begin);
     for (; end - begin < MSPRINGI_WIDTH && end < equal->count; end = end_of_run(equal, begin))
         begin = end;
-    equal->looked_at = end;
+    equal->next_key = end;
     a->cursor.again = end < equal->count;
-    return choose(a, begin, end);
+    return choose_bundles(a, begin, end);
 }
 
 // Append a bundle of chosen components.
-static void stand(mspringi_layout_builder *a, const uint32_t *chosen) {
+static void append_bundle(mspringi_layout_builder *a, const uint32_t *chosen) {
     mspringi_bundles *bundles = &a->bundles;
     const uint32_t size = size_of(&a->equal_components, chosen[0]);
     for (uint32_t node = 0; node < size; ++node, ++bundles->slice_count) {
@@ -263,9 +264,9 @@ static void stand(mspringi_layout_builder *a, const uint32_t *chosen) {
 }
 
 // Set the kind of the components that share a chosen shape but fill no bundle.
-static void mark_left(mspringi_layout_builder *a, mspringi_row_kind kind) {
+static void mark_rest(mspringi_layout_builder *a, mspringi_row_kind kind) {
     const mspringi_equal_components *equal = &a->equal_components;
-    for (uint32_t i = equal->count - equal->left_count; i < equal->count; ++i)
+    for (uint32_t i = equal->count - equal->rest_count; i < equal->count; ++i)
         for (uint32_t at = equal->first[equal->chosen[i]]; at < equal->first[equal->chosen[i] + 1]; ++at)
             a->kinds[equal->in_order[at]] = (uint8_t)kind;
 }
@@ -280,13 +281,13 @@ mspring_result mspringi_equal_components_fill(mspringi_layout_builder *a) {
             return out_of_memory(&a->equal_components, a->message);
     }
     for (uint32_t i = 0; i < a->equal_components.chosen_count; i += MSPRINGI_WIDTH)
-        stand(a, a->equal_components.chosen + i);
-    mark_left(a, MSPRINGI_ROW_IRREGULAR);
+        append_bundle(a, a->equal_components.chosen + i);
+    mark_rest(a, MSPRINGI_ROW_IRREGULAR);
     return MSPRING_OK;
 }
 
 mspring_result mspringi_equal_components_release(mspringi_layout_builder *a) {
-    mark_left(a, MSPRINGI_ROW_LOOSE);
+    mark_rest(a, MSPRINGI_ROW_LOOSE);
     mspringi_equal_components_destroy(&a->equal_components, a->memory);
     return MSPRING_OK;
 }

@@ -37,8 +37,8 @@ static bool is_one_way(const mspringi_spring *spring) {
 }
 
 // Mark the later of two parallel springs.
-static mspring_result note_second(mspringi_graph *graph, uint32_t spring, mspringi_memory *memory,
-                                  mspringi_message *message) {
+static mspring_result mark_parallel(mspringi_graph *graph, uint32_t spring, mspringi_memory *memory,
+                                    mspringi_message *message) {
     const size_t springs = graph->builder->spring_count;
     if (!graph->is_parallel)
         graph->is_parallel = mspringi_alloc(memory, springs, sizeof *graph->is_parallel);
@@ -51,7 +51,7 @@ static mspring_result note_second(mspringi_graph *graph, uint32_t spring, msprin
 
 // Stamp each particle's neighbours of higher id with the spring to them. An existing stamp names a parallel spring,
 // preferably one that acts in both directions.
-static mspring_result check(mspringi_graph *graph, mspringi_memory *memory, mspringi_message *message) {
+static mspring_result find_parallel(mspringi_graph *graph, mspringi_memory *memory, mspringi_message *message) {
     const mspring_builder *builder = graph->builder;
     uint32_t *stamp_of = graph->stamp_of, *spring_to = graph->spring_to;
     for (uint32_t p = 0; p < builder->particle_count; ++p) {
@@ -60,16 +60,17 @@ static mspring_result check(mspringi_graph *graph, mspringi_memory *memory, mspr
             const mspring_id other = mspringi_other_end(&builder->springs[spring], p);
             if (other < p)
                 continue;
-            const bool is_second = stamp_of[other] == p + 1, may_be_second = is_one_way(&builder->springs[spring]);
-            if (is_second && !may_be_second && !is_one_way(&builder->springs[spring_to[other]]))
+            const bool is_repeated = stamp_of[other] == p + 1,
+                       can_be_parallel = is_one_way(&builder->springs[spring]);
+            if (is_repeated && !can_be_parallel && !is_one_way(&builder->springs[spring_to[other]]))
                 return mspringi_fail(message, MSPRING_ERROR_DUPLICATE,
                                      "springs %u and %u both join particles %u and %u", (unsigned)spring_to[other],
                                      (unsigned)spring, (unsigned)p, (unsigned)other);
-            const mspring_result result = is_second ? note_second(graph, spring, memory, message) : MSPRING_OK;
+            const mspring_result result = is_repeated ? mark_parallel(graph, spring, memory, message) : MSPRING_OK;
             if (result != MSPRING_OK)
                 return result;
             stamp_of[other] = p + 1;
-            if (!is_second || !may_be_second)
+            if (!is_repeated || !can_be_parallel)
                 spring_to[other] = spring;
         }
     }
@@ -77,7 +78,7 @@ static mspring_result check(mspringi_graph *graph, mspringi_memory *memory, mspr
 }
 
 // Drop parallel springs: grids and chains have one spring between two particles.
-static void drop_seconds(mspringi_graph *graph) {
+static void drop_parallel(mspringi_graph *graph) {
     uint32_t kept = 0, begin = 0;
     for (size_t p = 0; p < graph->builder->particle_count; ++p) {
         const uint32_t end = graph->first[p + 1];
@@ -89,10 +90,10 @@ static void drop_seconds(mspringi_graph *graph) {
     }
 }
 
-bool mspringi_graph_place(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
-                          mspringi_lattice_spring *found) {
+bool mspringi_graph_locate_spring(const mspringi_graph *graph, const mspringi_grids *grids, uint32_t spring,
+                                  mspringi_lattice_spring *found) {
     return !(graph->is_parallel && graph->is_parallel[spring]) &&
-           mspringi_grids_place(grids, &graph->builder->springs[spring], found);
+           mspringi_grids_locate_spring(grids, &graph->builder->springs[spring], found);
 }
 
 mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builder *builder, bool is_checked,
@@ -104,9 +105,9 @@ mspring_result mspringi_graph_create(mspringi_graph *graph, const mspring_builde
     sort_springs(graph);
     if (is_checked)
         return MSPRING_OK;
-    result = check(graph, memory, message);
+    result = find_parallel(graph, memory, message);
     if (graph->is_parallel)
-        drop_seconds(graph);
+        drop_parallel(graph);
     mspringi_free(memory, graph->stamp_of);
     mspringi_free(memory, graph->spring_to);
     graph->stamp_of = graph->spring_to = NULL;

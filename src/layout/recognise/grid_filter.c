@@ -10,7 +10,7 @@
 #include "layout/analysis.h"
 
 /// Fewest members of a component's grids worth a check.
-#define FEWEST_MEMBERS 1000
+#define MIN_MEMBERS 1000
 
 /// Drop a component's grids if there is an irregular spring for this many within them. (A spring of sheets with 8
 /// to 11 % irregular springs takes 0.58 to 0.86 times as long as in an irregular part; with 31 to 46 %, 1.3 to 1.65
@@ -47,7 +47,7 @@ static spring_kind kind_of(const mspringi_graph *graph, const mspringi_grids *gr
     if ((of_a == MSPRING_NONE && of_b == MSPRING_NONE) || kinds[spring->a] == MSPRINGI_ROW_CHAIN ||
         kinds[spring->b] == MSPRINGI_ROW_CHAIN)
         return ELSEWHERE;
-    if (mspringi_graph_place(graph, grids, s, &found))
+    if (mspringi_graph_locate_spring(graph, grids, s, &found))
         return INNER;
     return of_a != MSPRING_NONE && of_b != MSPRING_NONE && of_a != of_b ? ACROSS : OUTER;
 }
@@ -68,37 +68,37 @@ mspring_result mspringi_grid_filter_reserve(mspringi_grid_filter *filter, const 
                                             mspringi_message *message) {
     const size_t particles = graph->builder->particle_count;
     const bool has_tied =
-        grids->member_count >= FEWEST_MEMBERS && (uint64_t)filter->outer * LARGE_INNER_PER_ACROSS > filter->inner;
+        grids->member_count >= MIN_MEMBERS && (uint64_t)filter->outer * LARGE_INNER_PER_ACROSS > filter->inner;
     const bool has_irregular = particles - grids->member_count >= MSPRINGI_MIN_TIERED;
     if (grids->count == 0 || (!has_tied && !has_irregular))
         return MSPRING_OK;
-    filter->piece = mspringi_alloc(memory, particles, sizeof *filter->piece);
+    filter->component = mspringi_alloc(memory, particles, sizeof *filter->component);
     filter->sums = mspringi_alloc(memory, particles, sizeof *filter->sums);
-    if (!filter->piece || !filter->sums)
+    if (!filter->component || !filter->sums)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory to lay out %zu particles", particles);
     for (uint32_t p = 0; p < particles; ++p)
-        filter->piece[p] = p;
+        filter->component[p] = p;
     return MSPRING_OK;
 }
 
 void mspringi_grid_filter_join(mspringi_grid_filter *filter, const mspringi_graph *graph, uint32_t first,
                                uint32_t end) {
     const mspring_builder *builder = graph->builder;
-    if (!filter->piece)
+    if (!filter->component)
         return;
     for (uint32_t s = first; s < end; ++s)
-        mspringi_union_find_join(filter->piece, builder->springs[s].a, builder->springs[s].b);
+        mspringi_union_find_join(filter->component, builder->springs[s].a, builder->springs[s].b);
 }
 
 static struct mspringi_grid_cost *sums_of(const mspringi_grid_filter *filter, uint32_t particle) {
-    return &filter->sums[mspringi_union_find_root(filter->piece, particle)];
+    return &filter->sums[mspringi_union_find_root(filter->component, particle)];
 }
 
 void mspringi_grid_filter_count_springs(mspringi_grid_filter *filter, const mspringi_graph *graph,
                                         const mspringi_grids *grids, const uint8_t *kinds, uint32_t first,
                                         uint32_t end) {
     const mspring_builder *builder = graph->builder;
-    if (!filter->piece)
+    if (!filter->component)
         return;
     for (uint32_t s = first; s < end; ++s) {
         const spring_kind kind = kind_of(graph, grids, kinds, s);
@@ -119,7 +119,7 @@ static void count_particles(mspringi_grid_filter *filter, const mspringi_graph *
 }
 
 static bool is_tied_together(const struct mspringi_grid_cost *sums) {
-    if (sums->members < FEWEST_MEMBERS)
+    if (sums->members < MIN_MEMBERS)
         return false;
     if (sums->members < MSPRINGI_MIN_TIERED || sums->across == 0)
         return (uint64_t)sums->outer * INNER_PER_OUTER > sums->inner;
@@ -127,7 +127,7 @@ static bool is_tied_together(const struct mspringi_grid_cost *sums) {
            (uint64_t)sums->across * LARGE_INNER_PER_ACROSS > sums->inner;
 }
 
-static bool is_small_irregular_part(const struct mspringi_grid_cost *sums) {
+static bool is_outweighed(const struct mspringi_grid_cost *sums) {
     return sums->irregular >= MSPRINGI_MIN_TIERED &&
            (uint64_t)sums->members * IRREGULAR_PER_MEMBER < sums->irregular;
 }
@@ -135,23 +135,23 @@ static bool is_small_irregular_part(const struct mspringi_grid_cost *sums) {
 // Drop a grid, so that its particles become loose, or keep it with a new number.
 static void move_grid(mspringi_grid_filter *filter, mspringi_grids *grids, uint8_t *kinds, uint32_t end) {
     const struct mspringi_grid_cost *sums = sums_of(filter, grids->members[filter->next_member]);
-    const bool gives_up = is_tied_together(sums) || is_small_irregular_part(sums);
+    const bool is_dropped = is_tied_together(sums) || is_outweighed(sums);
     for (uint32_t m = filter->next_member; m < end; ++m) {
         const uint32_t p = grids->members[m];
-        grids->grid_of[p] = gives_up ? MSPRING_NONE : filter->kept_grids;
-        if (gives_up)
+        grids->grid_of[p] = is_dropped ? MSPRING_NONE : filter->kept_grids;
+        if (is_dropped)
             kinds[p] = MSPRINGI_ROW_LOOSE;
         else
             grids->members[filter->kept_members++] = p;
     }
     filter->next_member = end;
-    if (!gives_up)
+    if (!is_dropped)
         grids->first_member[++filter->kept_grids] = filter->kept_members;
 }
 
 void mspringi_grid_filter_apply(mspringi_grid_filter *filter, const mspringi_graph *graph, mspringi_grids *grids,
                                 uint8_t *kinds, mspringi_memory *memory) {
-    if (!filter->piece)
+    if (!filter->component)
         return;
     count_particles(filter, graph, grids, kinds);
     for (uint32_t grid = 0; grid < grids->count; ++grid)
@@ -162,8 +162,8 @@ void mspringi_grid_filter_apply(mspringi_grid_filter *filter, const mspringi_gra
 }
 
 void mspringi_grid_filter_destroy(mspringi_grid_filter *filter, mspringi_memory *memory) {
-    mspringi_free(memory, filter->piece);
+    mspringi_free(memory, filter->component);
     mspringi_free(memory, filter->sums);
-    filter->piece = NULL;
+    filter->component = NULL;
     filter->sums = NULL;
 }

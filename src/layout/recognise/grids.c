@@ -23,13 +23,13 @@
 /// cells. (Sheets of 200 x 200 triangles, displaced by up to a fraction of a cell, ns per spring and substep with
 /// AVX-512: by 0.2, aligned 0.9, curved 0.6; by 0.3, aligned 1.2, curved 4.3, in 15 parts; a ring of 36 x 6: 1.9
 /// and 0.7.)
-#define SPRINGS_PER_OUTER_UPRIGHT 64
-#define SPRINGS_PER_OUTER_BENT 16
+#define SPRINGS_PER_OUTER_ALIGNED 64
+#define SPRINGS_PER_OUTER_CURVED 16
 
 /// Most springs of a curved grid's seed: to eight neighbours, and some ropes.
-#define MOST_SEED_SPRINGS 16
+#define MAX_SEED_SPRINGS 16
 
-typedef enum grid_search { FOR_UPRIGHT, FOR_BENT, FOR_PARTS } grid_search;
+typedef enum grid_search { SEARCH_ALIGNED, SEARCH_CURVED, SEARCH_PARTIAL } grid_search;
 
 /// Springs of a grid's particles.
 typedef struct grid_springs {
@@ -37,27 +37,27 @@ typedef struct grid_springs {
     uint32_t ends;       ///< ends of all springs of its particles
 } grid_springs;
 
-/// Search for grids. Grids from grids->count on are candidates: found by the present search, not yet judged.
+/// Search for grids. Grids from grids->count on are candidates: found by the present search, not yet evaluated.
 typedef struct mspringi_grid_finder {
     const mspringi_graph *graph;
     mspringi_grids *grids;
     uint8_t *kinds;
     grid_search search;
-    uint8_t *given_up; ///< [particles] 1 + last search that rejected their grid
-    int32_t *column;   ///< [particles] relative to the seed
-    int32_t *row;      ///< [particles]
-    uint32_t *cell;    ///< hash table of the candidates' particles
+    uint8_t *rejected_by; ///< [particles] 1 + last search that rejected their grid
+    int32_t *column;      ///< [particles] relative to the seed
+    int32_t *row;         ///< [particles]
+    uint32_t *cell;       ///< hash table of the candidates' particles
     size_t cell_mask;
     uint64_t *keys, *scratch; ///< [particles]
     /// [particles] Lattice bases, in the memory of keys and scratch, which are needed later.
     mspringi_grid_step *steps[2];
-    mspringi_lattice_basis upright; ///< basis of an axis-aligned grid
+    mspringi_lattice_basis aligned; ///< basis of an axis-aligned grid
     grid_springs *springs;          ///< [candidates]
 
     uint32_t first, end;         ///< candidates
     uint32_t seed;               ///< next particle to try as a seed
     uint32_t next_member;        ///< first member not yet visited
-    int32_t min_column, min_row; ///< of the grid being judged
+    int32_t min_column, min_row; ///< of the grid being evaluated
     uint32_t blocks, runs;       ///< blocks, and runs of consecutive ones, in one orientation
 } finder;
 
@@ -100,79 +100,79 @@ static bool occupy(finder *f, uint32_t particle, int32_t column, int32_t row) {
 
 static bool is_free(const finder *f, uint32_t particle) {
     return f->kinds[particle] == MSPRINGI_ROW_LOOSE && f->grids->grid_of[particle] == MSPRING_NONE &&
-           f->given_up[particle] <= f->search;
+           f->rejected_by[particle] <= f->search;
 }
 
-static mspringi_lattice_basis frame_of(const finder *f, uint32_t particle) {
+static mspringi_lattice_basis basis_of(const finder *f, uint32_t particle) {
     return (mspringi_lattice_basis){f->steps[0][particle], f->steps[1][particle]};
 }
 
-static void set_frame(finder *f, uint32_t particle, mspringi_lattice_basis frame) {
-    f->steps[0][particle] = frame.column;
-    f->steps[1][particle] = frame.row;
+static void set_basis(finder *f, uint32_t particle, mspringi_lattice_basis basis) {
+    f->steps[0][particle] = basis.column;
+    f->steps[1][particle] = basis.row;
 }
 
-static mspringi_grid_step way_between(const finder *f, uint32_t from, uint32_t to) {
+static mspringi_grid_step vector_between(const finder *f, uint32_t from, uint32_t to) {
     const mspring_builder *builder = f->graph->builder;
     return (mspringi_grid_step){(float)(builder->particles[to].x - builder->particles[from].x),
                                 (float)(builder->particles[to].y - builder->particles[from].y)};
 }
 
 // Set the basis from the shortest of a seed's springs along an axis.
-static bool find_upright_frame(finder *f, uint32_t seed) {
+static bool find_aligned_basis(finder *f, uint32_t seed) {
     float shortest = 0.0f;
     for (uint32_t i = f->graph->first[seed]; i < f->graph->first[seed + 1]; ++i) {
         const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
-        const mspringi_grid_step way = way_between(f, seed, other);
-        const float dx = fabsf(way.x), dy = fabsf(way.y);
+        const mspringi_grid_step vector = vector_between(f, seed, other);
+        const float dx = fabsf(vector.x), dy = fabsf(vector.y);
         const float along = dx > dy ? dx : dy, across = dx > dy ? dy : dx;
         if (is_free(f, other) && across <= AXIAL_TOLERANCE * along && (shortest == 0.0f || along < shortest))
             shortest = along;
     }
-    f->upright = mspringi_lattice_basis_upright(shortest);
+    f->aligned = mspringi_lattice_basis_aligned(shortest);
     return shortest > 0.0f;
 }
 
 // List the vectors along a seed's springs to free particles, shortest first. Return their number, or 0 if the seed
 // has too many springs.
-static uint32_t list_ways(const finder *f, uint32_t seed, mspringi_grid_step ways[MOST_SEED_SPRINGS]) {
+static uint32_t list_vectors(const finder *f, uint32_t seed, mspringi_grid_step vectors[MAX_SEED_SPRINGS]) {
     const uint32_t first = f->graph->first[seed], end = f->graph->first[seed + 1];
     uint32_t count = 0;
-    for (uint32_t i = first; end - first <= MOST_SEED_SPRINGS && i < end; ++i) {
+    for (uint32_t i = first; end - first <= MAX_SEED_SPRINGS && i < end; ++i) {
         const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], seed);
-        const mspringi_grid_step way = way_between(f, seed, other);
+        const mspringi_grid_step vector = vector_between(f, seed, other);
         if (!is_free(f, other))
             continue;
         uint32_t at = count++;
-        for (; at > 0 && mspringi_step_square(way) < mspringi_step_square(ways[at - 1]); --at)
-            ways[at] = ways[at - 1];
-        ways[at] = way;
+        for (; at > 0 && mspringi_square_length(vector) < mspringi_square_length(vectors[at - 1]); --at)
+            vectors[at] = vectors[at - 1];
+        vectors[at] = vector;
     }
     return count;
 }
 
-static uint32_t count_rounded(mspringi_lattice_basis frame, const mspringi_grid_step *ways, uint32_t count) {
+static uint32_t count_rounded(mspringi_lattice_basis basis, const mspringi_grid_step *vectors, uint32_t count) {
     uint32_t rounded = 0;
     int32_t columns, rows;
     for (uint32_t i = 0; i < count; ++i)
-        rounded += mspringi_lattice_basis_round(frame, ways[i], &columns, &rows);
+        rounded += mspringi_lattice_basis_round(basis, vectors[i], &columns, &rows);
     return rounded;
 }
 
 // Set a seed's basis from its shortest spring and the one that rounds most springs to neighbouring cells. Side and
 // diagonal of a slanted cell may be equally long; this finds the side.
-static bool find_any_frame(finder *f, uint32_t seed) {
-    mspringi_grid_step ways[MOST_SEED_SPRINGS];
-    const uint32_t count = list_ways(f, seed, ways);
+static bool find_curved_basis(finder *f, uint32_t seed) {
+    mspringi_grid_step vectors[MAX_SEED_SPRINGS];
+    const uint32_t count = list_vectors(f, seed, vectors);
     uint32_t most = 0;
     for (uint32_t i = 1; i < count; ++i) {
-        if (!mspringi_lattice_basis_is_spanned(ways[0], ways[i]))
+        if (!mspringi_lattice_basis_is_spanned(vectors[0], vectors[i]))
             continue;
-        const mspringi_lattice_basis frame = mspringi_lattice_basis_from(ways[0], ways[i]);
-        const uint32_t rounded = count_rounded(frame, ways, count);
+        const mspringi_lattice_basis basis = mspringi_lattice_basis_of(vectors[0], vectors[i]);
+        const uint32_t rounded = count_rounded(basis, vectors, count);
         if (rounded > most) {
             most = rounded;
-            set_frame(f, seed, frame);
+            set_basis(f, seed, basis);
         }
     }
     return most > 0;
@@ -180,14 +180,15 @@ static bool find_any_frame(finder *f, uint32_t seed) {
 
 // Begin a grid with a particle that has a basis.
 static void seed_from(finder *f, uint32_t seed) {
-    if (!is_free(f, seed) || !(f->search == FOR_BENT ? find_any_frame(f, seed) : find_upright_frame(f, seed)))
+    if (!is_free(f, seed) ||
+        !(f->search == SEARCH_CURVED ? find_curved_basis(f, seed) : find_aligned_basis(f, seed)))
         return;
     f->grids->first_member[f->end++] = f->grids->member_count;
     (void)occupy(f, seed, 0, 0);
 }
 
 // Fit a particle's basis to the members in the nearest eight cells.
-static mspringi_lattice_basis fitted_frame(finder *f, uint32_t at) {
+static mspringi_lattice_basis fit_basis(finder *f, uint32_t at) {
     mspringi_basis_fit fit = {.count = 0};
     for (uint32_t i = f->graph->first[at]; i < f->graph->first[at + 1]; ++i) {
         const mspring_id other = mspringi_other_end(&f->graph->builder->springs[f->graph->springs[i]], at);
@@ -195,25 +196,26 @@ static mspringi_lattice_basis fitted_frame(finder *f, uint32_t at) {
         const int32_t dc = is_member ? f->column[other] - f->column[at] : 0;
         const int32_t dr = is_member ? f->row[other] - f->row[at] : 0;
         if ((dc != 0 || dr != 0) && abs(dc) <= 1 && abs(dr) <= 1)
-            mspringi_basis_fit_add(&fit, frame_of(f, other), way_between(f, at, other), dc, dr);
+            mspringi_basis_fit_add(&fit, basis_of(f, other), vector_between(f, at, other), dc, dr);
     }
     if (fit.count > 0)
-        set_frame(f, at, mspringi_basis_fit_result(&fit));
-    return frame_of(f, at);
+        set_basis(f, at, mspringi_basis_fit_result(&fit));
+    return basis_of(f, at);
 }
 
 // Add the free neighbours of a member to the last candidate, each to its cell.
 static void spread_from(finder *f, uint32_t at) {
     const mspringi_graph *graph = f->graph;
-    const mspringi_lattice_basis frame = f->search == FOR_BENT ? fitted_frame(f, at) : f->upright;
+    const mspringi_lattice_basis basis = f->search == SEARCH_CURVED ? fit_basis(f, at) : f->aligned;
     for (uint32_t i = graph->first[at]; i < graph->first[at + 1]; ++i) {
         const mspring_id other = mspringi_other_end(&graph->builder->springs[graph->springs[i]], at);
-        const mspringi_grid_step way = way_between(f, at, other);
+        const mspringi_grid_step vector = vector_between(f, at, other);
         int32_t dc = 0, dr = 0;
-        if (!is_free(f, other) || !mspringi_lattice_basis_round(frame, way, &dc, &dr))
+        if (!is_free(f, other) || !mspringi_lattice_basis_round(basis, vector, &dc, &dr))
             continue;
-        if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr) && f->search == FOR_BENT)
-            set_frame(f, other, frame);
+        if ((dc != 0 || dr != 0) && occupy(f, other, f->column[at] + dc, f->row[at] + dr) &&
+            f->search == SEARCH_CURVED)
+            set_basis(f, other, basis);
     }
 }
 
@@ -231,20 +233,20 @@ void mspringi_grids_flood(mspringi_grids *grids, uint32_t first, uint32_t end) {
 /* --------------------------------------------------------------------------------------------- is it worth it */
 
 // True if a grid has the proportion of its particles' springs that the search requires.
-static bool has_enough(const finder *f, size_t neighbours, size_t all) {
+static bool has_enough_springs(const finder *f, size_t neighbours, size_t all) {
     const size_t outer = all - neighbours;
     switch (f->search) {
-    case FOR_UPRIGHT:
-        return outer * SPRINGS_PER_OUTER_UPRIGHT <= all;
-    case FOR_BENT:
-        return outer * SPRINGS_PER_OUTER_BENT <= all;
+    case SEARCH_ALIGNED:
+        return outer * SPRINGS_PER_OUTER_ALIGNED <= all;
+    case SEARCH_CURVED:
+        return outer * SPRINGS_PER_OUTER_CURVED <= all;
     default:
         return outer <= neighbours;
     }
 }
 
-mspring_result mspringi_grids_begin_judging(mspringi_grids *grids, mspringi_memory *memory,
-                                            mspringi_message *message) {
+mspring_result mspringi_grids_begin_evaluation(mspringi_grids *grids, mspringi_memory *memory,
+                                               mspringi_message *message) {
     finder *f = grids->finder;
     grids->first_member[f->end] = grids->member_count;
     f->next_member = grids->first_member[f->first];
@@ -252,11 +254,11 @@ mspring_result mspringi_grids_begin_judging(mspringi_grids *grids, mspringi_memo
     return f->springs ? MSPRING_OK : out_of_memory(f->graph, message);
 }
 
-uint32_t mspringi_grids_candidates(const mspringi_grids *grids) {
+uint32_t mspringi_grids_candidate_count(const mspringi_grids *grids) {
     return grids->finder->end - grids->finder->first;
 }
 
-uint32_t mspringi_grids_candidate_members(const mspringi_grids *grids) {
+uint32_t mspringi_grids_candidate_member_count(const mspringi_grids *grids) {
     return grids->member_count - grids->first_member[grids->finder->first];
 }
 
@@ -280,7 +282,7 @@ void mspringi_grids_count_springs(mspringi_grids *grids, uint32_t first, uint32_
 }
 
 // Find the lowest column and row.
-static void bound(finder *f, const uint32_t *members, uint32_t count) {
+static void find_bounds(finder *f, const uint32_t *members, uint32_t count) {
     f->min_column = f->min_row = 0; // of the seed
     for (uint32_t m = 0; m < count; ++m) {
         f->min_column = f->column[members[m]] < f->min_column ? f->column[members[m]] : f->min_column;
@@ -307,12 +309,13 @@ static uint64_t count_runs(finder *f, const uint32_t *members, uint32_t count, b
 }
 
 // True if sweeping a candidate's rows pays. Sets the better orientation.
-static bool is_worth_it(finder *f, uint32_t candidate, const uint32_t *members, uint32_t count, bool *transposed) {
+static bool is_worth_sweeping(finder *f, uint32_t candidate, const uint32_t *members, uint32_t count,
+                              bool *transposed) {
     const grid_springs *springs = &f->springs[candidate];
     const size_t neighbours = springs->inner_ends / 2;
-    if (!has_enough(f, neighbours, springs->ends - neighbours))
+    if (!has_enough_springs(f, neighbours, springs->ends - neighbours))
         return false;
-    bound(f, members, count);
+    find_bounds(f, members, count);
     const uint64_t cost_transposed = count_runs(f, members, count, true);
     const uint32_t blocks_transposed = f->blocks;
     *transposed = cost_transposed < count_runs(f, members, count, false);
@@ -320,15 +323,15 @@ static bool is_worth_it(finder *f, uint32_t candidate, const uint32_t *members, 
     return neighbours * SLOTS_PER_SPRING >= blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
 }
 
-static void give_up(finder *f, const uint32_t *members, uint32_t count) {
+static void reject(finder *f, const uint32_t *members, uint32_t count) {
     for (uint32_t m = 0; m < count; ++m) {
         f->grids->grid_of[members[m]] = MSPRING_NONE;
-        f->given_up[members[m]] = (uint8_t)(f->search + 1);
+        f->rejected_by[members[m]] = (uint8_t)(f->search + 1);
     }
 }
 
 // Keep a grid, behind those already kept.
-static void keep(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
+static void accept(finder *f, const uint32_t *members, uint32_t count, bool transposed) {
     mspringi_grids *grids = f->grids;
     uint32_t to = grids->first_member[grids->count];
     for (uint32_t m = 0; m < count; ++m) {
@@ -343,16 +346,16 @@ static void keep(finder *f, const uint32_t *members, uint32_t count, bool transp
     grids->first_member[++grids->count] = to;
 }
 
-void mspringi_grids_judge(mspringi_grids *grids, uint32_t first, uint32_t end) {
+void mspringi_grids_evaluate(mspringi_grids *grids, uint32_t first, uint32_t end) {
     finder *f = grids->finder;
     for (uint32_t candidate = first; candidate < end; ++candidate) {
         const uint32_t begin = f->next_member, behind = grids->first_member[f->first + candidate + 1];
         const uint32_t *members = grids->members + begin;
         bool transposed = false;
-        if (is_worth_it(f, candidate, members, behind - begin, &transposed))
-            keep(f, members, behind - begin, transposed);
+        if (is_worth_sweeping(f, candidate, members, behind - begin, &transposed))
+            accept(f, members, behind - begin, transposed);
         else
-            give_up(f, members, behind - begin);
+            reject(f, members, behind - begin);
         f->next_member = behind;
     }
 }
@@ -362,7 +365,7 @@ void mspringi_grids_judge(mspringi_grids *grids, uint32_t first, uint32_t end) {
 static void free_finder(finder *f, mspringi_memory *memory) {
     if (!f)
         return;
-    void *const blocks[] = {f->given_up, f->column, f->row, f->cell, f->keys, f->scratch, f->springs, f};
+    void *const blocks[] = {f->rejected_by, f->column, f->row, f->cell, f->keys, f->scratch, f->springs, f};
     for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i)
         mspringi_free(memory, blocks[i]);
 }
@@ -384,7 +387,7 @@ mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph 
         f->grids = grids;
         f->kinds = kinds;
         f->cell_mask = table - 1;
-        f->given_up = mspringi_alloc(memory, particles, sizeof *f->given_up);
+        f->rejected_by = mspringi_alloc(memory, particles, sizeof *f->rejected_by);
         f->column = mspringi_alloc(memory, particles, sizeof *f->column);
         f->row = mspringi_alloc(memory, particles, sizeof *f->row);
         f->cell = mspringi_alloc(memory, table, sizeof *f->cell);
@@ -392,7 +395,7 @@ mspring_result mspringi_grids_begin(mspringi_grids *grids, const mspringi_graph 
         f->scratch = mspringi_alloc(memory, particles, sizeof *f->scratch);
     }
     if (!f || !grids->grid_of || !grids->column || !grids->row || !grids->members || !grids->first_member ||
-        !f->given_up || !f->column || !f->row || !f->cell || !f->keys || !f->scratch)
+        !f->rejected_by || !f->column || !f->row || !f->cell || !f->keys || !f->scratch)
         return out_of_memory(graph, message);
     f->steps[0] = (mspringi_grid_step *)(void *)f->keys;
     f->steps[1] = (mspringi_grid_step *)(void *)f->scratch;
@@ -426,8 +429,8 @@ void mspringi_grids_destroy(mspringi_grids *grids, mspringi_memory *memory) {
     mspringi_free(memory, grids->first_member);
 }
 
-bool mspringi_grids_place(const mspringi_grids *grids, const mspringi_spring *spring,
-                          mspringi_lattice_spring *found) {
+bool mspringi_grids_locate_spring(const mspringi_grids *grids, const mspringi_spring *spring,
+                                  mspringi_lattice_spring *found) {
     uint32_t base = spring->a, tip = spring->b;
     if (grids->grid_of[base] == MSPRING_NONE || grids->grid_of[base] != grids->grid_of[tip])
         return false;

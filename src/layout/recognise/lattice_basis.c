@@ -10,7 +10,7 @@
 #define MEAN_WEIGHT 4.0f
 
 /// Smallest sine of the angle between basis vectors.
-#define LEAST_SINE 0.8f
+#define MIN_SINE 0.8f
 
 static mspringi_grid_step scaled(mspringi_grid_step a, float by) {
     return (mspringi_grid_step){a.x * by, a.y * by};
@@ -20,7 +20,7 @@ static mspringi_grid_step sum(mspringi_grid_step a, mspringi_grid_step b) {
     return (mspringi_grid_step){a.x + b.x, a.y + b.y};
 }
 
-float mspringi_step_square(mspringi_grid_step step) {
+float mspringi_square_length(mspringi_grid_step step) {
     return step.x * step.x + step.y * step.y;
 }
 
@@ -28,11 +28,11 @@ static float cross(mspringi_grid_step a, mspringi_grid_step b) {
     return a.x * b.y - a.y * b.x;
 }
 
-mspringi_lattice_basis mspringi_lattice_basis_upright(float spacing) {
+mspringi_lattice_basis mspringi_lattice_basis_aligned(float spacing) {
     return (mspringi_lattice_basis){{spacing, 0.0f}, {0.0f, spacing}};
 }
 
-mspringi_lattice_basis mspringi_lattice_basis_from(mspringi_grid_step a, mspringi_grid_step b) {
+mspringi_lattice_basis mspringi_lattice_basis_of(mspringi_grid_step a, mspringi_grid_step b) {
     const bool is_in_order = fabsf(a.x) * fabsf(b.y) >= fabsf(a.y) * fabsf(b.x);
     const mspringi_grid_step column = is_in_order ? a : b, row = is_in_order ? b : a;
     return (mspringi_lattice_basis){scaled(column, column.x < 0.0f ? -1.0f : 1.0f),
@@ -41,8 +41,8 @@ mspringi_lattice_basis mspringi_lattice_basis_from(mspringi_grid_step a, mspring
 
 bool mspringi_lattice_basis_is_spanned(mspringi_grid_step column, mspringi_grid_step row) {
     const float area = cross(column, row),
-                longest = sqrtf(mspringi_step_square(column)) * sqrtf(mspringi_step_square(row));
-    return fabsf(area) >= LEAST_SINE * longest && longest > 0.0f;
+                longest = sqrtf(mspringi_square_length(column)) * sqrtf(mspringi_square_length(row));
+    return fabsf(area) >= MIN_SINE * longest && longest > 0.0f;
 }
 
 static bool round_to_cell(float offset, int32_t *cell) {
@@ -50,19 +50,19 @@ static bool round_to_cell(float offset, int32_t *cell) {
     return fabsf(offset - (float)*cell) <= CELL_TOLERANCE;
 }
 
-bool mspringi_lattice_basis_round(mspringi_lattice_basis frame, mspringi_grid_step way, int32_t *columns,
+bool mspringi_lattice_basis_round(mspringi_lattice_basis basis, mspringi_grid_step vector, int32_t *columns,
                                   int32_t *rows) {
-    const float area = cross(frame.column, frame.row);
-    return round_to_cell(cross(way, frame.row) / area, columns) &&
-           round_to_cell(cross(frame.column, way) / area, rows);
+    const float area = cross(basis.column, basis.row);
+    return round_to_cell(cross(vector, basis.row) / area, columns) &&
+           round_to_cell(cross(basis.column, vector) / area, rows);
 }
 
-void mspringi_basis_fit_add(mspringi_basis_fit *fit, mspringi_lattice_basis frame, mspringi_grid_step way,
+void mspringi_basis_fit_add(mspringi_basis_fit *fit, mspringi_lattice_basis basis, mspringi_grid_step vector,
                             int32_t columns, int32_t rows) {
-    fit->frames.column = sum(fit->frames.column, frame.column);
-    fit->frames.row = sum(fit->frames.row, frame.row);
-    fit->ways.column = sum(fit->ways.column, scaled(way, (float)columns));
-    fit->ways.row = sum(fit->ways.row, scaled(way, (float)rows));
+    fit->bases.column = sum(fit->bases.column, basis.column);
+    fit->bases.row = sum(fit->bases.row, basis.row);
+    fit->vectors.column = sum(fit->vectors.column, scaled(vector, (float)columns));
+    fit->vectors.row = sum(fit->vectors.row, scaled(vector, (float)rows));
     fit->columns += (float)(columns * columns);
     fit->rows += (float)(rows * rows);
     fit->both_counts += (float)(columns * rows);
@@ -72,11 +72,11 @@ void mspringi_basis_fit_add(mspringi_basis_fit *fit, mspringi_lattice_basis fram
 // Minimise the squares of columns * column + rows * row - way, and of the difference from the mean basis.
 mspringi_lattice_basis mspringi_basis_fit_result(const mspringi_basis_fit *fit) {
     const float share = 1.0f / (float)fit->count;
-    const mspringi_lattice_basis mean = {scaled(fit->frames.column, share), scaled(fit->frames.row, share)};
+    const mspringi_lattice_basis mean = {scaled(fit->bases.column, share), scaled(fit->bases.row, share)};
     const float columns = fit->columns + MEAN_WEIGHT, rows = fit->rows + MEAN_WEIGHT, both = fit->both_counts;
     const float per = 1.0f / (columns * rows - both * both);
-    const mspringi_grid_step of_column = sum(fit->ways.column, scaled(mean.column, MEAN_WEIGHT));
-    const mspringi_grid_step of_row = sum(fit->ways.row, scaled(mean.row, MEAN_WEIGHT));
+    const mspringi_grid_step of_column = sum(fit->vectors.column, scaled(mean.column, MEAN_WEIGHT));
+    const mspringi_grid_step of_row = sum(fit->vectors.row, scaled(mean.row, MEAN_WEIGHT));
     const mspringi_lattice_basis best = {scaled(sum(scaled(of_column, rows), scaled(of_row, -both)), per),
                                          scaled(sum(scaled(of_row, columns), scaled(of_column, -both)), per)};
     return mspringi_lattice_basis_is_spanned(best.column, best.row) ? best : mean;

@@ -18,30 +18,30 @@ typedef struct mspringi_lattice_basis {
     mspringi_grid_step column, row; ///< not parallel
 } mspringi_lattice_basis;
 
-float mspringi_step_square(mspringi_grid_step step);
+float mspringi_square_length(mspringi_grid_step step);
 
 /// Axis-aligned square basis.
-mspringi_lattice_basis mspringi_lattice_basis_upright(float spacing);
+mspringi_lattice_basis mspringi_lattice_basis_aligned(float spacing);
 
 /// Basis of two vectors that span one. The column vector leads right rather than up, the row vector up.
-mspringi_lattice_basis mspringi_lattice_basis_from(mspringi_grid_step a, mspringi_grid_step b);
+mspringi_lattice_basis mspringi_lattice_basis_of(mspringi_grid_step a, mspringi_grid_step b);
 
 /// True if two vectors can form a basis: 53 to 127 degrees apart. The sides of squares and of triangles can, a
 /// square's side and its diagonal cannot.
 bool mspringi_lattice_basis_is_spanned(mspringi_grid_step column, mspringi_grid_step row);
 
 /// Round a vector to columns and rows, -1 to 1; false if it is too far off.
-bool mspringi_lattice_basis_round(mspringi_lattice_basis frame, mspringi_grid_step way, int32_t *columns,
+bool mspringi_lattice_basis_round(mspringi_lattice_basis basis, mspringi_grid_step vector, int32_t *columns,
                                   int32_t *rows);
 
 /// Vectors to neighbours in known cells, and their bases.
 typedef struct mspringi_basis_fit {
-    mspringi_lattice_basis frames, ways; ///< sums: of bases; of vectors times columns, times rows
-    float columns, rows, both_counts;    ///< sums of squares and products of columns and rows
+    mspringi_lattice_basis bases, vectors; ///< sums: of bases; of vectors times columns, times rows
+    float columns, rows, both_counts;      ///< sums of squares and products of columns and rows
     uint32_t count;
 } mspringi_basis_fit;
 
-void mspringi_basis_fit_add(mspringi_basis_fit *fit, mspringi_lattice_basis frame, mspringi_grid_step way,
+void mspringi_basis_fit_add(mspringi_basis_fit *fit, mspringi_lattice_basis basis, mspringi_grid_step vector,
                             int32_t columns, int32_t rows);
 
 /// Best fit: close to the mean of the neighbours' bases, and to their positions.
