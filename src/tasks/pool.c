@@ -5,9 +5,9 @@
 #include "tasks/progress.h"
 
 typedef struct pool_worker {
-    mspringi_progress called;   ///< runs started for this worker so far
+    mspringi_progress started;  ///< runs started for this worker so far
     mspringi_progress finished; ///< runs that it has finished
-    uint32_t calls;             ///< value of called, for the calling thread
+    uint32_t start_count;       ///< value of started, for the calling thread
     uint32_t number;
     bool has_counters, has_thread;
     mspringi_pool *pool;
@@ -31,7 +31,7 @@ static void run_share(const mspringi_pool *pool, uint32_t worker) {
 static void thread_main(void *argument) {
     pool_worker *self = argument;
     for (uint32_t call = 1;; ++call) {
-        mspringi_progress_wait(&self->called, call);
+        mspringi_progress_wait(&self->started, call);
         if (!self->pool->fn)
             return;
         run_share(self->pool, self->number);
@@ -40,10 +40,10 @@ static void thread_main(void *argument) {
 }
 
 static bool start_worker(pool_worker *worker) {
-    if (!mspringi_progress_init(&worker->called))
+    if (!mspringi_progress_init(&worker->started))
         return false;
     if (!mspringi_progress_init(&worker->finished)) {
-        mspringi_progress_destroy(&worker->called);
+        mspringi_progress_destroy(&worker->started);
         return false;
     }
     worker->has_counters = true;
@@ -70,13 +70,13 @@ static void end_workers(mspringi_pool *pool) {
     for (uint32_t w = 1; w < pool->worker_count; ++w)
         // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): without workers their number is 0
         if (pool->workers[w].has_thread)
-            mspringi_progress_advance(&pool->workers[w].called, ++pool->workers[w].calls);
+            mspringi_progress_advance(&pool->workers[w].started, ++pool->workers[w].start_count);
     for (uint32_t w = 1; w < pool->worker_count; ++w) {
         pool_worker *worker = &pool->workers[w];
         if (worker->has_thread)
             mspringi_thread_join(worker->thread);
         if (worker->has_counters) {
-            mspringi_progress_destroy(&worker->called);
+            mspringi_progress_destroy(&worker->started);
             mspringi_progress_destroy(&worker->finished);
         }
         worker->has_thread = worker->has_counters = false;
@@ -127,15 +127,15 @@ void mspringi_pool_destroy(mspringi_pool *pool, mspringi_memory *memory) {
 }
 
 void mspringi_pool_run(mspringi_pool *pool, uint32_t count, mspring_task_fn fn, void *argument) {
-    const uint32_t called = count < pool->worker_count ? count : pool->worker_count;
+    const uint32_t active = count < pool->worker_count ? count : pool->worker_count;
     pool->count = count;
     pool->fn = fn;
     pool->argument = argument;
-    for (uint32_t w = 1; w < called; ++w)
-        mspringi_progress_advance(&pool->workers[w].called, ++pool->workers[w].calls);
+    for (uint32_t w = 1; w < active; ++w)
+        mspringi_progress_advance(&pool->workers[w].started, ++pool->workers[w].start_count);
     run_share(pool, 0);
-    for (uint32_t w = 1; w < called; ++w)
-        mspringi_progress_wait(&pool->workers[w].finished, pool->workers[w].calls);
+    for (uint32_t w = 1; w < active; ++w)
+        mspringi_progress_wait(&pool->workers[w].finished, pool->workers[w].start_count);
 }
 
 #else

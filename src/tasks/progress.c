@@ -11,8 +11,8 @@
 /// Bounds on polls before sleeping: 200 and 3 us on a Zen 4. The upper one exceeds the serial parts of an implicit
 /// step, since waking up costs as much again. (544 x 68 with two workers: 1.4 times as fast as one worker with half
 /// of it, 0.95 with an eighth; on a ship of 158,000 springs, one substep in seven sleeps instead of each.)
-#define MOST_SPINS 8000
-#define FEWEST_SPINS 100
+#define MAX_SPINS 8000
+#define MIN_SPINS 100
 
 /// After this many sleeps, a wait again polls up to the upper bound. The other thread may have its own core by now,
 /// or its serial part may take less than that, but more than the present number of polls.
@@ -38,7 +38,7 @@ static inline bool is_reached(uint32_t value, uint32_t target) {
 bool mspringi_progress_init(mspringi_progress *progress) {
     atomic_init(&progress->value, 0);
     atomic_init(&progress->sleepers, 0);
-    atomic_init(&progress->spins, MOST_SPINS);
+    atomic_init(&progress->spins, MAX_SPINS);
     progress->sleeps = 0;
     if (!mspringi_mutex_init(&progress->mutex))
         return false;
@@ -77,8 +77,8 @@ void mspringi_progress_advance(mspringi_progress *progress, uint32_t value) {
 static uint32_t sleep_until(mspringi_progress *progress, uint32_t target, uint32_t spins) {
     uint32_t value;
     mspringi_mutex_lock(&progress->mutex);
-    spins = ++progress->sleeps % SLEEPS_BEFORE_TRIAL == 0 ? MOST_SPINS : spins / 2;
-    set_spins(progress, spins > FEWEST_SPINS ? spins : FEWEST_SPINS);
+    spins = ++progress->sleeps % SLEEPS_BEFORE_TRIAL == 0 ? MAX_SPINS : spins / 2;
+    set_spins(progress, spins > MIN_SPINS ? spins : MIN_SPINS);
     atomic_fetch_add(&progress->sleepers, 1);
     while (!is_reached(value = atomic_load(&progress->value), target))
         mspringi_condition_wait(&progress->condition, &progress->mutex);
@@ -89,12 +89,12 @@ static uint32_t sleep_until(mspringi_progress *progress, uint32_t target, uint32
 
 uint32_t mspringi_progress_wait(mspringi_progress *progress, uint32_t target) {
     const uint32_t spins = atomic_load_explicit(&progress->spins, memory_order_relaxed);
-    for (uint32_t look = 0; look < spins; ++look) {
+    for (uint32_t poll = 0; poll < spins; ++poll) {
         const uint32_t value = atomic_load_explicit(&progress->value, memory_order_acquire);
         if (is_reached(value, target)) {
             // The other thread advanced while this one ran, so each has a core.
-            if (look > 0 && spins < MOST_SPINS)
-                set_spins(progress, 2 * spins < MOST_SPINS ? 2 * spins : MOST_SPINS);
+            if (poll > 0 && spins < MAX_SPINS)
+                set_spins(progress, 2 * spins < MAX_SPINS ? 2 * spins : MAX_SPINS);
             return value;
         }
         pause_thread();

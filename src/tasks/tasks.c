@@ -91,16 +91,16 @@ mspring_result mspringi_tasks_restart_after_fork(mspringi_tasks *tasks, mspringi
 
 /* --------------------------------------------------------------------------------------------------- running */
 
-typedef struct job {
+typedef struct task_body {
     mspring_task_fn fn;
     void *argument;
-} job;
+} task_body;
 
 // Run a body in the floating-point environment of a step; its thread may have any other.
 static void run_body(void *argument, uint32_t index, uint32_t worker) {
-    const job *of = argument;
+    const task_body *body = argument;
     const mspringi_fp_state before = mspringi_fp_enter();
-    of->fn(of->argument, index, worker);
+    body->fn(body->argument, index, worker);
     mspringi_fp_leave(before);
 }
 
@@ -132,22 +132,22 @@ uint32_t mspringi_tasks_sleeps(const mspringi_tasks *tasks) {
 }
 
 void mspringi_tasks_run(mspringi_tasks *tasks, uint32_t count, mspring_task_fn fn, void *argument) {
-    job of = {fn, argument};
+    task_body body = {fn, argument};
     if (!tasks || count <= 1) {
         for (uint32_t index = 0; index < count; ++index)
-            run_body(&of, index, 0);
+            run_body(&body, index, 0);
         return;
     }
     for (uint32_t i = 0; i < tasks->counter_count; ++i)
         mspringi_progress_reset(&tasks->counters[i], 0);
     if (tasks->pool)
-        mspringi_pool_run(tasks->pool, count, run_body, &of);
+        mspringi_pool_run(tasks->pool, count, run_body, &body);
     else
-        tasks->host.run(count, run_body, &of, tasks->host.user);
+        tasks->host.run(count, run_body, &body, tasks->host.user);
 }
 
 /// Shortest range worth a worker.
-#define SHORTEST_RANGE 16384
+#define MIN_RANGE 16384
 
 typedef struct ranges {
     size_t count, length;
@@ -165,11 +165,11 @@ static void run_range(void *argument, uint32_t index, uint32_t worker) {
 void mspringi_tasks_run_ranges(mspringi_tasks *tasks, size_t count, size_t grain, mspringi_range_fn fn,
                                void *argument) {
     const size_t workers = mspringi_tasks_workers(tasks);
-    if (workers == 1 || count < 2 * SHORTEST_RANGE) {
+    if (workers == 1 || count < 2 * MIN_RANGE) {
         fn(argument, 0, count);
         return;
     }
-    const size_t equal = (count + workers - 1) / workers, length = equal > SHORTEST_RANGE ? equal : SHORTEST_RANGE;
+    const size_t equal = (count + workers - 1) / workers, length = equal > MIN_RANGE ? equal : MIN_RANGE;
     ranges all = {.count = count, .length = (length + grain - 1) / grain * grain, .fn = fn, .argument = argument};
     mspringi_tasks_run(tasks, (uint32_t)((count + all.length - 1) / all.length), run_range, &all);
 }
