@@ -26,7 +26,7 @@ typedef struct mspringi_block {
 _Static_assert(sizeof(block) <= HALF, "a header takes half of a unit");
 
 /// Fewest elements of a growing array: a network of few particles has few rows.
-#define FEWEST_ELEMENTS 8
+#define MIN_ELEMENTS 8
 
 #if !defined(MSPRINGI_FREESTANDING)
 
@@ -195,7 +195,7 @@ bool mspringi_memory_copy(const mspringi_memory *from, mspringi_memory *to) {
     return true;
 }
 
-void *mspringi_memory_moved(const mspringi_memory *from, const mspringi_memory *to, const void *pointer) {
+void *mspringi_memory_relocate(const mspringi_memory *from, const mspringi_memory *to, const void *pointer) {
     const uintptr_t place = (uintptr_t)pointer;
     const block *copy = to->first;
     for (const block *of = from->first; pointer && of; of = of->next, copy = copy->next) {
@@ -215,8 +215,8 @@ bool mspringi_grow(mspringi_memory *memory, void **array, size_t *capacity, size
     size_t target = *capacity < SIZE_MAX / 2 ? *capacity * 2 : SIZE_MAX;
     if (target < needed)
         target = needed;
-    if (target < FEWEST_ELEMENTS)
-        target = FEWEST_ELEMENTS;
+    if (target < MIN_ELEMENTS)
+        target = MIN_ELEMENTS;
     void *grown = mspringi_alloc(memory, target, size);
     if (!grown)
         return false;

@@ -52,7 +52,7 @@ bool mspringi_memory_copy(const mspringi_memory *from, mspringi_memory *to);
 
 /// Pointer into the copy of a block, from the pointer into the original; NULL for NULL. `to` is a
 /// mspringi_memory_copy() of `from`.
-void *mspringi_memory_moved(const mspringi_memory *from, const mspringi_memory *to, const void *pointer);
+void *mspringi_memory_relocate(const mspringi_memory *from, const mspringi_memory *to, const void *pointer);
 
 /// Grow an array of *capacity elements to at least `needed`, at least doubling it. Return false if memory is out;
 /// the array is then unchanged.

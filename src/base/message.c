@@ -43,11 +43,11 @@ mspring_result mspringi_shared_fail(mspringi_shared_message *shared, mspring_res
     va_start(arguments, format);
     mspringi_format(message.text, sizeof message.text, format, arguments);
     va_end(arguments);
-    return mspringi_shared_take(shared, result, &message);
+    return mspringi_shared_set(shared, result, &message);
 }
 
-mspring_result mspringi_shared_take(mspringi_shared_message *shared, mspring_result result,
-                                    const mspringi_message *message) {
+mspring_result mspringi_shared_set(mspringi_shared_message *shared, mspring_result result,
+                                   const mspringi_message *message) {
     uint32_t none = MSPRINGI_MESSAGE_NONE;
     if (atomic_compare_exchange_strong_explicit(&shared->state, &none, MSPRINGI_MESSAGE_CLAIMED,
                                                 memory_order_relaxed, memory_order_relaxed)) {
@@ -58,13 +58,13 @@ mspring_result mspringi_shared_take(mspringi_shared_message *shared, mspring_res
 }
 
 /// Larger than any struct: a larger size is uninitialised memory.
-#define LARGEST_STRUCT 4000
+#define MAX_STRUCT_SIZE 4000
 
 static bool is_possible(size_t size, size_t known) {
-    return size >= known && size % sizeof(uint32_t) == 0 && size <= LARGEST_STRUCT;
+    return size >= known && size % sizeof(uint32_t) == 0 && size <= MAX_STRUCT_SIZE;
 }
 
-static mspring_result refuse_size(mspringi_message *message, const char *name, size_t size, size_t known) {
+static mspring_result reject_size(mspringi_message *message, const char *name, size_t size, size_t known) {
     if (!message)
         return MSPRING_ERROR_STRUCT;
     return mspringi_fail(
@@ -78,7 +78,7 @@ mspring_result mspringi_check_struct(mspringi_message *message, const char *name
     const size_t size = mspringi_struct_size(given);
     const unsigned char *bytes = given;
     if (!is_possible(size, known))
-        return refuse_size(message, name, size, known);
+        return reject_size(message, name, size, known);
     for (size_t i = known; i < size; ++i)
         if (bytes[i] != 0)
             return !message ? MSPRING_ERROR_STRUCT
@@ -94,10 +94,10 @@ mspring_result mspringi_check_output(mspringi_message *message, const char *name
         return !message ? MSPRING_ERROR_ARGUMENT
                         : mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s is NULL", name);
     const size_t size = mspringi_struct_size(out);
-    return is_possible(size, known) ? MSPRING_OK : refuse_size(message, name, size, known);
+    return is_possible(size, known) ? MSPRING_OK : reject_size(message, name, size, known);
 }
 
-mspring_result mspringi_check_alike(mspringi_message *message, const void *element, size_t struct_size) {
+mspring_result mspringi_check_same_size(mspringi_message *message, const void *element, size_t struct_size) {
     const size_t size = mspringi_struct_size(element);
     if (size == struct_size)
         return MSPRING_OK;
@@ -115,7 +115,7 @@ mspring_result mspringi_check_outputs(const void *array, uint32_t count, const c
         const void *element = mspringi_element(array, struct_size, i);
         result = mspringi_check_output(message, name, element, known);
         if (result == MSPRING_OK)
-            result = mspringi_check_alike(message, element, struct_size);
+            result = mspringi_check_same_size(message, element, struct_size);
         if (result != MSPRING_OK && count > 1) {
             const mspringi_message reason = *message;
             return mspringi_fail(message, result, "index %u: %s", (unsigned)i, reason.text);

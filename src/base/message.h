@@ -33,8 +33,8 @@ const char *mspringi_shared_text(const mspringi_shared_message *shared);
 mspring_result mspringi_shared_fail(mspringi_shared_message *shared, mspring_result result, const char *format, ...)
     MSPRINGI_PRINTF(3, 4);
 /// Write a message that exists already.
-mspring_result mspringi_shared_take(mspringi_shared_message *shared, mspring_result result,
-                                    const mspringi_message *message);
+mspring_result mspringi_shared_set(mspringi_shared_message *shared, mspring_result result,
+                                   const mspringi_message *message);
 
 /// Text of an id for %s in a message: its number, or MSPRING_NONE.
 enum { MSPRINGI_ID_SIZE = 24 };
@@ -61,7 +61,7 @@ mspring_result mspringi_check_output(mspringi_message *message, const char *name
 void mspringi_put_struct(void *out, const void *made, size_t known);
 
 /// Check that an element of an array is as large as the first. The message may be NULL.
-mspring_result mspringi_check_alike(mspringi_message *message, const void *element, size_t struct_size);
+mspring_result mspringi_check_same_size(mspringi_message *message, const void *element, size_t struct_size);
 
 /// Check an array of output structs of equal size.
 mspring_result mspringi_check_outputs(const void *array, uint32_t count, const char *name, size_t known,

@@ -23,13 +23,13 @@ typedef struct mspringi_cursor {
         mspring_result (*once)(type *);                                                                            \
         mspring_result (*part)(type *, uint32_t first, uint32_t end);                                              \
         uint32_t (*count)(const type *);                                                                           \
-        uint32_t most;                                                                                             \
+        uint32_t max_range;                                                                                        \
     } name##_pass;                                                                                                 \
                                                                                                                    \
     static mspring_result name##_run(type *work, const name##_pass *list, mspringi_cursor *cursor) {               \
         const name##_pass *next = &list[cursor->pass];                                                             \
         const uint32_t first = cursor->at, left = next->part ? next->count(work) - first : 0;                      \
-        const uint32_t end = first + (left < next->most ? left : next->most);                                      \
+        const uint32_t end = first + (left < next->max_range ? left : next->max_range);                            \
         mspring_result result = MSPRING_OK;                                                                        \
         cursor->again = false;                                                                                     \
         cursor->at = end;                                                                                          \
@@ -47,8 +47,8 @@ typedef struct mspringi_cursor {
 
 #define MSPRINGI_ONCE(function)                                                                                    \
     { function, NULL, NULL, 0 }
-#define MSPRINGI_EACH(function, count, most)                                                                       \
-    { NULL, function, count, most }
+#define MSPRINGI_EACH(function, count, max_range)                                                                  \
+    { NULL, function, count, max_range }
 
 /// Number of functions in a list.
 #define MSPRINGI_PASS_COUNT(list) ((uint32_t)(sizeof(list) / sizeof(list)[0]))

@@ -12,7 +12,7 @@
 /// Last power of the series: up to a quarter of pi, the next term is below 1e-17.
 #define LAST_POWER 18
 
-mspringi_rotation mspringi_turn_by(double angle) {
+mspringi_rotation mspringi_rotation_by(double angle) {
     const double quarters = floor(angle / (QUARTER_HIGH + QUARTER_LOW) + 0.5);
     const double rest = (angle - quarters * QUARTER_HIGH) - quarters * QUARTER_LOW, square = rest * rest;
     double cosine = 1.0, sine = 1.0;

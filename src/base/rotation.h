@@ -15,7 +15,7 @@ typedef struct mspringi_rotation {
 
 /// Rotation by an angle; correct to 2e-16.
 /// @param angle  at most MSPRINGI_MAX_ANGLE in size
-mspringi_rotation mspringi_turn_by(double angle);
+mspringi_rotation mspringi_rotation_by(double angle);
 
 /// Angle of a rotation, -pi to pi; correct to 1e-15.
 double mspringi_angle_of(mspringi_rotation rotation);

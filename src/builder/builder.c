@@ -5,9 +5,9 @@
 
 #include "base/cpu.h"
 
-#define LARGEST_VALUE 1e30f
-#define LARGEST_RATIO 1e3f
-#define SMALLEST_MASS 1e-30f
+#define MAX_VALUE 1e30f
+#define MAX_RATIO 1e3f
+#define MIN_MASS 1e-30f
 
 mspring_result mspring_builder_create(const mspring_allocator *allocator, mspring_builder **builder) {
     mspringi_memory memory;
@@ -57,10 +57,10 @@ mspring_result mspringi_builder_reserve_particles(mspring_builder *builder, size
                              "%zu particles in addition to %zu exceed the limit of %u (MSPRING_MAX_PARTICLES)",
                              count, builder->particle_count, (unsigned)MSPRING_MAX_PARTICLES);
     void *particles = builder->particles;
-    bool grown = mspringi_grow(&builder->memory, &particles, &builder->particle_capacity,
-                               builder->particle_count + count, sizeof *builder->particles);
+    bool is_grown = mspringi_grow(&builder->memory, &particles, &builder->particle_capacity,
+                                  builder->particle_count + count, sizeof *builder->particles);
     builder->particles = particles;
-    return grown
+    return is_grown
                ? MSPRING_OK
                : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu more particles", count);
 }
@@ -71,11 +71,12 @@ mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t
                              "%zu springs in addition to %zu exceed the limit of %u (MSPRING_MAX_SPRINGS)", count,
                              builder->spring_count, (unsigned)MSPRING_MAX_SPRINGS);
     void *springs = builder->springs;
-    bool grown = mspringi_grow(&builder->memory, &springs, &builder->spring_capacity, builder->spring_count + count,
-                               sizeof *builder->springs);
+    bool is_grown = mspringi_grow(&builder->memory, &springs, &builder->spring_capacity,
+                                  builder->spring_count + count, sizeof *builder->springs);
     builder->springs = springs;
-    return grown ? MSPRING_OK
-                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu more springs", count);
+    return is_grown
+               ? MSPRING_OK
+               : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu more springs", count);
 }
 
 mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t areas, size_t corners) {
@@ -83,14 +84,14 @@ mspring_result mspringi_builder_reserve_areas(mspring_builder *builder, size_t a
     if (areas >= MSPRING_NONE - builder->area_count || corners >= MSPRING_NONE - builder->corner_count)
         return mspringi_fail(&builder->message, MSPRING_ERROR_LIMIT, "%zu areas in addition to %zu are too many",
                              areas, builder->area_count);
-    bool grown = areas == 0 || mspringi_grow(&builder->memory, &list, &builder->area_capacity,
-                                             builder->area_count + areas, sizeof *builder->areas);
+    bool is_grown = areas == 0 || mspringi_grow(&builder->memory, &list, &builder->area_capacity,
+                                                builder->area_count + areas, sizeof *builder->areas);
     builder->areas = list;
-    grown = grown && (areas == 0 || mspringi_grow(&builder->memory, &all, &builder->corner_capacity,
-                                                  builder->corner_count + corners, sizeof *builder->corners));
+    is_grown = is_grown && (areas == 0 || mspringi_grow(&builder->memory, &all, &builder->corner_capacity,
+                                                        builder->corner_count + corners, sizeof *builder->corners));
     builder->corners = all;
-    return grown ? MSPRING_OK
-                 : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu more areas", areas);
+    return is_grown ? MSPRING_OK
+                    : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu more areas", areas);
 }
 
 void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, const mspring_id *corners,
@@ -111,19 +112,19 @@ mspring_result mspringi_check_struct_of(mspringi_message *message, const char *w
     mspringi_message reason;
     mspring_result result = mspringi_check_struct(&reason, name, given, known);
     if (result == MSPRING_OK)
-        result = mspringi_check_alike(&reason, given, struct_size);
+        result = mspringi_check_same_size(&reason, given, struct_size);
     return result == MSPRING_OK ? MSPRING_OK
                                 : mspringi_fail(message, result, "%s %zu: %s", what, index, reason.text);
 }
 
 // Prefix the message with the index in the caller's array.
-static mspring_result name_definition(mspring_builder *builder, mspring_result result, size_t index) {
+static mspring_result prefix_index(mspring_builder *builder, mspring_result result, size_t index) {
     const mspringi_message reason = builder->message;
     return mspringi_fail(&builder->message, result, "definition %zu: %s", index, reason.text);
 }
 
 mspring_result mspringi_check_mass(mspringi_message *message, const char *what, size_t index, float mass) {
-    if (mspringi_in_range(mass, SMALLEST_MASS, LARGEST_VALUE))
+    if (mspringi_in_range(mass, MIN_MASS, MAX_VALUE))
         return MSPRING_OK;
     return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: mass is %g kg, it must be 1e-30 to 1e30", what,
                          index, (double)mass);
@@ -131,7 +132,7 @@ mspring_result mspringi_check_mass(mspringi_message *message, const char *what, 
 
 mspring_result mspringi_check_coefficients(mspringi_message *message, const char *what, size_t index,
                                            float stiffness, float damping, uint32_t flags) {
-    if (!mspringi_in_range(stiffness, 0.0f, LARGEST_VALUE))
+    if (!mspringi_in_range(stiffness, 0.0f, MAX_VALUE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: stiffness is %g, it must be 0 to 1e30", what,
                              index, (double)stiffness);
     if (flags & ~(uint32_t)(MSPRINGI_KEPT_SPRING_FLAGS | MSPRING_SPRING_DAMPING_RATIO))
@@ -142,7 +143,7 @@ mspring_result mspringi_check_coefficients(mspringi_message *message, const char
                              "%s %zu: MSPRING_SPRING_PULL_ONLY and MSPRING_SPRING_PUSH_ONLY exclude each other",
                              what, index);
     const bool is_ratio = flags & MSPRING_SPRING_DAMPING_RATIO;
-    if (!mspringi_in_range(damping, 0.0f, is_ratio ? LARGEST_RATIO : LARGEST_VALUE))
+    if (!mspringi_in_range(damping, 0.0f, is_ratio ? MAX_RATIO : MAX_VALUE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s %zu: damping%s is %g, it must be 0 to %s", what,
                              index, is_ratio ? " ratio" : "", (double)damping, is_ratio ? "1000" : "1e30");
     return MSPRING_OK;
@@ -154,7 +155,7 @@ float mspringi_find_damping(float stiffness, float damping, uint32_t flags, floa
     const double reduced_mass = 1.0 / (1.0 / (double)mass_a + 1.0 / (double)mass_b);
     const double unit = flags & MSPRING_SPRING_RELATIVE ? 1.0 : reduced_mass;
     const double found = 2.0 * (double)damping * sqrt((double)stiffness * unit);
-    return found < (double)LARGEST_VALUE ? (float)found : LARGEST_VALUE;
+    return found < (double)MAX_VALUE ? (float)found : MAX_VALUE;
 }
 
 mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index, const mspring_particle_def *def,
@@ -206,10 +207,10 @@ mspring_result mspringi_find_rest_length(mspringi_message *message, size_t index
                                  "rest length: give one, or 0 to weld them",
                                  index, (unsigned)def->a, (unsigned)def->b);
     }
-    if (!(length >= 0.0f && length <= MSPRINGI_LARGEST_LENGTH))
+    if (!(length >= 0.0f && length <= MSPRINGI_MAX_LENGTH))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "spring %zu: rest length is %g m, it must be 0 to 4e12", index, (double)length);
-    *rest_length = mspringi_broken_length(length);
+    *rest_length = mspringi_stored_length(length);
     return MSPRING_OK;
 }
 
@@ -269,7 +270,7 @@ mspring_result mspring_builder_add_particles(mspring_builder *builder, const msp
         if (result == MSPRING_OK)
             append_particle(builder, def);
         else if (count > 1)
-            result = name_definition(builder, result, i);
+            result = prefix_index(builder, result, i);
     }
     if (result != MSPRING_OK)
         builder->particle_count = before;
@@ -299,7 +300,7 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_builder *builder, co
         if (result == MSPRING_OK)
             append_spring(builder, def, rest_length);
         else if (count > 1)
-            result = name_definition(builder, result, i);
+            result = prefix_index(builder, result, i);
     }
     if (result != MSPRING_OK)
         mspringi_builder_cut_springs(builder, before);

@@ -28,7 +28,7 @@ typedef struct mspringi_particle {
 #define MSPRINGI_WELD 0x1p-50f
 
 /// Convert a rest length from the host's to the stored one, and back.
-static inline float mspringi_broken_length(float given) {
+static inline float mspringi_stored_length(float given) {
     return given == 0.0f ? MSPRINGI_WELD : given;
 }
 static inline float mspringi_read_length(float kept) {
@@ -65,8 +65,8 @@ typedef struct mspringi_limits {
                        (def)->hardening, (def)->plastic_limit, 0.0f})
 
 /// Largest plastic strain and largest hardening.
-#define MSPRINGI_MOST_PLASTIC_STRAIN 0.9f
-#define MSPRINGI_MOST_HARDENING 10.0f
+#define MSPRINGI_MAX_PLASTIC_STRAIN 0.9f
+#define MSPRINGI_MAX_HARDENING 10.0f
 
 struct mspring_builder {
     mspringi_memory memory;
@@ -90,7 +90,7 @@ static inline bool mspringi_is_speed(float value) {
 }
 
 /// Larger than any distance within MSPRING_MAX_COORDINATE, m.
-#define MSPRINGI_LARGEST_LENGTH 4e12f
+#define MSPRINGI_MAX_LENGTH 4e12f
 
 // Comparisons are written to reject NaN.
 

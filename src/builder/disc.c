@@ -9,14 +9,14 @@
 #include "base/cpu.h"
 
 // Most rings: 1 + 3 n (n + 1) particles do not exceed MSPRING_MAX_PARTICLES.
-#define MOST_RINGS 4729u
+#define MAX_RINGS 4729u
 
 #define SECTORS 6u
 
 static mspring_result check_disc(mspringi_message *message, const mspring_disc_def *def) {
-    if (def->ring_count < 1 || def->ring_count > MOST_RINGS)
+    if (def->ring_count < 1 || def->ring_count > MAX_RINGS)
         return mspringi_fail(message, def->ring_count < 1 ? MSPRING_ERROR_ARGUMENT : MSPRING_ERROR_LIMIT,
-                             "disc has %u rings, it must have 1 to %u", (unsigned)def->ring_count, MOST_RINGS);
+                             "disc has %u rings, it must have 1 to %u", (unsigned)def->ring_count, MAX_RINGS);
     if (!(def->radius >= 1e-9 && def->radius <= 1e12))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "disc has a radius of %g m, it must be 1e-9 to 1e12",
                              def->radius);

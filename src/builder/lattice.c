@@ -39,18 +39,18 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
 }
 
 // True if neighbouring cells would have equal coordinates after rounding.
-static bool is_lost(double spacing, size_t cells, double low, double high) {
+static bool is_spacing_lost(double spacing, size_t cells, double low, double high) {
     return cells > 1 && (low + spacing == low || high - spacing == high);
 }
 
 // True if a full cell has a bend spring to the second cell to its right, or below it.
 
-static bool reaches_right(const mspring_lattice_def *def, size_t row, size_t column) {
+static bool has_bend_right(const mspring_lattice_def *def, size_t row, size_t column) {
     const uint16_t *cell = def->cells + row * def->width + column;
     return column + 2 < def->width && cell[1] != MSPRING_CELL_EMPTY && cell[2] != MSPRING_CELL_EMPTY;
 }
 
-static bool reaches_down(const mspring_lattice_def *def, size_t row, size_t column) {
+static bool has_bend_below(const mspring_lattice_def *def, size_t row, size_t column) {
     const size_t width = def->width;
     const uint16_t *cell = def->cells + row * width + column;
     return row + 2 < def->height && cell[width] != MSPRING_CELL_EMPTY && cell[2 * width] != MSPRING_CELL_EMPTY;
@@ -81,7 +81,7 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
         !mspringi_is_coordinate(top))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "lattice from (%g, %g) to (%g, %g) m is not within 1e12", def->x, def->y, right, top);
-    if (is_lost(def->spacing, width, def->x, right) || is_lost(def->spacing, height, def->y, top))
+    if (is_spacing_lost(def->spacing, width, def->x, right) || is_spacing_lost(def->spacing, height, def->y, top))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "lattice spacing %g m is lost in coordinates from (%g, %g) to (%g, %g) m",
                              def->spacing, def->x, def->y, right, top);
@@ -112,8 +112,8 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
             *springs += below && column > 0 && below[column - 1] != MSPRING_CELL_EMPTY;
             *springs += below && below[column] != MSPRING_CELL_EMPTY;
             *springs += has_shear && below && column + 1 < width && below[column + 1] != MSPRING_CELL_EMPTY;
-            *springs += has_bend && reaches_right(def, row, column);
-            *springs += has_bend && reaches_down(def, row, column);
+            *springs += has_bend && has_bend_right(def, row, column);
+            *springs += has_bend && has_bend_below(def, row, column);
         }
     }
     return MSPRING_OK;
@@ -218,9 +218,9 @@ static void append_bend_springs(mspring_builder *builder, const mspring_lattice_
         for (size_t column = 0; column < width; ++column) {
             const uint16_t *cell = def->cells + row * width + column;
             if (cell[0] != MSPRING_CELL_EMPTY) {
-                if (reaches_right(def, row, column))
+                if (has_bend_right(def, row, column))
                     join_cells(builder, def, id, cell[0], id + 2, cell[2], BEND);
-                if (reaches_down(def, row, column))
+                if (has_bend_below(def, row, column))
                     join_cells(builder, def, id, cell[0], second_below, cell[2 * width], BEND);
                 ++id;
             }

@@ -22,9 +22,9 @@ mspring_result mspringi_check_limits(mspringi_message *message, const char *what
          mspringi_is_relax_strain(limits.relax_strain)},
         {"yield strain", "> 0", limits.yield_strain, mspringi_is_threshold(limits.yield_strain)},
         {"hardening", "0 to 10", limits.hardening,
-         mspringi_in_range(limits.hardening, 0.0f, MSPRINGI_MOST_HARDENING)},
+         mspringi_in_range(limits.hardening, 0.0f, MSPRINGI_MAX_HARDENING)},
         {"plastic limit", "0 to 0.9", limits.plastic_limit,
-         mspringi_in_range(limits.plastic_limit, 0.0f, MSPRINGI_MOST_PLASTIC_STRAIN)},
+         mspringi_in_range(limits.plastic_limit, 0.0f, MSPRINGI_MAX_PLASTIC_STRAIN)},
     };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; ++i)
         if (!all[i].is_good)

@@ -10,7 +10,7 @@
 #include "base/cpu.h"
 
 // Smallest ratio of a triangle's height over its longest side to that side. Thinner ones have no area.
-#define THINNEST 1e-9
+#define MIN_ASPECT_RATIO 1e-9
 
 // Sides of triangles. Side 3 t + i of triangle t joins its corner i to the next one.
 typedef struct mesh_work {
@@ -98,7 +98,7 @@ static mspring_result check_triangle(mspringi_message *message, const mspring_me
     }
     const double twice = fabs(dx[0] * dy[1] - dy[0] * dx[1]);
     *area = 0.5 * twice;
-    if (twice > THINNEST * longest)
+    if (twice > MIN_ASPECT_RATIO * longest)
         return MSPRING_OK;
     return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "triangle %u has no area: vertices %u, %u and %u lie %s",
                          (unsigned)triangle, (unsigned)corners[0], (unsigned)corners[1], (unsigned)corners[2],
@@ -115,7 +115,8 @@ static mspring_result check_vertices(mspringi_message *message, const mspring_me
 }
 
 // Distribute the triangles' masses to their corners, a third each.
-static mspring_result weigh(mspringi_message *message, const mspring_mesh_def *def, const mesh_work *work) {
+static mspring_result distribute_mass(mspringi_message *message, const mspring_mesh_def *def,
+                                      const mesh_work *work) {
     for (uint32_t t = 0; t < def->triangle_count; ++t) {
         double area;
         mspring_result result = check_triangle(message, def, t, &area);
@@ -194,8 +195,7 @@ static mspring_result append_edge(mspring_builder *builder, const mspring_mesh_d
     const float stiffness = def->young_modulus > 0.0f
                                 ? (float)((double)def->young_modulus * work->area[side] / square)
                                 : def->stiffness;
-    if (!(rest_length > 0.0f && rest_length <= MSPRINGI_LARGEST_LENGTH) ||
-        !mspringi_in_range(stiffness, 0.0f, 1e30f))
+    if (!(rest_length > 0.0f && rest_length <= MSPRINGI_MAX_LENGTH) || !mspringi_in_range(stiffness, 0.0f, 1e30f))
         return mspringi_fail(
             &builder->message, MSPRING_ERROR_ARGUMENT,
             "edge of vertices %u and %u: length %g m must be > 0 and at most 4e12, stiffness %g N/m "
@@ -247,7 +247,7 @@ mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring
     if (result == MSPRING_OK)
         result = allocate(builder, def->vertex_count, 3 * (size_t)def->triangle_count, &work);
     if (result == MSPRING_OK)
-        result = weigh(message, def, &work);
+        result = distribute_mass(message, def, &work);
     if (result == MSPRING_OK)
         result = append_mesh(builder, def, &work);
     release(builder, &work);

@@ -36,7 +36,7 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
     const mspringi_particle *from = &builder->particles[def->from], *to = &builder->particles[def->to];
     const double dx = to->x - from->x, dy = to->y - from->y;
     const float segment = (float)(sqrt(dx * dx + dy * dy) * (double)def->slack / (double)def->segment_count);
-    if (!(segment > 0.0f && segment <= MSPRINGI_LARGEST_LENGTH))
+    if (!(segment > 0.0f && segment <= MSPRINGI_MAX_LENGTH))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "rope from particle %u to %u: a segment would be %g m long, it must be > 0 and at "
                              "most 4e12",

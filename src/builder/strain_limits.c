@@ -3,7 +3,7 @@
 #include "builder/builder.h"
 
 /// Largest stiffening. Beyond it, even a stable substep gains energy when a spring meets its limit.
-#define MOST_STIFFENING 30.0f
+#define MAX_STIFFENING 30.0f
 
 static mspring_result check_range(mspring_builder *builder, mspring_id first, uint32_t count, float strain,
                                   float stiffening) {
@@ -15,33 +15,33 @@ static mspring_result check_range(mspring_builder *builder, mspring_id first, ui
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "strain limit is %g, it must be above 0 for pull, or -1 to 0 for push, both excluded",
                              (double)strain);
-    if (!(stiffening > 0.0f && stiffening <= MOST_STIFFENING))
+    if (!(stiffening > 0.0f && stiffening <= MAX_STIFFENING))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "stiffening is %g, it must be above 0 and at most %g",
-                             (double)stiffening, (double)MOST_STIFFENING);
+                             (double)stiffening, (double)MAX_STIFFENING);
     return MSPRING_OK;
 }
 
 // Break strain of the limit, so that it breaks at the same length as the original spring.
 static float break_strain_of(float break_strain, float strain) {
     const double length = 1.0 + (strain > 0.0f ? (double)break_strain : -(double)break_strain);
-    const double beyond = length / (1.0 + (double)strain) - 1.0;
-    return break_strain == MSPRING_NEVER ? MSPRING_NEVER : (float)(strain > 0.0f ? beyond : -beyond);
+    const double limit_strain = length / (1.0 + (double)strain) - 1.0;
+    return break_strain == MSPRING_NEVER ? MSPRING_NEVER : (float)(strain > 0.0f ? limit_strain : -limit_strain);
 }
 
 static mspring_result add_limit(mspring_builder *builder, size_t spring, float strain, float stiffening) {
     mspringi_message *message = &builder->message;
-    const mspringi_spring beside = builder->springs[spring];
-    const float rest_length = mspringi_read_length(beside.rest_length);
+    const mspringi_spring original = builder->springs[spring];
+    const float rest_length = mspringi_read_length(original.rest_length);
     const float break_strain = mspringi_builder_limits_of(builder, spring).break_strain;
-    const mspringi_spring limit = {.a = beside.a,
-                                   .b = beside.b,
-                                   .stiffness = beside.stiffness * stiffening,
+    const mspringi_spring limit = {.a = original.a,
+                                   .b = original.b,
+                                   .stiffness = original.stiffness * stiffening,
                                    .rest_length = (1.0f + strain) * rest_length,
-                                   .flags = (beside.flags & MSPRING_SPRING_RELATIVE) |
+                                   .flags = (original.flags & MSPRING_SPRING_RELATIVE) |
                                             (strain > 0.0f ? MSPRING_SPRING_PULL_ONLY : MSPRING_SPRING_PUSH_ONLY)};
     mspringi_limits limits = mspringi_builder_limits_of(builder, SIZE_MAX);
     limits.break_strain = break_strain_of(break_strain, strain);
-    if (!(limit.rest_length > 0.0f && limit.rest_length <= MSPRINGI_LARGEST_LENGTH))
+    if (!(limit.rest_length > 0.0f && limit.rest_length <= MSPRINGI_MAX_LENGTH))
         return mspringi_fail(
             message, MSPRING_ERROR_ARGUMENT,
             "spring %zu has the rest length %g m, so its limit is at %g m, which must be > 0 and at "

@@ -31,7 +31,7 @@ static mspringi_pose pose_after(const mspringi_collider *c, uint32_t done, uint3
 // Points of a pose, local coordinates.
 static void put_points(const mspringi_colliders *all, const mspringi_collider *c, mspringi_pose pose, double *x,
                        double *y) {
-    const mspringi_rotation turn = mspringi_turn_by(pose.angle);
+    const mspringi_rotation turn = mspringi_rotation_by(pose.angle);
     const double local_x = pose.x - all->origin_x, local_y = pose.y - all->origin_y;
     for (uint32_t i = c->first; i < c->first + c->count; ++i) {
         const double u = all->shape[2 * i], v = all->shape[2 * i + 1];

@@ -16,7 +16,7 @@ typedef struct mspringi_values {
 
 static inline float mspringi_value_of(const mspringi_values *values, uint32_t i) {
     const float value = values->first[i * values->stride];
-    return values->property == MSPRING_REST_LENGTH ? mspringi_broken_length(value) : mspringi_broken_value(value);
+    return values->property == MSPRING_REST_LENGTH ? mspringi_stored_length(value) : mspringi_broken_value(value);
 }
 
 /// Set them of particles (edit_particles.c) or springs (edit_springs.c). What has its value already is left alone.

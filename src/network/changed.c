@@ -9,14 +9,14 @@
 #include "store/springs.h"
 
 /// Longest log of broken and restored springs: more than break in one frame.
-#define LONGEST_LOG 4096
+#define MAX_LOG_SIZE 4096
 
 mspring_result mspringi_changed_reserve_log(mspring_network *network) {
     const uint32_t springs = network->topology.reserve.spring_end;
     uint32_t log_size = 1;
     if (network->edits.link_log)
         return MSPRING_OK;
-    while (log_size < springs && log_size < LONGEST_LOG)
+    while (log_size < springs && log_size < MAX_LOG_SIZE)
         log_size *= 2;
     network->edits.link_log = mspringi_alloc(&network->memory, log_size, sizeof *network->edits.link_log);
     if (!network->edits.link_log)
@@ -49,7 +49,7 @@ static void free_slot(const mspring_network *network, uint32_t slot) {
         mspringi_outline_clear_slot(network, slot);
 }
 
-static void tell_of_floor(const mspring_network *network) {
+static void notify_floor(const mspring_network *network) {
     if (network->solver.ops->new_floor)
         network->solver.ops->new_floor(network->solver.object);
 }
@@ -65,10 +65,10 @@ static void tell_of_floor(const mspring_network *network) {
 #define WAKE_SPRING mspringi_wake_spring(network, index);
 #define WAKE_SLOT mspringi_wake_slot(network, index);
 #define FREE_ENDS free_ends(network, index);
-#define FLOOR tell_of_floor(network);
+#define FLOOR notify_floor(network);
 
-void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t index) {
-    switch (what) {
+void mspringi_dispatch_change(mspring_network *network, mspringi_change change, uint32_t index) {
+    switch (change) {
 #define CHANGE(name, listeners)                                                                                    \
     case MSPRINGI_CHANGED_##name:                                                                                  \
         listeners break;

@@ -9,57 +9,57 @@
 #include "store/store.h"
 
 /// Memories of the original and of the copy.
-typedef struct moving {
+typedef struct relocation {
     const mspringi_memory *from, *to;
-} moving;
+} relocation;
 
 /// Redirect a copied pointer to the copy of its block.
-#define MOVE(pointer) ((pointer) = mspringi_memory_moved(m->from, m->to, (pointer)))
+#define RELOCATE(pointer) ((pointer) = mspringi_memory_relocate(r->from, r->to, (pointer)))
 
-static void move_field(const moving *m, mspringi_field *field) {
-    MOVE(field->x);
-    MOVE(field->y);
+static void relocate_field(const relocation *r, mspringi_field *field) {
+    RELOCATE(field->x);
+    RELOCATE(field->y);
 }
 
-static void move_state(const moving *m, mspringi_state *state) {
-    MOVE(state->x);
-    MOVE(state->y);
-    MOVE(state->vx);
-    MOVE(state->vy);
-    MOVE(state->low_x);
-    MOVE(state->low_y);
+static void relocate_state(const relocation *r, mspringi_state *state) {
+    RELOCATE(state->x);
+    RELOCATE(state->y);
+    RELOCATE(state->vx);
+    RELOCATE(state->vy);
+    RELOCATE(state->low_x);
+    RELOCATE(state->low_y);
 }
 
-static void move_floor(const moving *m, mspringi_floor *floor) {
-    MOVE(floor->heights.heights);
-    MOVE(floor->heights.normals);
-    MOVE(floor->heights.frictions);
-    MOVE(floor->heights.restitutions);
-    MOVE(floor->plane_frictions);
-    MOVE(floor->plane_restitutions);
+static void relocate_floor(const relocation *r, mspringi_floor *floor) {
+    RELOCATE(floor->heights.heights);
+    RELOCATE(floor->heights.normals);
+    RELOCATE(floor->heights.frictions);
+    RELOCATE(floor->heights.restitutions);
+    RELOCATE(floor->plane_frictions);
+    RELOCATE(floor->plane_restitutions);
     for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)
-        MOVE(floor->heights.highest[i]);
-    MOVE(floor->clearances);
-    MOVE(floor->contacts);
-    move_field(m, &floor->start);
-    move_state(m, &floor->before);
-    move_field(m, &floor->impulse);
-    move_field(m, &floor->previous_impulse);
+        RELOCATE(floor->heights.highest[i]);
+    RELOCATE(floor->clearances);
+    RELOCATE(floor->contacts);
+    relocate_field(r, &floor->start);
+    relocate_state(r, &floor->before);
+    relocate_field(r, &floor->impulse);
+    relocate_field(r, &floor->previous_impulse);
 }
 
-static void move_network(const moving *m, mspring_network *n) {
-    mspringi_array_table_relocate(mspringi_topology_arrays, &n->topology, m->from, m->to);
-    mspringi_array_table_relocate(mspringi_topology_arrays, &n->whole, m->from, m->to);
-    mspringi_store_relocate(n, m->from, m->to);
+static void relocate_network(const relocation *r, mspring_network *n) {
+    mspringi_array_table_relocate(mspringi_topology_arrays, &n->topology, r->from, r->to);
+    mspringi_array_table_relocate(mspringi_topology_arrays, &n->whole, r->from, r->to);
+    mspringi_store_relocate(n, r->from, r->to);
     for (size_t i = 0; i < n->hook_count; ++i)
-        move_field(m, &n->hooks[i].held);
-    MOVE(n->floor);
+        relocate_field(r, &n->hooks[i].held);
+    RELOCATE(n->floor);
     if (n->floor)
-        move_floor(m, n->floor);
-    MOVE(n->contacts);
+        relocate_floor(r, n->floor);
+    RELOCATE(n->contacts);
     if (n->contacts)
-        mspringi_contacts_relocate(n->contacts, m->from, m->to);
-    mspringi_solvers_relocate(n, m->from, m->to);
+        mspringi_contacts_relocate(n->contacts, r->from, r->to);
+    mspringi_solvers_relocate(n, r->from, r->to);
 }
 
 /* ---------------------------------------------------------------------------------------------------- the clone */
@@ -78,7 +78,7 @@ static bool has_hook_with_storage(const mspring_network *network) {
 }
 
 // Give a clone its own threads and their working memory.
-static mspring_result employ(mspring_network *network, const mspring_clone_def *def) {
+static mspring_result start_tasks(mspring_network *network, const mspring_clone_def *def) {
     mspring_result result = mspringi_shared_reserve(network);
     if (result == MSPRING_OK)
         result = mspringi_tasks_create(def->worker_count, def->tasks, &network->tasks_memory, &network->message,
@@ -93,7 +93,7 @@ static mspring_result copy(const mspring_network *network, const mspring_clone_d
     mspringi_memory memory = {.allocator = *allocator};
     mspring_network *made = NULL;
     if (mspringi_memory_copy(&network->memory, &memory))
-        made = mspringi_memory_moved(&network->memory, &memory, network);
+        made = mspringi_memory_relocate(&network->memory, &memory, network);
     if (!made) {
         mspringi_free_all(&memory);
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a copy of the network");
@@ -104,10 +104,10 @@ static mspring_result copy(const mspring_network *network, const mspring_clone_d
     made->job = NULL;
     mspringi_message_clear(&made->message);
     made->shared = NULL;
-    move_network(&(moving){&network->memory, &made->memory}, made);
+    relocate_network(&(relocation){&network->memory, &made->memory}, made);
     if (!(def->flags & MSPRING_CLONE_HOOKS))
         drop_hooks(made);
-    mspring_result result = employ(made, def);
+    mspring_result result = start_tasks(made, def);
     if (result == MSPRING_OK) {
         *clone = made;
     } else {
@@ -156,5 +156,5 @@ mspring_result mspring_network_clone(const mspring_network *network, const mspri
         result = mspringi_memory_init(&memory, def->allocator, &message);
     if (result == MSPRING_OK)
         result = copy(network, def, &memory.allocator, clone, &message);
-    return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_take(network->shared, result, &message);
+    return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_set(network->shared, result, &message);
 }

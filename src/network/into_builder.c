@@ -91,14 +91,15 @@ static mspring_result append_particle(mspring_builder *builder, const mspring_ne
 static mspringi_limits limits_of(const mspring_network *network, mspring_id s) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
     const float *nominal = network->plastic.nominal;
-    const bool is_bent = nominal && nominal[spring_slot] != mspringi_spring_slot_own_length(network, spring_slot);
+    const bool has_flowed =
+        nominal && nominal[spring_slot] != mspringi_spring_slot_own_length(network, spring_slot);
     return (mspringi_limits){.break_strain = mspringi_spring_property(network, MSPRING_BREAK_STRAIN, s),
                              .stress_strain = mspringi_spring_property(network, MSPRING_STRESS_STRAIN, s),
                              .relax_strain = mspringi_spring_property(network, MSPRING_RELAX_STRAIN, s),
                              .yield_strain = mspringi_spring_property(network, MSPRING_YIELD_STRAIN, s),
                              .hardening = mspringi_spring_property(network, MSPRING_HARDENING, s),
                              .plastic_limit = mspringi_spring_property(network, MSPRING_PLASTIC_LIMIT, s),
-                             .nominal_length = is_bent ? nominal[spring_slot] : 0.0f};
+                             .nominal_length = has_flowed ? nominal[spring_slot] : 0.0f};
 }
 
 static void append_spring(mspring_builder *builder, const mspring_network *network, const id_maps *maps,
@@ -131,7 +132,7 @@ static mspring_result reserve_limits(mspring_builder *builder, const mspring_net
 }
 
 // True if an area or angle is added: all of its corners are, and it is intact.
-static bool goes_along(const mspring_network *network, const id_maps *maps, const mspringi_area *area) {
+static bool is_added(const mspring_network *network, const id_maps *maps, const mspringi_area *area) {
     for (uint32_t i = 0; i < area->count; ++i)
         if (maps->particles[network->areas.corners[area->first + i].particle] == MSPRING_NONE)
             return false;
@@ -142,7 +143,7 @@ static mspring_result reserve_areas(mspring_builder *builder, const mspring_netw
     const mspringi_areas *a = &network->areas;
     size_t areas = 0, corners = 0;
     for (size_t i = 0; i < a->count; ++i)
-        if (goes_along(network, maps, &a->list[i])) {
+        if (is_added(network, maps, &a->list[i])) {
             areas++;
             corners += a->list[i].count;
         }
@@ -153,7 +154,7 @@ static void append_areas(mspring_builder *builder, const mspring_network *networ
     const mspringi_areas *a = &network->areas;
     mspring_id corners[MSPRING_MAX_AREA_PARTICLES];
     for (size_t i = 0; i < a->count; ++i) {
-        if (!goes_along(network, maps, &a->list[i]))
+        if (!is_added(network, maps, &a->list[i]))
             continue;
         for (uint32_t k = 0; k < a->list[i].count; ++k)
             corners[k] = maps->particles[a->corners[a->list[i].first + k].particle];

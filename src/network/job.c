@@ -60,9 +60,9 @@ static bool is_valid(const mspring_job *job, const mspring_network *network) {
 static bool copy_topologies(mspring_job *job, const mspring_network *network) {
     job->from.topology = network->topology;
     if (network->is_compact)
-        job->first = network->whole;
+        job->initial = network->whole;
     return mspringi_array_table_duplicate(mspringi_topology_arrays, &job->from.topology, &job->memory) &&
-           mspringi_array_table_duplicate(mspringi_topology_arrays, &job->first, &job->memory);
+           mspringi_array_table_duplicate(mspringi_topology_arrays, &job->initial, &job->memory);
 }
 
 // Copy the spring arrays and the live bits, and the masses if a solver is to be built.
@@ -82,11 +82,11 @@ static bool copy_arrays(mspring_job *job, const mspring_network *network) {
     return job->changed && (from->inverse_mass || !has_solver);
 }
 
-static void ask_for_solver(mspringi_job_solver *asked, const mspringi_solver *solver, uint32_t tile_size) {
+static void get_solver_def(mspringi_job_solver *request, const mspringi_solver *solver, uint32_t tile_size) {
     if (!solver->ops || !solver->ops->create)
         return;
-    solver->ops->get_def(solver->object, &asked->def);
-    asked->tile_size = tile_size;
+    solver->ops->get_def(solver->object, &request->def);
+    request->tile_size = tile_size;
 }
 
 // True if an earlier job found nothing to do, and no spring was edited since.
@@ -97,7 +97,7 @@ static bool is_seen_compact(const mspring_network *network) {
 
 static bool copy_all(mspring_job *job, const mspring_network *network) {
     const bool is_whole = job->layout == MSPRING_LAYOUT_WHOLE;
-    job->to = mspringi_relayout_shell(network);
+    job->to = mspringi_relayout_copy_shell(network);
     job->to.memory = (mspringi_memory){.allocator = network->memory.allocator};
     job->to.tasks = NULL; // owned by the network; finish reserves what more workers need
     job->to.message = (mspringi_message){0};
@@ -111,8 +111,8 @@ static bool copy_all(mspring_job *job, const mspring_network *network) {
     job->links = network->edits.links;
     job->growth = network->edits.growth;
     job->is_needless = is_whole ? !network->is_compact : is_seen_compact(network);
-    ask_for_solver(&job->solvers[0], &network->solver, is_whole ? network->whole_tile_size : 0);
-    ask_for_solver(&job->solvers[1], &network->fallback, is_whole ? network->whole_fallback_size : 0);
+    get_solver_def(&job->solvers[0], &network->solver, is_whole ? network->whole_tile_size : 0);
+    get_solver_def(&job->solvers[1], &network->fallback, is_whole ? network->whole_fallback_size : 0);
     if (job->is_needless)
         return true;
     if (!copy_topologies(job, network) || !copy_arrays(job, network))
@@ -160,7 +160,7 @@ mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout
 /* --------------------------------------------------------------------------------------------------------- run */
 
 static mspring_result take_whole(mspring_job *job) {
-    job->to.topology = job->first;
+    job->to.topology = job->initial;
     job->fingerprint = job->from.whole_fingerprint;
     // Results belong to the memory of `to`, which is still empty.
     return mspringi_array_table_duplicate(mspringi_topology_arrays, &job->to.topology, &job->to.memory)
@@ -177,12 +177,13 @@ static uint32_t particles_of(const mspring_job *job) {
 }
 
 static uint32_t rows_of(const mspring_job *job) {
-    return mspringi_job_first(job)->lattice_rows;
+    return mspringi_job_initial_topology(job)->lattice_rows;
 }
 
 MSPRINGI_PASSES(job, mspring_job)
 #define MOVE                                                                                                       \
-    MSPRINGI_ONCE(mspringi_relayout_begin), MSPRINGI_EACH(mspringi_relayout_note_rest_lengths, springs_of, 16000), \
+    MSPRINGI_ONCE(mspringi_relayout_begin),                                                                        \
+        MSPRINGI_EACH(mspringi_relayout_compare_rest_lengths, springs_of, 16000),                                  \
         MSPRINGI_ONCE(mspringi_relayout_reserve_springs),                                                          \
         MSPRINGI_EACH(mspringi_relayout_copy_springs, springs_of, 16000),                                          \
         MSPRINGI_ONCE(mspringi_relayout_reserve_others), MSPRINGI_ONCE(mspringi_relayout_make_solver),             \
@@ -190,7 +191,7 @@ MSPRINGI_PASSES(job, mspring_job)
 
 static const job_pass compact_passes[] = {
     MSPRINGI_ONCE(mspringi_survivors_begin),
-    MSPRINGI_EACH(mspringi_survivors_look, springs_of, 64000),
+    MSPRINGI_EACH(mspringi_survivors_count_live, springs_of, 64000),
     MSPRINGI_ONCE(mspringi_survivors_reserve),
     MSPRINGI_EACH(mspringi_survivors_place_on_diagonal, particles_of, 64000),
     MSPRINGI_EACH(mspringi_survivors_place_in_grids, rows_of, 64),
@@ -199,8 +200,8 @@ static const job_pass compact_passes[] = {
     MSPRINGI_ONCE(mspringi_survivors_lay_out),
     MSPRINGI_ONCE(mspringi_survivors_finish_layout),
     MSPRINGI_EACH(mspringi_survivors_number_spring_slots, springs_of, 64000),
-    MSPRINGI_EACH(mspringi_survivors_note_ends, springs_of, 32000),
-    MSPRINGI_ONCE(mspringi_survivors_keep_spare),
+    MSPRINGI_EACH(mspringi_survivors_save_ends, springs_of, 32000),
+    MSPRINGI_ONCE(mspringi_survivors_assign_spare),
     MSPRINGI_EACH(mspringi_survivors_fingerprint_slots, particles_of, 64000),
     MSPRINGI_EACH(mspringi_survivors_fingerprint_spring_slots, springs_of, 64000),
     MOVE,

@@ -33,7 +33,7 @@ struct mspring_job {
     mspring_network from;           ///< copies by begin; owns all that it points to
     mspring_network to;             ///< results so far
     mspring_network shape;          ///< network at begin: only the presence of its arrays is read
-    mspringi_topology first;        ///< initial layout of the network; empty if from has it
+    mspringi_topology initial;      ///< initial layout of the network; empty if from has it
     mspringi_job_solver solvers[2]; ///< present solver and fallback
     uint32_t workers;
     uint64_t links, growth; ///< edits.links and edits.growth
@@ -51,7 +51,7 @@ struct mspring_job {
     uint64_t fingerprint; ///< of the layout, so far
 
     // relayout.c
-    mspringi_spring_slot *there;     ///< spring slot in `to`, by spring slot in `from`
+    mspringi_spring_slot *new_slot;  ///< spring slot in `to`, by spring slot in `from`
     mspringi_rest_pattern *of_block; ///< [lattice blocks] while rest lengths are compared
     uint16_t *changed;               ///< a bit for each spring slot in `from`, set by edits since begin
     bool has_changed, has_all_changed;
@@ -63,19 +63,19 @@ void mspringi_job_track_all(const mspring_network *network);
 /// Mark the job as outdated: the network's layout has changed, or the network was destroyed.
 void mspringi_job_invalidate(mspring_network *network);
 
-static inline const mspringi_topology *mspringi_job_first(const mspring_job *job) {
-    return job->first.slot_of_particle ? &job->first : &job->from.topology;
+static inline const mspringi_topology *mspringi_job_initial_topology(const mspring_job *job) {
+    return job->initial.slot_of_particle ? &job->initial : &job->from.topology;
 }
 
 mspring_result mspringi_job_no_memory(mspring_job *job);
 
 /// Copy a network without its arrays by slot or spring slot.
-mspring_network mspringi_relayout_shell(const mspring_network *network);
+mspring_network mspringi_relayout_copy_shell(const mspring_network *network);
 
 /* survivors.c: a topology of the springs that are left, in this order. Ranges are of springs, but for particles
  * and, in place_in_grids, lattice rows. */
 mspring_result mspringi_survivors_begin(mspring_job *job);
-mspring_result mspringi_survivors_look(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_survivors_count_live(mspring_job *job, uint32_t first, uint32_t end);
 mspring_result mspringi_survivors_reserve(mspring_job *job);
 mspring_result mspringi_survivors_place_on_diagonal(mspring_job *job, uint32_t first, uint32_t end);
 mspring_result mspringi_survivors_place_in_grids(mspring_job *job, uint32_t first, uint32_t end);
@@ -84,14 +84,14 @@ mspring_result mspringi_survivors_begin_layout(mspring_job *job);
 mspring_result mspringi_survivors_lay_out(mspring_job *job);
 mspring_result mspringi_survivors_finish_layout(mspring_job *job);
 mspring_result mspringi_survivors_number_spring_slots(mspring_job *job, uint32_t first, uint32_t end);
-mspring_result mspringi_survivors_note_ends(mspring_job *job, uint32_t first, uint32_t end);
-mspring_result mspringi_survivors_keep_spare(mspring_job *job);
+mspring_result mspringi_survivors_save_ends(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_survivors_assign_spare(mspring_job *job);
 mspring_result mspringi_survivors_fingerprint_slots(mspring_job *job, uint32_t first, uint32_t end);
 mspring_result mspringi_survivors_fingerprint_spring_slots(mspring_job *job, uint32_t first, uint32_t end);
 
 /* relayout.c: what lies by slot or place in the new topology, in this order. */
 mspring_result mspringi_relayout_begin(mspring_job *job);
-mspring_result mspringi_relayout_note_rest_lengths(mspring_job *job, uint32_t first, uint32_t end);
+mspring_result mspringi_relayout_compare_rest_lengths(mspring_job *job, uint32_t first, uint32_t end);
 mspring_result mspringi_relayout_reserve_springs(mspring_job *job);
 mspring_result mspringi_relayout_copy_springs(mspring_job *job, uint32_t first, uint32_t end);
 mspring_result mspringi_relayout_reserve_others(mspring_job *job);

@@ -6,13 +6,13 @@
 
 /// Most registers of the narrower level for each of the wider one, in eighths: a rope next to a narrow lattice
 /// changes nothing.
-#define MOST_EIGHTHS 9u
+#define MAX_EIGHTHS 9u
 
 /// Most particles of a narrow network.
-#define MOST_PARTICLES 64u
+#define MAX_PARTICLES 64u
 
 // Registers that a substep fills.
-static uint64_t registers(const mspringi_topology *t, uint32_t lanes) {
+static uint64_t register_count(const mspringi_topology *t, uint32_t lanes) {
     const uint32_t lattice_end = t->chain_first * MSPRINGI_WIDTH;
     const uint64_t slice_columns =
         t->irregular.slice_count > 0 ? t->irregular.first_slice_column[t->irregular.slice_count] : 0;
@@ -24,10 +24,10 @@ static uint64_t registers(const mspringi_topology *t, uint32_t lanes) {
     return count;
 }
 
-mspring_simd mspringi_level_for(const mspringi_topology *topology, mspring_simd widest) {
+mspring_simd mspringi_choose_level(const mspringi_topology *topology, mspring_simd widest) {
     const bool is_narrow =
         widest == MSPRING_SIMD_AVX512 && topology->lattice_blocks > 0 &&
-        topology->particle_count <= MOST_PARTICLES &&
-        8 * registers(topology, MSPRINGI_WIDTH / 2) <= MOST_EIGHTHS * registers(topology, MSPRINGI_WIDTH);
+        topology->particle_count <= MAX_PARTICLES &&
+        8 * register_count(topology, MSPRINGI_WIDTH / 2) <= MAX_EIGHTHS * register_count(topology, MSPRINGI_WIDTH);
     return is_narrow ? MSPRING_SIMD_AVX2 : widest;
 }

@@ -9,6 +9,6 @@
 
 /// Level for a layout if the host leaves the choice to the library: the widest, or one of narrower registers if
 /// rows fill no more of these.
-mspring_simd mspringi_level_for(const mspringi_topology *topology, mspring_simd widest);
+mspring_simd mspringi_choose_level(const mspringi_topology *topology, mspring_simd widest);
 
 #endif

@@ -55,7 +55,7 @@ mspring_result mspringi_check_report(const mspring_network *network, const char 
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     const mspring_result result = mspringi_check_output(&message, name, out, known);
-    return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_take(network->shared, result, &message);
+    return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_set(network->shared, result, &message);
 }
 
 mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
@@ -123,7 +123,7 @@ mspring_result mspringi_carry_reserve(mspring_network *network) {
 }
 
 // Check which arrays the springs need.
-static void look_at_springs(const mspring_builder *builder, bool *damped, bool *relative) {
+static void check_springs(const mspring_builder *builder, bool *damped, bool *relative) {
     *damped = *relative = false;
     for (size_t s = 0; s < builder->spring_count; ++s) {
         *damped = *damped || builder->springs[s].damping > 0.0f;
@@ -189,8 +189,8 @@ static void fill_particles(mspring_network *network, const mspring_builder *buil
 }
 
 // Update the fingerprints, which tell this network's snapshots from those of others.
-static void take_fingerprints(mspring_network *network, const mspringi_spring *spring,
-                              mspringi_spring_slot spring_slot) {
+static void update_fingerprints(mspring_network *network, const mspringi_spring *spring,
+                                mspringi_spring_slot spring_slot) {
     uint64_t fingerprint = network->topology_fingerprint;
     fingerprint = mspringi_hash(fingerprint, (uint64_t)spring->a << 32 | spring->b);
     fingerprint = mspringi_hash(fingerprint, (uint64_t)spring_slot << 32 | spring->flags);
@@ -217,13 +217,13 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
         mspringi_spring_slot_set_rest_length(network, spring_slot, spring->rest_length);
         mspringi_spring_slot_set(network, spring_slot, relative ? 0.0f : spring->stiffness,
                                  relative ? 0.0f : spring->damping);
-        take_fingerprints(network, spring, spring_slot);
+        update_fingerprints(network, spring, spring_slot);
         network->live[spring_slot / MSPRINGI_WIDTH] |= (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     }
 }
 
 // Mark springs whose first end has the higher id, which are few.
-static mspring_result note_turned(mspring_network *network, const mspring_builder *builder) {
+static mspring_result mark_reversed(mspring_network *network, const mspring_builder *builder) {
     for (size_t s = 0; s < builder->spring_count; ++s) {
         if (builder->springs[s].a < builder->springs[s].b)
             continue;
@@ -274,8 +274,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level == MSPRING_SIMD_AUTO)
-        network->kernels = mspringi_kernels_of(mspringi_level_for(&network->topology, network->kernels->level));
-    look_at_springs(builder, &damped, &relative);
+        network->kernels = mspringi_kernels_of(mspringi_choose_level(&network->topology, network->kernels->level));
+    check_springs(builder, &damped, &relative);
     damped = damped || (def->flags & MSPRING_NETWORK_RESERVE_DAMPING);
     relative = relative || (def->flags & MSPRING_NETWORK_RESERVE_RELATIVE);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
@@ -293,7 +293,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (def->sleep_speed > 0.0f)
         result = mspringi_sleep_reserve(network);
     if (result == MSPRING_OK)
-        result = note_turned(network, builder);
+        result = mark_reversed(network, builder);
     if (result != MSPRING_OK)
         return result;
     network->guard.speed = network->guard.coordinate = INFINITY; // unknown

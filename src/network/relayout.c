@@ -24,12 +24,12 @@ static mspring_result no_memory_to_move(mspring_network *to) {
 
 mspring_result mspringi_relayout_begin(mspring_job *job) {
     const size_t spring_slots = mspringi_spring_slot_words(&job->from.topology) * MSPRINGI_WIDTH;
-    job->there = mspringi_alloc(&job->memory, spring_slots, sizeof *job->there);
+    job->new_slot = mspringi_alloc(&job->memory, spring_slots, sizeof *job->new_slot);
     job->of_block = mspringi_alloc(&job->memory, job->to.topology.lattice_blocks, sizeof *job->of_block);
-    return job->there && job->of_block ? MSPRING_OK : no_memory_to_move(&job->to);
+    return job->new_slot && job->of_block ? MSPRING_OK : no_memory_to_move(&job->to);
 }
 
-mspring_result mspringi_relayout_note_rest_lengths(mspring_job *job, uint32_t first, uint32_t end) {
+mspring_result mspringi_relayout_compare_rest_lengths(mspring_job *job, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &job->to.topology;
     for (mspring_id s = first; s < end; ++s)
         if (t->slot_of_spring[s] < t->lattice_spring_slots)
@@ -64,8 +64,8 @@ static void copy_spring(mspring_network *to, mspringi_spring_slot spring_slot, c
 mspring_result mspringi_relayout_copy_springs(mspring_job *job, uint32_t first, uint32_t end) {
     for (mspring_id s = first; s < end; ++s) {
         const mspringi_spring_slot before = job->from.topology.slot_of_spring[s];
-        job->there[before] = job->to.topology.slot_of_spring[s];
-        copy_spring(&job->to, job->there[before], &job->from, before);
+        job->new_slot[before] = job->to.topology.slot_of_spring[s];
+        copy_spring(&job->to, job->new_slot[before], &job->from, before);
     }
     return MSPRING_OK;
 }
@@ -82,7 +82,7 @@ static void copy_changed(mspring_network *to, const mspring_network *from, const
         for (uint32_t bit = 0; job->changed[word] >> bit != 0; ++bit)
             if (job->changed[word] >> bit & 1) {
                 const mspringi_spring_slot before = (mspringi_spring_slot)(word * MSPRINGI_WIDTH + bit);
-                copy_spring(to, job->there[before], from, before);
+                copy_spring(to, job->new_slot[before], from, before);
             }
 }
 
@@ -96,11 +96,11 @@ mspring_result mspringi_relayout_reserve_others(mspring_job *job) {
     return job->shape.guard_scratch ? mspringi_stability_limit_reserve(&job->to) : MSPRING_OK;
 }
 
-static mspring_result make_solver(mspring_job *job, mspringi_solver *made, const mspringi_job_solver *asked) {
+static mspring_result make_solver(mspring_job *job, mspringi_solver *made, const mspringi_job_solver *request) {
     bool is_done = !made->ops || !made->ops->build || !made->object;
     mspring_result result = MSPRING_OK;
     if (!made->object && made->ops && made->ops->create) {
-        result = made->ops->create(&job->to, &asked->def, asked->tile_size, &made->object);
+        result = made->ops->create(&job->to, &request->def, request->tile_size, &made->object);
         is_done = !made->ops->build;
     } else if (!is_done) {
         result = made->ops->build(made->object, &is_done);
@@ -182,10 +182,10 @@ static mspring_result make_others(mspring_network *to, const mspring_network *fr
 /* ------------------------------------------------------------------------------------------------- the exchange */
 
 static void move_values(const float *from, float *to, const mspring_network *old, const mspring_network *made) {
-    const uint32_t *here = old->topology.slot_of_particle, *there = made->topology.slot_of_particle;
+    const uint32_t *here = old->topology.slot_of_particle, *new_slot = made->topology.slot_of_particle;
     MSPRINGI_ASSERT(made->topology.particle_count == old->topology.particle_count);
     for (mspring_id p = 0; p < old->topology.particle_count; ++p)
-        to[there[p]] = from[here[p]];
+        to[new_slot[p]] = from[here[p]];
 }
 
 // Free all arrays by slot or spring slot.
@@ -198,7 +198,7 @@ static void free_layout(mspring_network *network, mspringi_memory *memory) {
     mspringi_solver_destroy(&network->fallback, memory);
 }
 
-mspring_network mspringi_relayout_shell(const mspring_network *network) {
+mspring_network mspringi_relayout_copy_shell(const mspring_network *network) {
     mspring_network to = *network;
     mspringi_store_forget_layout(&to);
     to.topology = (mspringi_topology){0};
@@ -213,7 +213,7 @@ mspring_network mspringi_relayout_shell(const mspring_network *network) {
 
 // Network with the arrays by slot and spring slot that the job has made.
 static mspring_network with_layout_of(const mspring_network *network, const mspring_network *made) {
-    mspring_network to = mspringi_relayout_shell(network);
+    mspring_network to = mspringi_relayout_copy_shell(network);
     to.memory = made->memory;
     to.topology = made->topology;
     mspringi_store_take_layout(&to, made);

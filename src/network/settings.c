@@ -116,8 +116,8 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
 
 /* ---------------------------------------------------------------------------------------------------- settings */
 
-static bool is_within(float value, float least, float most) {
-    return value >= least && value <= most;
+static bool is_within(float value, float min, float max) {
+    return value >= min && value <= max;
 }
 
 mspring_result mspringi_check_settings(const mspring_settings *settings, mspringi_message *message) {

@@ -22,7 +22,7 @@ mspring_result mspringi_survivors_begin(mspring_job *job) {
     return job->was_live ? MSPRING_OK : mspringi_job_no_memory(job);
 }
 
-mspring_result mspringi_survivors_look(mspring_job *job, uint32_t first, uint32_t end) {
+mspring_result mspringi_survivors_count_live(mspring_job *job, uint32_t first, uint32_t end) {
     const mspringi_topology *t = &job->from.topology;
     for (mspring_id s = first; s < end; ++s) {
         const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
@@ -52,10 +52,10 @@ mspring_result mspringi_survivors_reserve(mspring_job *job) {
 // lie on a diagonal on the other side, in the order of their slots: no two of them are neighbours in a grid.
 
 mspring_result mspringi_survivors_place_on_diagonal(mspring_job *job, uint32_t first, uint32_t end) {
-    const mspringi_topology *first_one = mspringi_job_first(job);
+    const mspringi_topology *initial = mspringi_job_initial_topology(job);
     mspringi_particle *particles = job->left.particles;
     for (mspring_id p = first; p < end; ++p) {
-        particles[p].x = particles[p].y = -10.0 - 3.0 * (double)first_one->slot_of_particle[p];
+        particles[p].x = particles[p].y = -10.0 - 3.0 * (double)initial->slot_of_particle[p];
         if (!mspringi_particle_exists(&job->from, p))
             particles[p].flags = MSPRINGI_PARTICLE_ABSENT;
     }
@@ -63,7 +63,7 @@ mspring_result mspringi_survivors_place_on_diagonal(mspring_job *job, uint32_t f
 }
 
 mspring_result mspringi_survivors_place_in_grids(mspring_job *job, uint32_t first, uint32_t end) {
-    const mspringi_topology *t = mspringi_job_first(job);
+    const mspringi_topology *t = mspringi_job_initial_topology(job);
     mspringi_particle *particles = job->left.particles;
     for (uint32_t i = first; i < end; ++i) {
         const mspringi_row *row = &t->rows[i];
@@ -82,7 +82,7 @@ mspring_result mspringi_survivors_place_in_grids(mspring_job *job, uint32_t firs
 }
 
 mspring_result mspringi_survivors_list(mspring_job *job, uint32_t first, uint32_t end) {
-    const mspringi_topology *t = mspringi_job_first(job);
+    const mspringi_topology *t = mspringi_job_initial_topology(job);
     for (mspring_id s = first; s < end; ++s) {
         const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
         uint32_t base, tip;
@@ -104,7 +104,7 @@ mspring_result mspringi_survivors_list(mspring_job *job, uint32_t first, uint32_
 // long for a wreck that is mostly bundles.
 mspring_result mspringi_survivors_begin_layout(mspring_job *job) {
     const bool has_bundles = job->from.solver.ops->has_bundles;
-    const mspringi_topology *t = mspringi_job_first(job);
+    const mspringi_topology *t = mspringi_job_initial_topology(job);
     return mspringi_topology_begin(&job->left, &t->reserve, t->parallel_count == 0, has_bundles, job->workers,
                                    job->from.kernels->lanes, &job->to.memory, &job->to.message,
                                    &job->layout_builder);
@@ -141,7 +141,7 @@ mspring_result mspringi_survivors_finish_layout(mspring_job *job) {
     t->slot_of_spring = mspringi_alloc(&job->to.memory, t->reserve.spring_end, sizeof *t->slot_of_spring);
     if (!t->slot_of_spring)
         return mspringi_job_no_memory(job);
-    t->spring_count = mspringi_job_first(job)->spring_count;
+    t->spring_count = mspringi_job_initial_topology(job)->spring_count;
     job->next_inactive = t->chain_spring_slots + t->laid_out_count + mspringi_spare_springs(t);
     job->listed = 0;
     mspring_result result = mspringi_spare_reserve(t, inactive, &job->to.memory, &job->to.message);
@@ -166,23 +166,23 @@ mspring_result mspringi_survivors_number_spring_slots(mspring_job *job, uint32_t
 
 // Save the ends of springs outside the layout. Removed springs may have any ends, as their particles may be gone,
 // too.
-mspring_result mspringi_survivors_note_ends(mspring_job *job, uint32_t first, uint32_t end) {
-    const mspringi_topology *first_one = mspringi_job_first(job);
+mspring_result mspringi_survivors_save_ends(mspring_job *job, uint32_t first, uint32_t end) {
+    const mspringi_topology *initial = mspringi_job_initial_topology(job);
     mspringi_topology *t = &job->to.topology;
     for (mspring_id s = first; s < end; ++s) {
-        const mspringi_spring_slot first_place = first_one->slot_of_spring[s], spring_slot = t->slot_of_spring[s];
+        const mspringi_spring_slot initial_spring_slot = initial->slot_of_spring[s],
+                                   spring_slot = t->slot_of_spring[s];
         uint32_t base, tip;
         if (mspringi_spring_slot_is_laid_out(t, spring_slot) || !mspringi_spring_exists(&job->from, s))
             continue;
-        mspringi_topology_ends(first_one, first_place, &base, &tip);
-        t->irregular_a[spring_slot - t->chain_spring_slots] =
-            t->slot_of_particle[first_one->particle_of_slot[base]];
-        t->irregular_b[spring_slot - t->chain_spring_slots] = t->slot_of_particle[first_one->particle_of_slot[tip]];
+        mspringi_topology_ends(initial, initial_spring_slot, &base, &tip);
+        t->irregular_a[spring_slot - t->chain_spring_slots] = t->slot_of_particle[initial->particle_of_slot[base]];
+        t->irregular_b[spring_slot - t->chain_spring_slots] = t->slot_of_particle[initial->particle_of_slot[tip]];
     }
     return MSPRING_OK;
 }
 
-mspring_result mspringi_survivors_keep_spare(mspring_job *job) {
+mspring_result mspringi_survivors_assign_spare(mspring_job *job) {
     mspringi_free(&job->to.memory, job->laid_out_spring_slots);
     job->laid_out_spring_slots = NULL;
     mspringi_topology *t = &job->to.topology;

@@ -106,7 +106,7 @@ void mspringi_solvers_relocate(mspring_network *network, const mspringi_memory *
     for (size_t i = 0; i < 2; ++i) {
         if (!both[i]->object)
             continue;
-        both[i]->object = mspringi_memory_moved(from, to, both[i]->object);
+        both[i]->object = mspringi_memory_relocate(from, to, both[i]->object);
         both[i]->ops->relocate(both[i]->object, network, from, to);
     }
 }

@@ -38,7 +38,7 @@ static double size_by(const mspringi_area *angle, const arm *u, const arm *w) {
 
 void mspringi_angle_set_rest(mspringi_area *angle, double rest_angle) {
     angle->rest_angle = rest_angle;
-    angle->rest = mspringi_turn_by(rest_angle);
+    angle->rest = mspringi_rotation_by(rest_angle);
 }
 
 mspringi_area mspringi_angle_make(float stiffness, float damping, double rest_angle) {

@@ -15,7 +15,7 @@ typedef enum mspringi_change {
 } mspringi_change;
 
 /// Tell all listeners, once the change has been made.
-void mspringi_tell(mspring_network *network, mspringi_change what, uint32_t index);
+void mspringi_dispatch_change(mspring_network *network, mspringi_change what, uint32_t index);
 
 /// Allocate the log of springs that were broken or restored, if it is not there yet: before any is.
 mspring_result mspringi_changed_reserve_log(mspring_network *network);
@@ -23,7 +23,7 @@ mspring_result mspringi_changed_reserve_log(mspring_network *network);
 /// The same. (Springs are set by the million, and nobody listens but a compaction that is under way.)
 static inline void mspringi_notify_change(mspring_network *network, mspringi_change what, uint32_t index) {
     if (what != MSPRINGI_CHANGED_PLACE || network->job)
-        mspringi_tell(network, what, index);
+        mspringi_dispatch_change(network, what, index);
 }
 
 /// What edits are mixed into the fingerprint of parameters as, by which a snapshot tells whether it fits. Those of

@@ -187,7 +187,7 @@ mspring_result mspring_network_get_components(const mspring_network *network, ui
     const mspring_result result =
         mspringi_check_outputs(components, count, "mspring_component", sizeof *components, &message);
     if (result != MSPRING_OK)
-        return mspringi_shared_take(shared, result, &message);
+        return mspringi_shared_set(shared, result, &message);
     const mspringi_fp_state before = mspringi_fp_enter();
     measure(network, first, count, components);
     mspringi_fp_leave(before);

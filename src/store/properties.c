@@ -43,10 +43,9 @@ const mspringi_property *mspringi_property_of(mspring_property property) {
         return others == 0;                                                                                        \
     }
 #define IS_REST_LENGTH(value) ((value >= 0.0f) & (value <= 4e12f))
-#define IS_HARDENING(value) ((value >= 0.0f) & (value <= MSPRINGI_MOST_HARDENING))
-#define IS_PLASTIC_LIMIT(value) ((value >= 0.0f) & (value <= MSPRINGI_MOST_PLASTIC_STRAIN))
-#define IS_PLASTIC_STRAIN(value)                                                                                   \
-    ((value >= -MSPRINGI_MOST_PLASTIC_STRAIN) & (value <= MSPRINGI_MOST_PLASTIC_STRAIN))
+#define IS_HARDENING(value) ((value >= 0.0f) & (value <= MSPRINGI_MAX_HARDENING))
+#define IS_PLASTIC_LIMIT(value) ((value >= 0.0f) & (value <= MSPRINGI_MAX_PLASTIC_STRAIN))
+#define IS_PLASTIC_STRAIN(value) ((value >= -MSPRINGI_MAX_PLASTIC_STRAIN) & (value <= MSPRINGI_MAX_PLASTIC_STRAIN))
 #define IS_COEFFICIENT(value) mspringi_is_spring_value(MSPRINGI_STIFFNESS, value)
 
 bool mspringi_are_allowed(mspring_property property, const float *values, uint32_t count, size_t stride) {

@@ -98,7 +98,7 @@ mspring_result mspringi_select_list(mspring_network *network, mspringi_kind kind
 
 static mspring_result leave(const mspring_network *network, mspring_result result,
                             const mspringi_message *message) {
-    return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_take(network->shared, result, message);
+    return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_set(network->shared, result, message);
 }
 
 mspring_result mspringi_look_up_range(const mspring_network *network, mspringi_kind kind, mspring_id first,

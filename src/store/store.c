@@ -97,13 +97,13 @@ bool mspringi_store_reserve(mspring_network *network, mspringi_group group) {
         if (c->kind == MSPRINGI_GROUP || count == UNKNOWN)
             continue;
         if (c->kind == MSPRINGI_VIEW) {
-            mspringi_column_set(c, network, array + count * c->size);
+            mspringi_array_entry_set(c, network, array + count * c->size);
             continue;
         }
-        array = mspringi_column_get(c, network);
+        array = mspringi_array_entry_get(c, network);
         if (!array)
             array = mspringi_alloc(&network->memory, count, c->size);
-        mspringi_column_set(c, network, array);
+        mspringi_array_entry_set(c, network, array);
         if (!array) {
             mspringi_store_free(network, group);
             return false;
@@ -121,7 +121,7 @@ bool mspringi_store_duplicate(mspring_network *to, const mspring_network *from, 
     const mspringi_array_table rows = rows_of(group, group + 1u);
     for (const mspringi_array_entry *c = rows.list; c < rows.list + rows.count; ++c)
         if (c->kind != MSPRINGI_GROUP)
-            mspringi_column_set(c, to, mspringi_column_get(c, from));
+            mspringi_array_entry_set(c, to, mspringi_array_entry_get(c, from));
     return mspringi_array_table_duplicate(rows, to, memory);
 }
 
@@ -140,7 +140,7 @@ void mspringi_store_free_layout(mspring_network *network, mspringi_memory *memor
 static MSPRINGI_NOINLINE void forget(mspring_network *network, mspringi_array_table rows) {
     for (const mspringi_array_entry *c = rows.list; c < rows.list + rows.count; ++c)
         if (c->kind != MSPRINGI_GROUP)
-            mspringi_column_set(c, network, NULL);
+            mspringi_array_entry_set(c, network, NULL);
 }
 
 void mspringi_store_forget_layout(mspring_network *network) {
@@ -155,13 +155,13 @@ void mspringi_store_take_layout(mspring_network *to, const mspring_network *from
     const mspringi_array_table rows = rows_of(0, MSPRINGI_LAYOUT_END);
     for (const mspringi_array_entry *c = rows.list; c < rows.list + rows.count; ++c)
         if (c->kind != MSPRINGI_GROUP)
-            mspringi_column_set(c, to, mspringi_column_get(c, from));
+            mspringi_array_entry_set(c, to, mspringi_array_entry_get(c, from));
 }
 
 bool mspringi_store_match_layout(mspring_network *to, const mspring_network *from) {
     for (uint32_t group = 0; group < MSPRINGI_REMADE_END; ++group) {
         const mspringi_array_entry *first = rows_of(group, group + 1u).list + 1;
-        const bool has = mspringi_column_get(first, to), needs = mspringi_column_get(first, from);
+        const bool has = mspringi_array_entry_get(first, to), needs = mspringi_array_entry_get(first, from);
         if (has && !needs)
             mspringi_store_free(to, (mspringi_group)group);
         if (needs && !has && !mspringi_store_reserve(to, (mspringi_group)group))
@@ -197,8 +197,8 @@ void mspringi_store_move_slots(mspring_network *to, const mspring_network *from)
     MSPRINGI_ASSERT(to->topology.particle_count == from->topology.particle_count);
     count_elements(from, elements);
     for (size_t i = 0; i < COLUMN_COUNT; ++i) {
-        const float *first = list[i].kind == MSPRINGI_PLANES ? mspringi_column_get(&list[i], from) : NULL;
-        float *first_made = first ? mspringi_column_get(&list[i], to) : NULL;
+        const float *first = list[i].kind == MSPRINGI_PLANES ? mspringi_array_entry_get(&list[i], from) : NULL;
+        float *first_made = first ? mspringi_array_entry_get(&list[i], to) : NULL;
         for (size_t plane = 0; first_made && plane < elements[i] / slots; ++plane) {
             old[count] = first + plane * slots;
             made[count++] = first_made + plane * made_slots;

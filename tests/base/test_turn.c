@@ -16,7 +16,7 @@
 #endif
 
 static void check_turn(double angle) {
-    const mspringi_rotation turn = mspringi_turn_by(angle);
+    const mspringi_rotation turn = mspringi_rotation_by(angle);
     check_near(turn.cosine, cos(angle), ERROR);
     check_near(turn.sine, sin(angle), ERROR);
 }
@@ -37,11 +37,11 @@ static void it_is_cosine_and_sine(void **state) {
 
 static void it_is_exact_at_0(void **state) {
     (void)state;
-    const mspringi_rotation turn = mspringi_turn_by(0);
+    const mspringi_rotation turn = mspringi_rotation_by(0);
     assert_true(turn.cosine == 1 && turn.sine == 0);
     check_turn(MSPRINGI_MAX_ANGLE);
     check_turn(-MSPRINGI_MAX_ANGLE);
-    assert_true(mspringi_turn_by(1e-300).sine == 1e-300);
+    assert_true(mspringi_rotation_by(1e-300).sine == 1e-300);
 }
 
 // The angle of a turn is what it was turned by, within half a turn.
@@ -50,7 +50,7 @@ static void it_has_its_angle(void **state) {
     uint64_t seed = 79;
     for (int i = 0; i < 200000; i++) {
         const double angle = support_random_between(&seed, -1, 1) * 3.141592653589793;
-        check_near(mspringi_angle_of(mspringi_turn_by(angle)), angle, 1e-15);
+        check_near(mspringi_angle_of(mspringi_rotation_by(angle)), angle, 1e-15);
     }
     const mspringi_rotation turns[] = {{1, 0}, {0, 1}, {0, -1}, {-1, 0}, {-1, -1e-300}};
     const double angles[] = {0, 1.5707963267948966, -1.5707963267948966, 3.141592653589793, -3.141592653589793};

@@ -101,7 +101,7 @@ static mspring_result check_settings(const mspring_solver_def *settings, uint32_
         const mspring_solver_def *setting = mspringi_element(settings, struct_size, i);
         mspring_result result = mspringi_check_solver(setting, &what);
         if (result == MSPRING_OK)
-            result = mspringi_check_alike(&what, setting, struct_size);
+            result = mspringi_check_same_size(&what, setting, struct_size);
         if (result != MSPRING_OK)
             return mspringi_fail(message, result, "setting %u: %s", (unsigned)i, what.text);
     }

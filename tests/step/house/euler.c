@@ -40,7 +40,7 @@ static void relocate(void *object, const mspring_network *network, const mspring
                      const mspringi_memory *to) {
     euler *of = object;
     (void)network;
-    of->forces = mspringi_memory_moved(from, to, of->forces);
+    of->forces = mspringi_memory_relocate(from, to, of->forces);
 }
 
 static void add_spring(const mspring_network *network, mspring_id spring, double *x, double *y) {
