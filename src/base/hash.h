@@ -1,6 +1,6 @@
 /// @file hash.h
-/// 64-bit hash of words: FNV-1a (Fowler, Noll, Vo 1991) on 64-bit words instead of bytes, with the upper half
-/// folded in, so that every bit of a word reaches every bit of the hash.
+/// 64-bit hash of words: FNV-1a (Fowler, Noll, Vo 1991) on 64-bit words instead of bytes. The upper half is folded
+/// in, so every bit of a word reaches every bit of the hash.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_HASH_H

@@ -1,8 +1,8 @@
 /// Mesh of triangles: vertices become particles, edges become springs.
 ///
-/// Stiffness from Young's modulus: k = E h (sum of the areas of the edge's triangles) / length^2 (Van Gelder,
+/// Stiffness from Young's modulus: k = E h (sum of the areas of the edge's triangles) / length^2. (Van Gelder,
 /// "Approximate simulation of elastic membranes by triangulated spring meshes", Journal of Graphics Tools 3(2),
-/// 1998).
+/// 1998.)
 #include "builder/builder.h"
 
 #include <math.h>

@@ -222,9 +222,9 @@ void mspringi_irregular_list_sort(mspringi_irregular_list *list, const mspringi_
 void mspringi_irregular_list_append_bundles(mspringi_irregular_list *list, const mspringi_bundles *bundles);
 void mspringi_irregular_list_destroy(mspringi_irregular_list *list, mspringi_memory *memory);
 
-/// Drop chains, after the list's particles have been counted: those with an assigned strip; those connected to an
-/// irregular part with tiers, unless chains have more particles than that part; if there are bundles, also short
-/// ones connected to the irregular part. Their particles become loose and are counted.
+/// Drop chains, after the list's particles have been counted: their particles become loose and are counted, too.
+/// Chains with an assigned strip are dropped. So are those connected to an irregular part with tiers, unless chains
+/// have more particles than that part. In networks with bundles, so are short ones connected to the irregular part.
 void mspringi_chains_drop(mspringi_chains *chains, const mspringi_graph *graph,
                           const mspringi_strip_assignment *assignment, bool has_bundles, uint8_t *kinds,
                           mspringi_irregular_list *list);

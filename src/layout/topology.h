@@ -11,9 +11,9 @@
 ///   loose      particles without springs; no records
 ///
 /// Springs in no lattice row and no chain row belong to the irregular part. Irregular particles connected to a
-/// lattice have an assigned strip: they are swept with that strip of lattice rows, so that one pass can take
-/// several substeps. A large irregular part without assigned strips is divided into tiers for the same purpose,
-/// together with the chains connected to it.
+/// lattice have an assigned strip of lattice rows. They are swept with it, so that one pass can take several
+/// substeps. A large irregular part without assigned strips is divided into tiers for the same purpose, with the
+/// chains connected to it.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_TOPOLOGY_H

@@ -1,6 +1,6 @@
 /// Instruction set that suits a layout. Registers of 16 lanes take longer than those of 8, and gain nothing if rows
-/// of eight particles fill one of either. (A network of one grid of 5 x 5 to 8 x 8 takes 5 to 13 % longer with
-/// AVX-512 than with AVX2 on a Zen 4, one of 9 x 9 to 16 x 16 a quarter less. Two of the small grids in one network
+/// of eight particles fill one of either. (AVX-512 on a Zen 4 takes 5 to 13 % longer than AVX2 for a network of one
+/// grid of 5 x 5 to 8 x 8. For 9 x 9 to 16 x 16 it takes a quarter less. Two of the small grids in one network
 /// share registers, and take 10 to 30 % less.)
 #include "network/level.h"
 

@@ -7,8 +7,8 @@
 
 #include "layout/topology.h"
 
-/// Level for a layout if the host leaves the choice to the library: the widest, or one of narrower registers if
-/// rows fill no more of these.
+/// Level for a layout, if the host leaves the choice to the library: the widest, or a narrower one if rows fill as
+/// few registers of it.
 mspring_simd mspringi_choose_level(const mspringi_topology *topology, mspring_simd widest);
 
 #endif

@@ -49,7 +49,7 @@ mspring_result mspringi_survivors_reserve(mspring_job *job) {
 }
 
 // Positions for the search. Grids lie one above the other, far enough apart to stay separate. All other particles
-// lie on a diagonal on the other side, in the order of their slots: no two of them are neighbours in a grid.
+// lie on a diagonal on the other side, in the order of their slots. No two of them are neighbours in a grid.
 
 mspring_result mspringi_survivors_place_on_diagonal(mspring_job *job, uint32_t first, uint32_t end) {
     const mspringi_topology *initial = mspringi_job_initial_topology(job);

@@ -10,12 +10,12 @@
 
 /// Bounds on polls before sleeping: 200 and 3 us on a Zen 4. The upper one exceeds the serial parts of an implicit
 /// step, since waking up costs as much again. (544 x 68 with two workers: 1.4 times as fast as one worker with half
-/// of it, 0.95 with an eighth; on a ship of 158,000 springs, one substep in seven sleeps instead of each.)
+/// of it, 0.95 with an eighth. A ship of 158,000 springs: one substep in seven sleeps instead of each.)
 #define MAX_SPINS 8000
 #define MIN_SPINS 100
 
-/// After this many sleeps, a wait again polls up to the upper bound. The other thread may have its own core by now,
-/// or its serial part may take less than that, but more than the present number of polls.
+/// After this many sleeps, a wait again polls up to the upper bound. The other thread may have its own core by now.
+/// Or its serial part may take less than that, but more than the present polls.
 #define SLEEPS_BEFORE_TRIAL 16
 
 // Tell the processor that this loop waits.

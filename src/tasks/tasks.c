@@ -62,7 +62,7 @@ mspring_result mspringi_tasks_create(uint32_t worker_count, const mspring_tasks 
     if (!created)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers", (unsigned)worker_count);
     if (host)
-        created->host = *host; // as far as this version knows it
+        created->host = *host; // fields of a later version are dropped
     created->worker_count = worker_count;
     created->concurrency = host ? host->concurrent_count : worker_count;
     mspring_result result = make_counters(created, memory, message);

@@ -17,7 +17,7 @@
 #include "base/memory.h"
 #include "tasks/progress.h"
 
-/// NULL stands for one worker: the caller's thread.
+/// Threads of a network; NULL for one worker, the caller's thread.
 typedef struct mspringi_tasks mspringi_tasks;
 
 /// Use the host's threads, or start threads for worker_count workers if host is NULL. *tasks becomes NULL for one

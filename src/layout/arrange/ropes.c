@@ -1,9 +1,9 @@
 /// Ropes on lattices: strips of their particles, and positions in these strips.
 ///
 /// Springs between consecutive slices, with sixteen ropes side by side, are computed once and gather nothing
-/// (layout/emit/sell.h). So a rope crosses from the strip of one end to a strip near the other's in as few
-/// particles as the skew allows, and stays there. The part that stays is cut into pieces of two lengths. Sixteen
-/// pieces of equal length begin and end together, so only springs between pieces are computed at both ends.
+/// (layout/emit/sell.h). So a rope crosses to a strip near its other end in as few particles as the skew allows,
+/// and stays there. The part that stays is cut into pieces of two lengths. Sixteen pieces of equal length begin and
+/// end together, so only springs between pieces are computed at both ends.
 #include "layout/arrange/ropes.h"
 
 /// Particles in a piece.

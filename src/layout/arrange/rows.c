@@ -243,8 +243,8 @@ static bool is_busy(const uint8_t *busy, uint32_t slot) {
     return busy[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH / MSPRINGI_QUARTER & 1;
 }
 
-// Mark the quarters of lattice spans that must be swept: with a particle, with a spring's record, or to the right
-// of a north-east spring, whose force they carry. The others at the ends of spans are trimmed.
+// Mark the quarters of lattice spans that must be swept: those with a particle, with a spring's record, or with the
+// force of a north-east spring from their left. The others at the ends of spans are trimmed.
 void mspringi_layout_builder_mark_busy(mspringi_layout_builder *a) {
     const mspringi_topology *t = a->topology;
     for (uint32_t slot = 0; slot < t->chain_first * MSPRINGI_WIDTH; ++slot)

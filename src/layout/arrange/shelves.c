@@ -5,8 +5,8 @@
 /// new blocks; a shelf is then one grid. Grids are placed by falling height (Coffman, Garey, Johnson and Tarjan
 /// 1980).
 ///
-/// Lattice blocks of our ship with nine of ten springs broken: 362 instead of 564 if squares are left, 423 instead
-/// of 604 if blasts have left ragged shapes (501 with the leftmost room).
+/// (Lattice blocks of our ship with nine of ten springs broken: 362 instead of 564 if squares are left. After
+/// blasts, which leave ragged shapes, 423 instead of 604, or 501 with the leftmost room.)
 #include <string.h>
 
 #include "layout/analysis.h"

@@ -10,17 +10,17 @@
 #include "layout/analysis.h"
 
 /// Particles in a strip, approximately. Few strips take fewer calls, small ones fit the cache more often. Irregular
-/// particles add a sweep to each strip, so fewer are better: 40 ropes on our ship, speedup over the naive code with
-/// AVX2 and AVX-512: 4.5 and 8.3 with 2048, 4.2 and 7.7 with 512.
+/// particles add a sweep to each strip, so fewer are better. (Speedup over the naive code for 40 ropes on our ship,
+/// AVX2 and AVX-512: 4.5 and 8.3 with 2048, 4.2 and 7.7 with 512.)
 #define BARE_STRIP_PARTICLES 512
 #define STRIP_PARTICLES 2048
 
 /// Lattice particles from which sharing a step among workers pays.
 #define MIN_SHARED_PARTICLES 4000
 
-/// Strips of each worker, enough to avoid waiting for its neighbours. On 96 x 96, two workers reach 0.9 of the
-/// speed of two independent threads with 8, 12 and 16, but 0.83 with 24: single rows, where calls take an eighth of
-/// the time.
+/// Strips of each worker, enough to avoid waiting for its neighbours. (Two workers on 96 x 96 reach 0.9 of the
+/// speed of two independent threads with 8, 12 and 16. With 24, single rows, it is 0.83: calls take an eighth of
+/// the time.)
 #define STRIPS_PER_WORKER 12
 
 /// Particles visited by one call.

@@ -13,9 +13,9 @@ static bool append_block(mspringi_layout_builder *a, uint32_t row, uint32_t colu
     return grown;
 }
 
-// List the blocks of a grid's particle: its own, and those with its springs' records. If a block's last slot has a
-// north-east spring, also list the block to its right, which carries the force to the row above, and the block
-// above, next to whose end lies the spring's other end.
+// List the blocks of a grid's particle: its own, and those with its springs' records. A north-east spring of a
+// block's last slot needs two more: the block to the right carries its force to the row above. Its other end is the
+// slot to the right of the block above.
 static bool list_blocks(mspringi_layout_builder *a, uint32_t p) {
     const mspringi_grids *grids = &a->grids;
     const uint32_t column = grids->column[p];

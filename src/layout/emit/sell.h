@@ -51,10 +51,10 @@ typedef struct mspringi_sell {
     uint32_t *neighbour;          ///< [slice columns][MSPRINGI_WIDTH] nodes
     uint32_t *entry;              ///< [2 * springs] index in neighbour of each end of a spring
     uint8_t *is_interleaved;      ///< [slice_count] 1 if the first slice column is interleaved; NULL if none is
-    uint8_t *is_read;      ///< [slice_count] 1 if an ordinary slice column reads one of its nodes; NULL likewise
-    uint32_t first_bundle; ///< first slice in bundles
-    uint32_t *first_link;  ///< [slices in bundles + 1]
-    mspringi_bundle_link *links; ///< by upper slice
+    uint8_t *is_read;             ///< [slice_count] 1 if an ordinary slice column reads one of its nodes, or NULL
+    uint32_t first_bundle;        ///< first slice in bundles
+    uint32_t *first_link;         ///< [slices in bundles + 1]
+    mspringi_bundle_link *links;  ///< by upper slice
 } mspringi_sell;
 
 /// Builder of the irregular part, with its scratch.

@@ -33,9 +33,9 @@ static inline bool mspringi_slot_is_spare(const mspringi_topology *t, uint32_t s
     return slot / MSPRINGI_WIDTH - t->spare_first < t->spare_blocks; // unsigned: false also for earlier slots
 }
 
-/// Make room for the spare springs, then `inactive` ones, behind the irregular springs; give them records behind
-/// the slice columns, one record for both ends; give unused spare springs their slots, and save the layout. After
-/// an error the topology must still be destroyed.
+/// Make room for spare springs, then `inactive` ones, behind the irregular springs. Give them records behind the
+/// slice columns, one for both ends. Then give unused spare springs their slots, and save the layout. After an
+/// error the topology must still be destroyed.
 mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, mspringi_memory *memory,
                                       mspringi_message *message);
 void mspringi_spare_set_entries(mspringi_topology *t);

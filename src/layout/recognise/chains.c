@@ -3,9 +3,9 @@
 
 #define MIN_ATTACHED_CHAIN 3
 
-/// In networks with bundles, shorter chains are cheaper as a part of the irregular part that they are connected to:
-/// its pull at both their ends costs as much as this many springs computed twice. (Our ship with one spring of ten
-/// left, 3 in a chain on average: 18.7 % of the whole ship's step instead of 19.2.)
+/// In networks with bundles, shorter chains join the irregular part that they are connected to. As chains, their
+/// pull at both ends costs as much as this many springs computed twice. (Our ship with one spring of ten left, 3 in
+/// a chain on average: 18.7 % of the whole ship's step instead of 19.2.)
 #define MIN_CHAIN_WITH_BUNDLES 16
 
 static uint32_t degree_of(const mspringi_graph *graph, uint32_t particle) {

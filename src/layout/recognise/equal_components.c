@@ -4,7 +4,7 @@
 /// rising id, meet the same graph. This finds copies that the same calls built, wherever they lie and whatever
 /// their springs are, without a general test of isomorphism.
 ///
-/// One component of each shape is laid out alone. If it is all lattice or all chain, it stays so: lattice rows side
+/// One component of each shape is laid out alone. If it is all lattice or all chain, it stays so. Lattice rows side
 /// by side take as long as bundles for 3x3 particles, and 0.7 of the time for 6x6. An irregular spring costs as
 /// much as twenty lattice springs if it joins rows, and as two in a bundle.
 #include "base/hash.h"

@@ -2,8 +2,9 @@
 /// nodes, but have other springs, or lie too far off for one grid. Only parts are recognised, tied together by
 /// irregular springs.
 ///
-/// An irregular spring to lattice rows costs about five times as much as one between irregular particles, and that
-/// one as much as two or three in rows. If there are many, the whole component is cheaper as an irregular part.
+/// An irregular spring to lattice rows costs about five times as much as one between irregular particles. The
+/// latter costs as much as two or three in rows. If there are many, the whole component is cheaper as an irregular
+/// part.
 #include <string.h>
 
 #include "base/union_find.h"
@@ -12,20 +13,19 @@
 /// Fewest members of a component's grids worth a check.
 #define MIN_MEMBERS 1000
 
-/// Drop a component's grids if there is an irregular spring for this many within them. (A spring of sheets with 8
-/// to 11 % irregular springs takes 0.58 to 0.86 times as long as in an irregular part; with 31 to 46 %, 1.3 to 1.65
-/// times.)
+/// Drop a component's grids if there is an irregular spring for this many within them. (Meshes with 8 to 11 %
+/// irregular springs take 0.58 to 0.86 times as long as an irregular part; with 31 to 46 %, 1.3 to 1.65 times.)
 #define INNER_PER_OUTER 4
 
 /// Bounds for large components of several grids, whose strips are tied too far apart for passes of several
-/// substeps; and for springs between these grids alone. (A sheet with 10 % irregular springs, few of them between
-/// grids, takes 0.8 times as long as in an irregular part; with at least as many, a third of them between grids, 2
-/// to 3 times.)
+/// substeps. The second is for springs between grids alone. (A mesh with 10 % irregular springs, few between grids,
+/// takes 0.8 times as long as an irregular part. With at least as many, a third of them between grids, it takes 2
+/// to 3 times as long.)
 #define LARGE_INNER_PER_OUTER 8
 #define LARGE_INNER_PER_ACROSS 32
 
-/// Drop grids connected to an irregular part that would get tiers, if it has more particles for each grid member:
-/// the grids have too few strips for it.
+/// Drop grids connected to an irregular part that would get tiers and has more particles for each grid member: the
+/// grids have too few strips for it.
 #define IRREGULAR_PER_MEMBER 4
 
 /// Sums of a component, at its root.

@@ -1,10 +1,11 @@
 /// Search for grids by positions and springs, whatever the order of ids.
 ///
 /// A search follows springs from a seed. The vector along a spring, in the lattice basis of one end, gives the cell
-/// of the other end. A grid is kept if sweeping its rows costs less than computing its springs one by one. There
-/// are three searches, each among the particles that the ones before left: for axis-aligned grids with nearly all
-/// springs of their particles, for curved ones at any angle and with oblong cells, and for axis-aligned ones with
-/// half of the springs.
+/// of the other end. A grid is kept if sweeping its rows costs less than computing its springs one by one.
+///
+/// There are three searches, each among the remaining particles. The first is for axis-aligned grids with nearly
+/// all springs of their particles. The second is for curved ones, at any angle and with oblong cells, the third for
+/// axis-aligned ones with half of the springs.
 #include "layout/analysis.h"
 #include "layout/recognise/lattice_basis.h"
 
@@ -20,9 +21,9 @@
 #define SLOTS_PER_SPRING 6
 
 /// The first two searches keep a grid if at most one in this many springs of its particles joins no neighbouring
-/// cells. (Sheets of 200 x 200 triangles, displaced by up to a fraction of a cell, ns per spring and substep with
-/// AVX-512: by 0.2, aligned 0.9, curved 0.6; by 0.3, aligned 1.2, curved 4.3, in 15 parts; a ring of 36 x 6: 1.9
-/// and 0.7.)
+/// cells. (Meshes of 200 x 200 triangles, displaced by up to a fraction of a cell, ns per spring and substep with
+/// AVX-512. Displaced by 0.2: aligned 0.9, curved 0.6; by 0.3: aligned 1.2, curved 4.3, in 15 parts. A ring of 36 x
+/// 6: 1.9 and 0.7.)
 #define SPRINGS_PER_OUTER_ALIGNED 64
 #define SPRINGS_PER_OUTER_CURVED 16
 
