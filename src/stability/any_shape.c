@@ -1,10 +1,10 @@
-/// A bound on the substep that no motion of the network can break.
+/// Bound on the substep for every shape of the network.
 ///
-/// In any shape a spring's tangent stiffness is at most its stiffness in every direction, and so is its damping: A
-/// + 2 D (see pencil.h) is at most the Laplacian of the graph with the weights w = h^2 k + 2 h c, once for x and
-/// once for y. Its largest eigenvalue is also that of the matrix over springs G^T M^-1 G w (G the incidence
-/// matrix), whose row sums are at most S(a) / m_a + S(b) / m_b, with S the sum of the weights at a particle. (For
-/// graphs without weights: Anderson and Morley 1985.)
+/// A spring's tangent stiffness in any shape is at most its stiffness in every direction, and so is its damping. A
+/// + 2 D (see pencil.h) is therefore at most the Laplacian of the graph with the weights w = h^2 k + 2 h c, once
+/// for x and once for y. Its largest eigenvalue is also that of the matrix over springs G^T M^-1 G w (G the
+/// incidence matrix), whose row sums are at most S(a) / m_a + S(b) / m_b, with S the sum of the weights at a
+/// particle. (For graphs without weights: Anderson and Morley 1985.)
 #include "stability/stability.h"
 
 #include <math.h>
@@ -33,7 +33,7 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
                                .relative_damping = damping * reduced_mass};
 }
 
-// Where sums by slot may be written: where looks work, or else in the backup.
+// Memory for sums by slot: the guard's scratch arrays, else the backup.
 static mspringi_state find_room(const mspring_network *network) {
     if (!network->guard_scratch)
         return network->backup;
@@ -43,7 +43,8 @@ static mspringi_state find_room(const mspring_network *network) {
                             .vy = mspringi_stability_limit_scratch(network, 3)};
 }
 
-// Sums over the springs at each slot, per mass: stiffness in x, damping in y, the relative springs' in vx.
+// Sum over the springs at each slot: stiffness in x, damping in y, and the strength of relative springs per mass in
+// vx.
 static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
@@ -64,13 +65,13 @@ static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     mspringi_areas_sum(network, sums->x, sums->y);
 }
 
-// The smallest limit of all springs. Relative ones count with at most so much of the bound, which is 4.
+// Smallest limit of all springs. Relative springs take at most `most_relative` of the bound, which is 4.
 static double find(mspring_network *network, double most_relative, mspring_id *spring) {
-    // Room for the rounding of the sums.
+    // Margin for the rounding of the sums.
     const double tight = 1.0 - 1e-5;
     const mspringi_state room = find_room(network), *sums = &room;
     double smallest = INFINITY;
-    mspringi_quotient tightest = {0.0, 0.0, 0.0}; // whose limit is the smallest
+    mspringi_quotient tightest = {0.0, 0.0, 0.0}; // quotient with the smallest limit so far
     sum_up(network, sums);
     *spring = MSPRING_NONE;
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
@@ -94,7 +95,7 @@ static double find(mspring_network *network, double most_relative, mspring_id *s
             *spring = i;
         }
     }
-    // Corners of an area need no spring between them.
+    // Corners of an area may have no spring between them.
     const mspringi_quotient areas = {.stiffness = mspringi_areas_largest(network, sums->x),
                                      .damping = mspringi_areas_largest(network, sums->y)};
     smallest = fmin(smallest, mspringi_quotient_limit(&areas, 0.0f));

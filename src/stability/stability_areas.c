@@ -1,15 +1,14 @@
-/// What areas add to the stability limit: to the guard's bound and search, and to the limit that the host asks
-/// for.
+/// Areas in the stability limit: in the guard's bound and search, and in mspring_network_stable_dt().
 ///
-/// The tangent of an area is c g g' (store/areas.h), with an eigenvalue that is not below 0. The other part, of the
-/// size of the pressure, counts in bounds only.
+/// The tangent stiffness of an area is c g g' (store/areas.h), positive semidefinite. The remainder, of the size of
+/// the pressure, counts in bounds only.
 #include <math.h>
 
 #include "stability/pencil.h"
 #include "stability/stability_limit.h"
 #include "store/areas.h"
 
-// Whether it pushes; other layouts that are being made have no list.
+// True if the area has pressure.
 static bool acts(const mspring_network *network, size_t i) {
     return !mspringi_area_is_open(network, &network->areas.list[i]);
 }
@@ -18,11 +17,11 @@ static size_t count_of(const mspring_network *network) {
     return network->areas.list ? network->areas.count : 0;
 }
 
-/// What an area is at a substep.
+/// An area at a substep.
 typedef struct stiff_area {
     const mspringi_area *area;
-    double stiffness; ///< c times the square of the substep, and its damping times twice the substep
-    double pressure;  ///< p times the square
+    double stiffness; ///< c h^2, plus damping times 2 h
+    double pressure;  ///< p h^2
 } stiff_area;
 
 static stiff_area see(const mspring_network *network, size_t i, double square) {
@@ -33,17 +32,16 @@ static stiff_area see(const mspring_network *network, size_t i, double square) {
                         square * fabs(mspringi_area_pressure(area, size))};
 }
 
-/* ------------------------------------------------------------------------------------------------- the guard's */
+/* ------------------------------------------------------------------------------------------------------- guard */
 
-// Add a weight between two slots, in all directions.
+// Add a spring between two slots, isotropic.
 static void join(const mspringi_stability_limit *b, uint32_t one, uint32_t other, double weight) {
     const float both = (float)(weight * ((double)b->in[0][one] + (double)b->in[0][other]));
     b->out[0][one] += both;
     b->out[0][other] += both;
 }
 
-// How stiff a spring along the side of a corner is that bounds what the pressure adds; with the lengths of
-// gradients.
+// Stiffness of a spring along the side of a corner that bounds the pressure's part. reach: lengths of gradients.
 static double outline_of(const stiff_area *seen, uint32_t side, const double reach[2]) {
     if (!seen->area->is_angle)
         return 0.5 * seen->pressure;
@@ -55,7 +53,7 @@ static double reach_of(const mspring_network *network, const stiff_area *seen, u
     return sqrt(end.x * end.x + end.y * end.y);
 }
 
-// As springs between all pairs of corners, which bound it (see mspringi_area_weigh()), and along the outline.
+// Bound the area by springs between all pairs of corners (see mspringi_area_weigh()), and along the outline.
 static void bound(const mspring_network *network, const mspringi_stability_limit *b, const stiff_area *seen) {
     const uint32_t count = seen->area->count;
     const double outer[2] = {reach_of(network, seen, 0), reach_of(network, seen, count - 1)};
@@ -75,7 +73,7 @@ static void bound(const mspring_network *network, const mspringi_stability_limit
     }
 }
 
-// Of four corners, those opposite each other have opposite gradients.
+// Bound an area of four corners. Opposite corners have opposite gradients.
 static void bound_cell(const mspring_network *network, const mspringi_stability_limit *b, const stiff_area *seen) {
     const mspringi_area_end ends[4] = {
         mspringi_area_end_of(network, seen->area, 0), mspringi_area_end_of(network, seen->area, 1),
@@ -130,9 +128,9 @@ void mspringi_areas_image(const mspring_network *network, const mspringi_stabili
     }
 }
 
-/* ------------------------------------------------------------------------------------------- the one asked for */
+/* ----------------------------------------------------------------------------------- mspring_network_stable_dt */
 
-// By how much an area grows with a displacement, which is divided by the roots of inverse masses.
+// Growth of an area with a displacement, which is divided by the roots of inverse masses.
 static double growth(const mspringi_pencil *pencil, const mspringi_area *area, const double *vector) {
     const uint32_t *particles = pencil->network->topology.particle_of_slot;
     double grows = 0.0;

@@ -1,4 +1,4 @@
-/// Passes over all springs for the stability limit: those of lattices and chains by kernels, the others here.
+/// Passes over all springs for the stability limit: kernels visit lattices and chains, this file the rest.
 #include "stability/stability_limit.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 #include "store/one_way.h"
 #include "store/springs.h"
 
-/// A spring that no kernel takes, as stability_limit.h of the kernels has it.
+/// A spring outside the kernels. Members as in kernels/limit_kernel.h.
 typedef struct single {
     uint32_t base, tip;
     float nx, ny, across, along, stiffness;
@@ -39,7 +39,7 @@ static single see_single(const mspring_network *network, const mspringi_stabilit
                       .damping = parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] : 0.0f});
 }
 
-// What a spring that only pulls or only pushes counts with beyond what it has.
+// Linearise the surcharge on a one-way spring: MSPRINGI_ONE_WAY_SHARE minus the spring itself.
 static single see_one_way(const mspring_network *network, const mspringi_stability_limit *b, mspring_id spring) {
     mspringi_spring_values values = mspringi_spring_get(network, spring);
     values.stiffness *= (float)MSPRINGI_ONE_WAY_SHARE - 1.0f;

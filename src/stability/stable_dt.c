@@ -1,14 +1,14 @@
-/// The stability limit as the host asks for it.
+/// Stability limit in the present shape, on request of the host.
 #include <math.h>
 
 #include "base/cpu.h"
 #include "stability/pencil.h"
 #include "stability/stability.h"
 
-/// Residual at which the eigenvalue is good enough, as a part of it. The limit is its square root.
+/// Residual of a converged eigenvalue, relative to the eigenvalue. The limit is its square root.
 #define TOLERANCE 2e-3
 
-/// Change of the limit at which it is found, as a part of it.
+/// Relative change of the limit at convergence.
 #define SETTLED 5e-4
 
 typedef struct workspace {
@@ -45,14 +45,14 @@ static mspring_result reserve(mspring_network *network, workspace *work) {
                          (unsigned)particles);
 }
 
-// Add to each component a number that is different for each: no mode is left out of the start.
+// Perturb each component differently, so that the start contains every mode.
 static void shake(double *vector, size_t size, double amount) {
     for (size_t i = 0; i < size; ++i)
         vector[i] += amount * mspringi_noise(i);
 }
 
-// Every vector gives an upper bound of the limit, and at the limit that of the eigenvector is sharp: take the
-// eigenvector at the last bound, its bound, and so on. The bounds fall, and so fast that few turns are enough.
+// Any vector gives an upper bound of the limit; the eigenvector at the limit gives the limit itself. So iterate:
+// eigenvector at the last bound, then its bound. The bounds fall so fast that few iterations suffice.
 static double find_border(const mspring_network *network, workspace *work, double start) {
     const size_t size = work->lanczos.size;
     double border = start;
@@ -86,7 +86,7 @@ static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, doubl
         return result;
     const double any_shape = mspringi_stable_in_any_shape(network, &spring);
     *now = any_shape < INFINITY ? find_border(network, &work, any_shape) : INFINITY;
-    if (network->areas.count == 0) // whose stiffness grows with the network
+    if (network->areas.count == 0) // the stiffness of areas grows with the network
         *now = fmax(*now, any_shape);
     release(network, &work);
     return MSPRING_OK;

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-// Pivots of x - T. All are positive just if x is above all eigenvalues.
+// Pivots of x - T. All are positive if and only if x is above all eigenvalues.
 static bool is_above(const mspringi_tridiagonal *t, double x, double *pivots) {
     double pivot = 1.0;
     for (int i = 0; i < t->size; ++i) {
@@ -22,7 +22,7 @@ double mspringi_tridiagonal_top(const mspringi_tridiagonal *t, double *vector) {
         low = fmax(low, t->diagonal[i]);
         high = fmax(high, t->diagonal[i] + reach);
     }
-    high += 1e-15 * fabs(high); // above, not at it
+    high += 1e-15 * fabs(high); // strictly above
     for (int halving = 0; halving < 60 && high - low > 1e-15 * fabs(high); ++halving) {
         const double middle = 0.5 * (low + high);
         if (is_above(t, middle, pivots))
