@@ -1,18 +1,17 @@
-/// Which islands there are, and what of the rows is swept while some of them sleep.
+/// Islands, and the blocks that are swept while some of them sleep.
 ///
-/// Rows are swept by blocks. A block with a particle that is awake is swept as ever, and what sleeps in it is held
-/// as if it were pinned: its inverse mass is 0 for the time. Blocks without are left out, whole strips of them
-/// without being looked at. No live spring joins what sleeps to what is awake, so nothing that matters is left out
-/// with them.
+/// Rows are swept by blocks. A block with an awake particle is swept as usual, with its sleeping particles pinned:
+/// their active inverse mass is 0. Other blocks are skipped, and whole strips of them unread. No live spring
+/// connects a sleeping particle to an awake one, so skipped blocks do not matter.
 #include <math.h>
 #include <string.h>
 
 #include "sleep/sleep.h"
 #include "store/roots.h"
 
-/* ---------------------------------------------------------------------------------------------- the islands */
+/* -------------------------------------------------------------------------------------------------- islands */
 
-// Into scratch by slot.
+// Write the number of each slot's island to scratch.
 static uint32_t number_islands(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     const mspringi_topology *t = &network->topology;
@@ -25,13 +24,13 @@ static uint32_t number_islands(mspring_network *network) {
             s->lowest[count] = slot;
             s->scratch[slot] = count++;
         } else {
-            s->scratch[slot] = s->scratch[s->scratch[slot]]; // lower, so it is a number already
+            s->scratch[slot] = s->scratch[s->scratch[slot]]; // lower, so numbered already
         }
     }
     return count;
 }
 
-// The new islands have been still for as long as the least of the old ones that they are of; asleep is longest.
+// Inherit the time at rest: the shortest of the old islands that a new one contains. Sleep counts as the longest.
 static void hand_on_stillness(mspring_network *network, uint32_t count) {
     mspringi_sleep *s = &network->sleep;
     for (uint32_t i = 0; i < count; ++i)
@@ -89,7 +88,7 @@ void mspringi_islands_find(mspring_network *network) {
         mspringi_islands_map(network);
 }
 
-/* ------------------------------------------------------------------------------------------------- the blocks */
+/* ----------------------------------------------------------------------------------------------------- blocks */
 
 static void map_block(const mspring_network *network, uint32_t block) {
     const mspringi_sleep *s = &network->sleep;
@@ -105,8 +104,9 @@ static void map_block(const mspring_network *network, uint32_t block) {
     s->swept[block] = awake != 0;
 }
 
-// A spring to the lower right has its record below its upper end, where nothing may be. One to the upper right, of
-// a block's last slot, hands its force on by way of the block beside, where nothing may be either.
+// Also sweep blocks through which a swept block's springs act, though they may have no particle. A south-east
+// spring has its record in the block below its upper end. A north-east spring of a block's last slot carries its
+// force through the next block.
 static void sweep_beside(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const uint32_t last_lane = 1u << (MSPRINGI_WIDTH - 1);
@@ -121,7 +121,7 @@ static void sweep_beside(const mspring_network *network) {
     }
 }
 
-// Whether what a block hands to the row above is taken there.
+// True if the row above takes the carry of this block.
 static bool is_handed_on(const mspring_network *network, uint32_t block) {
     const mspringi_topology *t = &network->topology;
     const uint32_t i = block - t->lattice_first;

@@ -1,8 +1,8 @@
-/// When islands fall asleep, and what wakes them.
+/// Falling asleep and waking.
 ///
-/// What an island was when it fell asleep is kept, and compared with what it is: views and hooks write to it
-/// without telling, and a game sets masses and forces in every frame that are mostly those of the frame before.
-/// Edits of springs tell by themselves.
+/// Islands are compared with a copy of their state at the time they fell asleep. Views and hooks write without
+/// notice, and a game sets masses and forces in every frame, mostly to the values of the frame before. Edits of
+/// springs notify.
 #include "sleep/sleep.h"
 
 #include <math.h>
@@ -30,7 +30,7 @@ void mspringi_sleep_forget(mspringi_sleep *s) {
     *s = (mspringi_sleep){0};
 }
 
-/* -------------------------------------------------------------------------------------------------- the state */
+/* ------------------------------------------------------------------------------------------------------ state */
 
 static bool state_differs(const mspring_network *network, size_t slot) {
     const size_t slots = mspringi_slot_count(network);
@@ -45,7 +45,7 @@ static bool mass_differs(const mspring_network *network, size_t slot) {
     return network->inverse_mass[slot] != network->sleep.inverse_mass[slot];
 }
 
-// Whether something of a block, all or the masses, is other than it was kept; whether or not it sleeps.
+// True if the state or the masses of a block differ from the copy, asleep or not.
 static bool block_differs(const mspring_network *network, size_t block, bool state, bool masses) {
     const size_t slots = mspringi_slot_count(network), first = block * MSPRINGI_WIDTH;
     const mspringi_sleep *s = &network->sleep;
@@ -62,12 +62,12 @@ bool mspringi_sleeper_is_disturbed(const mspring_network *network, size_t slot) 
            mass_differs(network, slot);
 }
 
-// Whether positions, velocities or masses may have changed since they were looked at.
+// True if positions, velocities or masses may have changed since the last check.
 static bool may_have_moved(const mspring_network *network) {
     return network->is_open || network->sleep.moved != network->edits.state;
 }
 
-// The first slot that sleeps and has been disturbed, from one on; the number of slots if there is none.
+// First disturbed sleeping slot from `slot` on; the number of slots if there is none.
 static size_t next_disturbed(const mspring_network *network, size_t slot, bool state, bool masses) {
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
@@ -102,7 +102,7 @@ static void keep_stillness(mspringi_sleep *s) {
     s->has_kept = true;
 }
 
-// What sleeps has a past: it has been at rest.
+// The time at rest of a woken island restarts at 0.
 static void set_awake(mspring_network *network, uint32_t island) {
     mspringi_sleep *s = &network->sleep;
     const bool slept = s->still[island] < 0.0;
@@ -171,7 +171,7 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
     if (s->sleeping == 0)
         return;
     const uint64_t naps = network->edits.sleep_changes;
-    // A substep of another length changes relative springs, and how many there are may change by itself.
+    // Relative springs change with the substep, and an automatic number of substeps may change.
     const bool same_h = !network->fractions.values || attempt->h == network->relative_h;
     if (!same_h || network->origin_x != s->origin_x || network->origin_y != s->origin_y) {
         keep_stillness(s);
@@ -201,8 +201,7 @@ bool mspringi_sleep_is_idle(const mspring_network *network) {
     return mspringi_sleep_is_whole(network) && !network->sleep.has_force && !network->forces.held_any;
 }
 
-// A change of force counts that would bring a particle to the speed that is no sleep any more within the time after
-// which it would have been asleep again.
+// Lanes to wake: the change of force would bring a particle to the sleep speed within the sleep time.
 static uint32_t wake_block_by_forces(const mspring_network *network, mspringi_field force, size_t first) {
     const mspringi_sleep *s = &network->sleep;
     const float speed = network->settings.sleep_speed, time = network->settings.sleep_time;
@@ -220,7 +219,7 @@ static uint32_t wake_block_by_forces(const mspring_network *network, mspringi_fi
     return bits & s->sleepers[first / MSPRINGI_WIDTH];
 }
 
-// Once the forces from outside are known: wake what feels others than when it fell asleep.
+// Wake particles whose external force differs from that at the time they fell asleep.
 static void wake_by_forces(mspring_network *network, mspringi_field force) {
     mspringi_sleep *s = &network->sleep;
     s->in_force = force;
@@ -241,9 +240,10 @@ static void wake_by_forces(mspring_network *network, mspringi_field force) {
     map_if_changed(network, naps);
 }
 
-/* ------------------------------------------------------------------------------------------------- in a step */
+/* ------------------------------------------------------------------------------------------------------ step */
 
-// Some solvers leave alone what is not swept; others go by larger pieces.
+// True if the solver may move a sleeping block. Some solvers skip blocks that are not swept; others work on larger
+// units.
 static bool is_held(const mspring_network *network, size_t block) {
     const mspringi_sleep *s = &network->sleep;
     return s->sleepers[block] != 0 && (s->swept[block] || !network->running->ops->skips_sleepers);
@@ -279,7 +279,7 @@ void mspringi_sleep_put_back(const mspring_network *network) {
     }
 }
 
-// Wake what hooks have moved.
+// Wake islands that hooks have moved.
 static void update_sleep(mspring_network *network, double dt) {
     (void)dt;
     if (network->sleep.sleeping == 0 || network->hook_count == 0)
@@ -310,12 +310,12 @@ void mspringi_sleep_undo(mspring_network *network) {
     if (s->sleeping == 0)
         return;
     mspringi_islands_map(network);
-    s->masses = network->edits.masses - 1; // what woke of another mass still has it
+    s->masses = network->edits.masses - 1; // islands that a changed mass woke still have that mass
 }
 
 /* ------------------------------------------------------------------------------------------- falling asleep */
 
-// Slots of a block that are faster than what is still, or pinned and on their way.
+// Slots of a block that are faster than the sleep speed, or pinned and moving.
 static uint32_t moving_in_block(const mspring_network *network, size_t first) {
     const mspringi_state *state = &network->state;
     const float speed = network->settings.sleep_speed;
@@ -332,7 +332,7 @@ static uint32_t moving_in_block(const mspring_network *network, size_t first) {
     return bits;
 }
 
-// Mark the islands that are not still.
+// Mark islands that are not at rest.
 static void mark_moving(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_sleep *s = &network->sleep;
@@ -353,7 +353,7 @@ static void mark_moving(const mspring_network *network) {
     }
 }
 
-// Let dt pass, and mark those whose time has come instead. Returns whether there are any.
+// Advance the time at rest by dt, and mark the islands that are due to sleep. True if there are any.
 static bool mark_sleepy(const mspring_network *network, double dt) {
     const mspringi_sleep *s = &network->sleep;
     bool any = false;
@@ -370,8 +370,7 @@ static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field f
     const mspringi_state *state = &network->state;
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
-    // A block that is swept for what else is in it adds 0 to the position, and so to what is below it: -0 would
-    // become +0.
+    // A block that is swept for its other slots adds 0 to the position and its low word, which would make -0 +0.
     state->low_x[slot] = mspringi_low_of(state->x[slot], state->low_x[slot]);
     state->low_y[slot] = mspringi_low_of(state->y[slot], state->low_y[slot]);
     mspringi_move_by(state, slot, 0.0f, 0.0f);
@@ -406,7 +405,7 @@ void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {
     mspringi_islands_map(network);
 }
 
-// The local origin has moved along: exactly, with all there is.
+// The local origin has moved, exactly. Move the copy with it.
 static void follow_origin(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     if (s->sleeping == 0 || (s->origin_x == network->origin_x && s->origin_y == network->origin_y))
@@ -451,10 +450,10 @@ const mspringi_stage mspringi_stage_waking = {.is_used = is_used,
                                               .roll_back = restore,
                                               .undo = drop_force};
 
-// The last of a step's stages: it sees what all others have done.
+// The last stage of a step: it sees the effects of all others.
 const mspringi_stage mspringi_stage_falling_asleep = {.is_used = is_used, .after_step = fall_asleep};
 
-/* ------------------------------------------------------------------------------------------------ moving along */
+/* ---------------------------------------------------------------------------------------------------- relayout */
 
 void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
     mspringi_sleep *s = &to->sleep;
@@ -492,7 +491,7 @@ void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
     s->masses = had->masses;
 }
 
-/* ---------------------------------------------------------------------------------------------------- the host */
+/* --------------------------------------------------------------------------------------------------------- API */
 
 mspring_result mspring_network_wake(mspring_network *network) {
     mspring_result result = mspringi_check_call(network);
