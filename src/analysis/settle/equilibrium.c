@@ -75,7 +75,7 @@ mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd 
 
 /* ------------------------------------------------------------------------------------------------------ springs */
 
-/// A spring as it lies now.
+/// A spring in the present shape.
 typedef struct lie {
     double x, y, length; ///< from a to b
 } lie;
@@ -88,7 +88,7 @@ static lie lie_of(const mspringi_statics *statics, uint32_t spring) {
     return (lie){x, y, sqrt(x * x + y * y)};
 }
 
-// Whether a spring that only pulls is shorter than at rest, or one that only pushes longer.
+// True if a one-way spring is slack: one that only pulls and is short, or one that only pushes and is long.
 static bool is_slack(const mspringi_statics_springs *s, uint32_t spring, double length) {
     return s->side[spring] * (length - s->rest_length[spring]) < 0.0;
 }
@@ -140,8 +140,8 @@ static double half_square(double stretch) {
     return 0.5 * stretch * stretch;
 }
 
-// The change of a spring's length is taken from the change of its square, and the change of its energy from that:
-// both are as small as they are, where a difference of energies would be lost in their rounding.
+// A difference of energies would be lost in rounding. So the change of length follows from that of the squared
+// length, and the change of energy from the change of length.
 double mspringi_statics_energy_change(const mspringi_statics *statics, double t, double *error) {
     const mspringi_statics_springs *s = &statics->springs;
     const mspringi_vectors step = statics->step, bend = statics->bend;
@@ -178,8 +178,8 @@ double mspringi_statics_energy_change(const mspringi_statics *statics, double t,
 
 /* --------------------------------------------------------------------------------------------------- stiffness */
 
-/// Part of its stiffness that a slack spring has in the matrix. From 1e-6 to 1 a slack rope of 40 links took as
-/// many iterations; with 0 it took more than twice as many.
+/// Stiffness of a slack spring in the matrix, relative to its own. A slack rope of 40 links took as many iterations
+/// with 1e-6 as with 1, but more than twice as many with 0.
 #define SLACK_SHARE 1e-6
 
 static void add_to_node(mspringi_statics *statics, uint32_t p, double xx, double xy, double yy, double scale) {
@@ -189,9 +189,8 @@ static void add_to_node(mspringi_statics *statics, uint32_t p, double xx, double
     statics->scale[p] += scale;
 }
 
-// K = k (t I + (1 - t) n n^T), t = 1 - L0 / l, n the direction. A spring of length 0 has none and is taken to be
-// stiff in all. One that is slack has so little stiffness that it changes no way, but enough to have the matrix
-// definite.
+// K = k (t I + (1 - t) n n^T), t = 1 - L0 / l, n the direction. A spring of length 0 has no direction and is stiff
+// in all. A slack spring keeps just enough stiffness for a positive definite matrix.
 static void add_spring(mspringi_statics *statics, uint32_t spring, bool clamped) {
     const mspringi_statics_springs *s = &statics->springs;
     const lie now = lie_of(statics, spring);
@@ -213,7 +212,7 @@ static void add_spring(mspringi_statics *statics, uint32_t spring, bool clamped)
 bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shift) {
     const uint32_t count = statics->particle_count;
     const mspringi_statics_springs *s = &statics->springs;
-    memset(statics->xx, 0, 4 * (size_t)count * sizeof *statics->xx); // and xy, yy, scale, which lie behind it
+    memset(statics->xx, 0, 4 * (size_t)count * sizeof *statics->xx); // and xy, yy, scale, which follow it in memory
     for (uint32_t i = 0; i < s->count; ++i)
         add_spring(statics, i, clamped);
     for (uint32_t i = s->count; i < s->edge_count; ++i)
@@ -222,7 +221,7 @@ bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shi
     double stiffest = 0.0;
     for (uint32_t p = 0; p < count; ++p)
         stiffest = statics->fixed[p] ? stiffest : fmax(stiffest, statics->scale[p]);
-    // A particle without spring has no stiffness: any will do, as no force is on it.
+    // A particle without springs has no stiffness. Any will do, as no force acts on it.
     const double least = stiffest > 0.0 ? 1e-12 * stiffest : 1.0;
     for (uint32_t p = 0; p < count; ++p) {
         const double add = shift * fmax(statics->scale[p], least) + (statics->scale[p] > 0.0 ? 0.0 : least);
@@ -233,7 +232,7 @@ bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shi
     return mspringi_cholesky_double_factor(&statics->factor, &matrix) == MSPRING_NONE;
 }
 
-/* --------------------------------------------------------------------------------------------------------- ways */
+/* -------------------------------------------------------------------------------------------------- Newton step */
 
 static void solve(mspringi_statics *statics, mspringi_vectors v) {
     for (uint32_t p = 0; p < statics->particle_count; ++p)
@@ -242,8 +241,8 @@ static void solve(mspringi_statics *statics, mspringi_vectors v) {
     mspringi_cholesky_double_solve(&statics->factor, v.x, v.y);
 }
 
-// Half of the second derivative of a spring's force along the step, with d the vector of the spring, n its
-// direction and s the change of d, of which sn is along n and sp across:
+// Half the second derivative of a spring's force along the step: d is the vector of the spring, n its direction,
+// and s the change of d, with sn its part along n and sp across:
 //
 //     (k (l - L0) n)'' = k L0 (2 sn sp + |sp|^2 n) / l^2
 static void add_bend(mspringi_statics *statics, uint32_t spring) {

@@ -1,27 +1,27 @@
-/// The search for rest.
+/// Search for an equilibrium.
 #include <math.h>
 #include <string.h>
 
 #include "analysis/settle/equilibrium.h"
 
-/// Part of the decrease of energy that its slope promises which a step must bring (Armijo 1966).
+/// Fraction of the decrease predicted by the slope that a step must reach (Armijo 1966).
 #define LEAST_DECREASE 1e-4
 /// Halvings of a step before its direction is given up.
 #define MOST_HALVINGS 40
-/// Doublings of a step that is good as it is.
+/// Doublings of an accepted full step.
 #define MOST_DOUBLINGS 20
-/// Times a direction is sought anew with more shift.
+/// Attempts at a direction with increasing shift.
 #define MOST_SHIFTS 12
-/// What the stiffness may lack, as a part of its scale, in an equilibrium that counts as stable: what rounding and
-/// mechanisms without any stiffness leave.
+/// Shift that makes the stiffness of a stable equilibrium positive definite, relative to its scale. Covers rounding
+/// and mechanisms without any stiffness.
 #define STABLE_SHIFT 1e-9
-/// Shift of a clamped stiffness, which mechanisms need: without it they would have none.
+/// Shift of a clamped stiffness; mechanisms would have none without it.
 #define CLAMPED_SHIFT 1e-8
-/// Pushes out of equilibria that are not stable, and how far, as a part of the springs' mean length.
+/// Perturbations of unstable equilibria, and their size relative to the mean rest length.
 #define MOST_PUSHES 8
 #define PUSH 1e-3
-/// Steps below this part of the network's size, or of how far it was moved, are rounding: no force can be got below
-/// what they leave.
+/// Step that is rounding, relative to the network's size or the largest displacement. Residuals at this step are
+/// final.
 #define SMALLEST_STEP 1e-14
 
 typedef struct newton {
@@ -48,14 +48,13 @@ static bool factor(newton *n) {
     return false;
 }
 
-/// How far to go along a way, and what it brings.
+/// Position on the path, and the change of energy there.
 typedef struct reach {
     double t, change; ///< t 0: the energy does not fall
 } reach;
 
-// Go twice as far, and again, while the energy falls by more than rounding. A clamped stiffness is too stiff, so
-// steps come out short where springs are compressed; to look further takes a small part of the time of a
-// factorisation.
+// Double the step while the energy falls by more than rounding. A clamped stiffness is too stiff, so steps come out
+// short where springs are compressed. An evaluation takes a small part of the time of a factorisation.
 static reach extend(const newton *n, reach best) {
     for (int doublings = 0; doublings < MOST_DOUBLINGS; ++doublings) {
         double error;
@@ -67,7 +66,7 @@ static reach extend(const newton *n, reach best) {
     return best;
 }
 
-// Go along the way as far as the energy falls. Where that is from the start on, see whether it is further.
+// Search backwards from t for a sufficient decrease of energy; if t itself suffices, forwards.
 static reach search(const newton *n, double t, double slope) {
     for (int halvings = 0; halvings < MOST_HALVINGS; ++halvings, t *= 0.5) {
         double error;
@@ -78,9 +77,9 @@ static reach search(const newton *n, double t, double slope) {
     return (reach){0.0, 0.0};
 }
 
-// Go along the way that bends, all of it but not so far that it bends back. Where that is not far, among springs
-// that are much shorter than the step, look whether straight on is better. Returns the largest coordinate of what
-// was moved; < 0: the energy does not fall.
+// Move along the curved path, no further than to where it turns back. If that is short, as with springs much
+// shorter than the step, compare with the straight path. Return the largest coordinate of the move; < 0 if the
+// energy does not fall.
 static double go(newton *n) {
     mspringi_statics *statics = n->statics;
     const uint32_t count = statics->particle_count;
@@ -103,7 +102,7 @@ static double go(newton *n) {
     if (best.t == 0.0)
         return -1.0;
     if (best.t >= farthest && farthest < 1.0)
-        n->reach *= 4.0; // it is further away than the network is large
+        n->reach *= 4.0; // the equilibrium is further away than the network is large
     for (uint32_t p = 0; p < count; ++p) {
         statics->moved.x[p] += best.t * (statics->step.x[p] + best.t * statics->bend.x[p]);
         statics->moved.y[p] += best.t * (statics->step.y[p] + best.t * statics->bend.y[p]);
@@ -111,7 +110,7 @@ static double go(newton *n) {
     return best.t * step;
 }
 
-// One step. Returns what go() does.
+// Take one step. Returns the result of go().
 static double iterate(newton *n) {
     for (int tries = 0; tries < MOST_SHIFTS; ++tries) {
         if (factor(n)) {
@@ -127,7 +126,7 @@ static double iterate(newton *n) {
     return -1.0;
 }
 
-// A small step in any direction, the same on every machine: the particles' numbers, scrambled (Steele et al. 2014).
+// Perturb all particles, the same way on every machine: SplitMix64 of their numbers (Steele et al. 2014).
 static void push(newton *n) {
     mspringi_statics *statics = n->statics;
     for (uint32_t p = 0; p < statics->particle_count; ++p) {

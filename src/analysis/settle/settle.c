@@ -1,4 +1,4 @@
-/// mspring_network_settle(): from a network to a problem of statics and back.
+/// mspring_network_settle(): converts a network to a problem of statics and back.
 #include <float.h>
 #include <math.h>
 
@@ -30,7 +30,7 @@ static void fill_particles(mspringi_statics *statics, const mspring_network *net
         statics->start.y[p] = mspringi_y_of(&network->state, slot);
         if (statics->fixed[p])
             continue;
-        // Where a step leaves the velocity as it is: force * inverse_mass + gravity = 0.
+        // In equilibrium a step leaves the velocity unchanged: force * inverse_mass + gravity = 0.
         statics->outside.x[p] = (double)network->settings.gravity_x / inverse_mass;
         statics->outside.y[p] = (double)network->settings.gravity_y / inverse_mass;
         if (forces->held_any) {
@@ -60,11 +60,11 @@ static void fill_springs(mspringi_statics *statics, const mspring_network *netwo
 
 /* -------------------------------------------------------------------------------------------- floating parts */
 
-/// A set of particles that springs hold together, known by one of them.
+/// Component of the springs, identified by its root.
 typedef struct part {
-    double x, y, size; ///< forces from outside: their sum, and the sum of their absolute values
-    uint32_t lowest;   ///< particle
-    bool is_held;      ///< by a pinned particle
+    double x, y, size; ///< sum of the external forces, and of their absolute values
+    uint32_t lowest;   ///< lowest particle
+    bool is_held;      ///< has a pinned particle
 } part;
 
 static void join_parts(const mspringi_statics *statics, uint32_t *up) {
@@ -84,13 +84,13 @@ static void sum_parts(const mspringi_statics *statics, uint32_t *up, part *parts
     }
 }
 
-// The forces on a part that no pinned particle holds must cancel; to a millionth, which the rounding of many floats
-// does not reach.
+// True if the forces on a component without pinned particles do not cancel to a millionth. Rounding of many floats
+// stays below that.
 static bool floats_away(const part *of) {
     return !of->is_held && fabs(of->x) + fabs(of->y) > 1e-6 * of->size;
 }
 
-// Leave floating parts alone, or refuse them.
+// Fix floating components, or return an error.
 static mspring_result check_parts(mspringi_statics *statics, const mspring_settle_def *def, uint32_t *left_alone,
                                   mspring_network *network) {
     uint32_t *up = mspringi_alloc(&network->memory, statics->particle_count, sizeof *up);
@@ -125,7 +125,7 @@ static mspring_result check_parts(mspringi_statics *statics, const mspring_settl
 
 /* ----------------------------------------------------------------------------------------------------- settling */
 
-// How far apart things are: the larger side of the box around the network, or its longest spring.
+// Extent of the network, m: the larger side of its box, or its longest spring.
 static double extent_of(const mspringi_statics *statics, const mspring_network *network) {
     double extent = 0.0;
     mspringi_box box = mspringi_box_empty();
@@ -137,7 +137,7 @@ static double extent_of(const mspringi_statics *statics, const mspring_network *
     return fmax(extent, fmax(box.max_x - box.min_x, box.max_y - box.min_y));
 }
 
-/// Part of its yield strain that a spring which is at the border may be strained by.
+/// Largest strain that counts as elastic, relative to the yield strain: springs at the limit may round above it.
 #define TOLERATED_YIELD (1.0 + 1e-5)
 
 static mspring_result check_rest(const mspringi_statics *statics, const mspringi_rest *rest,
@@ -157,7 +157,8 @@ static mspring_result check_rest(const mspringi_statics *statics, const mspringi
     return MSPRING_OK;
 }
 
-// The equilibrium is that of springs which are elastic. Where one would yield on the way there is another.
+// Check that no spring would yield: the search treats all as elastic, and plastic flow leads to another
+// equilibrium.
 static mspring_result check_yields(const mspringi_statics *statics, mspring_network *network) {
     const mspringi_plastic *p = &network->plastic;
     for (mspring_id spring = 0; p->yields && spring < network->topology.spring_count; ++spring) {

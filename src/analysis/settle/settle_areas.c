@@ -1,8 +1,8 @@
-/// Areas in a problem of statics: those that springs are all around.
+/// Areas in a problem of statics. Each side must be a spring.
 ///
-/// The stiffness of an area is taken as more stiffness along the springs of its outline, as in implicit substeps
-/// (solvers/implicit/implicit_areas.c): no less than it is, so that Newton's way leads down, and with the pattern
-/// that the springs have. Forces and energies are the area's own.
+/// An area adds stiffness along the springs of its outline, as in implicit substeps
+/// (solvers/implicit/implicit_areas.c). That is an upper bound, so Newton's step still descends, and the matrix
+/// keeps the pattern of the springs. Forces and energies are exact.
 #include "store/areas.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "analysis/settle/equilibrium.h"
 #include "store/springs.h"
 
-// The number of each spring among those that exert a force.
+// Number the springs with stiffness.
 static void number_springs(const mspring_network *network, uint32_t *numbers) {
     uint32_t count = 0;
     for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring)
@@ -56,7 +56,7 @@ mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_net
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------------- one of them */
+/* ---------------------------------------------------------------------------------------------------- one area */
 
 typedef struct place {
     double x, y;
@@ -66,7 +66,7 @@ static uint32_t particle_of(const mspringi_statics *statics, const mspringi_area
     return statics->areas.of->corners[area->first + corner % area->count].particle;
 }
 
-// From the first corner.
+// Position relative to the first corner.
 static place place_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner) {
     const uint32_t p = particle_of(s, area, corner), first = particle_of(s, area, 0);
     return (place){(s->start.x[p] - s->start.x[first]) + (s->moved.x[p] - s->moved.x[first]),
@@ -84,14 +84,14 @@ static double size_of(const mspringi_statics *s, const mspringi_area *area) {
     return 0.5 * twice;
 }
 
-// How far a corner goes beyond the first.
+// Displacement on the path, relative to the first corner.
 static place way_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner, double t) {
     const uint32_t p = particle_of(s, area, corner), first = particle_of(s, area, 0);
     return (place){t * ((s->step.x[p] - s->step.x[first]) + t * (s->bend.x[p] - s->bend.x[first])),
                    t * ((s->step.y[p] - s->step.y[first]) + t * (s->bend.y[p] - s->bend.y[first]))};
 }
 
-// By how much it grows on a way: not as a difference of areas, which would be lost in their rounding.
+// Growth of an area on the path. A difference of areas would be lost in rounding.
 static double growth_of(const mspringi_statics *s, const mspringi_area *area, double t) {
     double twice = 0.0;
     place before = place_of(s, area, 1), went = way_of(s, area, 1, t);
@@ -105,9 +105,9 @@ static double growth_of(const mspringi_statics *s, const mspringi_area *area, do
     return 0.5 * twice;
 }
 
-/* ------------------------------------------------------------------------------------------------- all of them */
+/* --------------------------------------------------------------------------------------------------- all areas */
 
-// The next that is closed, from one on; NULL if there is none.
+// Next closed area from *i on; NULL if there is none.
 static const mspringi_area *next_area(const mspringi_statics *statics, size_t *i) {
     const mspringi_areas *all = statics->areas.of;
     while (all && *i < all->count && all->list[*i].is_open)
@@ -153,7 +153,7 @@ double mspringi_statics_area_change(const mspringi_statics *statics, double t, d
     return change;
 }
 
-// The vector from the middle of the corners to that of a side.
+// Vector from the centre of the corners to the midpoint of a side.
 static place arm_of(const mspringi_statics *s, const mspringi_area *area, uint32_t side, place middle) {
     const place a = place_of(s, area, side), b = place_of(s, area, side + 1);
     return (place){0.5 * (a.x + b.x) - middle.x, 0.5 * (a.y + b.y) - middle.y};

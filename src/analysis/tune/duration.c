@@ -1,17 +1,15 @@
-/// How long trajectories are compared where the host does not say: as long as the slowest swing takes that is in
-/// the motion.
+/// Automatic duration of trajectories: the period of the slowest oscillation in the motion.
 ///
-/// In a swing of angular frequency w, displacements u from their mean and velocities v have mean squares |v|^2 =
-/// w^2 |u|^2 (Rayleigh's quotient, taken from the motion itself). Over a time in which a body goes on in one
-/// direction, u tells of a period that is longer than that time. So a clone runs until the period that it tells of
-/// has passed. It runs with the implicit solver, which takes any stiffness, and whose damping leaves slow swings
-/// alone.
+/// In an oscillation of angular frequency w, displacements u from their mean and velocities v have mean squares
+/// |v|^2 = w^2 |u|^2 (Rayleigh's quotient of the motion itself). While a body still moves in one direction, the
+/// estimated period exceeds the time so far. So a clone runs until the period of its own estimate has passed. It
+/// uses the implicit solver: that takes any stiffness, and its damping spares slow oscillations.
 #include <math.h>
 #include <string.h>
 
 #include "analysis/tune/tuning.h"
 
-/// Parts of the budget: for finding the period, and for all that is made of its steps later.
+/// Fractions of the budget: to find the period, and for all later passes over its steps.
 #define PART_FOR_PERIOD 0.1
 #define PART_FOR_STEPS 0.5
 
@@ -20,7 +18,7 @@
 /// Sums over the steps of a run, weighted by mass.
 typedef struct geometric {
     double *x, *y;          ///< [particles] sums of displacements, m
-    double squares, speeds; ///< of displacements and of velocities
+    double squares, speeds; ///< sums of squared displacements and velocities
     uint32_t steps;
 } geometric;
 
@@ -44,7 +42,7 @@ static void note(const mspringi_tuning *tuning, const mspring_network *clone, ge
     s->steps++;
 }
 
-// The period that the motion so far tells of, s; 0 if nothing moves.
+// Period estimated from the motion so far, s; 0 if nothing moves.
 static double period_of(const mspring_network *clone, const geometric *s) {
     const double steps = (double)s->steps;
     double means = 0.0;
@@ -57,7 +55,7 @@ static double period_of(const mspring_network *clone, const geometric *s) {
     return s->speeds > 0.0 ? TWO_PI * sqrt(around_mean / s->speeds) : 0.0;
 }
 
-// Steps that there is time for, in all passes to come.
+// Number of steps that all later passes have time for.
 static mspring_result count_affordable(mspringi_tuning *tuning, double *steps) {
     const mspring_tune_def *def = &tuning->def;
     const double passes = def->flags & MSPRING_TUNE_NOTHING_ELSE ? 2.0 : 3.0;
@@ -85,7 +83,7 @@ static mspring_result count_affordable(mspringi_tuning *tuning, double *steps) {
     return MSPRING_OK;
 }
 
-// Run a clone until its slowest swing has passed, or so many steps.
+// Run a clone for the period of its slowest oscillation, or `most` steps.
 static uint32_t run_one_period(mspringi_tuning *tuning, mspring_network *clone, double most) {
     const mspring_tune_def *def = &tuning->def;
     const size_t particles = clone->topology.particle_count;
@@ -127,7 +125,7 @@ mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning) {
                                  ? steps
                                  : MSPRINGI_TUNE_LEAST_STEPS;
     } else if (result == MSPRING_ERROR_LIMIT) {
-        result = MSPRING_OK; // it cannot have that solver
+        result = MSPRING_OK; // not available for this network
     } else {
         tuning->network->message = clone->message;
     }

@@ -1,4 +1,4 @@
-/// Which rows are worth having.
+/// Pareto front and recommendation.
 #include <math.h>
 
 #include "analysis/tune/tuning.h"

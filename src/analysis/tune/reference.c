@@ -8,7 +8,7 @@
 #include "store/areas.h"
 #include "store/springs.h"
 
-/// Part of what is stable in any shape that a substep takes.
+/// Substep, relative to the longest one that is stable in any shape.
 #define PART_OF_STABLE (1.0 / 3.0)
 
 /* ---------------------------------------------------------------------------------------------------- creation */
@@ -114,15 +114,15 @@ void mspringi_reference_destroy(mspringi_reference *reference, mspring_network *
 }
 
 void mspringi_reference_release(mspringi_reference *r) {
-    memset(r->held_x, 0, 2 * (size_t)r->particle_count * sizeof *r->held_x); // held_y lies behind it
+    memset(r->held_x, 0, 2 * (size_t)r->particle_count * sizeof *r->held_x); // held_y follows it in memory
     r->has_accelerations = false;
 }
 
-// No eigenvalue of M^-1 K is above the largest sum in a row of its symmetric form (Gershgorin), whatever the shape;
-// the same holds for the dampers. Above h^2 K + 2 h C = 4 motion would grow.
+// No eigenvalue of M^-1 K exceeds the largest row sum of its symmetric form (Gershgorin), in any shape. The same
+// holds for the dampers. The limit is h^2 K + 2 h C = 4.
 double mspringi_reference_substep(const mspringi_reference *r) {
     double *stiffness = r->ax, *damping = r->ay, longest = INFINITY;
-    memset(stiffness, 0, 2 * (size_t)r->particle_count * sizeof *stiffness); // ay lies behind ax
+    memset(stiffness, 0, 2 * (size_t)r->particle_count * sizeof *stiffness); // ay follows ax in memory
     for (uint32_t i = 0; i < r->spring_count; ++i) {
         const mspringi_reference_spring *spring = &r->springs[i];
         const double wa = r->inverse_mass[spring->a], wb = r->inverse_mass[spring->b], both = sqrt(wa * wb);
@@ -142,7 +142,7 @@ double mspringi_reference_substep(const mspringi_reference *r) {
 
 /* ----------------------------------------------------------------------------------------------------- stepping */
 
-// Accelerations where the particles are, with these velocities.
+// Accelerations at the present positions and these velocities.
 static void find_accelerations(const mspringi_reference *r, const double *vx, const double *vy) {
     for (uint32_t p = 0; p < r->particle_count; ++p) {
         const bool moves = r->inverse_mass[p] > 0.0;
@@ -168,13 +168,13 @@ static void find_accelerations(const mspringi_reference *r, const double *vx, co
     mspringi_reference_push_areas(r, vx, vy);
 }
 
-// to = from + factor times change. The two coordinates of each lie one behind the other.
+// to = from + factor * change. count includes both coordinates, which follow each other in memory.
 static void add(double *to, const double *from, double factor, const double *change, size_t count) {
     for (size_t i = 0; i < count; ++i)
         to[i] = from[i] + factor * change[i];
 }
 
-// What depends on velocities is taken at those that the end of the substep is going to have if accelerations stay.
+// Take a substep. Damping uses velocities extrapolated to its end.
 static void take_substep(mspringi_reference *r, double h) {
     const size_t count = 2 * (size_t)r->particle_count;
     add(r->vx, r->vx, 0.5 * h, r->ax, count);

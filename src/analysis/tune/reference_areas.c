@@ -1,4 +1,4 @@
-/// Areas and angle springs of the reference: their law (store/areas.h, angles.h), at its positions.
+/// Areas and angle springs of the reference: the law of store/areas.h and angles.h in double precision.
 #include <math.h>
 
 #include "analysis/tune/reference.h"
@@ -12,7 +12,7 @@ static uint32_t particle_of(const mspringi_reference *r, const mspringi_area *ar
     return r->areas->corners[area->first + corner % area->count].particle;
 }
 
-// The way from one corner to another.
+// Vector from one corner to another.
 static place way(const mspringi_reference *r, const mspringi_area *area, uint32_t from, uint32_t to) {
     const uint32_t a = particle_of(r, area, from), b = particle_of(r, area, to);
     return (place){r->x[b] - r->x[a], r->y[b] - r->y[a]};
@@ -38,7 +38,7 @@ static double size_of(const mspringi_reference *r, const mspringi_area *area) {
     return 0.5 * twice;
 }
 
-// An arm turned to the left, over its square.
+// An arm rotated left by 90 degrees, divided by its squared length.
 static place turned(place arm) {
     const double square = square_of(arm);
     return square > 0.0 ? (place){-arm.y / square, arm.x / square} : (place){0.0, 0.0};
@@ -53,7 +53,7 @@ static place gradient_of(const mspringi_reference *r, const mspringi_area *area,
     return corner == 0 ? u : corner == 2 ? w : (place){-u.x - w.x, -u.y - w.y};
 }
 
-// The next that is closed, from one on; NULL if there is none.
+// Next closed area from *i on; NULL if there is none.
 static const mspringi_area *next_area(const mspringi_reference *r, size_t *i) {
     const mspringi_areas *all = r->areas;
     while (all && *i < all->count && all->list[*i].is_open)
@@ -80,7 +80,7 @@ void mspringi_reference_push_areas(const mspringi_reference *r, const double *vx
     }
 }
 
-// Of c g g' the row of a corner has blocks of the size c |g| |g'|, between roots of inverse masses.
+// In c g g', the row of a corner has blocks of size c |g| |g'|, times the roots of both inverse masses.
 void mspringi_reference_weigh_areas(const mspringi_reference *r, double *stiffness, double *damping) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(r, &at)) != NULL;) {

@@ -1,8 +1,8 @@
-/// Settings in a scene of the host's: floor, hooks and breaking, by what runs from many starts have in common.
+/// Comparison of settings in a scene of the host, with floor, hooks and breaking, by statistics over many starts.
 ///
-/// A body that breaks is chaotic: where its pieces end says nothing about a setting, how many springs broke on
-/// average does. Starts are taken one after another, each by the fine run and by all settings. So whenever the
-/// budget ends all of them have been compared from the same starts, but for the last.
+/// A breaking body is chaotic: the final place of a fragment says nothing about a setting, the mean number of
+/// broken springs does. The fine run and all settings take one start before the next. So whenever the budget ends,
+/// all were compared from the same starts, except for the last one.
 #include <math.h>
 
 #include "analysis/tune/tuning.h"
@@ -11,19 +11,19 @@
 #include "store/changed.h"
 #include "store/springs.h"
 
-/// Part of the substep that is stable in any shape that the fine run takes at most; and how many times as many
-/// substeps as the explicit settings.
+/// Longest substep of the fine run, relative to the longest that is stable in any shape; and its substeps, relative
+/// to the largest number of the explicit settings.
 #define FINE_PART_OF_STABLE (1.0 / 3.0)
 #define FINE_TIMES_SETTINGS 2.0
 
-/// Least unit of distances: for what is counted, and as a part of the setting's own mean.
+/// Smallest unit of a distance: for counts, and relative to the setting's own mean.
 #define LEAST_COUNT 1.0
 #define LEAST_PART_OF_OWN 1e-6
 
-/// How a run ended.
+/// Outcome of a run.
 typedef enum ending { WHOLE, REJECTED, CUT_SHORT } ending;
 
-/* ------------------------------------------------------------------------------------------------------ a start */
+/* ---------------------------------------------------------------------------------------------------- one start */
 
 static void kick(mspring_network *network, uint32_t start, double most) {
     const size_t particles = network->topology.particle_count;
@@ -38,7 +38,7 @@ static void kick(mspring_network *network, uint32_t start, double most) {
     mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
 }
 
-// A clone that has what the scene switches on, a little away from where the network is.
+// Clone the network with the features that the scene enables, and perturb it.
 static mspring_result make_start(mspringi_tuning *tuning, uint32_t start, mspring_network **made) {
     const mspring_tune_scene *scene = &tuning->scene;
     *made = NULL;
@@ -82,7 +82,7 @@ static mspring_result pass_on(mspringi_tuning *tuning, const mspring_network *cl
     return result;
 }
 
-// Have the host prepare a run, and give it its solver; not set: no solver of this kind can have the network.
+// Call the host's prepare, then set the solver. set: false if this kind of solver cannot take the network.
 static mspring_result prepare(mspringi_tuning *tuning, mspring_network *clone, const mspring_solver_def *solver,
                               uint32_t start, bool *set) {
     const mspring_tune_scene *scene = &tuning->scene;
@@ -133,13 +133,13 @@ static mspring_result run_solver(mspringi_tuning *tuning, mspring_network *from,
     return result;
 }
 
-/* -------------------------------------------------------------------------------------------------- all of them */
+/* --------------------------------------------------------------------------------------------------- all starts */
 
 static bool is_in(const mspringi_trial *trial) {
     return trial->row.flags & MSPRING_TUNE_HAS_COST && !(trial->row.flags & MSPRING_TUNE_REJECTED);
 }
 
-// How the fine run is made; substeps 0: it cannot be.
+// Choose the solver of the fine run. substeps 0: no fine run is possible.
 static mspring_result choose_fine(mspringi_tuning *tuning, mspring_solver_def *solver) {
     double any_shape = 0.0;
     (void)mspring_solver_def_init(solver, sizeof *solver);
@@ -161,7 +161,7 @@ static bool is_any_in(const mspringi_tuning *tuning) {
     return is_any;
 }
 
-// One start, by the fine run and all settings. Not whole: no further start is to be made.
+// Run one start with the fine run and all settings. Unless it ends WHOLE, there is no next start.
 static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_def *fine, uint32_t start,
                                 mspringi_scene_run *fine_runs, ending *end) {
     mspring_network *from = NULL;
@@ -186,7 +186,7 @@ static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_de
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------------- what is told */
+/* ------------------------------------------------------------------------------------------------------ results */
 
 static void sum_up(const mspringi_scene_run *runs, uint32_t count, size_t quantity, double *mean, double *spread) {
     double sum = 0.0, squares = 0.0;

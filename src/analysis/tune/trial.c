@@ -1,4 +1,4 @@
-/// Running settings on clones.
+/// Runs of settings on clones.
 #include <math.h>
 #include <string.h>
 
@@ -8,10 +8,10 @@
 #include "base/cpu.h"
 #include "store/springs.h"
 
-/// Fine substeps are taken in goes of about so many springs, between which the clock is looked at.
+/// Springs times fine substeps between two looks at the clock.
 #define SPRINGS_IN_A_GO 1000000u
 
-/// Least scale of errors, as a part of the network's size.
+/// Smallest scale of errors, relative to the network's size.
 #define LEAST_SCALE 1e-6
 
 /* ------------------------------------------------------------------------------------------------------- clones */
@@ -52,7 +52,7 @@ void mspringi_tune_dismiss(mspring_network *clone) {
     mspring_network_destroy(clone);
 }
 
-// A clone with the trial's solver; NULL if the solver is not for this network.
+// Make a clone with the trial's solver; NULL if the solver cannot take this network.
 static mspring_result begin(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *from,
                             mspring_network **clone) {
     *clone = NULL;
@@ -75,7 +75,7 @@ static mspring_result begin(mspringi_tuning *tuning, mspringi_trial *trial, mspr
     return result;
 }
 
-// One step of a clone, and its time. A step that is refused ends the trial.
+// Take one timed step of a clone. A rejected step ends the trial.
 static mspring_result step(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *clone) {
     const mspring_tune_def *def = &tuning->def;
     const double before = def->clock(def->user);
@@ -99,10 +99,10 @@ static bool is_refused(const mspringi_trial *trial) {
     return trial->row.flags & MSPRING_TUNE_REJECTED;
 }
 
-/// What is done after a step; step counts from 1.
+/// Callback after a step; step counts from 1.
 typedef void (*after_step_fn)(mspringi_tuning *tuning, const mspring_network *clone, uint32_t step, void *context);
 
-// Run a trial from where a network is. Afterwards has_run says whether it came to its end.
+// Run a trial from the state of a network. has_run: true if it was completed.
 static mspring_result run(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *from, uint32_t steps,
                           after_step_fn after, void *context) {
     mspring_network *clone;
@@ -146,16 +146,16 @@ mspring_result mspringi_tune_costs_again(mspringi_tuning *tuning) {
 
 /* ------------------------------------------------------------------------------------------------- trajectories */
 
-/// A fine run, and what a trial adds up.
+/// Reference run, and sums over a trial.
 typedef struct comparison {
     mspringi_reference reference;
-    double motion;          ///< m, largest RMS distance of particles from the start, over the steps of the fine run
-    double internal, total; ///< J: largest kinetic and elastic energy, and all energy at the end
+    double motion;          ///< m, largest RMS distance from the start over the steps of the reference run
+    double internal, total; ///< J: largest kinetic plus elastic energy, and total energy at the end
     uint32_t free_count;    ///< particles that are not pinned
-    double squares;         ///< m^2, of a trial
+    double squares;         ///< m^2, sum over a trial
 } comparison;
 
-// The moment that comes with this step, or MSPRINGI_TUNE_MOMENTS.
+// Moment of comparison at this step, or MSPRINGI_TUNE_MOMENTS if none.
 static uint32_t moment_of(const mspringi_tuning *tuning, uint32_t step) {
     for (uint32_t moment = 0; moment < MSPRINGI_TUNE_MOMENTS; ++moment)
         if ((uint64_t)tuning->step_count * (moment + 1) / MSPRINGI_TUNE_MOMENTS == step)
@@ -167,7 +167,7 @@ static double *places_at(const mspringi_tuning *tuning, uint32_t moment) {
     return tuning->places + (size_t)2 * moment * tuning->base->topology.particle_count;
 }
 
-// After each step: a body that is back where it was at all moments has moved in between.
+// Update the motion after each step: a body may be back at its start at all moments.
 static void note_motion(const mspringi_tuning *tuning, comparison *c) {
     const mspringi_reference *r = &c->reference;
     const mspringi_state *start = &tuning->base->state;
@@ -183,19 +183,19 @@ static void note_motion(const mspringi_tuning *tuning, comparison *c) {
 
 static void note_moment(const mspringi_tuning *tuning, comparison *c, uint32_t moment) {
     const mspringi_reference *r = &c->reference;
-    memcpy(places_at(tuning, moment), r->x, 2 * (size_t)r->particle_count * sizeof *r->x); // y lies behind x
+    memcpy(places_at(tuning, moment), r->x, 2 * (size_t)r->particle_count * sizeof *r->x); // y follows x in memory
     const mspringi_reference_energy energy = mspringi_reference_measure(r);
     c->internal = fmax(c->internal, energy.internal);
     c->total = energy.internal + energy.potential;
 }
 
-// How many fine substeps a step takes, as far as there is any end to them.
+// Number of fine substeps in a step, at most 1e9.
 static double fine_substeps(const mspringi_tuning *tuning, const mspringi_reference *r) {
     const double needed = tuning->def.dt / mspringi_reference_substep(r);
     return needed < 1e9 ? floor(needed) + 1.0 : 1e9;
 }
 
-// Run the reference. False: there was not time enough.
+// Run the reference. False if the time ran out.
 static bool make_fine_run(mspringi_tuning *tuning, comparison *c) {
     const double substeps = fine_substeps(tuning, &c->reference), h = tuning->def.dt / substeps;
     const uint32_t go = 1 + SPRINGS_IN_A_GO / (c->reference.spring_count + 1);
@@ -256,7 +256,7 @@ static mspring_result run_trajectory(mspringi_tuning *tuning, mspringi_trial *tr
 
 /* --------------------------------------------------------------------------------------------- groups of trials */
 
-// Whether a trial is still to be run, with this stiffness of relative springs.
+// True if a trial with this stiffness of relative springs has yet to run.
 static bool is_waiting(const mspringi_trial *trial, float relative_h) {
     return trial->row.flags & MSPRING_TUNE_HAS_COST && !is_refused(trial) && !trial->has_run &&
            trial->relative_h == relative_h;
@@ -264,7 +264,7 @@ static bool is_waiting(const mspringi_trial *trial, float relative_h) {
 
 typedef mspring_result (*group_fn)(mspringi_tuning *tuning, float relative_h);
 
-// Run trials, those that have the same stiffness of relative springs together.
+// Run the trials, grouped by the stiffness of relative springs.
 static mspring_result run_groups(mspringi_tuning *tuning, group_fn fn) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; i < tuning->trial_count; ++i)
@@ -297,7 +297,7 @@ static mspring_result trajectories_of_group(mspringi_tuning *tuning, float relat
             if (is_waiting(&tuning->trials[i], relative_h))
                 result = run_trajectory(tuning, &tuning->trials[i], &c);
     }
-    mspringi_tune_dismiss(fine); // with the reference's memory
+    mspringi_tune_dismiss(fine); // frees the reference's memory, too
     return result;
 }
 
@@ -318,7 +318,7 @@ mspring_result mspringi_tune_time_fine_step(mspringi_tuning *tuning, float relat
     } else {
         result = pass_on(tuning, NULL, fine, result);
     }
-    mspringi_tune_dismiss(fine); // with the reference's memory
+    mspringi_tune_dismiss(fine); // frees the reference's memory, too
     return result;
 }
 
@@ -362,7 +362,7 @@ static mspring_result run_rest(mspringi_tuning *tuning, mspringi_trial *trial, m
     return MSPRING_OK;
 }
 
-// Let go of what only acts in the first step, and stop what the host moves.
+// Remove forces that act in the first step only, and stop pinned particles.
 static void hold_still(mspring_network *network) {
     const size_t bytes = 2 * mspringi_slot_count(network) * sizeof(float);
     if (network->forces.held_any)
@@ -389,7 +389,7 @@ static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) 
     result = mspringi_settle_watched(settled, &def, &rest, watcher);
     const bool is_unknown = result == MSPRING_ERROR_ARGUMENT && settled->areas.unringed > 0;
     if (result == MSPRING_ERROR_EQUILIBRIUM || result == MSPRING_ERROR_LIMIT || is_unknown) {
-        result = MSPRING_OK; // there is none, or it has areas that settling does not take
+        result = MSPRING_OK; // no equilibrium, or areas that settling does not support
     } else if (result != MSPRING_OK) {
         result = pass_on(tuning, NULL, settled, result);
     } else {

@@ -1,4 +1,4 @@
-/// mspring_network_tune(): what is asked for, in which order it is measured, and what comes out.
+/// mspring_network_tune(): checks, order of the measurements, and results.
 #include <math.h>
 
 #include "analysis/tune/tuning.h"
@@ -128,9 +128,9 @@ bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
     return !tuning->is_over;
 }
 
-/* -------------------------------------------------------------------------------------------------- setting up */
+/* ------------------------------------------------------------------------------------------------------- setup */
 
-// A setting is to be measured, not what would stand in for it.
+// Disable sleep and fallbacks, so that the setting itself is measured.
 void mspringi_tune_expose(mspring_network *clone) {
     mspringi_wake(clone);
     clone->settings.sleep_speed = 0.0f;
@@ -147,8 +147,7 @@ void mspringi_tune_make_unbreakable(mspring_network *clone) {
     clone->plastic.yields = false;
 }
 
-// A clone that only springs, gravity and the forces given move: ramps stand still, springs do not break, and there
-// is no floor.
+// Make a clone with springs, gravity and external forces only: without ramps, breaking or a floor.
 static mspring_result make_base(mspringi_tuning *tuning) {
     mspring_result result = mspringi_tune_spawn(tuning, tuning->network, &tuning->base);
     if (result != MSPRING_OK)
@@ -176,7 +175,7 @@ uint32_t mspringi_tune_steps_in(double duration, double dt) {
     return (uint32_t)(whole < steps ? whole + 1.0 : whole);
 }
 
-// Steps of a trajectory; the most there can be where that is not known yet.
+// Number of steps of a trajectory; the upper limit if the duration is automatic.
 static uint32_t steps_of(const mspring_tune_def *def) {
     if (def->duration == 0.0)
         return MSPRINGI_TUNE_MOST_STEPS;
@@ -223,7 +222,7 @@ static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *setti
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- measuring */
+/* ------------------------------------------------------------------------------------------------ measurements */
 
 static mspring_result measure_swings(mspringi_tuning *tuning) {
     const mspring_tune_measure by = tuning->def.measure;

@@ -1,16 +1,16 @@
-/// What is worth trying where the host does not say.
+/// Default settings to try.
 #include "analysis/tune/tuning.h"
 
 #include "store/network.h"
 
-/// Part of the stable substep of now that the least number of substeps keeps to: motion stiffens a network.
+/// Safety factor on the stable substep of the present shape for the fewest substeps: motion stiffens a network.
 #define SAFETY 0.9
 #define MOST_SUBSTEPS 1000
 
-/// Particles up to which a factorisation in each step may be worth its time.
+/// Number of particles up to which a factorisation in each step may pay off.
 #define MOST_PARTICLES_OF_DIRECT 20000
 
-/// Iterations with which the default integrator is tried, beside the other one.
+/// Iterations for the default integrator, beside the other one.
 #define USUAL_ITERATIONS 8
 
 typedef struct settings {
@@ -22,7 +22,7 @@ static void add(settings *s, mspring_solver solver, mspring_integrator integrato
                 uint32_t iterations) {
     mspring_solver_def def;
     if (!mspringi_solver_ops_of(solver))
-        return; // this build leaves it out
+        return; // not in this build
     (void)mspring_solver_def_init(&def, sizeof def);
     def.solver = solver;
     def.integrator = integrator;
@@ -31,7 +31,7 @@ static void add(settings *s, mspring_solver solver, mspring_integrator integrato
     s->list[s->count++] = def;
 }
 
-// Explicit substeps, in rising order.
+// Add explicit settings, in increasing order of substeps.
 static void add_explicit(settings *s, uint32_t substeps) {
     if (substeps <= MOST_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
         add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, substeps, 0);
