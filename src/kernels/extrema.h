@@ -1,5 +1,5 @@
 /// @file extrema.h
-/// What there is to see of values and of motion, in the vectors of sweep.h.
+/// Maxima of absolute values and of motion, in the vectors of sweep.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_EXTREMA_H

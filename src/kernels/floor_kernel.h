@@ -1,7 +1,6 @@
 /// @file floor_kernel.h
-/// What a floor does to the particles of a block after a substep, all at once: the operations of floor_bounce.c, in
-/// its order, for what most particles do in most substeps. Plain C in blocks of MSPRINGI_WIDTH lanes, as in
-/// system_assemble.h.
+/// Action of a floor on the particles of a block after a substep, in parallel: the operations of floor_bounce.c in
+/// their order, for the common cases. Plain C in blocks of MSPRINGI_WIDTH lanes, as in system_assemble.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FLOOR_KERNEL_H
@@ -17,27 +16,28 @@
 #define MSPRINGI_FLOOR_INLINE static inline __attribute__((always_inline))
 #endif
 
-/// Lanes of a block that particles with springs are touched by: many blocks lie on a floor by few of theirs. (A
-/// lattice of 6 x 6 that lies there took 1.50 instead of 1.38 times the step of one that does not.)
+/// Lanes of a half block. Particles with springs are handled by half blocks, since a block often touches a floor
+/// with few of them. With whole blocks, a lattice of 6 x 6 on a floor took 1.50 instead of 1.38 times the step of a
+/// free one.
 #define MSPRINGI_HALF (MSPRINGI_WIDTH / 2)
 
-/// Particles as mspringi_bouncing_particle has them, and 1 or 0 for what is true of them or not.
+/// Particles as in mspringi_bouncing_particle, and flags of 1 or 0.
 typedef struct touching {
     double x[MSPRINGI_HALF], y[MSPRINGI_HALF], vx[MSPRINGI_HALF], vy[MSPRINGI_HALF];
     double half_x[MSPRINGI_HALF], half_y[MSPRINGI_HALF], most_restitution[MSPRINGI_HALF];
     double square[MSPRINGI_HALF], slop[MSPRINGI_HALF];
     double is_hit[MSPRINGI_HALF];  ///< a surface has acted on it
-    double is_left[MSPRINGI_HALF]; ///< to others
+    double is_left[MSPRINGI_HALF]; ///< deferred to mspringi_floor_bounce()
 } touching;
 
-/// The straight part of a field of heights below each body.
+/// Straight part of a field of heights below each particle.
 typedef struct parts_below {
     double number[MSPRINGI_WIDTH];
     double nx[MSPRINGI_WIDTH], ny[MSPRINGI_WIDTH], offset[MSPRINGI_WIDTH];
     double friction[MSPRINGI_WIDTH], restitution[MSPRINGI_WIDTH];
 } parts_below;
 
-/// Straight surfaces: the same one for each particle, or one for each, stride apart.
+/// Straight surfaces: one for all particles (stride 0), or one for each (stride 1).
 typedef struct surfaces {
     const double *nx, *ny, *offset, *friction, *restitution;
     size_t stride;
@@ -61,7 +61,7 @@ static inline mspringi_bouncing_particle going_at(const touching *b, size_t i) {
                                         .most_restitution = b->most_restitution[i]};
 }
 
-// Whether any flag is 1: by their bits, since adding them up would take one after the other.
+// True if any flag is 1. Compares bits, since a sum would be a chain of dependent additions.
 MSPRINGI_FLOOR_INLINE bool is_any(const double *flags, size_t lanes) {
     uint64_t bits[MSPRINGI_WIDTH], all = 0;
     memcpy(bits, flags, lanes * sizeof *bits);
@@ -71,7 +71,7 @@ MSPRINGI_FLOOR_INLINE bool is_any(const double *flags, size_t lanes) {
     return all != 0;
 }
 
-// Which particles a floor may act on.
+// Flag the particles that a floor may act on.
 MSPRINGI_FLOOR_INLINE void find_held(const mspringi_floor_args *g, size_t slot, size_t lanes,
                                      double *restrict is_held) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot,
@@ -128,8 +128,8 @@ MSPRINGI_FLOOR_INLINE void touch_line(const mspringi_floor_args *g, surfaces s, 
     }
 }
 
-// Whether a straight surface would act on any particle; those that were beyond it are left. (Of several surfaces,
-// most are far from most blocks.)
+// True if a straight surface would act on any particle. Defers those that were below it. Most of several surfaces
+// are far from most blocks.
 MSPRINGI_FLOOR_INLINE bool look_at_line(const mspringi_floor_args *g, surfaces s, const double *restrict is_held,
                                         touching *restrict b) {
     const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
@@ -148,7 +148,7 @@ MSPRINGI_FLOOR_INLINE bool look_at_line(const mspringi_floor_args *g, surfaces s
 
 /* ------------------------------------------------------------------------------------------------------ heights */
 
-// The numbers of the parts that are below so many x.
+// Find the numbers of the parts below each x.
 MSPRINGI_FLOOR_INLINE void find_parts(const mspringi_floor_args *g, const double *restrict x, size_t lanes,
                                       double *restrict numbers) {
     const double left = g->left, spacing = g->spacing, last = (double)(g->height_count - 1);
@@ -166,7 +166,7 @@ MSPRINGI_FLOOR_INLINE void find_parts(const mspringi_floor_args *g, const double
         numbers[i] = (double)(int32_t)numbers[i];
 }
 
-// Friction or restitution of the parts: the level ones go on as the outermost others.
+// Friction or restitution of the parts. The level ends take the values of the outermost parts.
 MSPRINGI_FLOOR_INLINE void find_values(const mspringi_floor_args *g, const float *values, double uniform,
                                        const double *restrict number, size_t lanes, double *restrict to) {
     const int32_t last = (int32_t)g->height_count - 2;
@@ -197,7 +197,7 @@ MSPRINGI_FLOOR_INLINE void find_lines(const mspringi_floor_args *g, size_t lanes
     find_values(g, g->restitutions, g->restitution, parts->number, lanes, parts->restitution);
 }
 
-// Leave those that are not above or below the same part any more.
+// Defer particles that are no longer above or below the same part.
 MSPRINGI_FLOOR_INLINE void leave_moved(const mspringi_floor_args *g, const parts_below *parts,
                                        const double *restrict x, size_t lanes, double *restrict is_left) {
     double numbers[MSPRINGI_WIDTH];
@@ -240,7 +240,7 @@ static void touch_heights(const mspringi_floor_args *g, const parts_below *parts
 
 /* ------------------------------------------------------------------------------------------------------ blocks */
 
-// Leave those that come beyond a straight surface.
+// Defer particles that end below a straight surface.
 MSPRINGI_FLOOR_INLINE void leave_beyond(surfaces s, const double *restrict x, const double *restrict y,
                                         const double *restrict slop, size_t lanes, double *restrict is_left) {
     const double *restrict nx = s.nx, *restrict ny = s.ny, *restrict offset = s.offset;
@@ -259,7 +259,7 @@ MSPRINGI_FLOOR_INLINE void leave_stuck(const mspringi_floor_args *g, const parts
         leave_beyond(surfaces_of_parts(parts), x, y, slop, lanes, is_left);
 }
 
-// Leave those that are faster than before.
+// Defer particles that became faster.
 static void leave_faster(touching *restrict b) {
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
@@ -276,7 +276,7 @@ MSPRINGI_FLOOR_INLINE void choose(const float *restrict moved, const float *rest
         to[i] = moved[i] > 0.0f ? from[i] : to[i];
 }
 
-/// Where particles of a block come to.
+/// State of a block's particles after the floor.
 typedef struct block_end {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH], vx[MSPRINGI_WIDTH], vy[MSPRINGI_WIDTH];
     float is_moved[MSPRINGI_WIDTH];
@@ -308,8 +308,8 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
     choose(b->is_moved, to_vy, lanes, vy);
 }
 
-// Which have come to their end, of those that are held and that a surface has acted on; the others that are held
-// and left, as bits.
+// Flag the active particles that a surface has acted on and that are complete. Returns the active deferred ones, as
+// bits.
 MSPRINGI_FLOOR_INLINE uint32_t find_moved(const double *restrict is_held, const double *restrict is_hit,
                                           const double *restrict is_left, size_t lanes, float *restrict is_moved) {
     uint32_t left = 0;

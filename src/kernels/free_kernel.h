@@ -1,6 +1,6 @@
 /// @file free_kernel.h
-/// What a floor does to the particles of a block that have no springs, after a substep: as floor_kernel.h, along
-/// parabolas that are turned where they meet a surface.
+/// Action of a floor on the particles of a block that have no springs, after a substep. As floor_kernel.h, but
+/// along parabolas that change direction where they meet a surface.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FREE_KERNEL_H
@@ -8,7 +8,7 @@
 
 #include "kernels/floor_kernel.h"
 
-/// Particles as mspringi_free_particle has them, and which surface each meets next.
+/// Particles as in mspringi_free_particle, and the surface that each meets next.
 typedef struct flying {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH], wx[MSPRINGI_WIDTH], wy[MSPRINGI_WIDTH];
     double ax[MSPRINGI_WIDTH], ay[MSPRINGI_WIDTH], left[MSPRINGI_WIDTH];
@@ -53,7 +53,7 @@ static inline void find_flight_ends(const flying *restrict b, double *restrict x
     }
 }
 
-// Whether any that is held would end below a straight surface; those that begin beyond it are left.
+// True if an active particle would end below a straight surface. Defers those that start below it.
 static inline bool is_met(surfaces s, flying *restrict b) {
     const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
     double any[MSPRINGI_WIDTH];
@@ -69,7 +69,7 @@ static inline bool is_met(surfaces s, flying *restrict b) {
     return is_any(any, MSPRINGI_WIDTH);
 }
 
-// Find which particles meet a straight surface sooner than those before.
+// Find the particles that meet a straight surface earlier than those before.
 static inline void meet_line(surfaces s, flying *restrict b) {
     const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
     const double *restrict friction = s.friction, *restrict restitution = s.restitution;
@@ -89,7 +89,7 @@ static inline void meet_line(surfaces s, flying *restrict b) {
     }
 }
 
-// Returns whether any bounces, and so may meet the same surface again.
+// Deflect each particle at its next surface. True if any bounces, and so may meet the same surface again.
 static inline bool turn_flying(const mspringi_bounce_params *how, bool is_last, flying *restrict b) {
     const mspringi_bounce_params by = *how;
     double any[MSPRINGI_WIDTH];
@@ -116,8 +116,8 @@ static inline bool turn_flying(const mspringi_bounce_params *how, bool is_last, 
     return is_any(any, MSPRINGI_WIDTH);
 }
 
-// Turn each where it next meets a surface. Returns whether any may meet one again: what lies on the only one does
-// not.
+// Advance each particle to its next surface and deflect it. True if any may meet one again. A particle that lies on
+// the only surface does not.
 static bool fly_on(const mspringi_floor_args *g, const parts_below *parts, const mspringi_bounce_params *how,
                    bool is_last, flying *b) {
     const bool is_only_one = g->line_count + (g->height_count > 0) == 1;

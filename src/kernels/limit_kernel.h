@@ -1,20 +1,20 @@
 /// @file limit_kernel.h
-/// What every spring adds to the stability limit (see stability/pencil.h), for a bound of it and for the image of
-/// a displacement, in the vectors of sweep.h.
+/// Contribution of every spring to the stability limit (see stability/pencil.h): to a bound of it, and to the image
+/// of a displacement, in the vectors of sweep.h.
 ///
-/// A pass is a sweep without carry row: what springs add to the row above is added there at once.
+/// A pass is a sweep without a carry row: contributions to the row above are added there immediately.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_LIMIT_KERNEL_H
 #define MSPRINGI_LIMIT_KERNEL_H
 
-/// LANES ends of springs: where they are, and what is read of them.
+/// LANES ends of springs: position and operand.
 typedef struct border_end {
     vec x, y, in_x, in_y;
 } border_end;
 
-/// What LANES springs add: to bound by, three sums at both ends; of an image, a force on their tips, whose opposite
-/// is on their bases.
+/// Contribution of LANES springs: three sums at both ends for the bound; for an image, a force on the tips, with
+/// the opposite on the bases.
 typedef struct border_fraction {
     vec sums[3];
 } border_fraction;
@@ -27,7 +27,7 @@ MSPRINGI_INLINE border_end border_end_at(const mspringi_stability_limit *b, size
     return end;
 }
 
-// See stability/certificate.c. A spring that is pressed counts as if it were as long as at rest.
+// See stability/certificate.c. A compressed spring counts as one at rest length.
 MSPRINGI_INLINE border_fraction border_bound(border_end base, border_end tip, vec nx, vec ny, vec along,
                                                  vec across, vec inverse) {
     const vec both = add(base.in_x, tip.in_x), half = mul(set(0.5f), both);
@@ -37,7 +37,7 @@ MSPRINGI_INLINE border_fraction border_bound(border_end base, border_end tip, ve
     return (border_fraction){{all, mul(turned, sub(mul(nx, nx), mul(ny, ny))), beside}};
 }
 
-// What springs do against a displacement.
+// Force against a displacement.
 MSPRINGI_INLINE border_fraction border_pull(border_end base, border_end tip, vec nx, vec ny, vec along,
                                                 vec across) {
     const vec dx = sub(tip.in_x, base.in_x), dy = sub(tip.in_y, base.in_y);
@@ -46,13 +46,13 @@ MSPRINGI_INLINE border_fraction border_pull(border_end base, border_end tip, vec
     return (border_fraction){{add(mul(pull, nx), mul(shear, ny)), sub(mul(pull, ny), mul(shear, nx)), zero()}};
 }
 
-// record is where the springs' stiffness is, with their damping behind.
+// record points to the springs' stiffness, followed by their damping.
 MSPRINGI_INLINE border_fraction share_of_springs(const mspringi_stability_limit *b, border_end base, border_end tip,
                                                      const float *rests, const float *record, bool damped,
                                                      bool is_image) {
     const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
     const vec square = add(mul(dx, dx), mul(dy, dy));
-    const vec inverse = mul(square_root(square), inverse_or_zero(square)); // of the length
+    const vec inverse = mul(square_root(square), inverse_or_zero(square)); // inverse length
     const vec nx = mul(dx, inverse), ny = mul(dy, inverse), stiffness = mul(set(b->stiffness), load(record));
     const vec across = mul(stiffness, sub(set(1.0f), mul(load(rests), inverse)));
     vec along = stiffness;
@@ -62,14 +62,14 @@ MSPRINGI_INLINE border_fraction share_of_springs(const mspringi_stability_limit 
                     : border_bound(base, tip, nx, ny, along, across, inverse);
 }
 
-// Add shares at the bases and at the tips of springs; an image by inverse masses.
+// Add contributions at the bases and at the tips of springs; for an image, times inverse masses.
 MSPRINGI_INLINE void add_shares(const mspringi_stability_limit *b, size_t sum, size_t slot, vec bases, vec tips,
                                        bool is_image) {
     const vec share = is_image ? mul(load(b->inverse_mass + slot), sub(tips, bases)) : add(bases, tips);
     store(b->out[sum] + slot, add(load(b->out[sum] + slot), share));
 }
 
-// The springs of LANES slots of a lattice; before: what those of the slots before hand on to the right, and to the
+// Add the springs of LANES slots of a lattice. before: contributions of the previous slots to the right, and to the
 // right above.
 MSPRINGI_INLINE void border_slots(const mspringi_stability_limit *b, size_t slot, size_t up, const float *rests,
                                          const float *records, border_fraction before[2], bool damped, bool is_image) {
@@ -97,7 +97,7 @@ MSPRINGI_INLINE void border_slots(const mspringi_stability_limit *b, size_t slot
 }
 
 MSPRINGI_INLINE void border_lattice(const mspringi_stability_limit *border, bool damped, bool is_image) {
-    const mspringi_stability_limit copy = *border, *const b = &copy; // of its own, so that no store can change it
+    const mspringi_stability_limit copy = *border, *const b = &copy; // a local copy, which no store can alias
     border_fraction before[2] = {{{zero(), zero(), zero()}}, {{zero(), zero(), zero()}}};
     for (size_t block = 0; block < b->lattice_blocks; ++block) {
         const size_t here = (b->lattice_first + block) * MSPRINGI_WIDTH;

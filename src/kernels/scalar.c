@@ -1,4 +1,4 @@
-/// The definition of a sweep: plain C, one slot at a time. What the other kernels compute, they compute in this
+/// Definition of a sweep: plain C, one slot at a time. The other kernels compute the same operations in the same
 /// order.
 #include "kernels/kernels.h"
 #include "kernels/spring_law.h"
@@ -21,8 +21,8 @@ static inline motion at(const mspringi_sweep *s, size_t slot) {
     return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot], s->low_x[slot], s->low_y[slot]};
 }
 
-// The difference of two near positions is exact, but it lacks what they have beyond single precision: half a unit
-// in the last place of a position of 900 m is 3e-5 m, the strain of 2 kN of iron.
+// The difference of two close positions is exact, but lacks their low words. Half a unit in the last place of a
+// position of 900 m is 3e-5 m, the strain of 2 kN of iron.
 static inline vector way_between(motion base, motion tip, mspringi_variant of) {
     const vector way = {base.x - tip.x, base.y - tip.y};
     if (!(of & MSPRINGI_PRECISE))
@@ -30,10 +30,9 @@ static inline vector way_between(motion base, motion tip, mspringi_variant of) {
     return (vector){way.x + (base.low_x - tip.low_x), way.y + (base.low_y - tip.low_y)};
 }
 
-// The force of one spring on its tip; that on its base is the opposite. With d from the tip to the base
+// Force of one spring on its tip; that on its base is the opposite. With d from the tip to the base
 //     F = ((L - rest_length) (k L) + c (dv . d)) / L^2 * d
-// so that the root and the division do not wait for each other. record is where its stiffness is, with its damping
-// behind.
+// so that root and division are independent. record points to the stiffness, followed by the damping.
 static inline vector spring_force(motion base, motion tip, float rest_length, const float *record,
                                   mspringi_variant of) {
     const vector way = way_between(base, tip, of);
@@ -61,8 +60,8 @@ static inline float float_of(uint32_t bits) {
     return value;
 }
 
-// The larger of a and of the size of b. Sizes are compared as integers: those of floats are in the same order, with
-// NaN above all.
+// The larger of a and |b|. Absolute values are compared as integers: the order is that of floats, with NaN above
+// all.
 static inline float larger_size(float a, float b) {
     const uint32_t size = absolute_bits(b);
     return size > absolute_bits(a) ? float_of(size) : a;
@@ -91,7 +90,7 @@ static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
     }
 }
 
-// Kahan's sum: what a position does not take of a way is left for the next.
+// Move by Kahan's compensated sum: the low word keeps the rounding error for the next move.
 static inline void go(const mspringi_sweep *s, size_t slot, float way_x, float way_y) {
     way_x = way_x + s->low_x[slot];
     way_y = way_y + s->low_y[slot];
@@ -102,8 +101,8 @@ static inline void go(const mspringi_sweep *s, size_t slot, float way_x, float w
     s->y[slot] = y;
 }
 
-// Symplectic Euler: v' = (F h / m + (v + g h)) d, with d the decay. A pinned particle keeps its velocity. (As g h
-// is never -0, so is v + g h, and it does not matter which sign a force of 0 has.)
+// Symplectic Euler: v' = (F h / m + (v + g h)) d, with d the decay. A pinned particle keeps its velocity. As g h is
+// never -0, neither is v + g h, so the sign of a zero force does not matter.
 static inline void move(const mspringi_sweep *s, size_t slot, vector force, mspringi_variant of) {
     if (of & MSPRINGI_FORCED) {
         force.x = force.x + s->force_x[slot];
@@ -122,12 +121,12 @@ static inline void move(const mspringi_sweep *s, size_t slot, vector force, mspr
         watch_motion(s, slot);
 }
 
-/// Forces that a slot's springs exert on the slot to the right and on the slot above that.
+/// Forces that a slot's springs carry to the slot on the right and to the slot above that.
 typedef struct handed_on {
     vector right, diagonal;
 } handed_on;
 
-// Where the springs of a slot are in lattice records.
+// Springs of a slot in lattice records.
 typedef struct lattice_springs {
     const float *rest_lengths; ///< [direction][lane], from the slot's lane on
     const float *records;      ///< [direction][part after the rest length][lane]
@@ -153,7 +152,7 @@ static inline mspringi_yield_values yield_values(const mspringi_yield_test *t, s
                                    t->plastic_limit[spring_slot], t->gain[spring_slot]};
 }
 
-// Look at a spring that is warm, and map it if it flows. What is broken has no stiffness.
+// Test a warm spring, and update it if it flows. A broken one has no stiffness.
 static void let_yield(const mspringi_yield_test *t, size_t spring_slot, float square, float *rest,
                       float stiffness) {
     const mspringi_yield_bounds bounds = {t->low[spring_slot], t->high[spring_slot], t->flow_low[spring_slot],
@@ -178,7 +177,7 @@ static void let_yield(const mspringi_yield_test *t, size_t spring_slot, float sq
     t->flow_high[spring_slot] = renewed.flow_high;
 }
 
-// A spring is looked at before the force that its rest length gives.
+// Test a spring before its rest length enters the force.
 static inline void test_spring(const mspringi_yield_test *t, size_t spring_slot, motion base, motion tip,
                                float *rest, float stiffness, mspringi_variant of) {
     float dx = base.x - tip.x, dy = base.y - tip.y;
@@ -206,8 +205,8 @@ static inline vector lattice_force(motion base, motion tip, lattice_springs spri
                         springs.records + direction * parts * MSPRINGI_WIDTH, of);
 }
 
-// What the area of a slot's cell adds to the forces of its diagonals: with D and D' the ways along them, from tips
-// to bases, f = f0 - f1 D x D' along the normals. See store/areas.h.
+// Add the force of the slot's cell area to those of its diagonals: with D and D' the diagonals from tips to bases,
+// f = f0 - f1 D x D' along the normals. See store/areas.h.
 static inline void press(const mspringi_sweep *s, const mspringi_span *span, size_t slot, vector to_north_east,
                          vector to_south_east, vector *north_east, vector *south_east) {
     const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
@@ -233,7 +232,7 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
                 test_in_lattice(s, span, slot, MSPRINGI_NORTH_EAST, here, above_next, of);
                 test_in_lattice(s, span, slot, MSPRINGI_SOUTH_EAST, next, above, of);
             }
-            const lattice_springs springs = springs_of(s, span, slot); // which may be others when one has flowed
+            const lattice_springs springs = springs_of(s, span, slot); // after the tests, which may change it
             const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, of);
             const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, of);
             vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, of);
@@ -253,7 +252,7 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
     }
 }
 
-// The east spring of a slot of a chain, or of a lattice row with nothing above.
+// Force of the east spring of a slot in a chain, or in a lattice row with nothing above.
 static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
                                  mspringi_variant of) {
     const motion here = at(s, slot), next = at(s, slot + 1);
@@ -272,7 +271,7 @@ static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *s
                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }
 
-// East springs only.
+// Rows of east springs only.
 MSPRINGI_INLINE void sweep_chain(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
                                  mspringi_variant of) {
     vector left = {0.0f, 0.0f};
@@ -298,8 +297,8 @@ static inline motion node_at(const mspringi_sweep *s, size_t node, mspringi_vari
     return (motion){gathered[0], gathered[1], half[0], half[1], gathered[2], gathered[3]};
 }
 
-// The force of the irregular part on one of its nodes: the sum over the slice columns of its group, in their order,
-// from a first one on.
+// Force of the irregular part on one of its nodes: the sum over the slice columns of its slice, in order, from
+// `slice_columns` on.
 static inline vector irregular_force(const mspringi_sweep *s, size_t node, motion here, uint32_t slice_columns,
                                      mspringi_variant of) {
     const mspringi_sell *irregular = s->irregular;
@@ -317,8 +316,8 @@ static inline vector irregular_force(const mspringi_sweep *s, size_t node, motio
     return sum;
 }
 
-// The force of the first slice column of a node's group, if that is upright, to the node in the same lane of the
-// next one.
+// Force of the first slice column of a node's slice, if it is upright: its springs lead to the same lane of the
+// next slice.
 static inline vector upright_force(const mspringi_sweep *s, size_t slot, size_t node, mspringi_variant of) {
     const float *record =
         s->irregular_springs +
@@ -332,7 +331,7 @@ MSPRINGI_INLINE void sweep_irregular(const mspringi_sweep *s, const mspringi_spa
                                      mspringi_variant of) {
     const uint8_t *is_upright = s->irregular->is_interleaved;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        vector handed[MSPRINGI_WIDTH] = {{0.0f, 0.0f}}; // by the group before
+        vector handed[MSPRINGI_WIDTH] = {{0.0f, 0.0f}}; // from the slice before
         size_t node = (size_t)span->first_record * MSPRINGI_WIDTH;
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot, ++node) {
             const bool has_upright = is_upright && is_upright[node / MSPRINGI_WIDTH];
@@ -350,7 +349,7 @@ MSPRINGI_INLINE void sweep_irregular(const mspringi_sweep *s, const mspringi_spa
     }
 }
 
-// The force of a spring from a bundle's group to one below, at both ends.
+// Compute the force of a spring from a bundle's slice to one below, at both ends.
 MSPRINGI_INLINE void pull_bundle(const mspringi_sweep *s, size_t slot, const mspringi_bundle_link *link,
                                  size_t first_slice_column, mspringi_variant of) {
     const float *record =
@@ -364,8 +363,8 @@ MSPRINGI_INLINE void pull_bundle(const mspringi_sweep *s, size_t slot, const msp
     s->carry_y[link->back - first_slice_column] = 0.0f - pull.y;
 }
 
-// The same forces as those of irregular part(), each computed once, and summed up in the same order. The carry row
-// holds them by slice column.
+// The forces of irregular(), each computed once and summed in the same order. The carry row holds them by slice
+// column.
 MSPRINGI_INLINE void sweep_bundle(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
                                   mspringi_variant of) {
     const mspringi_sell *irregular = s->irregular;
@@ -389,8 +388,8 @@ MSPRINGI_INLINE void sweep_bundle(const mspringi_sweep *s, const mspringi_span *
     }
 }
 
-// The variants of each of these share two copies, one of them for precise networks. (gcc would make one for each
-// variant, 12 kB for the three, and no longer inline others.)
+// All variants of each of these share two copies, one of them precise. gcc would make a copy for each variant, 12
+// kB for the three, and no longer inline others.
 #if defined(__GNUC__) && !defined(__clang__)
 #define SHARED static __attribute__((noinline, noclone))
 #else
@@ -439,7 +438,7 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-// As move(), with the particle in registers.
+// move() for several substeps, with the particle in registers.
 static inline void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_free_motion *glide,
                          bool forced) {
     for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {

@@ -1,7 +1,7 @@
 /// @file silt_kernel.h
-/// How silt brakes the particles of a block in a substep, before the floor acts on them. It takes a share of w, the
-/// velocity in step with the positions before the move (see bounce_kernel.h), so it takes energy whatever the
-/// forces do.
+/// Braking of a block's particles by silt in a substep, before the floor acts on them. It acts on w, the velocity
+/// in step with the positions before the move (see bounce_kernel.h). So it dissipates energy whatever the forces
+/// are.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SILT_KERNEL_H
@@ -9,7 +9,7 @@
 
 #include "kernels/floor_kernel.h"
 
-// The shares of their velocities that silt takes.
+// Find the fraction of each velocity that silt takes.
 static void find_taken(const mspringi_floor_args *g, size_t slot, double *restrict taken) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot, *restrict heights = g->heights;
     const double left = g->left, spacing = g->spacing, bottom = g->bottom;
@@ -24,13 +24,13 @@ static void find_taken(const mspringi_floor_args *g, size_t slot, double *restri
     }
 }
 
-/// One of the two coordinates, by slot.
+/// One coordinate, by slot.
 typedef struct braking {
     const float *from;
     float *before, *velocity, *position, *low, *impulse;
 } braking;
 
-// What the velocities change by. (from may be velocity.)
+// Find the changes of velocity. from may alias velocity.
 static void find_changes(const mspringi_floor_args *g, const double *restrict taken, const braking *b,
                          float *restrict change) {
     const float *v = b->velocity, *from = b->from;
@@ -43,7 +43,7 @@ static void find_changes(const mspringi_floor_args *g, const double *restrict ta
     }
 }
 
-// Positions follow by Kahan's sum, as in sweeps.
+// Apply the changes. Positions follow by Kahan's sum, as in sweeps.
 static void brake_along(const mspringi_floor_args *g, size_t slot, const double *restrict taken, const braking *b) {
     const float *restrict inverse_mass = g->inverse_mass + slot;
     float *restrict v = b->velocity, *restrict at = b->position, *restrict low = b->low,

@@ -1,10 +1,10 @@
 /// @file sweep.h
-/// The sweeps of scalar.c, written for vectors of LANES slots. Each instruction set's file defines the type vec,
-/// LANES and the operations used below, as static functions of its own, and includes this.
+/// The sweeps of scalar.c in vectors of LANES slots. Each instruction set's file defines the type vec, LANES and
+/// the operations used below, as static functions, and includes this file.
 ///
-/// Why this shape: a row of particles is done in one go, forces of its four springs per slot, then motion. Only
-/// one row of forces lives on, for the row above. Neighbours are read by loads at the slot and the slot + 1, so
-/// nothing is gathered. Forces on the slot + 1 are handed on by a shift across registers.
+/// A sweep takes one row at a time: the forces of four springs per slot, then the motion. It stores one row of
+/// forces, the carry row, for the row above. Neighbours are loaded at slot and slot + 1, so there are no gathers.
+/// Forces on slot + 1 are carried by a shift across registers.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SWEEP_H
@@ -13,14 +13,14 @@
 #include "base/cpu.h"
 #include "kernels/spring_law.h"
 
-/// Springs of a bundle's group that are computed together.
+/// Springs of a bundle's slice that are computed together.
 #define BUNDLE_BATCH 2
 
 typedef struct vector {
     vec x, y;
 } vector;
 
-/// Position and velocity of LANES particles, as far as a variant reads them.
+/// Position and velocity of LANES particles; a variant loads only the members that it reads.
 typedef struct motion {
     vec x, y, vx, vy, low_x, low_y;
 } motion;
@@ -38,7 +38,7 @@ MSPRINGI_INLINE motion load_motion(const mspringi_sweep *s, size_t slot, mspring
     return m;
 }
 
-// The same from a slot that is no multiple of LANES.
+// Load from a slot that is no multiple of LANES.
 MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slot, mspringi_variant of) {
     motion m = {load_unaligned(s->x + slot), load_unaligned(s->y + slot), zero(), zero(), zero(), zero()};
     if (of & MSPRINGI_DAMPED) {
@@ -52,8 +52,8 @@ MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slo
     return m;
 }
 
-/// Extent of LANES springs, from their tips to their bases: that way round a tip that is used once is an operand in
-/// memory (3 % less time at AVX2 and AVX-512; gcc's SSE2 alone, which has to copy a base first, takes 3 % more).
+/// Extent of LANES springs, from tip to base. This order makes a tip that is used once an operand in memory: 3 %
+/// less time with AVX2 and AVX-512; gcc's SSE2 copies a base first, which takes 3 % more.
 typedef struct extent {
     vec dx, dy, square;
 } extent;
@@ -70,10 +70,10 @@ MSPRINGI_INLINE extent spring_extent(motion base, motion tip, mspringi_variant o
     return e;
 }
 
-// The forces of springs on their tips, by the inverses of their squares; those on their bases are the opposite.
-// record is where the springs' stiffness is, with their damping behind. Root and division do not wait for each
-// other, the last spring enters the sum last, and what of the motion needs no force comes first: 0.90, 0.90 and
-// 0.92 of a damped lattice's time at SSE2, AVX2 and AVX-512, and 0.93, 0.98 and 0.97 without dampers.
+// Forces of springs on their tips, from the inverses of their squared lengths; those on the bases are opposite.
+// record points to the stiffness, followed by the damping. Root and division are independent, the last spring
+// enters the sum last, and motion without forces comes first. With SSE2, AVX2 and AVX-512 that takes 0.90, 0.90 and
+// 0.92 of the time of a damped lattice, and 0.93, 0.98 and 0.97 without dampers.
 MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion tip, const float *rest_lengths,
                                     const float *record, mspringi_variant of) {
     const vec length = square_root(e.square);
@@ -88,7 +88,7 @@ MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion t
     return result;
 }
 
-// The areas of cells push along pairs that the diagonals join: see store/areas.h.
+// Add the forces of cell areas, along pairs of particles that diagonals connect: see store/areas.h.
 MSPRINGI_INLINE void press(const float *cells, extent to_north_east, extent to_south_east, vector *north_east,
                            vector *south_east) {
     const vec cross = sub(mul(to_north_east.dx, to_south_east.dy), mul(to_north_east.dy, to_south_east.dx));
@@ -101,10 +101,10 @@ MSPRINGI_INLINE void press(const float *cells, extent to_north_east, extent to_s
 
 #include "kernels/yield_sweep.h"
 
-// Before the first substep of a whole step, and after its last: half hidden behind the divisions, as reading and
-// writing the state for this alone is not (96 x 96 at AVX-512, one substep: 2.2 instead of 3.7 us, with 12.4 for
-// the rest; 1.4 where coordinates need not be watched). Changes of velocities instead of speeds take 0.2 us more,
-// both of them 1.9 us, and changes on their own, after the sweep, 1.5 to 2.
+// Save the state before the first substep of a whole step, and take maxima after the last. Half of that hides
+// behind the divisions; a pass of its own does not. 96 x 96 with AVX-512, one substep: 2.2 instead of 3.7 us beside
+// 12.4 for the rest; 1.4 without coordinates. Changes of velocity instead of speeds: 0.2 us more; both: 1.9 us
+// more; changes in a pass of their own: 1.5 to 2.
 MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, vec y, vec vx, vec vy) {
     const size_t slots = (size_t)(s->y - s->x);
     float *to = s->keep + slot;
@@ -116,7 +116,7 @@ MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, ve
     store(to + 5 * slots, load(s->low_y + slot));
 }
 
-// found: velocities before the substep; if that is the first of the step, nothing has to be loaded again.
+// found: velocities before the substep. In the first of the step nothing is loaded again.
 MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, motion made, vector found) {
     mspringi_extrema_lanes *seen = s->watch;
     if (s->watches_coordinate)
@@ -133,7 +133,7 @@ MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, motion m
     }
 }
 
-// Kahan's sum: what a position does not take of a way is left for the next.
+// Move by Kahan's compensated sum: the low word keeps the rounding error for the next move.
 MSPRINGI_INLINE vector go(const mspringi_sweep *s, size_t slot, motion here, vec way_x, vec way_y,
                           mspringi_variant of) {
     way_x = add(way_x, of & MSPRINGI_PRECISE ? here.low_x : load(s->low_x + slot));
@@ -154,7 +154,7 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
     const vec h = set(s->h), decay = set(s->decay);
     const vec inverse_mass = load(s->inverse_mass + slot);
     const vec inverse_mass_h = mul(inverse_mass, h);
-    // Without dampers, velocities have not been read yet.
+    // Without dampers, velocities are not loaded yet.
     vec vx = of & MSPRINGI_DAMPED ? here.vx : load(s->vx + slot),
         vy = of & MSPRINGI_DAMPED ? here.vy : load(s->vy + slot);
     const vector found = {vx, vy};
@@ -171,13 +171,13 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
         watch_motion(s, slot, (motion){.x = to.x, .y = to.y, .vx = vx, .vy = vy}, found);
 }
 
-/// Forces that LANES slots' springs exert on the slots to the right and on the slots above those. Of those of the
-/// slots before, only the last lane counts.
+/// Forces that LANES slots' springs carry to the slots on the right and to those above them. Of the previous slots,
+/// only the last lane is used.
 typedef struct handed_on {
     vector right, diagonal;
 } handed_on;
 
-// The first slot of a span and its end, as far as LANES resolves them.
+// First slot of a span and its end, in units of LANES.
 MSPRINGI_INLINE size_t first_of(const mspringi_span *span) {
     return span->first_slot / LANES * LANES;
 }
@@ -186,16 +186,17 @@ MSPRINGI_INLINE size_t end_of(const mspringi_span *span) {
     return (size_t)(span->end_slot + LANES - 1) / LANES * LANES;
 }
 
-// What bounds this loop is how far a processor looks ahead: some 130 operations that wait for others, less than a
-// turn has. So loops are nested, that what differs between spans and between blocks stays in registers; roots and
-// divisions of three directions come before any force, and the fourth's between forces; and where a block is
-// several vectors, its particles are moved when all its forces are known, and wait for no spring. Measured on Zen 4
-// at SSE2, AVX2 and AVX-512, a turn, four springs of LANES slots, takes with all roots and divisions
-// first 1.07, 1.03 and 1.01 times as long, with direction after direction 1.07, 1.07 and 1.05, and with each vector
-// moved at once 1.13 and 1.12 at SSE2 and AVX2, later 1.05 at AVX-512.
+// The limit of this loop is the processor's reorder window: some 130 dependent operations, fewer than an iteration
+// has. So there are three measures:
+//   - loops are nested, so that constants of spans and blocks stay in registers;
+//   - roots and divisions of three directions precede all forces, and the fourth's come between forces;
+//   - if a block is several vectors, its particles move after all forces of the block, and wait for no spring.
+// An iteration is four springs of LANES slots. Time on Zen 4 with SSE2, AVX2 and AVX-512, relative to this: all
+// roots and divisions first 1.07, 1.03, 1.01; one direction after another 1.07, 1.07, 1.05; each vector moved
+// immediately 1.13, 1.12 with SSE2 and AVX2; moved later 1.05 with AVX-512.
 MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count,
                              mspringi_variant of) {
-    const mspringi_sweep copy = *sweep, *const s = &copy; // of its own, so that no store can change it
+    const mspringi_sweep copy = *sweep, *const s = &copy; // a local copy, which no store can alias
     const size_t part = (size_t)(of & MSPRINGI_DAMPED ? 2 : 1) * MSPRINGI_WIDTH; // values of one direction
     handed_on before = {{zero(), zero()}, {zero(), zero()}};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
@@ -221,7 +222,7 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                 const motion above = load_motion(s, up, of);
                 const motion above_next = load_motion_unaligned(s, up + 1, of);
                 const extent to_east = spring_extent(here, next, of);
-                const extent to_south_east = spring_extent(next, above, of); // the other way round, from its tip
+                const extent to_south_east = spring_extent(next, above, of); // tip first: the opposite direction
                 const extent to_north = spring_extent(here, above, of);
                 const vec per_east = inverse_or_zero(to_east.square);
                 const vec per_south_east = inverse_or_zero(to_south_east.square);
@@ -284,8 +285,8 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
     }
 }
 
-// Outside of lattices precise kernels are to be small: they share one copy of move(), as of irregular_force(), and
-// take bundles' springs one by one, which is 8 kB less in three levels.
+// Precise kernels outside lattices are kept small. They share one copy of move() and of irregular_force(), and
+// compute springs of bundles one by one: 8 kB less in three levels.
 static MSPRINGI_NOINLINE void precise_move(const mspringi_sweep *s, size_t slot, const motion *here,
                                            const vector *force, mspringi_variant of) {
     move(s, slot, *here, *force, of | MSPRINGI_PRECISE);
@@ -346,14 +347,14 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
     }
 }
 
-/// What the forces of LANES springs of the irregular part on their tips follow from.
+/// Geometry of LANES springs of the irregular part, for the forces on their tips.
 typedef struct gap {
     vec dx, dy; ///< from the tips to the bases
-    vec square; ///< of the length
-    vec change; ///< of the length, times the length
+    vec square; ///< squared length
+    vec change; ///< rate of change of the length, times the length
 } gap;
 
-// What a variant reads of LANES of the irregular part's nodes.
+// Load LANES nodes of the irregular part.
 MSPRINGI_INLINE motion load_nodes(const mspringi_sweep *s, const uint32_t *nodes, mspringi_variant of) {
     motion m;
     if (!(of & MSPRINGI_PRECISE)) {
@@ -361,7 +362,7 @@ MSPRINGI_INLINE motion load_nodes(const mspringi_sweep *s, const uint32_t *nodes
         m.low_x = m.low_y = zero();
         return m;
     }
-    vec low_x, low_y; // once more
+    vec low_x, low_y; // loaded twice, unused
     load_gathered(s->gathered, nodes, &m.x, &m.y, &m.low_x, &m.low_y);
     m.vx = m.vy = zero();
     if (of & MSPRINGI_DAMPED)
@@ -390,9 +391,9 @@ MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, mspring
     return sum;
 }
 
-// The force of the irregular part on LANES of its nodes, by the slice columns of their group from that number on.
-// Each slice column's neighbours are loaded before the forces of the one before are computed, so that a processor
-// that looks ahead a hundred operations or three has both under way: 7 to 11 % less time at SSE2, AVX2 and AVX-512.
+// Force of the irregular part on LANES of its nodes, from the slice columns of their slice, starting at number
+// slice_columns. The neighbours of a slice column are loaded before the forces of the previous one, so that both
+// are in the reorder window: 7 to 11 % less time with SSE2, AVX2 and AVX-512.
 MSPRINGI_INLINE vector irregular_force(const mspringi_sweep *s, motion here, size_t group, size_t lane,
                                        uint32_t slice_columns, mspringi_variant of) {
     const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
@@ -414,8 +415,8 @@ MSPRINGI_INLINE vector irregular_force(const mspringi_sweep *s, motion here, siz
     return add_pull(sum, next, record, of);
 }
 
-// The same, once for all precise kernels of a level: in each of them it would take 3 kB. (With a look at every
-// slice column whether there are dampers, an irregular part takes 5 % more instructions.)
+// One copy for all precise kernels of a level; inlined it would take 3 kB in each. A test for dampers at every
+// slice column costs an irregular part 5 % more instructions.
 static MSPRINGI_NOINLINE vector precise_irregular_force(const mspringi_sweep *s, const motion *here, size_t group,
                                                         size_t lane, uint32_t slice_columns, mspringi_variant of) {
     return of & MSPRINGI_DAMPED
@@ -429,7 +430,7 @@ MSPRINGI_INLINE vector find_irregular_force(const mspringi_sweep *s, motion here
                                  : irregular_force(s, here, group, lane, slice_columns, of);
 }
 
-// The forces of a group's upright slice column on LANES of its nodes; those on the next group's are the opposite.
+// Forces of a slice's upright slice column on LANES of its nodes; those on the next slice's are opposite.
 MSPRINGI_INLINE vector upright_force(const mspringi_sweep *s, size_t slot, motion here, size_t group, size_t lane,
                                      mspringi_variant of) {
     const float *record =
@@ -441,7 +442,7 @@ MSPRINGI_INLINE vector upright_force(const mspringi_sweep *s, size_t slot, motio
                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }
 
-// An irregular part that ropes stand in, one column of LANES nodes after the other.
+// Sweep an irregular part with interleaved ropes, by columns of LANES nodes.
 MSPRINGI_INLINE void interleaved_part(const mspringi_sweep *sweep, const mspringi_span *span, mspringi_variant of) {
     const mspringi_sweep copy = *sweep, *const s = &copy;
     const uint8_t *is_upright = s->irregular->is_interleaved;
@@ -482,16 +483,14 @@ MSPRINGI_INLINE void irregular(const mspringi_sweep *s, const mspringi_span *spa
     }
 }
 
-// Where a bundle's forces are summed up from: those of each slice column, LANES of them, in the order of slice
-// columns.
+// Forces of a bundle before they are summed: LANES values for each slice column, in order.
 typedef struct pulls {
     float *x, *y;
-    size_t first; ///< slice column
+    size_t first; ///< first slice column
 } pulls;
 
-// Compute the forces of some springs from a bundle's group to those below, for both slice columns. All roots and
-// divisions come before any force, so that more of them are under way at a time than a processor would look ahead
-// for.
+// Compute the forces of `count` springs from a bundle's slice to slices below, for both slice columns. All roots
+// and divisions precede the forces, so that more of them overlap than a reorder window would hold.
 MSPRINGI_INLINE void pull_bundle(const mspringi_sweep *s, size_t slot, motion here,
                                  const mspringi_bundle_link *links, size_t count, pulls to, mspringi_variant of) {
     const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
@@ -518,7 +517,7 @@ MSPRINGI_INLINE void pull_bundle(const mspringi_sweep *s, size_t slot, motion he
     }
 }
 
-// When a group's springs to those below are done, so are all of its springs: it can be moved.
+// Compute the springs of a slice to slices below, and move it: its other springs are done.
 MSPRINGI_INLINE void sweep_group(const mspringi_sweep *s, size_t group, size_t slot, pulls to,
                                  mspringi_variant of) {
     const motion here = load_motion(s, slot, of);
@@ -542,7 +541,7 @@ MSPRINGI_INLINE void sweep_group(const mspringi_sweep *s, size_t group, size_t s
 MSPRINGI_INLINE void bundle(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count,
                             mspringi_variant of) {
     mspringi_sweep copy = *sweep;
-    copy.keep = NULL; // bundles are kept and looked at apart
+    copy.keep = NULL; // bundles save and measure their state separately
     copy.watch = NULL;
     const mspringi_sweep *const s = &copy;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
@@ -579,7 +578,7 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-// As so many of move(), at once: see mspringi_free_motion.
+// Move by several substeps at once: see mspringi_free_motion.
 MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_free_motion *glide,
                            bool forced) {
     const mspringi_variant all = MSPRINGI_DAMPED;

@@ -1,13 +1,13 @@
 /// @file system_iterate.h
-/// What an iteration of conjugate gradients does beside the product: plain C in blocks of MSPRINGI_WIDTH slots, or
-/// of the MSPRINGI_QUARTER slots of a part of a tile, as system_assemble.h is. Every sum is one of lanes, added up
-/// pairwise at the end, so its order is the same for every instruction set.
+/// Iteration of conjugate gradients without the product. Plain C in blocks of MSPRINGI_WIDTH slots, or of the
+/// MSPRINGI_QUARTER slots of a part of a tile, as in system_assemble.h. Sums are by lane, added in pairs at the
+/// end, so their order is the same for every instruction set.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_ITERATE_H
 #define MSPRINGI_SYSTEM_ITERATE_H
 
-// Vectors within a part of a tile: those of the instruction set, or half of them where they are longer than a part.
+// Vectors for parts of a tile: those of the instruction set, or halves of them if they are longer than a part.
 #ifndef PART_LANES
 #define PART_LANES LANES
 typedef vec part_vec;
@@ -41,8 +41,8 @@ static inline float sum_block_lanes(float *lanes) {
     return lanes[0];
 }
 
-// Single precision has rounded the blocks: a millionth of their size on top keeps those positive definite that are
-// so by their mass alone, such as a taut rope's.
+// Invert the diagonal blocks. They are rounded to single precision: a millionth of their trace is added, which
+// keeps those positive definite that are so by their mass alone, such as a taut rope's.
 static void invert(const mspringi_system *s, size_t first, size_t end) {
     const float *restrict const masses = s->mass;
     float *restrict const block_xx = s->xx, *restrict const block_xy = s->xy, *restrict const block_yy = s->yy;
@@ -59,7 +59,7 @@ static void invert(const mspringi_system *s, size_t first, size_t end) {
     }
 }
 
-// The parameters are what compilers know to be apart from each other.
+// Parameters, since compilers know that restrict parameters do not alias.
 MSPRINGI_INLINE float advance_chunk(size_t slots, float alpha, bool is_first, const float *restrict px,
                                     const float *restrict py, const float *restrict qx,
                                     const float *restrict qy, const float *restrict xx,
@@ -105,7 +105,7 @@ static void advance(const mspringi_system *s, const mspringi_iterate *n, float a
 
 /* -------------------------------------------------------------------------------------------------- by tile */
 
-/// Vectors in a part.
+/// Number of vectors in a part.
 #define PART_VECTORS (MSPRINGI_PART / PART_LANES)
 
 MSPRINGI_INLINE double sum_part(const part_vec *sums) {
@@ -116,7 +116,7 @@ MSPRINGI_INLINE double sum_part(const part_vec *sums) {
                     ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7])));
 }
 
-// In double precision: tiles of particles of the same mass, however many, are to get the same share of a force.
+// In double precision, so that tiles of particles of equal mass, however many, get equal shares of a force.
 static void inertia_of_tile(const mspringi_iterate *n, const float *mass, const mspringi_tile_part *parts,
                             size_t count, double *to) {
     double sum[MSPRINGI_PART] = {0.0}, inertia[MSPRINGI_PART] = {0.0};
@@ -161,13 +161,13 @@ static void restrict_to_tile(const mspringi_iterate *n, const mspringi_tile_part
     to[2] = sum_part(sum_turn);
 }
 
-// Whether a part is the first of those at its slots.
+// True if a part is the first of those at its slots.
 static inline bool begins_group(const mspringi_tile_part *parts, size_t p) {
     return p == 0 || parts[p].first_slot != parts[p - 1].first_slot;
 }
 
-// The slots of a tile's part get its body's motion; those of other tiles at the same slots theirs, when their turn
-// comes.
+// Set the direction. A part writes the motion of its tile to its own slots; parts of other tiles at the same slots
+// add theirs later.
 MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
                           const double (*bodies)[3], float beta, mspringi_search_update what) {
     const part_vec betas = part_set(beta);

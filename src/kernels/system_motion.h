@@ -1,6 +1,6 @@
 /// @file system_motion.h
-/// What an implicit substep does before and after its linear system: see solvers/implicit/integrator.c for the
-/// formulas. Plain C by slot, or vectors within the parts of a tile, as in system_iterate.h.
+/// Implicit substep before and after its linear system; formulas in solvers/implicit/integrator.c. Plain C by slot,
+/// or vectors for the parts of a tile, as in system_iterate.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_MOTION_H
@@ -15,10 +15,10 @@ static void weigh(const float *restrict inverse_mass, float scale, float *restri
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ flying tiles */
+/* --------------------------------------------------------------------------------------- rigid motion of tiles */
 
-/// Sums by lane over a tile, about a point in it that moves along: mass, first moments of place and velocity,
-/// moment of momentum and of inertia.
+/// Sums by lane over a tile, about a moving point in it: mass, first moments of position and velocity, angular
+/// momentum and moment of inertia.
 typedef struct tile_moments {
     part_vec sums[7][PART_VECTORS];
 } tile_moments;
@@ -66,9 +66,9 @@ static void aim_tile(const mspringi_prediction *f, const mspringi_tile_part *par
     const double h = (double)f->h;
     const double x = sums[1] / sums[0], y = sums[2] / sums[0], vx = sums[3] / sums[0], vy = sums[4] / sums[0];
     const double moment = sums[5] - sums[0] * (x * vy - y * vx), inertia = sums[6] - sums[0] * (x * x + y * y);
-    // The rotation whose half angle has this tangent: of the angle omega h up to its third power, whatever that is.
+    // Tangent of half the rotation. The angle equals omega h up to third order, and is finite for any omega h.
     const double half = inertia > 1e-6 * sums[6] ? 0.5 * h * moment / inertia : 0.0;
-    const double inward = -2.0 * half * half / (1.0 + half * half); // cos - 1; half of it times half: sin - omega h
+    const double inward = -2.0 * half * half / (1.0 + half * half); // cos - 1; times half: sin - omega h
     to->x = (float)x;
     to->y = (float)y;
     to->hvx = (float)(h * vx);
@@ -77,7 +77,7 @@ static void aim_tile(const mspringi_prediction *f, const mspringi_tile_part *par
     to->sideways = (float)(half * inward);
 }
 
-// Slots of a part's vectors that are not the tile's get 0, unless others of the same slots have been there.
+// Write to a tile's slots of a part, and 0 to the others, unless another part at these slots came first.
 MSPRINGI_INLINE void put_part(float *to, part_vec weight, part_vec value, bool begins) {
     const part_vec own = part_mul(weight, value);
     part_store(to, begins ? own : part_add(part_load(to), own));
@@ -111,7 +111,7 @@ static void fly(const mspringi_prediction *f, const mspringi_tile_part *parts, s
 
 /* ----------------------------------------------------------------------------------------------------- by slot */
 
-// The parameters are what compilers know to be apart from each other.
+// Parameters, since compilers know that restrict parameters do not alias.
 static void predict_coordinate(size_t first, size_t end, const float *restrict position, const float *restrict low,
                                const float *restrict velocity, const float *restrict history,
                                const float *restrict turned, const float *restrict inverse_mass, float h,
@@ -159,7 +159,7 @@ static void add_outside(const mspringi_outside *o, float *residual, size_t first
         add_some_outside(o, residual, first, end, false, false);
 }
 
-// A pinned particle has d = 0.
+// Correct one coordinate. A pinned particle has d = 0.
 MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const float *restrict start,
                           const float *restrict inverse_mass, const float *restrict solution,
                           const float *restrict direction, const float *from, const float *low,
@@ -193,8 +193,8 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
     }
 }
 
-// In whole blocks and by way of the stack, so that the history may be written to where it was read. Positions go
-// that way, too, because V8 11.3 (node 20) reads one that it converts to double after it has been written.
+// By blocks, through copies on the stack, so that the history may be updated in place. Positions are copied, too,
+// since V8 11.3 (node 20) reads one for a conversion to double after it has been written.
 #define MSPRINGI_CORRECT(name, memory)                                                                                \
     static void land_##name(const mspringi_correction *l, size_t first, size_t end) {                                 \
         for (size_t i = first; i < end; i += MSPRINGI_WIDTH) {                                                     \

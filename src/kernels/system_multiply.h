@@ -1,7 +1,7 @@
 /// @file system_multiply.h
-/// The product with the matrix of an implicit substep, for vectors of LANES slots: the innermost loop of the
-/// implicit solver. The shape is that of sweep.h: a spring's share is computed once, at the row that owns it, and
-/// handed on to the right and to the row above.
+/// Product with the matrix of an implicit substep, in vectors of LANES slots: the innermost loop of the implicit
+/// solver. As in sweep.h, the row that owns a spring computes it once, and carries it to the right and to the row
+/// above.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_MULTIPLY_H
@@ -13,7 +13,7 @@
 #define MSPRINGI_PRODUCT static inline __attribute__((always_inline))
 #endif
 
-/// A displacement, or a product, of LANES particles.
+/// Displacement, or product, of LANES particles.
 typedef struct displacement {
     vec x, y;
 } displacement;
@@ -28,12 +28,12 @@ MSPRINGI_PRODUCT displacement spring_product(displacement base, displacement tip
     return result;
 }
 
-/// Sums by lane of a block, of LANES lanes each.
+/// Sums by lane of a block.
 typedef struct product_sums {
     _Alignas(64) float lanes[MSPRINGI_WIDTH];
 } product_sums;
 
-// Add from . to of the LANES slots at slot.
+// Add from . to of LANES slots.
 MSPRINGI_PRODUCT void add_product(product_sums *sums, size_t slot, displacement from, displacement to) {
     float *const lanes = sums->lanes + slot % MSPRINGI_WIDTH;
     store(lanes, add(load(lanes), add(mul(from.x, to.x), mul(from.y, to.y))));
@@ -72,7 +72,7 @@ MSPRINGI_PRODUCT float multiply_lattice_rows(const mspringi_system *system, cons
                                         shift_in(before_right.y, right.y));
                 const displacement to = {sub(mul(load(mass + slot), here.x), force_x),
                                          sub(mul(load(mass + slot), here.y), force_y)};
-                // They are NULL only if springs are handed on and no more.
+                // to_x and to_y are NULL only for carry rows.
                 // cppcheck-suppress nullPointerArithmetic
                 store(to_x + slot, to.x);
                 // cppcheck-suppress nullPointerArithmetic
@@ -98,7 +98,7 @@ static void hand_on_product(const mspringi_system *system, const mspringi_span *
     (void)multiply_lattice_rows(system, spans, count, from_x, from_y, NULL, NULL, true);
 }
 
-// East springs only.
+// Rows of east springs only.
 static float multiply_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
                             const float *from_x, const float *from_y, float *to_x, float *to_y) {
     const float *const mass = system->mass;

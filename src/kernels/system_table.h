@@ -1,5 +1,5 @@
 /// @file system_table.h
-/// The part of an instruction set's table that is for the implicit solver, or nothing if the build leaves that out.
+/// The implicit solver's part of an instruction set's table, empty if the build omits that solver.
 ///
 /// SPDX-License-Identifier: MIT
 
