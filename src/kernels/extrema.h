@@ -26,7 +26,7 @@ static inline float largest_watched(const float *lanes) {
 
 static mspringi_extrema extrema_of(const mspringi_extrema_lanes *watch) {
     return (mspringi_extrema){largest_watched(watch->coordinate), largest_watched(watch->speed),
-                            largest_watched(watch->change)};
+                              largest_watched(watch->change)};
 }
 
 #endif

@@ -28,8 +28,8 @@ MSPRINGI_INLINE border_end border_end_at(const mspringi_stability_limit *b, size
 }
 
 // See stability/certificate.c. A compressed spring counts as one at rest length.
-MSPRINGI_INLINE border_fraction border_bound(border_end base, border_end tip, vec nx, vec ny, vec along,
-                                                 vec across, vec inverse) {
+MSPRINGI_INLINE border_fraction border_bound(border_end base, border_end tip, vec nx, vec ny, vec along, vec across,
+                                             vec inverse) {
     const vec both = add(base.in_x, tip.in_x), half = mul(set(0.5f), both);
     const vec stretched = choose_positive(across, across, zero()), turned = mul(half, sub(along, stretched));
     const vec all = choose_positive(inverse, mul(half, add(along, stretched)), zero());
@@ -39,7 +39,7 @@ MSPRINGI_INLINE border_fraction border_bound(border_end base, border_end tip, ve
 
 // Force against a displacement.
 MSPRINGI_INLINE border_fraction border_pull(border_end base, border_end tip, vec nx, vec ny, vec along,
-                                                vec across) {
+                                            vec across) {
     const vec dx = sub(tip.in_x, base.in_x), dy = sub(tip.in_y, base.in_y);
     const vec pull = mul(along, add(mul(nx, dx), mul(ny, dy)));
     const vec shear = mul(across, sub(mul(ny, dx), mul(nx, dy)));
@@ -48,8 +48,8 @@ MSPRINGI_INLINE border_fraction border_pull(border_end base, border_end tip, vec
 
 // record points to the springs' stiffness, followed by their damping.
 MSPRINGI_INLINE border_fraction share_of_springs(const mspringi_stability_limit *b, border_end base, border_end tip,
-                                                     const float *rests, const float *record, bool damped,
-                                                     bool is_image) {
+                                                 const float *rests, const float *record, bool damped,
+                                                 bool is_image) {
     const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
     const vec square = add(mul(dx, dx), mul(dy, dy));
     const vec inverse = mul(square_root(square), inverse_or_zero(square)); // inverse length
@@ -64,7 +64,7 @@ MSPRINGI_INLINE border_fraction share_of_springs(const mspringi_stability_limit 
 
 // Add contributions at the bases and at the tips of springs; for an image, times inverse masses.
 MSPRINGI_INLINE void add_shares(const mspringi_stability_limit *b, size_t sum, size_t slot, vec bases, vec tips,
-                                       bool is_image) {
+                                bool is_image) {
     const vec share = is_image ? mul(load(b->inverse_mass + slot), sub(tips, bases)) : add(bases, tips);
     store(b->out[sum] + slot, add(load(b->out[sum] + slot), share));
 }
@@ -72,19 +72,20 @@ MSPRINGI_INLINE void add_shares(const mspringi_stability_limit *b, size_t sum, s
 // Add the springs of LANES slots of a lattice. before: contributions of the previous slots to the right, and to the
 // right above.
 MSPRINGI_INLINE void border_slots(const mspringi_stability_limit *b, size_t slot, size_t up, const float *rests,
-                                         const float *records, border_fraction before[2], bool damped, bool is_image) {
+                                  const float *records, border_fraction before[2], bool damped, bool is_image) {
     const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH;
     const border_end here = border_end_at(b, slot, is_image), next = border_end_at(b, slot + 1, is_image);
     const border_end above = border_end_at(b, up, is_image), above_next = border_end_at(b, up + 1, is_image);
     const border_fraction east = share_of_springs(b, here, next, rests + MSPRINGI_EAST * MSPRINGI_WIDTH,
-                                               records + MSPRINGI_EAST * part, damped, is_image);
+                                                  records + MSPRINGI_EAST * part, damped, is_image);
     const border_fraction north = share_of_springs(b, here, above, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH,
-                                                records + MSPRINGI_NORTH * part, damped, is_image);
+                                                   records + MSPRINGI_NORTH * part, damped, is_image);
     const border_fraction north_east =
         share_of_springs(b, here, above_next, rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
                          records + MSPRINGI_NORTH_EAST * part, damped, is_image);
-    const border_fraction south_east = share_of_springs(b, above, next, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
-                                                     records + MSPRINGI_SOUTH_EAST * part, damped, is_image);
+    const border_fraction south_east =
+        share_of_springs(b, above, next, rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH,
+                         records + MSPRINGI_SOUTH_EAST * part, damped, is_image);
     for (size_t sum = 0; sum < (is_image ? 2 : 3); ++sum) {
         const vec right = add(east.sums[sum], south_east.sums[sum]);
         add_shares(b, sum, slot, add(add(east.sums[sum], north.sums[sum]), north_east.sums[sum]),

@@ -43,7 +43,7 @@ typedef struct mspringi_system {
     float *lattice_factors;                                      ///< [block][direction][factor][lane]
     float *chain_factors;                                        ///< [block][factor][lane]
     float *force_x, *force_y;                                    ///< forces of the springs, scaled
-    float *xx, *xy, *yy;   ///< 2 x 2 diagonal blocks of A, without the mass
+    float *xx, *xy, *yy;                                         ///< 2 x 2 diagonal blocks of A, without the mass
     double *force_carry_x; ///< carry row from the row below, by column; all 0 outside a pass over rows
     double *force_carry_y;
     float *carry_xx, *carry_xy, *carry_yy; ///< carry rows; xx and xy also serve the product
@@ -71,10 +71,9 @@ static inline double mspringi_geometric_fraction(double relative) {
 typedef void (*mspringi_assemble_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count);
 
 /// Only compute the carry row, as assembly or product would leave it for the row above. Its old values are ignored.
-typedef void (*mspringi_carry_forces_fn)(const mspringi_system *system, const mspringi_span *spans,
-                                           uint32_t count);
-typedef void (*mspringi_carry_product_fn)(const mspringi_system *system, const mspringi_span *spans,
-                                            uint32_t count, const float *from_x, const float *from_y);
+typedef void (*mspringi_carry_forces_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count);
+typedef void (*mspringi_carry_product_fn)(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                          const float *from_x, const float *from_y);
 
 /// Compute to = A from for one or more rows of one kind, with from = (from_x, from_y). Returns from . to of these
 /// rows.
@@ -127,15 +126,15 @@ typedef void (*mspringi_restrict_fn)(const mspringi_iterate *iterate, const mspr
 
 /// Terms of a new search direction.
 typedef enum mspringi_search_update {
-    MSPRINGI_SEARCH_COARSE_ONLY,  ///< rigid motion of the tiles
-    MSPRINGI_SEARCH_RESTART,  ///< that, and D^-1 r
-    MSPRINGI_SEARCH_CONTINUE, ///< both, and beta times the last direction
+    MSPRINGI_SEARCH_COARSE_ONLY, ///< rigid motion of the tiles
+    MSPRINGI_SEARCH_RESTART,     ///< that, and D^-1 r
+    MSPRINGI_SEARCH_CONTINUE,    ///< both, and beta times the last direction
     MSPRINGI_SEARCH_UPDATES
 } mspringi_search_update;
 
 /// Compute the direction in these parts, sorted by slot. Slots outside of all parts have none.
-typedef void (*mspringi_search_update_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts, size_t count,
-                                 const double (*bodies)[3], float beta);
+typedef void (*mspringi_search_update_fn)(const mspringi_iterate *iterate, const mspringi_tile_part *parts,
+                                          size_t count, const double (*bodies)[3], float beta);
 
 /* --------------------------------------------------------------------------------- before and after the system */
 
@@ -161,15 +160,16 @@ typedef struct mspringi_prediction {
 } mspringi_prediction;
 
 /// mass = scale / inverse mass, or 0.
-typedef void (*mspringi_scale_masses_fn)(const float *inverse_mass, float scale, float *mass, size_t first, size_t end);
+typedef void (*mspringi_scale_masses_fn)(const float *inverse_mass, float scale, float *mass, size_t first,
+                                         size_t end);
 
 /// Find the rigid motion of the tile with these parts.
-typedef void (*mspringi_tile_motion_fn)(const mspringi_prediction *flight, const mspringi_tile_part *parts, size_t count,
-                                mspringi_tile_motion *to);
+typedef void (*mspringi_tile_motion_fn)(const mspringi_prediction *flight, const mspringi_tile_part *parts,
+                                        size_t count, mspringi_tile_motion *to);
 
 /// Compute turned and arm in these parts, sorted by slot.
-typedef void (*mspringi_rotate_tiles_fn)(const mspringi_prediction *flight, const mspringi_tile_part *parts, size_t count,
-                                const mspringi_tile_motion *tiles);
+typedef void (*mspringi_rotate_tiles_fn)(const mspringi_prediction *flight, const mspringi_tile_part *parts,
+                                         size_t count, const mspringi_tile_motion *tiles);
 
 /// Predict positions, and the velocity for d = 0.
 typedef void (*mspringi_predict_fn)(const mspringi_prediction *flight, size_t first, size_t end);
@@ -204,10 +204,10 @@ typedef struct mspringi_correction {
 
 /// History for the next substep.
 typedef enum mspringi_history_kind {
-    MSPRINGI_HISTORY_NONE,      ///< implicit Euler
-    MSPRINGI_HISTORY_VELOCITY_CHANGE,       ///< first step of GA0
-    MSPRINGI_HISTORY_ACCELERATION, ///< GA0
-    MSPRINGI_HISTORY_BDF2,         ///< BDF2
+    MSPRINGI_HISTORY_NONE,            ///< implicit Euler
+    MSPRINGI_HISTORY_VELOCITY_CHANGE, ///< first step of GA0
+    MSPRINGI_HISTORY_ACCELERATION,    ///< GA0
+    MSPRINGI_HISTORY_BDF2,            ///< BDF2
     MSPRINGI_HISTORY_KINDS
 } mspringi_history_kind;
 
@@ -274,7 +274,7 @@ typedef struct mspringi_system_kernels {
     mspringi_rotate_tiles_fn rotate_tiles;
     mspringi_predict_fn predict;
     mspringi_assemble_fn assemble_lattice[2], assemble_chain[2]; ///< [with damping]
-    mspringi_carry_forces_fn carry_forces[2];                ///< of lattice rows, [with damping]
+    mspringi_carry_forces_fn carry_forces[2];                    ///< of lattice rows, [with damping]
     mspringi_outside_fn add_outside;
     mspringi_invert_fn invert;
     mspringi_multiply_fn multiply_lattice, multiply_chain;

@@ -132,8 +132,7 @@ MSPRINGI_INLINE void find_factors(const linearised *s, const float *stiffnesses,
         to->part.right[MSPRINGI_WIDTH + at + i] = east->value[i] + south_east->value[i];                           \
     }
 
-MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to,
-                               bool only_hand_on) {
+MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to, bool only_hand_on) {
     const spring_lanes *const east = &lanes[MSPRINGI_EAST], *const north = &lanes[MSPRINGI_NORTH];
     const spring_lanes *const north_east = &lanes[MSPRINGI_NORTH_EAST], *const south_east =
                                                                             &lanes[MSPRINGI_SOUTH_EAST];
@@ -159,7 +158,8 @@ MSPRINGI_INLINE void assemble_block(const linearised *s, size_t slot, size_t up,
                            [MSPRINGI_NORTH] = up,
                            [MSPRINGI_NORTH_EAST] = up + 1,
                            [MSPRINGI_SOUTH_EAST] = slot + 1};
-    float unused[MSPRINGI_FACTORS * MSPRINGI_WIDTH]; // carry-only rows belong to another worker, which writes their factors
+    float unused[MSPRINGI_FACTORS *
+                 MSPRINGI_WIDTH]; // carry-only rows belong to another worker, which writes their factors
     spring_lanes lanes[MSPRINGI_DIRECTIONS];
     const size_t first = only_hand_on ? MSPRINGI_NORTH : MSPRINGI_EAST;
     for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
@@ -173,8 +173,7 @@ MSPRINGI_INLINE void assemble_block(const linearised *s, size_t slot, size_t up,
 
 // Assemble the springs of a chain, or of a row of east springs only.
 MSPRINGI_INLINE void assemble_east(const linearised *s, size_t slot, const float *rests, const float *springs,
-                                   float *restrict factors, size_t at, spring_strip *restrict to,
-                                   bool damped) {
+                                   float *restrict factors, size_t at, spring_strip *restrict to, bool damped) {
     spring_lanes east;
     find_inverses(s, slot, slot + 1, &east);
     find_forces(s, slot, slot + 1, rests, springs, &east, damped);
@@ -281,8 +280,8 @@ MSPRINGI_INLINE void assemble_lattice_rows(const mspringi_system *system, const 
     }
 }
 
-MSPRINGI_INLINE void assemble_lattice(const mspringi_system *system, const mspringi_span *spans,
-                                      uint32_t count, bool damped) {
+MSPRINGI_INLINE void assemble_lattice(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                      bool damped) {
     assemble_lattice_rows(system, spans, count, damped, false);
 }
 

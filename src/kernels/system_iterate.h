@@ -61,10 +61,9 @@ static void invert(const mspringi_system *s, size_t first, size_t end) {
 
 // Parameters, since compilers know that restrict parameters do not alias.
 MSPRINGI_INLINE float advance_chunk(size_t slots, float alpha, bool is_first, const float *restrict px,
-                                    const float *restrict py, const float *restrict qx,
-                                    const float *restrict qy, const float *restrict xx,
-                                    const float *restrict xy, const float *restrict yy, float *restrict dx,
-                                    float *restrict dy, float *restrict rx, float *restrict ry,
+                                    const float *restrict py, const float *restrict qx, const float *restrict qy,
+                                    const float *restrict xx, const float *restrict xy, const float *restrict yy,
+                                    float *restrict dx, float *restrict dy, float *restrict rx, float *restrict ry,
                                     float *restrict zx, float *restrict zy) {
     float sums[MSPRINGI_WIDTH] = {0.0f};
     for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH) {
@@ -84,8 +83,8 @@ MSPRINGI_INLINE float advance_chunk(size_t slots, float alpha, bool is_first, co
     return sum_block_lanes(sums);
 }
 
-MSPRINGI_INLINE void advance_chunks(const mspringi_system *s, const mspringi_iterate *n, float alpha,
-                                    bool is_first, size_t first, size_t end, float *sums) {
+MSPRINGI_INLINE void advance_chunks(const mspringi_system *s, const mspringi_iterate *n, float alpha, bool is_first,
+                                    size_t first, size_t end, float *sums) {
     for (size_t at = first; at < end; at += MSPRINGI_CHUNK) {
         const size_t slots = end - at < MSPRINGI_CHUNK ? end - at : MSPRINGI_CHUNK;
         sums[at / MSPRINGI_CHUNK] = advance_chunk(

@@ -195,8 +195,8 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
 
 // By blocks, through copies on the stack, so that the history may be updated in place. Positions are copied, too,
 // since V8 11.3 (node 20) reads one for a conversion to double after it has been written.
-#define MSPRINGI_CORRECT(name, memory)                                                                                \
-    static void land_##name(const mspringi_correction *l, size_t first, size_t end) {                                 \
+#define MSPRINGI_CORRECT(name, memory)                                                                             \
+    static void land_##name(const mspringi_correction *l, size_t first, size_t end) {                              \
         for (size_t i = first; i < end; i += MSPRINGI_WIDTH) {                                                     \
             float from[MSPRINGI_WIDTH], low[MSPRINGI_WIDTH], history[MSPRINGI_WIDTH], unused[MSPRINGI_WIDTH];      \
             for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {                                                 \
@@ -206,7 +206,7 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
             }                                                                                                      \
             land(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,             \
                  l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->position + i, l->velocity + i,  \
-                 l->to_low + i, l->to_first + i, memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused,     \
+                 l->to_low + i, l->to_first + i, memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused,      \
                  memory);                                                                                          \
         }                                                                                                          \
     }

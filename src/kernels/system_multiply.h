@@ -24,7 +24,8 @@ MSPRINGI_PRODUCT displacement spring_product(displacement base, displacement tip
     const vec geometric = load(factors + MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH);
     const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
     const vec along = add(mul(pull_x, dx), mul(pull_y, dy));
-    const displacement result = {add(mul(geometric, dx), mul(pull_x, along)), add(mul(geometric, dy), mul(pull_y, along))};
+    const displacement result = {add(mul(geometric, dx), mul(pull_x, along)),
+                                 add(mul(geometric, dy), mul(pull_y, along))};
     return result;
 }
 
