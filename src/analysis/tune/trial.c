@@ -368,7 +368,7 @@ static void hold_still(mspring_network *network) {
     if (network->forces.held_any)
         memset(network->forces.held.x, 0, bytes);
     network->forces.held_any = false;
-    memset(network->state.vx, 0, bytes); // vy lies behind vx
+    memset(network->state.vx, 0, bytes); // vy follows vx in memory
 }
 
 static bool search_goes_on(void *user) {
