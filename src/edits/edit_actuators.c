@@ -1,4 +1,4 @@
-/// Declaring actuators, and giving them signals.
+/// Declaration of actuators, and their signals.
 #include "step/actuators.h"
 
 #include "base/cpu.h"
@@ -14,7 +14,7 @@
 #define MOST_SIGNAL 100.0f
 #define MOST_CHANGES 256u
 
-/// Rest length that least signals take to no weld, m.
+/// Shortest rest length of an actuator, m: the smallest signals do not make it a weld.
 #define SHORTEST 1e-12f
 
 static mspring_result check(mspring_network *network, const mspring_id *springs, uint32_t count, uint32_t changes) {
@@ -82,7 +82,7 @@ static mspring_result fill(mspring_network *network, mspringi_actuators *a, cons
     return MSPRING_OK;
 }
 
-// The rest lengths of those that were actuators are parameters from now on: no frame of before fits.
+// The rest lengths of former actuators become parameters: no earlier frame fits any more.
 static void leave_lengths(mspring_network *network) {
     const mspringi_actuators *a = &network->actuators;
     if (!a->have_moved)

@@ -1,8 +1,8 @@
-/// Where cells are.
+/// Search for cells.
 ///
-/// In a lattice's rows a cell is four particles with whole springs around them: sweeps can have its area.
-/// Elsewhere, as in lattices that are too small for rows, it is four particles that whole springs join each to
-/// each, two of which cross.
+/// In a lattice's rows a cell is four particles with live springs around them; sweeps can compute its area.
+/// Elsewhere, also in lattices too small for rows, it is four particles that are all connected by live springs, two
+/// of which cross.
 #include "edits/edit_areas.h"
 
 #include "store/areas.h"
@@ -21,7 +21,7 @@ static void turn_over(const mspring_network *network, mspring_id corners[4]) {
     }
 }
 
-// That of a lattice's rows above and right of a particle.
+// Find the cell of rows above and on the right of a particle.
 static bool find_in_rows(const mspring_network *network, mspring_id particle, mspring_id corners[4]) {
     uint32_t slots[4];
     if (!mspringi_cell_at(network, slot_of(network, particle), slots))
@@ -32,7 +32,7 @@ static bool find_in_rows(const mspring_network *network, mspring_id particle, ms
     return true;
 }
 
-// Whether any corner begins a cell of rows that has all of these.
+// True if a cell of rows has the same four corners.
 static bool is_in_rows(const mspring_network *network, const mspring_id corners[4]) {
     for (int i = 0; i < 4; ++i) {
         mspring_id cell[4];
@@ -47,7 +47,7 @@ static bool is_in_rows(const mspring_network *network, const mspring_id corners[
     return false;
 }
 
-// Which side of the way from one to another a third is on.
+// True if the particle is on the left of the line between two others.
 static bool is_left(const mspring_network *network, mspring_id from, mspring_id to, mspring_id particle) {
     const mspring_id three[3] = {from, to, particle};
     return mspringi_area_within(network, three, 3) > 0.0;
@@ -58,7 +58,7 @@ static bool are_crossed(const mspring_network *network, mspring_id a, mspring_id
            is_left(network, c, d, a) != is_left(network, c, d, b);
 }
 
-// Put four particles that are joined each to each in an order around them. False: none of their springs cross.
+// Order four connected particles around their cell. False if none of their springs cross.
 static bool order(const mspring_network *network, mspring_id corners[4]) {
     for (int other = 1; other < 4; ++other) {
         const mspring_id a = corners[0], b = corners[other], c = corners[other == 1 ? 2 : 1],
@@ -75,7 +75,7 @@ static bool order(const mspring_network *network, mspring_id corners[4]) {
     return false;
 }
 
-/// The particles of higher id that whole springs join a particle to, one after the other.
+/// Iterator over the particles of higher id that are connected to a particle by live springs.
 typedef struct neighbours {
     mspringi_incident_springs around;
     mspring_id of;
@@ -105,8 +105,8 @@ static bool are_joined(const mspring_network *network, mspring_id low, mspring_i
     return false;
 }
 
-// Those elsewhere whose lowest corners are a pair that a spring joins: the third is joined to both, the fourth to
-// all.
+// Visit cells outside of rows by their lowest two corners, which a spring connects. The third is connected to both,
+// the fourth to all.
 static mspring_result each_of_pair(mspring_network *network, mspring_id lowest, mspring_id second,
                                    mspringi_cell_fn fn, void *user) {
     mspring_result result = MSPRING_OK;

@@ -1,9 +1,8 @@
-/// Forces for the next step, and impulses, which change velocities at once.
+/// Forces for the next step, and impulses, which change velocities immediately.
 ///
-/// What is given adds up, where a list names a particle twice as well. So the sums are made in the backup, which is
-/// free between steps, and taken from there once all of them are right: those of a list by slot, those of a range,
-/// which names each particle once, by index. Most forces are so small that no sum can go wrong: those of a range
-/// are added at once.
+/// Forces add up, also if a list names a particle twice. So new sums are computed in the backup, which is free
+/// between steps, and copied once all of them are valid: by slot for a list; by index for a range, which names each
+/// particle once. Most forces are too small to overflow a sum: those of a range are added directly.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -16,7 +15,7 @@ typedef struct pushes {
     uint32_t stride;
 } pushes;
 
-// What a call adds to: forces, or velocities times what a particle gives in to an impulse.
+// Sums of a call: forces, or velocities with inverse masses as factors.
 typedef struct target {
     mspringi_field sum;
     const float *inverse_mass; ///< NULL: forces
@@ -34,12 +33,12 @@ static bool is_right(const target *to, float x, float y) {
     return to->inverse_mass ? mspringi_is_speed(x) && mspringi_is_speed(y) : isfinite(x) && isfinite(y);
 }
 
-// A product of two floats is exact in double precision, so it does not matter whether it is fused with the sum.
+// A product of two floats is exact in double precision, so fusing it with the sum makes no difference.
 static float plus(float sum, float push, double factor) {
     return (float)((double)sum + (double)push * factor);
 }
 
-// Make the sums of a range. Returns the index of one that is not right, or the count.
+// Compute the sums of a range. Returns the index of the first invalid one, or the count.
 static MSPRINGI_NOINLINE uint32_t sum_range(const mspring_network *network, const mspringi_selection *at,
                                             const pushes *given, const target *to) {
     const uint32_t *const slots = network->topology.slot_of_particle + at->first;
@@ -126,7 +125,7 @@ static bool are_all_modest(const float *forces, size_t count) {
     return others == 0;
 }
 
-// Whether no force is so large that sums of it need a look.
+// True if all forces are too small to overflow their sums.
 static bool are_modest(const pushes *given, uint32_t count) {
     const float *x = given->x, *y = given->y;
     const size_t stride = given->stride;
@@ -140,7 +139,7 @@ static bool are_modest(const pushes *given, uint32_t count) {
     return others == 0;
 }
 
-// Add modest forces to a range, of which all particles are there.
+// Add small forces to a range without removed particles.
 static MSPRINGI_NOINLINE void add_modest(mspring_network *network, const mspringi_selection *at,
                                          const pushes *given) {
     const uint32_t *const slots = network->topology.slot_of_particle + at->first;

@@ -1,4 +1,4 @@
-/// Marking groups, and putting them back.
+/// Marks of groups, and resets to them.
 #include <string.h>
 
 #include "base/cpu.h"
@@ -44,7 +44,7 @@ static mspring_result check_groups(mspring_network *network, const uint32_t *gro
     return MSPRING_OK;
 }
 
-// Groups by list, or all of them.
+// A list of groups, or all of them.
 typedef struct choice {
     const uint32_t *list; // NULL: all
     uint32_t count;
@@ -85,7 +85,8 @@ mspring_result mspring_network_mark_groups(mspring_network *network, const uint3
 /* ------------------------------------------------------------------------------------------------------ putting
  * back */
 
-// List the springs that were live, or broken, at the mark and are not now. A group may be chosen twice.
+// List the springs with the given state, live or broken, at the mark and the other one now. A group may be listed
+// twice.
 static uint32_t list_changed(mspring_network *network, const mspringi_mark *mark, const choice *of,
                              bool were_live) {
     mspringi_groups *g = &network->groups;
