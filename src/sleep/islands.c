@@ -104,9 +104,9 @@ static void map_block(const mspring_network *network, uint32_t block) {
     s->swept[block] = awake != 0;
 }
 
-// Also sweep blocks through which a swept block's springs act, though they may have no particle. A south-east
-// spring has its record in the block below its upper end. A north-east spring of a block's last slot carries its
-// force through the next block.
+// Also sweep blocks that a swept block's springs pass through, even without particles. A south-east spring has its
+// record in the block below its upper end. A north-east spring of a block's last slot carries its force through the
+// next block.
 static void sweep_beside(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const uint32_t last_lane = 1u << (MSPRINGI_WIDTH - 1);

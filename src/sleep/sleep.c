@@ -219,7 +219,7 @@ static uint32_t wake_block_by_forces(const mspring_network *network, mspringi_fi
     return bits & s->sleepers[first / MSPRINGI_WIDTH];
 }
 
-// Wake particles whose external force differs from that at the time they fell asleep.
+// Wake particles if their external force has changed since they fell asleep.
 static void wake_by_forces(mspring_network *network, mspringi_field force) {
     mspringi_sleep *s = &network->sleep;
     s->in_force = force;
@@ -310,7 +310,7 @@ void mspringi_sleep_undo(mspring_network *network) {
     if (s->sleeping == 0)
         return;
     mspringi_islands_map(network);
-    s->masses = network->edits.masses - 1; // islands that a changed mass woke still have that mass
+    s->masses = network->edits.masses - 1; // islands woken by a changed mass still have that mass
 }
 
 /* ------------------------------------------------------------------------------------------- falling asleep */

@@ -83,11 +83,11 @@ void mspringi_sleep_rouse(mspring_network *network, uint32_t island);
 void mspringi_sleep_roused(mspring_network *network, uint64_t naps);
 /// True if all sleep, with no force to compare.
 bool mspringi_sleep_is_idle(const mspring_network *network);
-/// Save sleeping slots before substeps, and restore them after. Hooks may have given them a velocity.
+/// Save sleeping slots before substeps, and restore them after: hooks may have given them a velocity.
 void mspringi_sleep_hold(const mspring_network *network);
 void mspringi_sleep_put_back(const mspring_network *network);
 
-/// After a failed step: let islands that it woke sleep again.
+/// After a failed step: put the islands woken by it back to sleep.
 void mspringi_sleep_undo(mspring_network *network);
 
 /// Put the marked islands to sleep in their present state, under these forces (x NULL: none).

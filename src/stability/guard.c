@@ -180,8 +180,8 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
                                                                     : result;
 }
 
-// Check areas without springs all around. Solvers without a stability limit take the forces of such areas from the
-// start of a substep. The clamped solver takes any step.
+// Check areas without springs all around. In solvers without a stability limit, their forces are those at the start
+// of a substep. The clamped solver takes any step.
 static mspring_result check_areas(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_areas *areas = &network->areas;
     if (areas->unringed == 0 || network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS ||

@@ -6,14 +6,13 @@
 /// A solution that grows by z in each substep obeys
 ///     Q(z) x = 0,   Q(z) = (z - 1)(z - g) + g (z - 1) D + g z A,
 ///     A = h^2 M^-1/2 K M^-1/2,   D = h M^-1/2 C M^-1/2   (both symmetric and positive semidefinite).
-/// The substep is stable, with no |z| above 1, if and only if the largest eigenvalue of A + 2 D is at most 2 (1 +
-/// 1/g):
-///   - If it is, take a = x* A x and d = x* D x of a solution of length 1. Then z^2 - (1 + g - g d - g a) z +
-///     g (1 - d) = 0, a real quadratic with both roots in the unit disc, as a + 2 d <= 2 (1 + 1/g) (Jury's
-///     conditions).
-///   - If it is not, Q(-1) = 2 (1 + g) - 2 g D - g A has a negative eigenvalue, and Q(z) has none for z far below
-///   -1.
-///     For some z in between Q(z) is singular. That solution changes its sign and grows in each substep.
+/// No |z| exceeds 1, so the substep is stable, if and only if the largest eigenvalue of A + 2 D is at most
+///     2 (1 + 1/g):
+///   - If it is, take a = x* A x and d = x* D x of a solution of length 1. Then
+///     z^2 - (1 + g - g d - g a) z + g (1 - d) = 0. This real quadratic has both roots in the unit disc, since
+///     a + 2 d <= 2 (1 + 1/g) (Jury's conditions).
+///   - If it is not, Q(-1) = 2 (1 + g) - 2 g D - g A has a negative eigenvalue. Q(z) has none if z is far below -1,
+///     so Q(z) is singular for some z in between. That solution changes its sign and grows in each substep.
 /// For one undamped mode this is omega h <= 2, for one mode of damping ratio zeta
 ///     omega h <= 2 (sqrt(1 + zeta^2) - zeta).
 /// The k and c of relative springs depend on h, such that their part of A and D is the same at any h.
