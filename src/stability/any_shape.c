@@ -34,7 +34,7 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
 }
 
 // Memory for sums by slot: the guard's scratch arrays, else the backup.
-static mspringi_state find_room(const mspring_network *network) {
+static mspringi_state choose_scratch(const mspring_network *network) {
     if (!network->guard_scratch)
         return network->backup;
     return (mspringi_state){.x = mspringi_stability_limit_scratch(network, 0),
@@ -45,7 +45,7 @@ static mspringi_state find_room(const mspring_network *network) {
 
 // Sum over the springs at each slot: stiffness in x, damping in y, and the strength of relative springs per mass in
 // vx.
-static void sum_up(const mspring_network *network, const mspringi_state *sums) {
+static void sum_strengths(const mspring_network *network, const mspringi_state *sums) {
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[i];
@@ -66,13 +66,13 @@ static void sum_up(const mspring_network *network, const mspringi_state *sums) {
 }
 
 // Smallest limit of all springs. Relative springs take at most `most_relative` of the bound, which is 4.
-static double find(mspring_network *network, double most_relative, mspring_id *spring) {
+static double find_limit(mspring_network *network, double most_relative, mspring_id *spring) {
     // Margin for the rounding of the sums.
     const double tight = 1.0 - 1e-5;
-    const mspringi_state room = find_room(network), *sums = &room;
+    const mspringi_state room = choose_scratch(network), *sums = &room;
     double smallest = INFINITY;
     mspringi_quotient tightest = {0.0, 0.0, 0.0}; // quotient with the smallest limit so far
-    sum_up(network, sums);
+    sum_strengths(network, sums);
     *spring = MSPRING_NONE;
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         uint32_t a, b;
@@ -102,7 +102,7 @@ static double find(mspring_network *network, double most_relative, mspring_id *s
     return smallest * tight;
 }
 
-static bool is_of_now(const mspringi_any_shape *known, const mspringi_edits *edits) {
+static bool is_current(const mspringi_any_shape *known, const mspringi_edits *edits) {
     return known->is_known && known->masses == edits->masses && known->values == edits->values &&
            known->growth == edits->growth;
 }
@@ -110,11 +110,11 @@ static bool is_of_now(const mspringi_any_shape *known, const mspringi_edits *edi
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring) {
     mspringi_any_shape *known = &network->any_shape, *last = &network->last_shape;
     const mspringi_edits *edits = &network->edits;
-    if (!is_of_now(known, edits)) {
-        if (!is_of_now(last, edits)) {
+    if (!is_current(known, edits)) {
+        if (!is_current(last, edits)) {
             *last = (mspringi_any_shape){
                 .masses = edits->masses, .values = edits->values, .growth = edits->growth, .is_known = true};
-            last->dt = find(network, INFINITY, &last->spring);
+            last->dt = find_limit(network, INFINITY, &last->spring);
         }
         *known = *last;
     }
@@ -126,10 +126,10 @@ double mspringi_stable_with_relative(mspring_network *network) {
     mspring_id spring;
     mspringi_any_shape *last = &network->last_shape;
     (void)mspringi_stable_in_any_shape(network, &spring);
-    if (!is_of_now(last, &network->edits))
+    if (!is_current(last, &network->edits))
         *last = network->any_shape;
     if (!(last->mixed_dt > 0.0))
-        last->mixed_dt = find(network, 2.0, &spring);
+        last->mixed_dt = find_limit(network, 2.0, &spring);
     return last->mixed_dt;
 }
 

@@ -21,10 +21,10 @@
 
 /// Evaluations for a new network; each check adds one. For 200 x 200 with holes, three masses and four stiffnesses,
 /// 6 prove 0.94 of the limit, 12 0.95 and 50 0.965.
-#define ROUNDS_TO_LEARN 12
+#define FIRST_EVALUATIONS 12
 
 /// Smallest weight; the largest is about 1.
-#define LEAST_WEIGHT 1e-3f
+#define MIN_WEIGHT 1e-3f
 
 mspring_result mspringi_stability_limit_reserve(mspring_network *network) {
     if (network->guard_scratch)
@@ -43,7 +43,7 @@ mspring_result mspringi_stability_limit_reserve(mspring_network *network) {
 /// Largest values over all slots, for each lane until the end of the sweep.
 typedef struct extremes {
     float value[MSPRINGI_WIDTH], weight[MSPRINGI_WIDTH];
-    float doubt[MSPRINGI_WIDTH]; ///< NaN unless all values are finite
+    float overflow[MSPRINGI_WIDTH]; ///< NaN unless all values are finite
 } extremes;
 
 static float largest_lane(const float *lanes) {
@@ -54,32 +54,32 @@ static float largest_lane(const float *lanes) {
 }
 
 // Largest eigenvalue of each block: half the trace plus the eigenvalues' distance from it.
-static void find_values(const float *restrict inverse_mass, const float *restrict weights,
-                        const mspringi_stability_limit *b, size_t slot, float *restrict values,
-                        extremes *restrict found) {
+static void find_eigenvalues(const float *restrict inverse_mass, const float *restrict weights,
+                             const mspringi_stability_limit *b, size_t slot, float *restrict values,
+                             extremes *restrict found) {
     const float *restrict half = b->out[0] + slot, *restrict off = b->out[1] + slot;
-    const float *restrict beside = b->out[2] + slot;
+    const float *restrict off_axis = b->out[2] + slot;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const float share = sqrtf(inverse_mass[i]) / weights[i], x = share * off[i], y = share * beside[i];
+        const float share = sqrtf(inverse_mass[i]) / weights[i], x = share * off[i], y = share * off_axis[i];
         values[i] = share * half[i] + sqrtf(x * x + y * y);
         found->value[i] = values[i] > found->value[i] ? values[i] : found->value[i];
         found->weight[i] = weights[i] > found->weight[i] ? weights[i] : found->weight[i];
-        found->doubt[i] += values[i] - values[i];
+        found->overflow[i] += values[i] - values[i];
     }
 }
 
 // Update the weights so that the blocks become equal. The largest stays at about 1.
-static void weigh(mspring_network *network, const float *restrict values, const extremes *found) {
+static void update_weights(mspring_network *network, const float *restrict values, const extremes *found) {
     const float per_value = 1.0f / largest_lane(found->value), per_weight = 1.0f / largest_lane(found->weight);
     float *restrict weights = network->guard_scratch;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         const float weight = weights[slot] * per_weight * sqrtf(values[slot] * per_value);
-        weights[slot] = weight > LEAST_WEIGHT ? weight : LEAST_WEIGHT;
+        weights[slot] = weight > MIN_WEIGHT ? weight : MIN_WEIGHT;
     }
 }
 
 // Bound the eigenvalues in one sweep, then update the weights. NaN if a value overflows.
-static float take_round(mspring_network *network, const float *inverse_mass, double h) {
+static float evaluate_bound(mspring_network *network, const float *inverse_mass, double h) {
     const size_t slots = mspringi_slot_count(network);
     float *const weights = network->guard_scratch, *const room = mspringi_stability_limit_scratch(network, 0);
     mspringi_stability_limit b = mspringi_stability_limit_at(network, h);
@@ -92,22 +92,22 @@ static float take_round(mspring_network *network, const float *inverse_mass, dou
     mspringi_stability_limit_bound(network, &b);
     extremes found = {{0.0f}, {0.0f}, {0.0f}};
     for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH)
-        find_values(inverse_mass + slot, weights + slot, &b, slot, room + slot, &found);
+        find_eigenvalues(inverse_mass + slot, weights + slot, &b, slot, room + slot, &found);
     const float largest = largest_lane(found.value);
     for (size_t i = 1; i < MSPRINGI_WIDTH; ++i)
-        found.doubt[0] += found.doubt[i];
-    if (largest > 0.0f && found.doubt[0] == 0.0f)
-        weigh(network, room, &found);
-    return largest + found.doubt[0];
+        found.overflow[0] += found.overflow[i];
+    if (largest > 0.0f && found.overflow[0] == 0.0f)
+        update_weights(network, room, &found);
+    return largest + found.overflow[0];
 }
 
 bool mspringi_stability_limit_is_below(mspring_network *network, double h, double bound) {
-    return (double)take_round(network, network->inverse_mass, h) <= bound;
+    return (double)evaluate_bound(network, network->inverse_mass, h) <= bound;
 }
 
-void mspringi_stability_limit_learn(mspring_network *network) {
+void mspringi_stability_limit_adapt(mspring_network *network) {
     mspring_id spring;
     const double h = mspringi_stable_in_any_shape(network, &spring);
-    for (int round = 0; h > 0.0 && h < INFINITY && round < ROUNDS_TO_LEARN; ++round)
-        (void)take_round(network, network->inverse_mass, h);
+    for (int round = 0; h > 0.0 && h < INFINITY && round < FIRST_EVALUATIONS; ++round)
+        (void)evaluate_bound(network, network->inverse_mass, h);
 }

@@ -22,7 +22,7 @@
 #define SUSPICIOUS 2.0f
 
 /// Decay of that peak in a step without a check: half in 2839 steps, so checks are rare where nothing grows.
-#define FADING (4095.0f / 4096.0f)
+#define PEAK_DECAY (4095.0f / 4096.0f)
 
 /// Change of velocity below which nothing is checked, in shortest rest lengths per substep.
 #define HARMLESS 1e-3
@@ -35,7 +35,7 @@
 /// iterations.
 #define SUBSTEPS_OF_ITERATION 4
 #define SMALL_WORK 40000u
-#define LEAST_ITERATIONS 2
+#define MIN_ITERATIONS 2
 
 /* --------------------------------------------------------------------------------------------------- bounds */
 
@@ -113,7 +113,7 @@ static mspringi_extrema put_back(mspring_network *network) {
 /* --------------------------------------------------------------------------------------------- stability limit */
 
 // Report the tightest spring, and the lighter of its ends.
-static mspring_result explain_border(mspring_network *network, const mspringi_attempt *attempt) {
+static mspring_result report_limit(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_topology *t = &network->topology;
     const mspring_id spring = mspringi_tightest_spring(network, (double)attempt->h);
     if (spring == MSPRING_NONE)
@@ -141,10 +141,10 @@ static int affordable_iterations(const mspring_network *network, uint32_t subste
     const uint32_t by_step = substeps / SUBSTEPS_OF_ITERATION;
     const uint32_t by_size = SMALL_WORK / (network->topology.spring_count + 1);
     const uint32_t count = by_step > by_size ? by_step : by_size;
-    return count >= (uint32_t)most ? most : count > LEAST_ITERATIONS ? (int)count : LEAST_ITERATIONS;
+    return count >= (uint32_t)most ? most : count > MIN_ITERATIONS ? (int)count : MIN_ITERATIONS;
 }
 
-static mspring_result look_at_border(mspring_network *network, const mspringi_attempt *attempt, bool from_motion) {
+static mspring_result check_limit(mspring_network *network, const mspringi_attempt *attempt, bool from_motion) {
     const float h = attempt->h;
     const double decay = (double)mspringi_decay(network->settings.global_damping, h);
     // Margin for the rounding of single-precision vectors.
@@ -156,7 +156,7 @@ static mspring_result look_at_border(mspring_network *network, const mspringi_at
     const uint32_t moved = from_motion ? attempt->substeps : 0;
     if (!(mspringi_stability_limit_search(network, (double)h, moved, bound, iterations) > bound))
         return MSPRING_OK;
-    return explain_border(network, attempt);
+    return report_limit(network, attempt);
 }
 
 /* ------------------------------------------------------------------------------------------------------- steps */
@@ -216,7 +216,7 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
     guard->watches = (double)h > mspringi_stable_in_any_shape(network, &spring);
     guard->h = h;
     guard->global_damping = network->settings.global_damping;
-    return guard->watches && !same ? look_at_border(network, attempt, false) : MSPRING_OK;
+    return guard->watches && !same ? check_limit(network, attempt, false) : MSPRING_OK;
 }
 
 // Larger value; NaN counts as the largest, as in the kernels.
@@ -242,16 +242,16 @@ mspringi_extrema mspringi_guard_extrema(const mspring_network *network, size_t f
 }
 
 /// Fewest slots for which workers share the pass.
-#define SMALLEST_SHARED_LOOK 32768
+#define MIN_SHARED_SLOTS 32768
 
-typedef struct look {
+typedef struct extrema_task {
     const mspring_network *network;
     uint32_t workers;
     mspringi_extrema seen[MSPRING_MAX_WORKERS];
-} look;
+} extrema_task;
 
-static void look_at_share(void *argument, uint32_t index, uint32_t worker) {
-    look *all = argument;
+static void find_share_extrema(void *argument, uint32_t index, uint32_t worker) {
+    extrema_task *all = argument;
     const size_t blocks = mspringi_used_slots(all->network) / MSPRINGI_WIDTH;
     (void)worker;
     all->seen[index] = mspringi_guard_extrema(all->network, blocks * index / all->workers * MSPRINGI_WIDTH,
@@ -259,17 +259,17 @@ static void look_at_share(void *argument, uint32_t index, uint32_t worker) {
 }
 
 mspringi_extrema mspringi_guard_extrema_of_all(const mspring_network *network) {
-    look all = {.network = network, .workers = mspringi_tasks_workers(network->tasks)};
-    if (mspringi_used_slots(network) < SMALLEST_SHARED_LOOK)
+    extrema_task all = {.network = network, .workers = mspringi_tasks_workers(network->tasks)};
+    if (mspringi_used_slots(network) < MIN_SHARED_SLOTS)
         return mspringi_guard_extrema(network, 0, mspringi_used_slots(network));
-    mspringi_tasks_run(network->tasks, all.workers, look_at_share, &all);
+    mspringi_tasks_run(network->tasks, all.workers, find_share_extrema, &all);
     for (uint32_t i = 1; i < all.workers; ++i)
         all.seen[0] = mspringi_extrema_join(all.seen[0], all.seen[i]);
     return all.seen[0];
 }
 
 // Change of velocity too small to check, m/s.
-static float calm_change(const mspring_network *network, float h) {
+static float harmless_change(const mspring_network *network, float h) {
     const double harmless = HARMLESS * network->shortest / (double)h;
     return harmless < 1e15 ? (float)harmless : 1e15f;
 }
@@ -277,8 +277,8 @@ static float calm_change(const mspring_network *network, float h) {
 // True if the largest change of velocity in a step is unusual. Updates the peak.
 static bool is_suspicious(mspring_network *network, float h, float change) {
     mspringi_guard *guard = &network->guard;
-    const bool suspicious = change > SUSPICIOUS * fmaxf(guard->peak, calm_change(network, h));
-    guard->peak = suspicious ? change : guard->peak * FADING;
+    const bool suspicious = change > SUSPICIOUS * fmaxf(guard->peak, harmless_change(network, h));
+    guard->peak = suspicious ? change : guard->peak * PEAK_DECAY;
     return suspicious;
 }
 
@@ -329,7 +329,7 @@ mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attem
             return result;
     }
     if (guard->watches && is_suspicious(network, h, extrema.change)) {
-        const mspring_result result = look_at_border(network, attempt, true);
+        const mspring_result result = check_limit(network, attempt, true);
         if (result != MSPRING_OK)
             return result;
     }

@@ -18,7 +18,7 @@
 #define TOLERANCE 2e-3
 
 /// Fewest iterations before a search may end with an eigenvalue below the bound.
-#define LEAST_ITERATIONS 12
+#define MIN_ITERATIONS 12
 
 /// Displacement, x and y by slot.
 typedef struct displacement {
@@ -29,13 +29,13 @@ typedef struct displacement {
 typedef struct search {
     const mspring_network *network;
     const float *inverse_mass;
-    mspringi_stability_limit border;
+    mspringi_stability_limit limit;
 } search;
 
 /* ------------------------------------------------------------------------------------------------------- start */
 
 // Velocity of a slot minus the mean of its earlier velocities in the last step, from the distance it moved.
-static float turning(uint32_t substeps, float h, float v, float v_before, float x, float x_before) {
+static float reversing_velocity(uint32_t substeps, float h, float v, float v_before, float x, float x_before) {
     if (substeps == 1)
         return v - v_before;
     return v - (x - x_before - h * v) / (h * (float)(substeps - 1));
@@ -46,8 +46,8 @@ static void start_from_motion(const search *f, uint32_t substeps, float h, displ
     const mspringi_state *s = &network->state, *b = &network->backup;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         const bool moves = f->inverse_mass[slot] > 0.0f;
-        const float x = turning(substeps, h, s->vx[slot], b->vx[slot], s->x[slot], b->x[slot]);
-        const float y = turning(substeps, h, s->vy[slot], b->vy[slot], s->y[slot], b->y[slot]);
+        const float x = reversing_velocity(substeps, h, s->vx[slot], b->vx[slot], s->x[slot], b->x[slot]);
+        const float y = reversing_velocity(substeps, h, s->vy[slot], b->vy[slot], s->y[slot], b->y[slot]);
         to.x[slot] = moves ? x : 0.0f;
         to.y[slot] = moves ? y : 0.0f;
     }
@@ -109,35 +109,35 @@ static void scale(const search *f, displacement a, float factor) {
 
 // out += M^-1 S in
 static void add_image(search *f, displacement in, displacement out) {
-    f->border.in[0] = in.x;
-    f->border.in[1] = in.y;
-    f->border.out[0] = out.x;
-    f->border.out[1] = out.y;
-    mspringi_stability_limit_image(f->network, &f->border);
+    f->limit.in[0] = in.x;
+    f->limit.in[1] = in.y;
+    f->limit.out[0] = out.x;
+    f->limit.out[1] = out.y;
+    mspringi_stability_limit_image(f->network, &f->limit);
 }
 
 // Iterate from `here`; `next` must be 0.
 static double iterate(search *f, displacement here, displacement next, double bound, int iterations) {
     mspringi_tridiagonal t = {.size = 0};
-    double weights[MSPRINGI_LANCZOS_MOST], value = 0.0, beside = sqrt(dot(f, here, here));
-    if (!(beside > 0.0 && beside < INFINITY))
+    double weights[MSPRINGI_LANCZOS_MAX], value = 0.0, off_diagonal = sqrt(dot(f, here, here));
+    if (!(off_diagonal > 0.0 && off_diagonal < INFINITY))
         return 0.0;
-    scale(f, here, (float)(1.0 / beside));
+    scale(f, here, (float)(1.0 / off_diagonal));
     for (;;) {
         const int j = t.size++;
         add_image(f, here, next);
         t.diagonal[j] = dot(f, here, next);
         subtract(f, next, (float)t.diagonal[j], here);
-        beside = t.beside[j] = sqrt(dot(f, next, next));
+        off_diagonal = t.off_diagonal[j] = sqrt(dot(f, next, next));
         value = mspringi_tridiagonal_top(&t, weights);
-        const double residual = beside * fabs(weights[j]);
-        const bool stays_below = t.size >= LEAST_ITERATIONS && value + residual < bound;
+        const double residual = off_diagonal * fabs(weights[j]);
+        const bool stays_below = t.size >= MIN_ITERATIONS && value + residual < bound;
         if (value > bound || stays_below || residual <= TOLERANCE * value || t.size == iterations ||
-            !(beside > 1e-6 * value))
+            !(off_diagonal > 1e-6 * value))
             return value;
         // The vector before is needed only for its part in the next one.
-        scale(f, next, (float)(1.0 / beside));
-        scale(f, here, (float)-beside);
+        scale(f, next, (float)(1.0 / off_diagonal));
+        scale(f, here, (float)-off_diagonal);
         const displacement swapped = here;
         here = next;
         next = swapped;
@@ -153,7 +153,7 @@ double mspringi_stability_limit_search(mspring_network *network, double h, uint3
     // Sleeping particles have no motion, but count in a search from noise: they may wake in any step.
     const float *inverse_mass = moved > 0 ? mspringi_active_inverse_mass(network) : network->inverse_mass;
     search f = {network, inverse_mass, mspringi_stability_limit_at(network, h)};
-    f.border.inverse_mass = f.inverse_mass;
+    f.limit.inverse_mass = f.inverse_mass;
     if (moved > 0)
         start_from_motion(&f, moved, (float)h, here);
     else

@@ -56,8 +56,8 @@ void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_linear_sp
 }
 
 // Linearise a spring conservatively: see mspringi_pencil_set().
-static mspringi_linear_spring see_safely(const mspring_network *network, mspring_id spring,
-                                         mspringi_spring_slot spring_slot) {
+static mspringi_linear_spring linearise_conservatively(const mspring_network *network, mspring_id spring,
+                                                       mspringi_spring_slot spring_slot) {
     mspringi_linear_spring seen = mspringi_linearise_spring(network, spring, spring_slot);
     if (!seen.directed)
         seen.across = 1.0;
@@ -76,7 +76,7 @@ void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
         pencil->terms[i] = (struct mspringi_pencil_term){0};
         if (!mspringi_spring_exists(network, i))
             continue;
-        const mspringi_linear_spring s = see_safely(network, i, spring_slot);
+        const mspringi_linear_spring s = linearise_conservatively(network, i, spring_slot);
         const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
         const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
         const double all = s.directed ? stiffness * s.across : stiffness + damping;
@@ -113,7 +113,7 @@ mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const 
         const mspringi_spring_slot spring_slot = pencil->network->topology.slot_of_spring[i];
         if (!mspringi_spring_exists(pencil->network, i))
             continue;
-        mspringi_linear_spring s = see_safely(pencil->network, i, spring_slot);
+        mspringi_linear_spring s = linearise_conservatively(pencil->network, i, spring_slot);
         const double *const at_a = vector + 2 * (size_t)s.a, *const at_b = vector + 2 * (size_t)s.b;
         const double dx = pencil->root[s.b] * at_b[0] - pencil->root[s.a] * at_a[0];
         const double dy = pencil->root[s.b] * at_b[1] - pencil->root[s.a] * at_a[1];

@@ -11,7 +11,7 @@
 mspring_result mspringi_stability_limit_reserve(mspring_network *network);
 
 /// Adapt the weights of the bound to a new network.
-void mspringi_stability_limit_learn(mspring_network *network);
+void mspringi_stability_limit_adapt(mspring_network *network);
 
 /// True if no eigenvalue of A + 2 D (see pencil.h) exceeds bound, for substeps of h in the present shape. False
 /// proves nothing. Each call sharpens the bound of the next; no step depends on it.
@@ -26,12 +26,12 @@ double mspringi_stability_limit_search(mspring_network *network, double h, uint3
 /// Arguments of the passes over all springs at substeps of h. The caller sets in, out and inverse_mass.
 mspringi_stability_limit mspringi_stability_limit_at(const mspring_network *network, double h);
 /// Add the part of all springs and areas to the bound, or to the image of a displacement.
-void mspringi_stability_limit_bound(const mspring_network *network, const mspringi_stability_limit *border);
-void mspringi_stability_limit_image(const mspring_network *network, const mspringi_stability_limit *border);
+void mspringi_stability_limit_bound(const mspring_network *network, const mspringi_stability_limit *limit);
+void mspringi_stability_limit_image(const mspring_network *network, const mspringi_stability_limit *limit);
 
 /// Add the part of the areas to both (stability_areas.c).
-void mspringi_areas_bound(const mspring_network *network, const mspringi_stability_limit *border);
-void mspringi_areas_image(const mspring_network *network, const mspringi_stability_limit *border);
+void mspringi_areas_bound(const mspring_network *network, const mspringi_stability_limit *limit);
+void mspringi_areas_image(const mspring_network *network, const mspringi_stability_limit *limit);
 
 /// Number of scratch arrays, by slot.
 #define MSPRINGI_STABILITY_LIMIT_SCRATCH 4

@@ -9,7 +9,7 @@
 #define TOLERANCE 2e-3
 
 /// Relative change of the limit at convergence.
-#define SETTLED 5e-4
+#define LIMIT_TOLERANCE 5e-4
 
 typedef struct workspace {
     mspringi_pencil pencil;
@@ -32,13 +32,13 @@ static mspring_result reserve(mspring_network *network, workspace *work) {
     work->lanczos.apply = mspringi_pencil_apply;
     work->lanczos.size = 2 * particles;
     work->lanczos.vector = mspringi_alloc(&network->memory, 2 * particles, sizeof *work->lanczos.vector);
-    bool whole = work->pencil.root && work->pencil.terms && work->lanczos.vector;
+    bool has_all = work->pencil.root && work->pencil.terms && work->lanczos.vector;
     for (int i = 0; i < 3; ++i) {
         work->lanczos.work[i] = mspringi_alloc(&network->memory, 2 * particles, sizeof *work->lanczos.work[i]);
-        whole = whole && work->lanczos.work[i];
+        has_all = has_all && work->lanczos.work[i];
     }
     work->lanczos.context = &work->pencil;
-    if (whole)
+    if (has_all)
         return MSPRING_OK;
     release(network, work);
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to find the stable dt of %u particles",
@@ -46,19 +46,19 @@ static mspring_result reserve(mspring_network *network, workspace *work) {
 }
 
 // Perturb each component differently, so that the start contains every mode.
-static void shake(double *vector, size_t size, double amount) {
+static void perturb(double *vector, size_t size, double amount) {
     for (size_t i = 0; i < size; ++i)
         vector[i] += amount * mspringi_noise(i);
 }
 
 // Any vector gives an upper bound of the limit; the eigenvector at the limit gives the limit itself. So iterate:
 // eigenvector at the last bound, then its bound. The bounds fall so fast that few iterations suffice.
-static double find_border(const mspring_network *network, workspace *work, double start) {
+static double find_limit(const mspring_network *network, workspace *work, double start) {
     const size_t size = work->lanczos.size;
-    double border = start;
-    shake(work->lanczos.vector, size, 1.0);
+    double limit = start;
+    perturb(work->lanczos.vector, size, 1.0);
     for (int turn = 0; turn < 12; ++turn) {
-        mspringi_pencil_set(&work->pencil, border);
+        mspringi_pencil_set(&work->pencil, limit);
         const mspringi_ritz ritz = mspringi_lanczos_largest(&work->lanczos, TOLERANCE);
         if (!(ritz.value > 0.0))
             return INFINITY;
@@ -67,15 +67,15 @@ static double find_border(const mspring_network *network, workspace *work, doubl
         quotient.stiffness *= margin;
         quotient.damping *= margin;
         quotient.relative *= margin;
-        const double before = border;
-        border = mspringi_quotient_limit(&quotient, network->settings.global_damping);
+        const double before = limit;
+        limit = mspringi_quotient_limit(&quotient, network->settings.global_damping);
         // Without dampers and relative springs the eigenvector is the same at every h.
-        if ((quotient.damping == 0.0 && quotient.relative == 0.0) || !(border > 0.0 && border < INFINITY) ||
-            fabs(border - before) <= SETTLED * border)
+        if ((quotient.damping == 0.0 && quotient.relative == 0.0) || !(limit > 0.0 && limit < INFINITY) ||
+            fabs(limit - before) <= LIMIT_TOLERANCE * limit)
             break;
-        shake(work->lanczos.vector, size, 1.0 / sqrt((double)size));
+        perturb(work->lanczos.vector, size, 1.0 / sqrt((double)size));
     }
-    return border;
+    return limit;
 }
 
 static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, double *now) {
@@ -85,7 +85,7 @@ static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, doubl
     if (result != MSPRING_OK)
         return result;
     const double any_shape = mspringi_stable_in_any_shape(network, &spring);
-    *now = any_shape < INFINITY ? find_border(network, &work, any_shape) : INFINITY;
+    *now = any_shape < INFINITY ? find_limit(network, &work, any_shape) : INFINITY;
     if (network->areas.count == 0) // the stiffness of areas grows with the network
         *now = fmax(*now, any_shape);
     release(network, &work);

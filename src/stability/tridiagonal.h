@@ -6,12 +6,12 @@
 #define MSPRINGI_TRIDIAGONAL_H
 
 /// Largest dimension of the Krylov space. The lattices and graphs of the tests take 20 to 120.
-#define MSPRINGI_LANCZOS_MOST 300
+#define MSPRINGI_LANCZOS_MAX 300
 
 typedef struct mspringi_tridiagonal {
     int size;
-    double diagonal[MSPRINGI_LANCZOS_MOST];
-    double beside[MSPRINGI_LANCZOS_MOST]; ///< beside[i] couples i and i + 1; the last is not read
+    double diagonal[MSPRINGI_LANCZOS_MAX];
+    double off_diagonal[MSPRINGI_LANCZOS_MAX]; ///< beside[i] couples i and i + 1; the last is not read
 } mspringi_tridiagonal;
 
 /// Largest eigenvalue, from above, and its eigenvector, of length 1.
