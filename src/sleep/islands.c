@@ -31,7 +31,7 @@ static uint32_t number_islands(mspring_network *network) {
 }
 
 // Inherit the time at rest: the shortest of the old islands that a new one contains. Sleep counts as the longest.
-static void hand_on_stillness(mspring_network *network, uint32_t count) {
+static void inherit_rest_time(mspring_network *network, uint32_t count) {
     mspringi_sleep *s = &network->sleep;
     for (uint32_t i = 0; i < count; ++i)
         s->kept[i] = s->count > 0 ? INFINITY : 0.0;
@@ -54,7 +54,7 @@ static void hand_on_stillness(mspring_network *network, uint32_t count) {
     s->has_kept = false;
 }
 
-static void find_islands_of_blocks(const mspring_network *network) {
+static void assign_block_islands(const mspring_network *network) {
     const mspringi_sleep *s = &network->sleep;
     for (uint32_t block = 0; block < network->topology.block_count; ++block) {
         const uint32_t *island = s->island + (size_t)block * MSPRINGI_WIDTH;
@@ -77,13 +77,13 @@ void mspringi_islands_find(mspring_network *network) {
         return;
     }
     const uint32_t count = number_islands(network);
-    hand_on_stillness(network, count);
+    inherit_rest_time(network, count);
     uint32_t *const before = s->island;
     s->island = s->scratch;
     s->scratch = before;
     s->count = count;
     s->links = links;
-    find_islands_of_blocks(network);
+    assign_block_islands(network);
     if (s->sleeping > 0)
         mspringi_islands_map(network);
 }
@@ -107,7 +107,7 @@ static void map_block(const mspring_network *network, uint32_t block) {
 // Also sweep blocks that a swept block's springs pass through, even without particles. A south-east spring has its
 // record in the block below its upper end. A north-east spring of a block's last slot carries its force through the
 // next block.
-static void sweep_beside(const mspring_network *network) {
+static void sweep_spring_blocks(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const uint32_t last_lane = 1u << (MSPRINGI_WIDTH - 1);
     uint8_t *swept = network->sleep.swept;
@@ -122,7 +122,7 @@ static void sweep_beside(const mspring_network *network) {
 }
 
 // True if the row above takes the carry of this block.
-static bool is_handed_on(const mspring_network *network, uint32_t block) {
+static bool has_swept_carry(const mspring_network *network, uint32_t block) {
     const mspringi_topology *t = &network->topology;
     const uint32_t i = block - t->lattice_first;
     return i >= t->lattice_blocks || network->sleep.swept[t->up_of_block[i]];
@@ -132,7 +132,7 @@ static void map_span(const mspring_network *network, const mspringi_span *span, 
     for (uint32_t block = span->first_slot / MSPRINGI_WIDTH; block * MSPRINGI_WIDTH < span->end_slot; ++block) {
         const bool is_swept = network->sleep.swept[block];
         *any |= is_swept;
-        *all &= is_swept && is_handed_on(network, block);
+        *all &= is_swept && has_swept_carry(network, block);
     }
 }
 
@@ -145,7 +145,7 @@ static void map_strip(const mspring_network *network, uint32_t number) {
         map_span(network, &t->spans[i], &all, &any);
     if (strip->assigned_span != MSPRING_NONE)
         map_span(network, &t->spans[strip->assigned_span], &all, &any);
-    network->sleep.share[number] = (uint8_t)(all ? MSPRINGI_AWAKE : any ? MSPRINGI_PARTLY : MSPRINGI_ASLEEP);
+    network->sleep.share[number] = (uint8_t)(all ? MSPRINGI_AWAKE : any ? MSPRINGI_PARTLY_ASLEEP : MSPRINGI_ASLEEP);
 }
 
 void mspringi_islands_map(mspring_network *network) {
@@ -153,13 +153,13 @@ void mspringi_islands_map(mspring_network *network) {
     network->sleep.is_mapped = true;
     for (uint32_t block = 0; block < t->block_count; ++block)
         map_block(network, block);
-    sweep_beside(network);
+    sweep_spring_blocks(network);
     for (uint32_t strip = 0; strip < t->strip_count; ++strip)
         map_strip(network, strip);
     network->sleep.masses = network->edits.masses;
 }
 
-void mspringi_islands_weigh(mspring_network *network) {
+void mspringi_islands_update_masses(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     for (size_t block = 0; block < network->topology.block_count; ++block)
         for (size_t slot = block * MSPRINGI_WIDTH; s->swept[block] && slot < (block + 1) * MSPRINGI_WIDTH; ++slot)

@@ -96,7 +96,7 @@ bool mspringi_sleep_is_disturbed(const mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- waking */
 
-static void keep_stillness(mspringi_sleep *s) {
+static void save_rest_times(mspringi_sleep *s) {
     if (!s->has_kept)
         memcpy(s->kept, s->still, s->count * sizeof *s->kept);
     s->has_kept = true;
@@ -122,7 +122,7 @@ void mspringi_wake(mspring_network *network) {
     set_all_awake(network);
 }
 
-void mspringi_sleep_anew(mspring_network *network) {
+void mspringi_sleep_reset(mspring_network *network) {
     mspringi_wake(network);
     network->sleep.count = 0;
 }
@@ -147,12 +147,12 @@ void mspringi_wake_spring(mspring_network *network, mspring_id spring) {
     mspringi_wake_slot(network, tip);
 }
 
-static void map_if_changed(mspring_network *network, uint64_t naps) {
+static void map_if_changed(mspring_network *network, uint64_t sleep_changes) {
     mspringi_sleep *s = &network->sleep;
-    if (s->sleeping > 0 && (!s->is_mapped || naps != network->edits.sleep_changes))
+    if (s->sleeping > 0 && (!s->is_mapped || sleep_changes != network->edits.sleep_changes))
         mspringi_islands_map(network);
     else if (s->sleeping > 0 && s->masses != network->edits.masses)
-        mspringi_islands_weigh(network);
+        mspringi_islands_update_masses(network);
 }
 
 static void wake_disturbed(mspring_network *network, bool state, bool masses) {
@@ -160,7 +160,7 @@ static void wake_disturbed(mspring_network *network, bool state, bool masses) {
     const size_t slots = mspringi_slot_count(network);
     for (size_t slot = 0; (slot = next_disturbed(network, slot, state, masses)) < slots;) {
         const size_t block = slot / MSPRINGI_WIDTH;
-        keep_stillness(s);
+        save_rest_times(s);
         set_awake(network, s->island[slot]);
         slot = s->block_island[block] != MSPRING_NONE ? (block + 1) * MSPRINGI_WIDTH : slot + 1;
     }
@@ -170,11 +170,11 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
     mspringi_sleep *s = &network->sleep;
     if (s->sleeping == 0)
         return;
-    const uint64_t naps = network->edits.sleep_changes;
+    const uint64_t sleep_changes = network->edits.sleep_changes;
     // Relative springs change with the substep, and an automatic number of substeps may change.
     const bool same_h = !network->fractions.values || attempt->h == network->relative_h;
     if (!same_h || network->origin_x != s->origin_x || network->origin_y != s->origin_y) {
-        keep_stillness(s);
+        save_rest_times(s);
         set_all_awake(network);
         return;
     }
@@ -185,16 +185,16 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
         wake_disturbed(network, state, masses);
     if (!network->is_open && !s->has_kept)
         s->moved = network->edits.state;
-    map_if_changed(network, naps);
+    map_if_changed(network, sleep_changes);
 }
 
-void mspringi_sleep_rouse(mspring_network *network, uint32_t island) {
-    keep_stillness(&network->sleep);
+void mspringi_sleep_wake_island(mspring_network *network, uint32_t island) {
+    save_rest_times(&network->sleep);
     set_awake(network, island);
 }
 
-void mspringi_sleep_roused(mspring_network *network, uint64_t naps) {
-    map_if_changed(network, naps);
+void mspringi_sleep_finish_waking(mspring_network *network, uint64_t sleep_changes) {
+    map_if_changed(network, sleep_changes);
 }
 
 bool mspringi_sleep_is_idle(const mspring_network *network) {
@@ -202,20 +202,20 @@ bool mspringi_sleep_is_idle(const mspring_network *network) {
 }
 
 // Lanes to wake: the change of force would bring a particle to the sleep speed within the sleep time.
-static uint32_t wake_block_by_forces(const mspring_network *network, mspringi_field force, size_t first) {
+static uint32_t find_forced_lanes(const mspring_network *network, mspringi_field force, size_t first) {
     const mspringi_sleep *s = &network->sleep;
     const float speed = network->settings.sleep_speed, time = network->settings.sleep_time;
     static const float none[MSPRINGI_WIDTH];
     const float *x = force.x ? force.x + first : none, *y = force.x ? force.y + first : none;
-    uint32_t felt[MSPRINGI_WIDTH], bits = 0;
+    uint32_t is_disturbed[MSPRINGI_WIDTH], bits = 0;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const float dx = fabsf(x[lane] - s->force.x[first + lane]), dy = fabsf(y[lane] - s->force.y[first + lane]);
         const float inverse_mass = s->inverse_mass[first + lane];
-        felt[lane] =
+        is_disturbed[lane] =
             (uint32_t) !(dx * inverse_mass * time <= speed) | (uint32_t) !(dy * inverse_mass * time <= speed);
     }
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
-        bits |= felt[lane] << lane;
+        bits |= is_disturbed[lane] << lane;
     return bits & s->sleepers[first / MSPRINGI_WIDTH];
 }
 
@@ -225,19 +225,19 @@ static void wake_by_forces(mspring_network *network, mspringi_field force) {
     s->in_force = force;
     if (s->sleeping == 0 || (!force.x && !s->has_force))
         return;
-    const uint64_t naps = network->edits.sleep_changes;
+    const uint64_t sleep_changes = network->edits.sleep_changes;
     for (size_t block = 0; block < network->topology.block_count; ++block) {
         if (s->sleepers[block] == 0)
             continue;
         const size_t first = block * MSPRINGI_WIDTH;
-        for (uint32_t bits = wake_block_by_forces(network, force, first), lane = 0; bits >> lane != 0; ++lane) {
+        for (uint32_t bits = find_forced_lanes(network, force, first), lane = 0; bits >> lane != 0; ++lane) {
             if (!(bits >> lane & 1))
                 continue;
-            keep_stillness(s);
+            save_rest_times(s);
             set_awake(network, s->island[first + lane]);
         }
     }
-    map_if_changed(network, naps);
+    map_if_changed(network, sleep_changes);
 }
 
 /* ------------------------------------------------------------------------------------------------------ step */
@@ -284,9 +284,9 @@ static void update_sleep(mspring_network *network, double dt) {
     (void)dt;
     if (network->sleep.sleeping == 0 || network->hook_count == 0)
         return;
-    const uint64_t naps = network->edits.sleep_changes;
+    const uint64_t sleep_changes = network->edits.sleep_changes;
     wake_disturbed(network, true, false);
-    map_if_changed(network, naps);
+    map_if_changed(network, sleep_changes);
 }
 
 static void restore(mspring_network *network) {
@@ -316,19 +316,19 @@ void mspringi_sleep_undo(mspring_network *network) {
 /* ------------------------------------------------------------------------------------------- falling asleep */
 
 // Slots of a block that are faster than the sleep speed, or pinned and moving.
-static uint32_t moving_in_block(const mspring_network *network, size_t first) {
+static uint32_t find_moving_lanes(const mspring_network *network, size_t first) {
     const mspringi_state *state = &network->state;
     const float speed = network->settings.sleep_speed;
-    uint32_t loud[MSPRINGI_WIDTH], bits = 0;
+    uint32_t is_moving[MSPRINGI_WIDTH], bits = 0;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const float vx = state->vx[first + lane], vy = state->vy[first + lane];
         const uint32_t is_fast = (uint32_t) !(fabsf(vx) <= speed) | (uint32_t) !(fabsf(vy) <= speed);
         const uint32_t is_driven = (uint32_t) !(network->inverse_mass[first + lane] > 0.0f) &
                                    ((uint32_t)(vx != 0.0f) | (uint32_t)(vy != 0.0f));
-        loud[lane] = is_fast | is_driven;
+        is_moving[lane] = is_fast | is_driven;
     }
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
-        bits |= loud[lane] << lane;
+        bits |= is_moving[lane] << lane;
     return bits;
 }
 
@@ -341,7 +341,7 @@ static void mark_moving(const mspring_network *network) {
         const uint32_t one = s->block_island[block], first = block * MSPRINGI_WIDTH;
         if ((s->sleeping > 0 && !s->swept[block]) || (one != MSPRING_NONE && s->mark[one]))
             continue;
-        const uint32_t bits = moving_in_block(network, first);
+        const uint32_t bits = find_moving_lanes(network, first);
         for (uint32_t lane = 0; bits >> lane != 0; ++lane)
             if (bits >> lane & 1 && s->island[first + lane] != MSPRING_NONE)
                 s->mark[s->island[first + lane]] = 1;

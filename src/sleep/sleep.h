@@ -12,11 +12,11 @@
 #include "store/solver.h"
 
 /// Part of a strip that is swept.
-typedef enum mspringi_share {
-    MSPRINGI_AWAKE,  ///< all blocks, and those above that take their carry
-    MSPRINGI_PARTLY, ///< blocks marked in `swept`
-    MSPRINGI_ASLEEP  ///< none
-} mspringi_share;
+typedef enum mspringi_strip_sleep {
+    MSPRINGI_AWAKE,         ///< all blocks, and those above that take their carry
+    MSPRINGI_PARTLY_ASLEEP, ///< blocks marked in `swept`
+    MSPRINGI_ASLEEP         ///< none
+} mspringi_strip_sleep;
 
 /// Allocate the memory for sleep unless it exists.
 mspring_result mspringi_sleep_reserve(mspring_network *network);
@@ -39,10 +39,11 @@ static inline bool mspringi_slot_is_asleep(const mspring_network *network, size_
     return sleep->sleeping > 0 && sleep->sleepers[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH & 1;
 }
 
-static inline mspringi_share mspringi_sleep_state_of_strip(const mspring_network *network,
-                                                           const mspringi_strip *strip) {
+static inline mspringi_strip_sleep mspringi_sleep_state_of_strip(const mspring_network *network,
+                                                                 const mspringi_strip *strip) {
     const mspringi_sleep *sleep = &network->sleep;
-    return sleep->sleeping > 0 ? (mspringi_share)sleep->share[strip - network->topology.strips] : MSPRINGI_AWAKE;
+    return sleep->sleeping > 0 ? (mspringi_strip_sleep)sleep->share[strip - network->topology.strips]
+                               : MSPRINGI_AWAKE;
 }
 
 /// True if any of the blocks first to end - 1 is swept.
@@ -63,7 +64,7 @@ bool mspringi_next_awake(const mspring_network *network, uint32_t base, uint32_t
 /// Wake all islands.
 void mspringi_wake(mspring_network *network);
 /// Wake all islands, and have them found again.
-void mspringi_sleep_anew(mspring_network *network);
+void mspringi_sleep_reset(mspring_network *network);
 /// Wake the island of a slot, or those of a spring's ends. Without effect in networks that never sleep.
 void mspringi_wake_slot(mspring_network *network, uint32_t slot);
 void mspringi_wake_spring(mspring_network *network, mspring_id spring);
@@ -79,8 +80,8 @@ bool mspringi_sleep_is_disturbed(const mspring_network *network);
 void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *attempt);
 /// Before a step: wake an island on contact, and update the blocks after the last. naps: edits.sleep_changes before
 /// the first.
-void mspringi_sleep_rouse(mspring_network *network, uint32_t island);
-void mspringi_sleep_roused(mspring_network *network, uint64_t naps);
+void mspringi_sleep_wake_island(mspring_network *network, uint32_t island);
+void mspringi_sleep_finish_waking(mspring_network *network, uint64_t sleep_changes);
 /// True if all sleep, with no force to compare.
 bool mspringi_sleep_is_idle(const mspring_network *network);
 /// Save sleeping slots before substeps, and restore them after: hooks may have given them a velocity.
@@ -100,6 +101,6 @@ void mspringi_islands_find(mspring_network *network);
 /// Update the blocks and strips to sweep, after islands fell asleep or woke.
 void mspringi_islands_map(mspring_network *network);
 /// Only update the active inverse masses of awake particles.
-void mspringi_islands_weigh(mspring_network *network);
+void mspringi_islands_update_masses(mspring_network *network);
 
 #endif
