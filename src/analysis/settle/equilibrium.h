@@ -34,18 +34,18 @@ typedef struct mspringi_statics_areas {
 
 typedef struct mspringi_statics {
     uint32_t particle_count;
-    bool *fixed;              ///< [particle_count] pinned or left floating
-    mspringi_vectors start;   ///< [particle_count] positions relative to the network's origin, m
-    mspringi_vectors moved;   ///< [particle_count] displacements, m
-    mspringi_vectors outside; ///< [particle_count] weight and external forces, N
-    mspringi_vectors force;   ///< [particle_count] all forces, N
-    mspringi_vectors step;    ///< [particle_count] Newton step, m
-    mspringi_vectors bend;    ///< [particle_count] its second-order correction, m
-    mspringi_vectors spare;   ///< [particle_count] scratch
-    double *xx, *xy, *yy;     ///< [particle_count] diagonal blocks of the stiffness matrix
-    double *scale;            ///< [particle_count] stiffness of the springs at a particle, N/m
-    double *block;            ///< memory of all values by particle
-    double *spring_block;     ///< memory of all values by spring
+    bool *fixed;                ///< [particle_count] pinned or left floating
+    mspringi_vectors start;     ///< [particle_count] positions relative to the network's origin, m
+    mspringi_vectors moved;     ///< [particle_count] displacements, m
+    mspringi_vectors outside;   ///< [particle_count] weight and external forces, N
+    mspringi_vectors force;     ///< [particle_count] all forces, N
+    mspringi_vectors step;      ///< [particle_count] Newton step, m
+    mspringi_vectors curvature; ///< [particle_count] its second-order correction, m
+    mspringi_vectors spare;     ///< [particle_count] scratch
+    double *xx, *xy, *yy;       ///< [particle_count] diagonal blocks of the stiffness matrix
+    double *scale;              ///< [particle_count] stiffness of the springs at a particle, N/m
+    double *block;              ///< memory of all values by particle
+    double *spring_block;       ///< memory of all values by spring
     uint32_t *end_block;
     mspringi_watcher watcher; ///< called before each iteration
     mspringi_statics_springs springs;
@@ -95,26 +95,26 @@ mspringi_residual mspringi_statics_forces(mspringi_statics *statics);
 bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shift);
 
 /// Solve for the step that removes all forces if they are linear, and for its second-order correction (Transtrum &
-/// Sethna 2012). Particles then go to moved + t step + t^2 bend. Needs the factor.
-void mspringi_statics_find_way(mspringi_statics *statics);
+/// Sethna 2012). Particles then go to moved + t step + t^2 curvature. Needs the factor.
+void mspringi_statics_find_step(mspringi_statics *statics);
 
-/// Change of energy from moved to moved + t step + t^2 bend, J. error: bound on its rounding.
+/// Change of energy from moved to moved + t step + t^2 curvature, J. error: bound on its rounding.
 double mspringi_statics_energy_change(const mspringi_statics *statics, double t, double *error);
 
 /// Forces times step: the energy falls by t times this for a small t.
 double mspringi_statics_slope(const mspringi_statics *statics);
 
 /// Result of a search.
-typedef struct mspringi_rest {
+typedef struct mspringi_equilibrium {
     uint32_t iterations;
     mspringi_residual residual;
     bool found;
     bool is_stable;
-} mspringi_rest;
+} mspringi_equilibrium;
 
 /// Search for an equilibrium: Newton's method along the path above, as far as the energy falls. size: extent of the
 /// network, m. tolerance: largest unbalanced force, relative to the scale of forces.
-mspringi_rest mspringi_statics_rest(mspringi_statics *statics, uint32_t most_iterations, double tolerance,
-                                    double size);
+mspringi_equilibrium mspringi_statics_find_equilibrium(mspringi_statics *statics, uint32_t max_iterations,
+                                                       double tolerance, double size);
 
 #endif

@@ -61,22 +61,22 @@ static void fill_springs(mspringi_statics *statics, const mspring_network *netwo
 /* -------------------------------------------------------------------------------------------- floating parts */
 
 /// Component of the springs, identified by its root.
-typedef struct part {
+typedef struct component {
     double x, y, size; ///< sum of the external forces, and of their absolute values
     uint32_t lowest;   ///< lowest particle
     bool is_held;      ///< has a pinned particle
-} part;
+} component;
 
-static void join_parts(const mspringi_statics *statics, uint32_t *up) {
+static void join_components(const mspringi_statics *statics, uint32_t *up) {
     for (uint32_t p = 0; p < statics->particle_count; ++p)
         up[p] = p;
     for (uint32_t i = 0; i < statics->springs.edge_count; ++i)
         mspringi_union_find_join(up, statics->springs.a[i], statics->springs.b[i]);
 }
 
-static void sum_parts(const mspringi_statics *statics, uint32_t *up, part *parts) {
+static void sum_components(const mspringi_statics *statics, uint32_t *up, component *components) {
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
-        part *of = &parts[mspringi_union_find_root(up, p)];
+        component *of = &components[mspringi_union_find_root(up, p)];
         of->x += statics->outside.x[p];
         of->y += statics->outside.y[p];
         of->size += fabs(statics->outside.x[p]) + fabs(statics->outside.y[p]);
@@ -86,26 +86,26 @@ static void sum_parts(const mspringi_statics *statics, uint32_t *up, part *parts
 
 // True if the forces on a component without pinned particles do not cancel to a millionth. Rounding of many floats
 // stays below that.
-static bool floats_away(const part *of) {
+static bool is_unbalanced(const component *of) {
     return !of->is_held && fabs(of->x) + fabs(of->y) > 1e-6 * of->size;
 }
 
 // Fix floating components, or return an error.
-static mspring_result check_parts(mspringi_statics *statics, const mspring_settle_def *def, uint32_t *left_alone,
-                                  mspring_network *network) {
+static mspring_result check_floating(mspringi_statics *statics, const mspring_settle_def *def, uint32_t *left_alone,
+                                     mspring_network *network) {
     uint32_t *up = mspringi_alloc(&network->memory, statics->particle_count, sizeof *up);
-    part *parts = mspringi_alloc(&network->memory, statics->particle_count, sizeof *parts);
+    component *components = mspringi_alloc(&network->memory, statics->particle_count, sizeof *components);
     mspring_result result = MSPRING_OK;
-    if (!up || !parts) {
+    if (!up || !components) {
         result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the parts of %u particles",
                                (unsigned)statics->particle_count);
     } else {
-        join_parts(statics, up);
-        sum_parts(statics, up, parts);
+        join_components(statics, up);
+        sum_components(statics, up, components);
         *left_alone = 0;
         for (uint32_t p = 0; p < statics->particle_count && result == MSPRING_OK; ++p) {
             const uint32_t lowest = mspringi_union_find_root(up, p);
-            if (!floats_away(&parts[lowest]))
+            if (!is_unbalanced(&components[lowest]))
                 continue;
             if (def->flags & MSPRING_SETTLE_LEAVE_FLOATING) {
                 statics->fixed[p] = true;
@@ -114,12 +114,12 @@ static mspring_result check_parts(mspringi_statics *statics, const mspring_settl
                 result = mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
                                        "no spring leads from particle %u to a pinned one, directly or through "
                                        "others: there is no equilibrium for it under (%g, %g) N",
-                                       (unsigned)p, parts[lowest].x, parts[lowest].y);
+                                       (unsigned)p, components[lowest].x, components[lowest].y);
             }
         }
     }
     mspringi_free(&network->memory, up);
-    mspringi_free(&network->memory, parts);
+    mspringi_free(&network->memory, components);
     return result;
 }
 
@@ -140,13 +140,13 @@ static double extent_of(const mspringi_statics *statics, const mspring_network *
 /// Largest strain that counts as elastic, relative to the yield strain: springs at the limit may round above it.
 #define TOLERATED_YIELD (1.0 + 1e-5)
 
-static mspring_result check_rest(const mspringi_statics *statics, const mspringi_rest *rest,
-                                 mspring_network *network) {
-    if (!rest->found)
+static mspring_result check_equilibrium(const mspringi_statics *statics, const mspringi_equilibrium *equilibrium,
+                                        mspring_network *network) {
+    if (!equilibrium->found)
         return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
                              "after %u iterations particle %u still feels %g N, and forces go up to %g N",
-                             (unsigned)rest->iterations, (unsigned)rest->residual.where, rest->residual.force,
-                             rest->residual.scale);
+                             (unsigned)equilibrium->iterations, (unsigned)equilibrium->residual.where,
+                             equilibrium->residual.force, equilibrium->residual.scale);
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
         const double x = statics->start.x[p] + statics->moved.x[p], y = statics->start.y[p] + statics->moved.y[p];
         if (!(fabs(x) <= MSPRING_MAX_COORDINATE && fabs(y) <= MSPRING_MAX_COORDINATE))
@@ -182,7 +182,7 @@ static mspring_result check_yields(const mspringi_statics *statics, mspring_netw
     return MSPRING_OK;
 }
 
-static double put_back(const mspringi_statics *statics, mspring_network *network) {
+static double store_positions(const mspringi_statics *statics, mspring_network *network) {
     double farthest = 0.0;
     for (mspring_id p = 0; p < statics->particle_count; ++p) {
         if (statics->fixed[p])
@@ -211,14 +211,14 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
     fill_springs(statics, network);
     mspring_result result = mspringi_statics_add_areas(statics, network);
     if (result == MSPRING_OK)
-        result = check_parts(statics, def, &left_alone, network);
+        result = check_floating(statics, def, &left_alone, network);
     if (result == MSPRING_OK)
         result = mspringi_statics_prepare(statics, network->kernels->level, &network->memory, &network->message);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_rest rest =
-        mspringi_statics_rest(statics, def->max_iterations, def->tolerance, extent_of(statics, network));
-    result = check_rest(statics, &rest, network);
+    const mspringi_equilibrium rest = mspringi_statics_find_equilibrium(
+        statics, def->max_iterations, def->tolerance, extent_of(statics, network));
+    result = check_equilibrium(statics, &rest, network);
     if (result == MSPRING_OK)
         result = check_yields(statics, network);
     if (result == MSPRING_OK)
@@ -227,7 +227,7 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
             .iterations = rest.iterations,
             .residual = rest.residual.force,
             .largest_force = rest.residual.scale,
-            .displacement = put_back(statics, network),
+            .displacement = store_positions(statics, network),
             .is_stable = rest.is_stable,
             .left_alone = left_alone,
         };

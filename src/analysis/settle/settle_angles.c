@@ -59,15 +59,15 @@ double mspringi_statics_angle_forces(mspringi_statics *statics, const mspringi_a
  */
 
 // Rotation of an arm along the path. False if its length is 0 before or after.
-static bool turn_of(const mspringi_statics *s, const arm *of, double t, mspringi_rotation *turn) {
+static bool rotation_of(const mspringi_statics *s, const arm *of, double t, mspringi_rotation *rotation) {
     const uint32_t a = of->from, b = of->to;
-    const double dx = t * ((s->step.x[b] - s->step.x[a]) + t * (s->bend.x[b] - s->bend.x[a]));
-    const double dy = t * ((s->step.y[b] - s->step.y[a]) + t * (s->bend.y[b] - s->bend.y[a]));
+    const double dx = t * ((s->step.x[b] - s->step.x[a]) + t * (s->curvature.x[b] - s->curvature.x[a]));
+    const double dy = t * ((s->step.y[b] - s->step.y[a]) + t * (s->curvature.y[b] - s->curvature.y[a]));
     const double x = of->along[0], y = of->along[1], to_x = x + dx, to_y = y + dy;
     const double lengths = sqrt(x * x + y * y) * sqrt(to_x * to_x + to_y * to_y);
     if (!(lengths > 0.0))
         return false;
-    *turn = (mspringi_rotation){.cosine = (x * to_x + y * to_y) / lengths, .sine = (x * dy - y * dx) / lengths};
+    *rotation = (mspringi_rotation){.cosine = (x * to_x + y * to_y) / lengths, .sine = (x * dy - y * dx) / lengths};
     return true;
 }
 
@@ -78,7 +78,7 @@ double mspringi_statics_angle_change(const mspringi_statics *statics, const mspr
     const arm u = arm_of(statics, angle, 0), w = arm_of(statics, angle, 1);
     const double z = mspringi_angle_size_by(angle, u.along, w.along), k = (double)angle->stiffness;
     mspringi_rotation of_u, of_w;
-    if (!turn_of(statics, &u, t, &of_u) || !turn_of(statics, &w, t, &of_w))
+    if (!rotation_of(statics, &u, t, &of_u) || !rotation_of(statics, &w, t, &of_w))
         return -mspringi_angle_energy(angle, z); // an arm would vanish: too far
     const double sine = of_w.sine * of_u.cosine - of_w.cosine * of_u.sine;
     const double cosine = of_w.cosine * of_u.cosine + of_w.sine * of_u.sine;

@@ -58,26 +58,26 @@ mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_net
 
 /* ---------------------------------------------------------------------------------------------------- one area */
 
-typedef struct place {
+typedef struct point {
     double x, y;
-} place;
+} point;
 
 static uint32_t particle_of(const mspringi_statics *statics, const mspringi_area *area, uint32_t corner) {
     return statics->areas.of->corners[area->first + corner % area->count].particle;
 }
 
 // Position relative to the first corner.
-static place place_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner) {
+static point position_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner) {
     const uint32_t p = particle_of(s, area, corner), first = particle_of(s, area, 0);
-    return (place){(s->start.x[p] - s->start.x[first]) + (s->moved.x[p] - s->moved.x[first]),
+    return (point){(s->start.x[p] - s->start.x[first]) + (s->moved.x[p] - s->moved.x[first]),
                    (s->start.y[p] - s->start.y[first]) + (s->moved.y[p] - s->moved.y[first])};
 }
 
 static double size_of(const mspringi_statics *s, const mspringi_area *area) {
     double twice = 0.0;
-    place before = place_of(s, area, 1);
+    point before = position_of(s, area, 1);
     for (uint32_t i = 2; i < area->count; ++i) {
-        const place here = place_of(s, area, i);
+        const point here = position_of(s, area, i);
         twice += before.x * here.y - before.y * here.x;
         before = here;
     }
@@ -85,22 +85,23 @@ static double size_of(const mspringi_statics *s, const mspringi_area *area) {
 }
 
 // Displacement on the path, relative to the first corner.
-static place way_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner, double t) {
+static point displacement_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner, double t) {
     const uint32_t p = particle_of(s, area, corner), first = particle_of(s, area, 0);
-    return (place){t * ((s->step.x[p] - s->step.x[first]) + t * (s->bend.x[p] - s->bend.x[first])),
-                   t * ((s->step.y[p] - s->step.y[first]) + t * (s->bend.y[p] - s->bend.y[first]))};
+    return (point){t * ((s->step.x[p] - s->step.x[first]) + t * (s->curvature.x[p] - s->curvature.x[first])),
+                   t * ((s->step.y[p] - s->step.y[first]) + t * (s->curvature.y[p] - s->curvature.y[first]))};
 }
 
 // Growth of an area on the path. A difference of areas would be lost in rounding.
 static double growth_of(const mspringi_statics *s, const mspringi_area *area, double t) {
     double twice = 0.0;
-    place before = place_of(s, area, 1), went = way_of(s, area, 1, t);
+    point before = position_of(s, area, 1), before_moved = displacement_of(s, area, 1, t);
     for (uint32_t i = 2; i < area->count; ++i) {
-        const place here = place_of(s, area, i), goes = way_of(s, area, i, t);
-        twice += (before.x * goes.y - before.y * goes.x) + (went.x * here.y - went.y * here.x) +
-                 (went.x * goes.y - went.y * goes.x);
+        const point here = position_of(s, area, i), here_moved = displacement_of(s, area, i, t);
+        twice += (before.x * here_moved.y - before.y * here_moved.x) +
+                 (before_moved.x * here.y - before_moved.y * here.x) +
+                 (before_moved.x * here_moved.y - before_moved.y * here_moved.x);
         before = here;
-        went = goes;
+        before_moved = here_moved;
     }
     return 0.5 * twice;
 }
@@ -125,9 +126,9 @@ double mspringi_statics_area_forces(mspringi_statics *statics) {
         }
         const double half = 0.5 * mspringi_area_pressure(area, size_of(statics, area));
         for (uint32_t i = 0; i < area->count; ++i) {
-            const place before = place_of(statics, area, i + area->count - 1),
-                        behind = place_of(statics, area, i + 1);
-            const double x = half * (behind.y - before.y), y = half * (before.x - behind.x);
+            const point before = position_of(statics, area, i + area->count - 1),
+                        after = position_of(statics, area, i + 1);
+            const double x = half * (after.y - before.y), y = half * (before.x - after.x);
             const uint32_t p = particle_of(statics, area, i);
             statics->force.x[p] += x;
             statics->force.y[p] += y;
@@ -154,13 +155,13 @@ double mspringi_statics_area_change(const mspringi_statics *statics, double t, d
 }
 
 // Vector from the centre of the corners to the midpoint of a side.
-static place arm_of(const mspringi_statics *s, const mspringi_area *area, uint32_t side, place middle) {
-    const place a = place_of(s, area, side), b = place_of(s, area, side + 1);
-    return (place){0.5 * (a.x + b.x) - middle.x, 0.5 * (a.y + b.y) - middle.y};
+static point arm_of(const mspringi_statics *s, const mspringi_area *area, uint32_t side, point middle) {
+    const point a = position_of(s, area, side), b = position_of(s, area, side + 1);
+    return (point){0.5 * (a.x + b.x) - middle.x, 0.5 * (a.y + b.y) - middle.y};
 }
 
 static void stiffen(mspringi_statics *statics, const mspringi_area *area, uint32_t side, double stiffness) {
-    const place from = place_of(statics, area, side), to = place_of(statics, area, side + 1);
+    const point from = position_of(statics, area, side), to = position_of(statics, area, side + 1);
     const double x = to.x - from.x, y = to.y - from.y, square = x * x + y * y;
     const uint32_t a = particle_of(statics, area, side), b = particle_of(statics, area, side + 1);
     const uint32_t spring = statics->areas.sides[area->first + side];
@@ -186,18 +187,18 @@ void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped) {
             continue;
         }
         const double c = mspringi_area_stiffness(area, size_of(statics, area));
-        place middle = {0.0, 0.0};
+        point middle = {0.0, 0.0};
         double all = 0.0;
         for (uint32_t i = 1; i < area->count; ++i) {
-            middle.x += place_of(statics, area, i).x / (double)area->count;
-            middle.y += place_of(statics, area, i).y / (double)area->count;
+            middle.x += position_of(statics, area, i).x / (double)area->count;
+            middle.y += position_of(statics, area, i).y / (double)area->count;
         }
         for (uint32_t side = 0; side < area->count; ++side) {
-            const place arm = arm_of(statics, area, side, middle);
+            const point arm = arm_of(statics, area, side, middle);
             all += sqrt(arm.x * arm.x + arm.y * arm.y);
         }
         for (uint32_t side = 0; side < area->count; ++side) {
-            const place arm = arm_of(statics, area, side, middle);
+            const point arm = arm_of(statics, area, side, middle);
             stiffen(statics, area, side, c * all * sqrt(arm.x * arm.x + arm.y * arm.y));
         }
     }
