@@ -22,7 +22,7 @@ typedef struct geometric {
     uint32_t steps;
 } geometric;
 
-static void note(const mspringi_tuning *tuning, const mspring_network *clone, geometric *s) {
+static void add_step(const mspringi_tuning *tuning, const mspring_network *clone, geometric *s) {
     const mspringi_state *now = &clone->state, *start = &tuning->base->state;
     const double shift_x = clone->origin_x - tuning->base->origin_x,
                  shift_y = clone->origin_y - tuning->base->origin_y;
@@ -70,7 +70,7 @@ static mspring_result count_affordable(mspringi_tuning *tuning, double *steps) {
             seconds += passes * trial->times[t] / (double)trial->time_count;
         for (uint32_t j = 0; j < i; ++j)
             is_first = is_first && tuning->trials[j].relative_h != trial->relative_h;
-        if (!is_first || !mspringi_tuning_goes_on(tuning, 0.0))
+        if (!is_first || !mspringi_tuning_has_time(tuning, 0.0))
             continue;
         double fine = 0.0;
         const mspring_result result = mspringi_tune_time_fine_step(tuning, trial->relative_h, &fine);
@@ -88,11 +88,11 @@ static uint32_t run_one_period(mspringi_tuning *tuning, mspring_network *clone, 
     const mspring_tune_def *def = &tuning->def;
     const size_t particles = clone->topology.particle_count;
     const double begun = def->clock(def->user);
-    geometric s = {.x = tuning->places, .y = tuning->places + particles};
-    memset(tuning->places, 0, 2 * particles * sizeof *tuning->places);
-    while ((double)s.steps < most && mspringi_tuning_goes_on(tuning, 0.0) &&
+    geometric s = {.x = tuning->positions, .y = tuning->positions + particles};
+    memset(tuning->positions, 0, 2 * particles * sizeof *tuning->positions);
+    while ((double)s.steps < most && mspringi_tuning_has_time(tuning, 0.0) &&
            mspring_network_step(clone, def->dt) == MSPRING_OK) {
-        note(tuning, clone, &s);
+        add_step(tuning, clone, &s);
         const bool has_passed = period_of(clone, &s) <= s.steps * def->dt;
         if ((s.steps >= MSPRINGI_TUNE_LEAST_STEPS && has_passed) ||
             def->clock(def->user) - begun > PART_FOR_PERIOD * def->budget)
@@ -106,11 +106,11 @@ mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning) {
     mspring_network *clone = NULL;
     mspring_solver_def solver;
     tuning->step_count = MSPRINGI_TUNE_MOMENTS;
-    if (!mspringi_tuning_goes_on(tuning, 0.0))
+    if (!mspringi_tuning_has_time(tuning, 0.0))
         return MSPRING_OK;
     mspring_result result = count_affordable(tuning, &affordable);
     if (result == MSPRING_OK)
-        result = mspringi_tune_spawn(tuning, tuning->base, &clone);
+        result = mspringi_tune_clone(tuning, tuning->base, &clone);
     if (result != MSPRING_OK)
         return result;
     (void)mspring_solver_def_init(&solver, sizeof solver);
@@ -131,6 +131,6 @@ mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning) {
     }
     if (tuning->step_count < MSPRINGI_TUNE_MOMENTS)
         tuning->step_count = MSPRINGI_TUNE_MOMENTS;
-    mspringi_tune_dismiss(clone);
+    mspringi_tune_destroy_clone(clone);
     return result;
 }

@@ -23,10 +23,10 @@ typedef struct mspringi_reference {
     double *x, *y, *vx, *vy; ///< relative to the network's origin
     double *ax, *ay;         ///< m/s^2
     double *inverse_mass;
-    double *held_x, *held_y;            ///< accelerations from external forces, m/s^2
-    double *ahead_x, *ahead_y;          ///< velocities extrapolated to the end of a substep, m/s
-    mspringi_reference_spring *springs; ///< those with stiffness or damping
-    const mspringi_areas *areas;        ///< of the network, which outlives the reference
+    double *held_x, *held_y;                 ///< accelerations from external forces, m/s^2
+    double *extrapolated_x, *extrapolated_y; ///< velocities extrapolated to the end of a substep, m/s
+    mspringi_reference_spring *springs;      ///< those with stiffness or damping
+    const mspringi_areas *areas;             ///< of the network, which outlives the reference
     double gravity_x, gravity_y, global_damping;
     bool has_accelerations; ///< ax and ay are up to date
 } mspringi_reference;
@@ -43,11 +43,11 @@ double mspringi_reference_substep(const mspringi_reference *reference);
 void mspringi_reference_run(mspringi_reference *reference, double h, uint32_t count);
 
 /// Copy positions, shifted, and velocities from a network of the same topology.
-void mspringi_reference_place(mspringi_reference *reference, const mspring_network *network, double shift_x,
-                              double shift_y);
+void mspringi_reference_set_motion(mspringi_reference *reference, const mspring_network *network, double shift_x,
+                                   double shift_y);
 
 /// Remove the external forces.
-void mspringi_reference_release(mspringi_reference *reference);
+void mspringi_reference_clear_forces(mspringi_reference *reference);
 
 /// Kinetic plus elastic energy, and potential energy in gravity, J. Pinned particles have none.
 typedef struct mspringi_reference_energy {
@@ -57,8 +57,8 @@ mspringi_reference_energy mspringi_reference_measure(const mspringi_reference *r
 
 /// Add the areas' and angles' part (reference_areas.c): to the accelerations at these velocities; to the row sums
 /// of M^-1 K and of the dampers, in the shape that they were added in; to the elastic energy.
-void mspringi_reference_push_areas(const mspringi_reference *reference, const double *vx, const double *vy);
-void mspringi_reference_weigh_areas(const mspringi_reference *reference, double *stiffness, double *damping);
+void mspringi_reference_add_areas(const mspringi_reference *reference, const double *vx, const double *vy);
+void mspringi_reference_bound_areas(const mspringi_reference *reference, double *stiffness, double *damping);
 double mspringi_reference_area_energy(const mspringi_reference *reference);
 
 #endif

@@ -17,15 +17,15 @@
 #define FINE_TIMES_SETTINGS 2.0
 
 /// Smallest unit of a distance: for counts, and relative to the setting's own mean.
-#define LEAST_COUNT 1.0
-#define LEAST_PART_OF_OWN 1e-6
+#define MIN_COUNT_UNIT 1.0
+#define MIN_RELATIVE_UNIT 1e-6
 
 /// Outcome of a run.
-typedef enum ending { WHOLE, REJECTED, CUT_SHORT } ending;
+typedef enum run_outcome { WHOLE, REJECTED, CUT_SHORT } run_outcome;
 
 /* ---------------------------------------------------------------------------------------------------- one start */
 
-static void kick(mspring_network *network, uint32_t start, double most) {
+static void perturb(mspring_network *network, uint32_t start, double most) {
     const size_t particles = network->topology.particle_count;
     for (uint32_t p = 0; p < particles; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
@@ -43,17 +43,17 @@ static mspring_result make_start(mspringi_tuning *tuning, uint32_t start, msprin
     const mspring_tune_scene *scene = &tuning->scene;
     *made = NULL;
     mspring_result result = scene->flags & MSPRING_TUNE_SCENE_HOOKS
-                                ? mspringi_tune_spawn_with_hooks(tuning, tuning->network, made)
-                                : mspringi_tune_spawn(tuning, tuning->network, made);
+                                ? mspringi_tune_clone_with_hooks(tuning, tuning->network, made)
+                                : mspringi_tune_clone(tuning, tuning->network, made);
     if (result != MSPRING_OK)
         return result;
-    mspringi_tune_expose(*made);
+    mspringi_tune_disable_fallbacks(*made);
     if (!(scene->flags & MSPRING_TUNE_SCENE_FLOOR))
         result = mspring_network_set_floor(*made, NULL);
     if (!(scene->flags & MSPRING_TUNE_SCENE_BREAKING))
         mspringi_tune_make_unbreakable(*made);
     if (start > 0)
-        kick(*made, start, scene->kick);
+        perturb(*made, start, scene->kick);
     return result;
 }
 
@@ -67,7 +67,7 @@ static double count_live(const mspring_network *network) {
     return live;
 }
 
-static void note(const mspring_network *network, double live_before, mspringi_scene_run *run) {
+static void measure_run(const mspring_network *network, double live_before, mspringi_scene_run *run) {
     double kinetic = 0.0, elastic = 0.0, left = 0.0, low = 0.0, right = 0.0, high = 0.0;
     if (mspring_network_energy(network, &kinetic, &elastic, NULL) != MSPRING_OK ||
         mspring_network_bounds(network, &left, &low, &right, &high) != MSPRING_OK)
@@ -77,7 +77,7 @@ static void note(const mspring_network *network, double live_before, mspringi_sc
     run->quantities[MSPRING_TUNE_EXTENT] = fmax(right - left, high - low);
 }
 
-static mspring_result pass_on(mspringi_tuning *tuning, const mspring_network *clone, mspring_result result) {
+static mspring_result forward_error(mspringi_tuning *tuning, const mspring_network *clone, mspring_result result) {
     tuning->network->message = clone->message;
     return result;
 }
@@ -92,50 +92,51 @@ static mspring_result prepare(mspringi_tuning *tuning, mspring_network *clone, c
                              (int)result, (unsigned)start);
     result = mspring_network_set_solver(clone, solver);
     *set = result == MSPRING_OK;
-    return result == MSPRING_OK || result == MSPRING_ERROR_LIMIT ? MSPRING_OK : pass_on(tuning, clone, result);
+    return result == MSPRING_OK || result == MSPRING_ERROR_LIMIT ? MSPRING_OK
+                                                                 : forward_error(tuning, clone, result);
 }
 
 static mspring_result take_steps(mspringi_tuning *tuning, mspring_network *clone, mspringi_scene_run *run,
-                                 ending *end) {
+                                 run_outcome *end) {
     const mspring_tune_def *def = &tuning->def;
     const uint32_t steps = mspringi_tune_steps_in(tuning->scene.duration, def->dt);
     const double live_before = count_live(clone);
     double seconds = 0.0;
     for (uint32_t step = 0; step < steps; ++step) {
         *end = CUT_SHORT;
-        if (!mspringi_tuning_goes_on(tuning, (double)step / (double)steps))
+        if (!mspringi_tuning_has_time(tuning, (double)step / (double)steps))
             return MSPRING_OK;
         const double before = def->clock(def->user);
         const mspring_result result = mspring_network_step(clone, def->dt);
         seconds += fmax(def->clock(def->user) - before, 0.0);
         *end = REJECTED;
         if (result != MSPRING_OK)
-            return result == MSPRING_ERROR_UNSTABLE ? MSPRING_OK : pass_on(tuning, clone, result);
+            return result == MSPRING_ERROR_UNSTABLE ? MSPRING_OK : forward_error(tuning, clone, result);
     }
     run->cost = seconds / (double)steps;
-    note(clone, live_before, run);
+    measure_run(clone, live_before, run);
     *end = WHOLE;
     return MSPRING_OK;
 }
 
 static mspring_result run_solver(mspringi_tuning *tuning, mspring_network *from, uint32_t start,
-                                 const mspring_solver_def *solver, mspringi_scene_run *run, ending *end) {
+                                 const mspring_solver_def *solver, mspringi_scene_run *run, run_outcome *end) {
     mspring_network *clone = NULL;
     bool set = false;
     *end = REJECTED;
-    mspring_result result = mspringi_tune_spawn_with_hooks(tuning, from, &clone);
+    mspring_result result = mspringi_tune_clone_with_hooks(tuning, from, &clone);
     if (result == MSPRING_OK)
         result = prepare(tuning, clone, solver, start, &set);
     if (result == MSPRING_OK && set)
         result = take_steps(tuning, clone, run, end);
-    mspringi_tune_dismiss(clone);
+    mspringi_tune_destroy_clone(clone);
     tuning->done += 1.0;
     return result;
 }
 
 /* --------------------------------------------------------------------------------------------------- all starts */
 
-static bool is_in(const mspringi_trial *trial) {
+static bool can_run(const mspringi_trial *trial) {
     return trial->row.flags & MSPRING_TUNE_HAS_COST && !(trial->row.flags & MSPRING_TUNE_REJECTED);
 }
 
@@ -145,25 +146,25 @@ static mspring_result choose_fine(mspringi_tuning *tuning, mspring_solver_def *s
     (void)mspring_solver_def_init(solver, sizeof *solver);
     const mspring_result result = mspring_network_stable_dt(tuning->base, NULL, &any_shape);
     if (result != MSPRING_OK)
-        return pass_on(tuning, tuning->base, result);
+        return forward_error(tuning, tuning->base, result);
     double substeps = floor(tuning->def.dt / (FINE_PART_OF_STABLE * any_shape)) + 1.0;
     for (uint32_t i = 0; i < tuning->trial_count; ++i)
-        if (is_in(&tuning->trials[i]) && tuning->trials[i].row.solver == MSPRING_SOLVER_EXPLICIT)
+        if (can_run(&tuning->trials[i]) && tuning->trials[i].row.solver == MSPRING_SOLVER_EXPLICIT)
             substeps = fmax(substeps, FINE_TIMES_SETTINGS * tuning->trials[i].row.substeps);
     solver->substeps = substeps <= MSPRING_MAX_SUBSTEPS ? (uint32_t)substeps : 0;
     return MSPRING_OK;
 }
 
-static bool is_any_in(const mspringi_tuning *tuning) {
+static bool can_any_run(const mspringi_tuning *tuning) {
     bool is_any = false;
     for (uint32_t i = 0; i < tuning->trial_count; ++i)
-        is_any = is_any || is_in(&tuning->trials[i]);
+        is_any = is_any || can_run(&tuning->trials[i]);
     return is_any;
 }
 
 // Run one start with the fine run and all settings. Unless it ends WHOLE, there is no next start.
 static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_def *fine, uint32_t start,
-                                mspringi_scene_run *fine_runs, ending *end) {
+                                mspringi_scene_run *fine_runs, run_outcome *end) {
     mspring_network *from = NULL;
     mspring_result result = make_start(tuning, start, &from);
     *end = CUT_SHORT;
@@ -171,18 +172,18 @@ static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_de
         result = run_solver(tuning, from, start, fine, &fine_runs[start], end);
     for (uint32_t i = 0; result == MSPRING_OK && *end == WHOLE && i < tuning->trial_count; ++i) {
         mspringi_trial *trial = &tuning->trials[i];
-        if (!is_in(trial))
+        if (!can_run(trial))
             continue;
-        ending how = CUT_SHORT;
-        result = run_solver(tuning, from, start, &trial->setting, &trial->runs[start], &how);
-        if (how == WHOLE)
+        run_outcome outcome = CUT_SHORT;
+        result = run_solver(tuning, from, start, &trial->setting, &trial->runs[start], &outcome);
+        if (outcome == WHOLE)
             trial->row.scene_starts = start + 1;
-        else if (how == REJECTED && result == MSPRING_OK)
+        else if (outcome == REJECTED && result == MSPRING_OK)
             trial->row.flags |= MSPRING_TUNE_REJECTED;
         else
             *end = CUT_SHORT;
     }
-    mspringi_tune_dismiss(from);
+    mspringi_tune_destroy_clone(from);
     return result;
 }
 
@@ -198,8 +199,8 @@ static void sum_up(const mspringi_scene_run *runs, uint32_t count, size_t quanti
     *spread = sqrt(squares / (count - 1));
 }
 
-static void tell(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uint32_t fine_substeps,
-                 double tolerance) {
+static void fill_row(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uint32_t fine_substeps,
+                     double tolerance) {
     mspring_tune_row *row = &trial->row;
     double costs[MSPRINGI_TUNE_MOST_STARTS];
     row->flags |= MSPRING_TUNE_HAS_SCENE;
@@ -211,7 +212,7 @@ static void tell(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uin
         sum_up(trial->runs, row->scene_starts, q, &row->scene_mean[q], &row->scene_spread[q]);
         sum_up(fine_runs, row->scene_starts, q, &row->fine_mean[q], &row->fine_spread[q]);
         double unit = fmax(row->fine_spread[q], tolerance * fabs(row->fine_mean[q]));
-        unit = fmax(unit, q == MSPRING_TUNE_BROKEN ? LEAST_COUNT : LEAST_PART_OF_OWN * fabs(row->scene_mean[q]));
+        unit = fmax(unit, q == MSPRING_TUNE_BROKEN ? MIN_COUNT_UNIT : MIN_RELATIVE_UNIT * fabs(row->scene_mean[q]));
         const double difference = fabs(row->scene_mean[q] - row->fine_mean[q]);
         row->scene_distance = fmax(row->scene_distance, difference > 0.0 ? difference / unit : 0.0);
     }
@@ -220,17 +221,17 @@ static void tell(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uin
 mspring_result mspringi_tune_scenes(mspringi_tuning *tuning) {
     mspringi_scene_run *fine_runs = tuning->runs + (size_t)tuning->trial_count * tuning->scene.start_count;
     mspring_solver_def fine;
-    ending end = WHOLE;
+    run_outcome end = WHOLE;
     mspring_result result = choose_fine(tuning, &fine);
     if (result != MSPRING_OK || fine.substeps == 0)
         return result;
     const uint32_t starts = tuning->scene.start_count;
-    for (uint32_t start = 0; result == MSPRING_OK && end == WHOLE && start < starts && is_any_in(tuning); ++start)
+    for (uint32_t start = 0; result == MSPRING_OK && end == WHOLE && start < starts && can_any_run(tuning); ++start)
         result = run_start(tuning, &fine, start, fine_runs, &end);
     for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i) {
         mspringi_trial *trial = &tuning->trials[i];
-        if (is_in(trial) && trial->row.scene_starts >= MSPRINGI_TUNE_LEAST_STARTS)
-            tell(trial, fine_runs, fine.substeps, tuning->scene.tolerance);
+        if (can_run(trial) && trial->row.scene_starts >= MSPRINGI_TUNE_LEAST_STARTS)
+            fill_row(trial, fine_runs, fine.substeps, tuning->scene.tolerance);
         else
             trial->row.scene_starts = 0;
     }

@@ -118,7 +118,7 @@ static mspring_result check_rows(const mspring_tune_row *rows, uint32_t capacity
 
 /* -------------------------------------------------------------------------------------------------------- time */
 
-bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
+bool mspringi_tuning_has_time(mspringi_tuning *tuning, double part) {
     const mspring_tune_def *def = &tuning->def;
     if (tuning->is_over)
         return false;
@@ -131,7 +131,7 @@ bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
 /* ------------------------------------------------------------------------------------------------------- setup */
 
 // Disable sleep and fallbacks, so that the setting itself is measured.
-void mspringi_tune_expose(mspring_network *clone) {
+void mspringi_tune_disable_fallbacks(mspring_network *clone) {
     mspringi_wake(clone);
     clone->settings.sleep_speed = 0.0f;
     if (clone->settings.guard == MSPRING_GUARD_IMPLICIT || clone->settings.guard == MSPRING_GUARD_CLAMP)
@@ -149,14 +149,14 @@ void mspringi_tune_make_unbreakable(mspring_network *clone) {
 
 // Make a clone with springs, gravity and external forces only: without ramps, breaking or a floor.
 static mspring_result make_base(mspringi_tuning *tuning) {
-    mspring_result result = mspringi_tune_spawn(tuning, tuning->network, &tuning->base);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->network, &tuning->base);
     if (result != MSPRING_OK)
         return result;
     mspring_network *base = tuning->base;
     result = mspring_network_set_floor(base, NULL);
     if (result != MSPRING_OK)
         return result;
-    mspringi_tune_expose(base);
+    mspringi_tune_disable_fallbacks(base);
     mspringi_tune_make_unbreakable(base);
     base->ramps.count = 0;
     mspringi_box box = mspringi_box_empty();
@@ -190,10 +190,10 @@ static mspring_result allocate(mspringi_tuning *tuning) {
     tuning->trials = mspringi_alloc(memory, tuning->trial_count, sizeof *tuning->trials);
     tuning->times =
         mspringi_alloc(memory, (size_t)2 * tuning->trial_count * tuning->time_capacity, sizeof *tuning->times);
-    tuning->places = mspringi_alloc(memory, 2 * MSPRINGI_TUNE_MOMENTS * particles, sizeof *tuning->places);
+    tuning->positions = mspringi_alloc(memory, 2 * MSPRINGI_TUNE_MOMENTS * particles, sizeof *tuning->positions);
     tuning->runs =
         mspringi_alloc(memory, ((size_t)tuning->trial_count + 1) * tuning->scene.start_count, sizeof *tuning->runs);
-    if (!tuning->trials || !tuning->times || !tuning->places || !tuning->runs)
+    if (!tuning->trials || !tuning->times || !tuning->positions || !tuning->runs)
         return mspringi_fail(&tuning->network->message, MSPRING_ERROR_MEMORY, "no memory to try %u settings",
                              (unsigned)tuning->trial_count);
     return MSPRING_OK;
@@ -252,7 +252,7 @@ static mspring_result measure(mspringi_tuning *tuning) {
         result = measure_swings(tuning);
     if (result == MSPRING_OK && !by_scene && all && tuning->def.scene)
         result = mspringi_tune_scenes(tuning);
-    return result == MSPRING_OK ? mspringi_tune_costs_again(tuning) : result;
+    return result == MSPRING_OK ? mspringi_tune_more_costs(tuning) : result;
 }
 
 static mspring_result tune(mspringi_tuning *tuning, const mspring_solver_def *settings) {
@@ -264,7 +264,7 @@ static mspring_result tune(mspringi_tuning *tuning, const mspring_solver_def *se
     fill_trials(tuning, settings);
     result = measure(tuning);
     if (result == MSPRING_OK)
-        mspringi_tune_judge(tuning);
+        mspringi_tune_rank(tuning);
     return result;
 }
 
@@ -291,9 +291,9 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
             mspringi_put_struct((char *)rows + i * struct_size, &tuning.trials[i].row, sizeof *rows);
         *count = setting_count;
     }
-    mspringi_tune_dismiss(tuning.base);
+    mspringi_tune_destroy_clone(tuning.base);
     mspringi_free(&network->memory, tuning.runs);
-    mspringi_free(&network->memory, tuning.places);
+    mspringi_free(&network->memory, tuning.positions);
     mspringi_free(&network->memory, tuning.times);
     mspringi_free(&network->memory, tuning.trials);
     return result;

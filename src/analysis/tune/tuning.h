@@ -50,9 +50,9 @@ typedef struct mspringi_tuning {
     mspring_tune_scene scene; ///< start_count 0: none
     uint32_t trial_count, step_count, time_capacity;
     mspringi_trial *trials;
-    double *times;  ///< of all trials
-    double *places; ///< [moments][2][particles] positions of the reference run, relative to the base's origin; or
-                    ///< sums of positions
+    double *times;     ///< of all trials
+    double *positions; ///< [moments][2][particles] positions of the reference run, relative to the base's origin;
+                       ///< or sums of positions
     mspringi_scene_run *runs; ///< [trials + 1][scene.start_count] of all trials, the fine runs last
     double size;              ///< of the network, m
     double begun;             ///< start, s by the clock
@@ -62,7 +62,7 @@ typedef struct mspringi_tuning {
 } mspringi_tuning;
 
 /// True if time is left. part: fraction of the present unit of work that is done.
-bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part);
+bool mspringi_tuning_has_time(mspringi_tuning *tuning, double part);
 
 /// Choose step_count: the period of the slowest oscillation, as far as the budget allows. Needs the first costs.
 mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning);
@@ -76,24 +76,24 @@ mspring_result mspringi_tune_trajectories(mspringi_tuning *tuning);
 mspring_result mspringi_tune_rests(mspringi_tuning *tuning);
 mspring_result mspringi_tune_scenes(mspringi_tuning *tuning);
 /// Time more steps.
-mspring_result mspringi_tune_costs_again(mspringi_tuning *tuning);
+mspring_result mspringi_tune_more_costs(mspringi_tuning *tuning);
 
 /// Sort the values and return their median; 0 if there are none.
 double mspringi_tune_median(double *values, uint32_t count);
 
 /// Mark the rows on the Pareto front and the recommended one. Call it after all measurements.
-void mspringi_tune_judge(const mspringi_tuning *tuning);
+void mspringi_tune_rank(const mspringi_tuning *tuning);
 
 /// Clone a network. The clone shares its workers, so do not step the original meanwhile. Errors go to the host's
 /// message.
-mspring_result mspringi_tune_spawn(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone);
+mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone);
 /// Clone it with its hooks.
-mspring_result mspringi_tune_spawn_with_hooks(mspringi_tuning *tuning, mspring_network *from,
+mspring_result mspringi_tune_clone_with_hooks(mspringi_tuning *tuning, mspring_network *from,
                                               mspring_network **clone);
-void mspringi_tune_dismiss(mspring_network *clone);
+void mspringi_tune_destroy_clone(mspring_network *clone);
 
 /// Wake a clone for good, and disable all fallbacks of its solver.
-void mspringi_tune_expose(mspring_network *clone);
+void mspringi_tune_disable_fallbacks(mspring_network *clone);
 /// Disable breaking and yielding.
 void mspringi_tune_make_unbreakable(mspring_network *clone);
 
