@@ -26,10 +26,10 @@
 #endif
 
 /// Restitution that counts as none: such particles land exactly, others bounce from their present position.
-#define MSPRINGI_LEAST_RESTITUTION 0.1
+#define MSPRINGI_MIN_RESTITUTION 0.1
 
 /// Margin for rounding where |w|^2 must not grow.
-#define MSPRINGI_NO_LARGER (1.0 + 1e-9)
+#define MSPRINGI_GROWTH_MARGIN (1.0 + 1e-9)
 
 /// A particle with springs before its move.
 typedef struct mspringi_bouncing_particle {
@@ -79,26 +79,30 @@ MSPRINGI_BOUNCE_INLINE double mspringi_bounce(double nx, double ny, double offse
                                               double restitution, double h, double allowed,
                                               mspringi_bouncing_particle *p) {
     const double distance = nx * p->x + ny * p->y + offset;
-    const double across = nx * p->vx + ny * p->vy;
-    const bool acts = distance + h * across < -allowed;
+    const double normal_speed = nx * p->vx + ny * p->vy;
+    const bool acts = distance + h * normal_speed < -allowed;
     const double depth = distance < 0.0 ? distance : 0.0;
     const double half = nx * p->half_x + ny * p->half_y;
-    const double inward = half - across; // in step
+    const double inward = half - normal_speed; // in step
     const double e = restitution < p->most_restitution ? restitution : p->most_restitution;
-    const double thrown = e * inward + half;
-    const double landing = (depth - distance) / h;
-    const bool bounces = (inward > 0.0) & (thrown > landing) & (e > MSPRINGI_LEAST_RESTITUTION);
-    const double away = bounces ? thrown : landing;
-    const double out = away > across ? away : across;
-    const double given = out - across;
+    const double bounce_speed = e * inward + half;
+    const double landing_speed = (depth - distance) / h;
+    const bool bounces = (inward > 0.0) & (bounce_speed > landing_speed) & (e > MSPRINGI_MIN_RESTITUTION);
+    const double target_speed = bounces ? bounce_speed : landing_speed;
+    const double end_speed = target_speed > normal_speed ? target_speed : normal_speed;
+    const double normal_change = end_speed - normal_speed;
     // Friction slows the particle along the surface, and never speeds it up, in step.
-    const double along = nx * p->vy - ny * p->vx;
-    const double goes = along - (nx * p->half_y - ny * p->half_x);
-    const double left = goes - mspringi_clamp_friction(along, friction * given);
-    const double most = fabs(goes);
-    const double kept = fabs(left) > most * MSPRINGI_NO_LARGER ? (left > 0.0 ? most : -most) : left;
-    const double taken = goes - kept;
-    const double vx = p->vx + (given * nx + taken * ny), vy = p->vy + (given * ny - taken * nx);
+    const double tangent_speed = nx * p->vy - ny * p->vx;
+    const double tangent_in_step = tangent_speed - (nx * p->half_y - ny * p->half_x);
+    const double tangent_braked =
+        tangent_in_step - mspringi_clamp_friction(tangent_speed, friction * normal_change);
+    const double most = fabs(tangent_in_step);
+    const double tangent_end = fabs(tangent_braked) > most * MSPRINGI_GROWTH_MARGIN
+                                   ? (tangent_braked > 0.0 ? most : -most)
+                                   : tangent_braked;
+    const double tangent_change = tangent_in_step - tangent_end;
+    const double vx = p->vx + (normal_change * nx + tangent_change * ny),
+                 vy = p->vy + (normal_change * ny - tangent_change * nx);
     const double x = p->x - depth * nx, y = p->y - depth * ny;
     p->vx = acts ? vx : p->vx;
     p->vy = acts ? vy : p->vy;
@@ -118,7 +122,7 @@ typedef struct mspringi_free_particle {
 } mspringi_free_particle;
 
 /// Velocity in step. Forces changed it from `from` to `undamped`, then global damping to `to`.
-static inline double mspringi_in_step(double from, double undamped, double to) {
+static inline double mspringi_velocity_in_step(double from, double undamped, double to) {
     return 0.5 * (from + to - (undamped - to));
 }
 
@@ -128,8 +132,8 @@ static inline mspringi_free_particle mspringi_free_particle_from(double x, doubl
                                                                  double h) {
     return (mspringi_free_particle){.x = x - h * vx,
                                     .y = y - h * vy,
-                                    .wx = mspringi_in_step(from_vx, undamped * vx, vx),
-                                    .wy = mspringi_in_step(from_vy, undamped * vy, vy),
+                                    .wx = mspringi_velocity_in_step(from_vx, undamped * vx, vx),
+                                    .wy = mspringi_velocity_in_step(from_vy, undamped * vy, vy),
                                     .ax = (undamped * vx - from_vx) / h,
                                     .ay = (undamped * vy - from_vy) / h,
                                     .left = h};
@@ -142,7 +146,7 @@ typedef struct mspringi_bounce_params {
 } mspringi_bounce_params;
 
 /// Rounding of a tangential velocity in its normal part, relative.
-#define MSPRINGI_LAST_PLACES 0x1p-22
+#define MSPRINGI_TANGENT_ROUNDING 0x1p-22
 
 /// Distance that counts as contact, m: far below the last places of coordinates.
 static inline double mspringi_flight_slop(double x, double y) {
@@ -150,8 +154,8 @@ static inline double mspringi_flight_slop(double x, double y) {
 }
 
 /// Time until the particle meets a surface that it would end below, s; INFINITY if it would not.
-static inline double mspringi_time_to(double nx, double ny, double offset, double slop,
-                                      const mspringi_free_particle *p) {
+static inline double mspringi_time_to_surface(double nx, double ny, double offset, double slop,
+                                              const mspringi_free_particle *p) {
     const double distance = nx * p->x + ny * p->y + offset;
     const double speed = nx * p->wx + ny * p->wy, pull = nx * p->ax + ny * p->ay;
     const double end = distance + p->left * (speed + 0.5 * p->left * pull);
@@ -177,29 +181,32 @@ static inline bool mspringi_bounce_free(double nx, double ny, double offset, dou
                                         const mspringi_bounce_params *how, double time, bool is_last,
                                         mspringi_free_particle *p) {
     const double x = p->x + time * (p->wx + 0.5 * time * p->ax), y = p->y + time * (p->wy + 0.5 * time * p->ay);
-    const double wx = p->wx + time * p->ax, wy = p->wy + time * p->ay, left = p->left - time;
-    const double off = nx * x + ny * y + offset;
-    const double speed = nx * wx + ny * wy, along = nx * wy - ny * wx;
-    const double pull = nx * p->ax + ny * p->ay, pull_along = nx * p->ay - ny * p->ax;
-    const double inward = speed < 0.0 ? -speed : 0.0, pressing = pull < 0.0 ? -pull : 0.0;
-    const double up = restitution * inward, rest = left - how->skew;
-    const bool lies = is_last | (up <= 0.5 * how->h * pressing + MSPRINGI_LAST_PLACES * fabs(along));
-    const double borne = inward - rest * pull;
-    const double given = lies ? (borne > 0.0 ? borne : 0.0) : up + inward;
-    const double goes = lies ? along + rest * pull_along : along;
-    const double kept = goes - mspringi_clamp_friction(goes, friction * given), out = lies ? 0.0 : up;
-    p->x = x - off * nx;
-    p->y = y - off * ny;
-    p->wx = out * nx - kept * ny;
-    p->wy = out * ny + kept * nx;
-    p->ax = lies ? 0.0 : p->ax;
-    p->ay = lies ? 0.0 : p->ay;
-    p->left = is_last ? 0.0 : left;
-    return !lies;
+    const double wx = p->wx + time * p->ax, wy = p->wy + time * p->ay, time_left = p->left - time;
+    const double distance = nx * x + ny * y + offset;
+    const double normal_speed = nx * wx + ny * wy, tangent_speed = nx * wy - ny * wx;
+    const double normal_pull = nx * p->ax + ny * p->ay, tangent_pull = nx * p->ay - ny * p->ax;
+    const double inward = normal_speed < 0.0 ? -normal_speed : 0.0,
+                 pressing = normal_pull < 0.0 ? -normal_pull : 0.0;
+    const double bounce_speed = restitution * inward, rest = time_left - how->skew;
+    const bool is_resting =
+        is_last | (bounce_speed <= 0.5 * how->h * pressing + MSPRINGI_TANGENT_ROUNDING * fabs(tangent_speed));
+    const double pressed_speed = inward - rest * normal_pull;
+    const double normal_change = is_resting ? (pressed_speed > 0.0 ? pressed_speed : 0.0) : bounce_speed + inward;
+    const double sliding_speed = is_resting ? tangent_speed + rest * tangent_pull : tangent_speed;
+    const double tangent_end = sliding_speed - mspringi_clamp_friction(sliding_speed, friction * normal_change),
+                 end_speed = is_resting ? 0.0 : bounce_speed;
+    p->x = x - distance * nx;
+    p->y = y - distance * ny;
+    p->wx = end_speed * nx - tangent_end * ny;
+    p->wy = end_speed * ny + tangent_end * nx;
+    p->ax = is_resting ? 0.0 : p->ax;
+    p->ay = is_resting ? 0.0 : p->ay;
+    p->left = is_last ? 0.0 : time_left;
+    return !is_resting;
 }
 
 /// Deflections of a particle in a substep.
-#define MSPRINGI_MOST_TURNS 8
+#define MSPRINGI_MAX_DEFLECTIONS 8
 
 /* --------------------------------------------------------------------------------------------------------- silt */
 

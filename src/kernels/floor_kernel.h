@@ -22,13 +22,13 @@
 #define MSPRINGI_HALF (MSPRINGI_WIDTH / 2)
 
 /// Particles as in mspringi_bouncing_particle, and flags of 1 or 0.
-typedef struct touching {
+typedef struct bounce_block {
     double x[MSPRINGI_HALF], y[MSPRINGI_HALF], vx[MSPRINGI_HALF], vy[MSPRINGI_HALF];
     double half_x[MSPRINGI_HALF], half_y[MSPRINGI_HALF], most_restitution[MSPRINGI_HALF];
     double square[MSPRINGI_HALF], slop[MSPRINGI_HALF];
-    double is_hit[MSPRINGI_HALF];  ///< a surface has acted on it
-    double is_left[MSPRINGI_HALF]; ///< deferred to mspringi_floor_bounce()
-} touching;
+    double is_hit[MSPRINGI_HALF];      ///< a surface has acted on it
+    double is_deferred[MSPRINGI_HALF]; ///< deferred to mspringi_floor_bounce()
+} bounce_block;
 
 /// Straight part of a field of heights below each particle.
 typedef struct parts_below {
@@ -51,7 +51,7 @@ MSPRINGI_FLOOR_INLINE surfaces surfaces_of_parts(const parts_below *parts) {
     return (surfaces){parts->nx, parts->ny, parts->offset, parts->friction, parts->restitution, 1};
 }
 
-static inline mspringi_bouncing_particle going_at(const touching *b, size_t i) {
+static inline mspringi_bouncing_particle bouncing_at(const bounce_block *b, size_t i) {
     return (mspringi_bouncing_particle){.x = b->x[i],
                                         .y = b->y[i],
                                         .vx = b->vx[i],
@@ -72,8 +72,8 @@ MSPRINGI_FLOOR_INLINE bool is_any(const double *flags, size_t lanes) {
 }
 
 // Flag the particles that a floor may act on.
-MSPRINGI_FLOOR_INLINE void find_held(const mspringi_floor_args *g, size_t slot, size_t lanes,
-                                     double *restrict is_held) {
+MSPRINGI_FLOOR_INLINE void find_active(const mspringi_floor_args *g, size_t slot, size_t lanes,
+                                       double *restrict is_active) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot,
                           *restrict active_inverse_mass = g->active_inverse_mass + slot;
     const mspringi_bounds clear = g->clear;
@@ -81,11 +81,11 @@ MSPRINGI_FLOOR_INLINE void find_held(const mspringi_floor_args *g, size_t slot, 
     for (size_t i = 0; i < lanes; ++i) {
         const bool is_clear =
             (x[i] >= clear.min_x) & (x[i] <= clear.max_x) & (y[i] >= clear.min_y) & (y[i] <= clear.max_y);
-        is_held[i] = ((active_inverse_mass[i] > 0.0f) & !is_clear) ? 1.0 : 0.0;
+        is_active[i] = ((active_inverse_mass[i] > 0.0f) & !is_clear) ? 1.0 : 0.0;
     }
 }
 
-static void load_touching(const mspringi_floor_args *g, size_t slot, touching *restrict b) {
+static void load_bounce_block(const mspringi_floor_args *g, size_t slot, bounce_block *restrict b) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot;
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
@@ -104,18 +104,18 @@ static void load_touching(const mspringi_floor_args *g, size_t slot, touching *r
         b->most_restitution[i] = p.most_restitution;
         b->square[i] = mspringi_bouncing_particle_square(&p);
         b->slop[i] = 0x1p-21 * (fabs(p.x) + fabs(p.y)) + 1e-12;
-        b->is_hit[i] = b->is_left[i] = 0.0;
+        b->is_hit[i] = b->is_deferred[i] = 0.0;
     }
 }
 
 // Let a straight surface act on each particle.
-MSPRINGI_FLOOR_INLINE void touch_line(const mspringi_floor_args *g, surfaces s, touching *restrict b) {
+MSPRINGI_FLOOR_INLINE void bounce_off(const mspringi_floor_args *g, surfaces s, bounce_block *restrict b) {
     const double *restrict nx = s.nx, *restrict ny = s.ny, *restrict offset = s.offset;
     const double *restrict friction = s.friction, *restrict restitution = s.restitution;
     const double h = g->h;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
-        mspringi_bouncing_particle p = going_at(b, i);
+        mspringi_bouncing_particle p = bouncing_at(b, i);
         const double was_hit = b->is_hit[i];
         const size_t at = i * s.stride;
         const double is_hit =
@@ -130,8 +130,8 @@ MSPRINGI_FLOOR_INLINE void touch_line(const mspringi_floor_args *g, surfaces s, 
 
 // True if a straight surface would act on any particle. Defers those that were below it. Most of several surfaces
 // are far from most blocks.
-MSPRINGI_FLOOR_INLINE bool look_at_line(const mspringi_floor_args *g, surfaces s, const double *restrict is_held,
-                                        touching *restrict b) {
+MSPRINGI_FLOOR_INLINE bool is_surface_reached(const mspringi_floor_args *g, surfaces s,
+                                              const double *restrict is_active, bounce_block *restrict b) {
     const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
     const double h = g->h;
     double any[MSPRINGI_HALF];
@@ -140,8 +140,8 @@ MSPRINGI_FLOOR_INLINE bool look_at_line(const mspringi_floor_args *g, surfaces s
         const double nx = all_nx[i * s.stride], ny = all_ny[i * s.stride];
         const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * s.stride];
         const double across = nx * b->vx[i] + ny * b->vy[i];
-        any[i] = distance + h * across < 0.0 ? is_held[i] : 0.0;
-        b->is_left[i] += distance < -b->slop[i] ? 1.0 : 0.0;
+        any[i] = distance + h * across < 0.0 ? is_active[i] : 0.0;
+        b->is_deferred[i] += distance < -b->slop[i] ? 1.0 : 0.0;
     }
     return is_any(any, MSPRINGI_HALF);
 }
@@ -198,74 +198,74 @@ MSPRINGI_FLOOR_INLINE void find_lines(const mspringi_floor_args *g, size_t lanes
 }
 
 // Defer particles that are no longer above or below the same part.
-MSPRINGI_FLOOR_INLINE void leave_moved(const mspringi_floor_args *g, const parts_below *parts,
-                                       const double *restrict x, size_t lanes, double *restrict is_left) {
+MSPRINGI_FLOOR_INLINE void defer_moved(const mspringi_floor_args *g, const parts_below *parts,
+                                       const double *restrict x, size_t lanes, double *restrict is_deferred) {
     double numbers[MSPRINGI_WIDTH];
     find_parts(g, x, lanes, numbers);
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i)
-        is_left[i] += numbers[i] != parts->number[i] ? 1.0 : 0.0;
+        is_deferred[i] += numbers[i] != parts->number[i] ? 1.0 : 0.0;
 }
 
-static inline void find_ends(const mspringi_floor_args *g, const touching *restrict b, double *restrict x) {
+static inline void find_ends(const mspringi_floor_args *g, const bounce_block *restrict b, double *restrict x) {
     const double h = g->h;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i)
         x[i] = b->x[i] + h * b->vx[i];
 }
 
-static void begin_heights(const mspringi_floor_args *g, touching *b, parts_below *parts) {
+static void begin_heights(const mspringi_floor_args *g, bounce_block *b, parts_below *parts) {
     double ends[MSPRINGI_HALF];
     find_ends(g, b, ends);
     find_parts(g, ends, MSPRINGI_HALF, parts->number);
     find_lines(g, MSPRINGI_HALF, parts);
-    leave_moved(g, parts, b->x, MSPRINGI_HALF, b->is_left);
+    defer_moved(g, parts, b->x, MSPRINGI_HALF, b->is_deferred);
 }
 
-static void touch_heights(const mspringi_floor_args *g, const parts_below *parts, const double *is_held,
-                          touching *b) {
+static void bounce_heights(const mspringi_floor_args *g, const parts_below *parts, const double *is_active,
+                           bounce_block *b) {
     double ends[MSPRINGI_HALF];
     if (g->line_count > 0) {
         find_ends(g, b, ends);
-        leave_moved(g, parts, ends, MSPRINGI_HALF, b->is_left);
-        leave_moved(g, parts, b->x, MSPRINGI_HALF, b->is_left);
+        defer_moved(g, parts, ends, MSPRINGI_HALF, b->is_deferred);
+        defer_moved(g, parts, b->x, MSPRINGI_HALF, b->is_deferred);
     }
     const surfaces below = surfaces_of_parts(parts);
-    if (look_at_line(g, below, is_held, b))
-        touch_line(g, below, b);
+    if (is_surface_reached(g, below, is_active, b))
+        bounce_off(g, below, b);
     find_ends(g, b, ends);
-    leave_moved(g, parts, ends, MSPRINGI_HALF, b->is_left);
-    leave_moved(g, parts, b->x, MSPRINGI_HALF, b->is_left);
+    defer_moved(g, parts, ends, MSPRINGI_HALF, b->is_deferred);
+    defer_moved(g, parts, b->x, MSPRINGI_HALF, b->is_deferred);
 }
 
 /* ------------------------------------------------------------------------------------------------------ blocks */
 
 // Defer particles that end below a straight surface.
-MSPRINGI_FLOOR_INLINE void leave_beyond(surfaces s, const double *restrict x, const double *restrict y,
-                                        const double *restrict slop, size_t lanes, double *restrict is_left) {
+MSPRINGI_FLOOR_INLINE void defer_below(surfaces s, const double *restrict x, const double *restrict y,
+                                       const double *restrict slop, size_t lanes, double *restrict is_deferred) {
     const double *restrict nx = s.nx, *restrict ny = s.ny, *restrict offset = s.offset;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i) {
         const double distance = nx[i * s.stride] * x[i] + ny[i * s.stride] * y[i] + offset[i * s.stride];
-        is_left[i] += distance < -0.25 * slop[i] ? 1.0 : 0.0;
+        is_deferred[i] += distance < -0.25 * slop[i] ? 1.0 : 0.0;
     }
 }
 
-MSPRINGI_FLOOR_INLINE void leave_stuck(const mspringi_floor_args *g, const parts_below *parts, const double *x,
-                                       const double *y, const double *slop, size_t lanes, double *is_left) {
+MSPRINGI_FLOOR_INLINE void defer_stuck(const mspringi_floor_args *g, const parts_below *parts, const double *x,
+                                       const double *y, const double *slop, size_t lanes, double *is_deferred) {
     for (uint32_t i = 0; i < g->line_count; ++i)
-        leave_beyond(surfaces_of_line(&g->lines[i]), x, y, slop, lanes, is_left);
+        defer_below(surfaces_of_line(&g->lines[i]), x, y, slop, lanes, is_deferred);
     if (g->height_count > 0)
-        leave_beyond(surfaces_of_parts(parts), x, y, slop, lanes, is_left);
+        defer_below(surfaces_of_parts(parts), x, y, slop, lanes, is_deferred);
 }
 
 // Defer particles that became faster.
-static void leave_faster(touching *restrict b) {
+static void defer_faster(bounce_block *restrict b) {
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
-        const mspringi_bouncing_particle p = going_at(b, i);
-        b->is_left[i] +=
-            mspringi_bouncing_particle_square(&p) > b->square[i] * MSPRINGI_NO_LARGER ? b->is_hit[i] : 0.0;
+        const mspringi_bouncing_particle p = bouncing_at(b, i);
+        b->is_deferred[i] +=
+            mspringi_bouncing_particle_square(&p) > b->square[i] * MSPRINGI_GROWTH_MARGIN ? b->is_hit[i] : 0.0;
     }
 }
 
@@ -310,19 +310,20 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
 
 // Flag the active particles that a surface has acted on and that are complete. Returns the active deferred ones, as
 // bits.
-MSPRINGI_FLOOR_INLINE uint32_t find_moved(const double *restrict is_held, const double *restrict is_hit,
-                                          const double *restrict is_left, size_t lanes, float *restrict is_moved) {
+MSPRINGI_FLOOR_INLINE uint32_t find_moved(const double *restrict is_active, const double *restrict is_hit,
+                                          const double *restrict is_deferred, size_t lanes,
+                                          float *restrict is_moved) {
     uint32_t left = 0;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i)
-        is_moved[i] = ((is_held[i] > 0.0) & (is_hit[i] > 0.0) & (is_left[i] == 0.0)) ? 1.0f : 0.0f;
+        is_moved[i] = ((is_active[i] > 0.0) & (is_hit[i] > 0.0) & (is_deferred[i] == 0.0)) ? 1.0f : 0.0f;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i)
-        left |= ((is_left[i] > 0.0) & (is_held[i] > 0.0)) ? 1u << i : 0u;
+        left |= ((is_deferred[i] > 0.0) & (is_active[i] > 0.0)) ? 1u << i : 0u;
     return left;
 }
 
-static void find_end(const mspringi_floor_args *g, const touching *restrict b, block_end *restrict end) {
+static void find_end(const mspringi_floor_args *g, const bounce_block *restrict b, block_end *restrict end) {
     const double h = g->h;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
@@ -333,34 +334,34 @@ static void find_end(const mspringi_floor_args *g, const touching *restrict b, b
     }
 }
 
-static uint32_t touch_half(const mspringi_floor_args *g, size_t slot, const double *is_held) {
-    touching b;
+static uint32_t bounce_half(const mspringi_floor_args *g, size_t slot, const double *is_active) {
+    bounce_block b;
     parts_below parts;
     block_end end;
-    load_touching(g, slot, &b);
+    load_bounce_block(g, slot, &b);
     if (g->height_count > 0)
         begin_heights(g, &b, &parts);
     for (uint32_t i = 0; i < g->line_count; ++i)
-        if (look_at_line(g, surfaces_of_line(&g->lines[i]), is_held, &b))
-            touch_line(g, surfaces_of_line(&g->lines[i]), &b);
+        if (is_surface_reached(g, surfaces_of_line(&g->lines[i]), is_active, &b))
+            bounce_off(g, surfaces_of_line(&g->lines[i]), &b);
     if (g->height_count > 0)
-        touch_heights(g, &parts, is_held, &b);
-    leave_faster(&b);
+        bounce_heights(g, &parts, is_active, &b);
+    defer_faster(&b);
     find_end(g, &b, &end);
     if (g->line_count + (g->height_count > 0) > 1)
-        leave_stuck(g, &parts, end.x, end.y, b.slop, MSPRINGI_HALF, b.is_left);
-    const uint32_t left = find_moved(is_held, b.is_hit, b.is_left, MSPRINGI_HALF, end.is_moved);
+        defer_stuck(g, &parts, end.x, end.y, b.slop, MSPRINGI_HALF, b.is_deferred);
+    const uint32_t left = find_moved(is_active, b.is_hit, b.is_deferred, MSPRINGI_HALF, end.is_moved);
     store_block(g, slot, MSPRINGI_HALF, &end);
     return left;
 }
 
-static uint32_t touch(const mspringi_floor_args *g, size_t slot) {
+static uint32_t bounce(const mspringi_floor_args *g, size_t slot) {
     uint32_t left = 0;
     for (uint32_t first = 0; first < MSPRINGI_WIDTH; first += MSPRINGI_HALF) {
-        double is_held[MSPRINGI_HALF];
-        find_held(g, slot + first, MSPRINGI_HALF, is_held);
-        if (is_any(is_held, MSPRINGI_HALF))
-            left |= touch_half(g, slot + first, is_held) << first;
+        double is_active[MSPRINGI_HALF];
+        find_active(g, slot + first, MSPRINGI_HALF, is_active);
+        if (is_any(is_active, MSPRINGI_HALF))
+            left |= bounce_half(g, slot + first, is_active) << first;
     }
     return left;
 }

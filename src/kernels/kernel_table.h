@@ -1,6 +1,6 @@
 /// @file kernel_table.h
 /// Table of an instruction set, and the variants of its kernels: lattice(), chain(), irregular(), bundle(),
-/// loose(), attached(), pack(), largest(), extrema_of(), touch(), fly_past(), brake(), lattice_strain(),
+/// loose(), attached(), pack(), largest(), extrema_of(), bounce(), bounce_free(), brake(), lattice_strain(),
 /// chain_strain(), lattice_yield(), chain_yield(), bound_ and image_lattice() and _chain(), take_checksum().
 /// Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
@@ -131,8 +131,8 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .largest = largest,
     .extrema_of = extrema_of,
     .beyond = beyond,
-    .touch = touch,
-    .fly_past = fly_past,
+    .bounce = bounce,
+    .bounce_free = bounce_free,
     .brake = brake,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,

@@ -69,13 +69,13 @@ typedef struct mspringi_yield_test {
 } mspringi_yield_test;
 
 /// Mark the warm springs of a word.
-static inline void mspringi_yield_note(const mspringi_yield_test *test, size_t word, uint32_t warm) {
+static inline void mspringi_yield_mark_warm(const mspringi_yield_test *test, size_t word, uint32_t warm) {
     if (test->looks && warm & test->live[word])
         *test->warmth |= MSPRINGI_WARM | MSPRINGI_WAS_WARM;
 }
 
 // Prepare a change of the rest lengths and bounds of a word.
-static inline void mspringi_yield_part(const mspringi_yield_test *test, size_t word) {
+static inline void mspringi_yield_unshare(const mspringi_yield_test *test, size_t word) {
     const uint32_t block = (uint32_t)(word / MSPRINGI_DIRECTIONS);
     mspringi_shared_records shared = test->shared_records;
     if (word * MSPRINGI_WIDTH < test->first_chain_slot &&
@@ -84,9 +84,9 @@ static inline void mspringi_yield_part(const mspringi_yield_test *test, size_t w
 }
 
 /// Save the rest lengths of a word's flowing springs, once in a step.
-static inline void mspringi_yield_keep(const mspringi_yield_test *test, size_t word, uint32_t flow,
+static inline void mspringi_yield_save(const mspringi_yield_test *test, size_t word, uint32_t flow,
                                        const float *rests) {
-    mspringi_yield_part(test, word);
+    mspringi_yield_unshare(test, word);
     uint32_t left = flow & ~(uint32_t)test->has_flowed[word];
     test->has_flowed[word] |= (uint16_t)flow;
     *test->warmth |= MSPRINGI_HAS_FLOWED;
@@ -308,7 +308,7 @@ typedef struct mspringi_kernels {
     mspringi_largest_fn largest;
     mspringi_extrema_fn extrema_of;
     mspringi_beyond_fn beyond;
-    mspringi_floor_fn touch, fly_past; ///< for particles with and without springs
+    mspringi_floor_fn bounce, bounce_free; ///< for particles with and without springs
     mspringi_silt_fn brake;
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_yield_fn lattice_yield, chain_yield;

@@ -40,8 +40,8 @@ MSPRINGI_STRETCH uint32_t over_least(vec base_x, vec base_y, vec tip_x, vec tip_
 }
 
 // Bits of the stressed springs that break or relax, of a word of springs from the slots at base to those at tip.
-static MSPRINGI_NOINLINE uint32_t judge_stressed(const mspringi_strain_sweep *s, size_t word, size_t base,
-                                                 size_t tip, const float *rest_lengths) {
+static MSPRINGI_NOINLINE uint32_t test_stressed(const mspringi_strain_sweep *s, size_t word, size_t base,
+                                                size_t tip, const float *rest_lengths) {
     uint32_t bits = 0;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
         const size_t spring_slot = word * MSPRINGI_WIDTH + lane;
@@ -81,7 +81,7 @@ MSPRINGI_STRETCH uint32_t append_hit(const mspringi_strain_sweep *s, size_t word
     uint32_t bits = over & s->live[word];
     if (stressed)
         bits = (bits & ~stressed) |
-               (s->stress ? stressed & judge_stressed(s, word, base, tip, rest_lengths) : stressed);
+               (s->stress ? stressed & test_stressed(s, word, base, tip, rest_lengths) : stressed);
     if (bits)
         hits[count++] = (mspringi_strain_hit){(uint32_t)word, bits};
     return count;

@@ -89,8 +89,8 @@ MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion t
 }
 
 // Add the forces of cell areas, along pairs of particles that diagonals connect: see store/areas.h.
-MSPRINGI_INLINE void press(const float *cells, extent to_north_east, extent to_south_east, vector *north_east,
-                           vector *south_east) {
+MSPRINGI_INLINE void add_area_force(const float *cells, extent to_north_east, extent to_south_east,
+                                    vector *north_east, vector *south_east) {
     const vec cross = sub(mul(to_north_east.dx, to_south_east.dy), mul(to_north_east.dy, to_south_east.dx));
     const vec force = sub(load(cells), mul(load(cells + MSPRINGI_WIDTH), cross));
     north_east->x = sub(north_east->x, mul(force, to_south_east.dy));
@@ -105,7 +105,7 @@ MSPRINGI_INLINE void press(const float *cells, extent to_north_east, extent to_s
 // behind the divisions; a pass of its own does not. 96 x 96 with AVX-512, one substep: 2.2 instead of 3.7 us beside
 // 12.4 for the rest; 1.4 without coordinates. Changes of velocity instead of speeds: 0.2 us more; both: 1.9 us
 // more; changes in a pass of their own: 1.5 to 2.
-MSPRINGI_INLINE void keep_motion(const mspringi_sweep *s, size_t slot, vec x, vec y, vec vx, vec vy) {
+MSPRINGI_INLINE void save_motion(const mspringi_sweep *s, size_t slot, vec x, vec y, vec vx, vec vy) {
     const size_t slots = (size_t)(s->y - s->x);
     float *to = s->keep + slot;
     store(to, x);
@@ -134,8 +134,8 @@ MSPRINGI_INLINE void watch_motion(const mspringi_sweep *s, size_t slot, motion m
 }
 
 // Move by Kahan's compensated sum: the low word keeps the rounding error for the next move.
-MSPRINGI_INLINE vector go(const mspringi_sweep *s, size_t slot, motion here, vec way_x, vec way_y,
-                          mspringi_variant of) {
+MSPRINGI_INLINE vector add_displacement(const mspringi_sweep *s, size_t slot, motion here, vec way_x, vec way_y,
+                                        mspringi_variant of) {
     way_x = add(way_x, of & MSPRINGI_PRECISE ? here.low_x : load(s->low_x + slot));
     way_y = add(way_y, of & MSPRINGI_PRECISE ? here.low_y : load(s->low_y + slot));
     const vector to = {add(here.x, way_x), add(here.y, way_y)};
@@ -159,23 +159,23 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
         vy = of & MSPRINGI_DAMPED ? here.vy : load(s->vy + slot);
     const vector found = {vx, vy};
     if (s->keep)
-        keep_motion(s, slot, here.x, here.y, vx, vy);
+        save_motion(s, slot, here.x, here.y, vx, vy);
     vx = add(vx, set(s->gravity_h_x));
     vy = add(vy, set(s->gravity_h_y));
     vx = choose_positive(inverse_mass, mul(add(mul(force.x, inverse_mass_h), vx), decay), found.x);
     vy = choose_positive(inverse_mass, mul(add(mul(force.y, inverse_mass_h), vy), decay), found.y);
     store(s->vx + slot, vx);
     store(s->vy + slot, vy);
-    const vector to = go(s, slot, here, mul(vx, h), mul(vy, h), of);
+    const vector to = add_displacement(s, slot, here, mul(vx, h), mul(vy, h), of);
     if (s->watch)
         watch_motion(s, slot, (motion){.x = to.x, .y = to.y, .vx = vx, .vy = vy}, found);
 }
 
 /// Forces that LANES slots' springs carry to the slots on the right and to those above them. Of the previous slots,
 /// only the last lane is used.
-typedef struct handed_on {
+typedef struct carried_forces {
     vector right, diagonal;
-} handed_on;
+} carried_forces;
 
 // First slot of a span and its end, in units of LANES.
 MSPRINGI_INLINE size_t first_of(const mspringi_span *span) {
@@ -198,7 +198,7 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                              mspringi_variant of) {
     const mspringi_sweep copy = *sweep, *const s = &copy; // a local copy, which no store can alias
     const size_t part = (size_t)(of & MSPRINGI_DAMPED ? 2 : 1) * MSPRINGI_WIDTH; // values of one direction
-    handed_on before = {{zero(), zero()}, {zero(), zero()}};
+    carried_forces before = {{zero(), zero()}, {zero(), zero()}};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         const size_t end_slot = end_of(span);
         size_t block = span->first_record;
@@ -233,8 +233,8 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                     const vec squares[] = {to_east.square, to_north.square, to_north_east.square,
                                            to_south_east.square};
                     const size_t spring_slot = block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
-                    let_yield(s->test, spring_slot, MSPRINGI_DIRECTIONS, squares,
-                              s->test->lattice_rests + spring_slot, springs, part);
+                    yield_springs(s->test, spring_slot, MSPRINGI_DIRECTIONS, squares,
+                                  s->test->lattice_rests + spring_slot, springs, part);
                     rests = s->rest_lengths +
                             (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH +
                             slot % MSPRINGI_WIDTH;
@@ -253,8 +253,8 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                                                  rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH,
                                                  springs + MSPRINGI_NORTH_EAST * part, of);
                 if (of & MSPRINGI_CELLS)
-                    press(s->cells + 2 * block * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH, to_north_east,
-                          to_south_east, &north_east, &south_east);
+                    add_area_force(s->cells + 2 * block * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH, to_north_east,
+                                   to_south_east, &north_east, &south_east);
 
                 const vector right = {sub(east.x, south_east.x), sub(east.y, south_east.y)};
                 const vector known = {add(load(s->carry_x + carry), shift_in(before.right.x, right.x)),
@@ -287,7 +287,7 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
 
 // Precise kernels outside lattices are kept small. They share one copy of move() and of irregular_force(), and
 // compute springs of bundles one by one: 8 kB less in three levels.
-static MSPRINGI_NOINLINE void precise_move(const mspringi_sweep *s, size_t slot, const motion *here,
+static MSPRINGI_NOINLINE void move_precise(const mspringi_sweep *s, size_t slot, const motion *here,
                                            const vector *force, mspringi_variant of) {
     move(s, slot, *here, *force, of | MSPRINGI_PRECISE);
 }
@@ -295,7 +295,7 @@ static MSPRINGI_NOINLINE void precise_move(const mspringi_sweep *s, size_t slot,
 MSPRINGI_INLINE void move_apart(const mspringi_sweep *s, size_t slot, motion here, vector force,
                                 mspringi_variant of) {
     if (of & MSPRINGI_PRECISE)
-        precise_move(s, slot, &here, &force, of);
+        move_precise(s, slot, &here, &force, of);
     else
         move(s, slot, here, force, of);
 }
@@ -331,7 +331,7 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
                     is_chain ? t->chain_springs + (rests - s->chain_springs) : t->lattice_rests + spring_slot;
                 const vec square = to_east.square;
                 if (bits_outside(square, t->test_low + spring_slot, t->test_high + spring_slot)) {
-                    let_yield(t, spring_slot, 1, &square, own, record, 0);
+                    yield_springs(t, spring_slot, 1, &square, own, record, 0);
                     rests = own;
                 }
             }
@@ -394,11 +394,11 @@ MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, mspring
 // Force of the irregular part on LANES of its nodes, from the slice columns of their slice, starting at number
 // slice_columns. The neighbours of a slice column are loaded before the forces of the previous one, so that both
 // are in the reorder window: 7 to 11 % less time with SSE2, AVX2 and AVX-512.
-MSPRINGI_INLINE vector irregular_force(const mspringi_sweep *s, motion here, size_t group, size_t lane,
+MSPRINGI_INLINE vector irregular_force(const mspringi_sweep *s, motion here, size_t slice, size_t lane,
                                        uint32_t slice_columns, mspringi_variant of) {
     const size_t stride = (size_t)(of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH;
-    const uint32_t first = s->irregular->first_slice_column[group] + slice_columns,
-                   end = s->irregular->first_slice_column[group + 1];
+    const uint32_t first = s->irregular->first_slice_column[slice] + slice_columns,
+                   end = s->irregular->first_slice_column[slice + 1];
     const uint32_t *neighbour = s->irregular->neighbour + (size_t)first * MSPRINGI_WIDTH + lane;
     const float *record = s->irregular_springs + first * stride + lane;
     vector sum = {zero(), zero()};
@@ -417,25 +417,25 @@ MSPRINGI_INLINE vector irregular_force(const mspringi_sweep *s, motion here, siz
 
 // One copy for all precise kernels of a level; inlined it would take 3 kB in each. A test for dampers at every
 // slice column costs an irregular part 5 % more instructions.
-static MSPRINGI_NOINLINE vector precise_irregular_force(const mspringi_sweep *s, const motion *here, size_t group,
+static MSPRINGI_NOINLINE vector irregular_force_precise(const mspringi_sweep *s, const motion *here, size_t slice,
                                                         size_t lane, uint32_t slice_columns, mspringi_variant of) {
     return of & MSPRINGI_DAMPED
-               ? irregular_force(s, *here, group, lane, slice_columns, MSPRINGI_PRECISE | MSPRINGI_DAMPED)
-               : irregular_force(s, *here, group, lane, slice_columns, MSPRINGI_PRECISE);
+               ? irregular_force(s, *here, slice, lane, slice_columns, MSPRINGI_PRECISE | MSPRINGI_DAMPED)
+               : irregular_force(s, *here, slice, lane, slice_columns, MSPRINGI_PRECISE);
 }
 
-MSPRINGI_INLINE vector find_irregular_force(const mspringi_sweep *s, motion here, size_t group, size_t lane,
+MSPRINGI_INLINE vector find_irregular_force(const mspringi_sweep *s, motion here, size_t slice, size_t lane,
                                             uint32_t slice_columns, mspringi_variant of) {
-    return of & MSPRINGI_PRECISE ? precise_irregular_force(s, &here, group, lane, slice_columns, of)
-                                 : irregular_force(s, here, group, lane, slice_columns, of);
+    return of & MSPRINGI_PRECISE ? irregular_force_precise(s, &here, slice, lane, slice_columns, of)
+                                 : irregular_force(s, here, slice, lane, slice_columns, of);
 }
 
 // Forces of a slice's upright slice column on LANES of its nodes; those on the next slice's are opposite.
-MSPRINGI_INLINE vector upright_force(const mspringi_sweep *s, size_t slot, motion here, size_t group, size_t lane,
+MSPRINGI_INLINE vector upright_force(const mspringi_sweep *s, size_t slot, motion here, size_t slice, size_t lane,
                                      mspringi_variant of) {
     const float *record =
         s->irregular_springs +
-        (size_t)s->irregular->first_slice_column[group] * (of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH + lane;
+        (size_t)s->irregular->first_slice_column[slice] * (of & MSPRINGI_DAMPED ? 3 : 2) * MSPRINGI_WIDTH + lane;
     const motion above = load_motion(s, slot + MSPRINGI_WIDTH, of);
     const extent to = spring_extent(above, here, of);
     return spring_force(to, inverse_or_zero(to.square), above, here, record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH,
@@ -447,20 +447,20 @@ MSPRINGI_INLINE void interleaved_part(const mspringi_sweep *sweep, const mspring
     const mspringi_sweep copy = *sweep, *const s = &copy;
     const uint8_t *is_upright = s->irregular->is_interleaved;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
-        vector handed = {zero(), zero()};
-        size_t group = span->first_record;
-        for (size_t slot = span->first_slot + lane; slot < end_of(span); slot += MSPRINGI_WIDTH, ++group) {
+        vector carried = {zero(), zero()};
+        size_t slice = span->first_record;
+        for (size_t slot = span->first_slot + lane; slot < end_of(span); slot += MSPRINGI_WIDTH, ++slice) {
             const motion here = load_motion(s, slot, of);
-            vector force = find_irregular_force(s, here, group, lane, is_upright[group], of);
-            force.x = add(force.x, handed.x);
-            force.y = add(force.y, handed.y);
-            handed.x = handed.y = zero();
-            if (is_upright[group]) {
-                const vector up = upright_force(s, slot, here, group, lane, of);
+            vector force = find_irregular_force(s, here, slice, lane, is_upright[slice], of);
+            force.x = add(force.x, carried.x);
+            force.y = add(force.y, carried.y);
+            carried.x = carried.y = zero();
+            if (is_upright[slice]) {
+                const vector up = upright_force(s, slot, here, slice, lane, of);
                 force.x = add(force.x, up.x);
                 force.y = add(force.y, up.y);
-                handed.x = sub(zero(), up.x);
-                handed.y = sub(zero(), up.y);
+                carried.x = sub(zero(), up.x);
+                carried.y = sub(zero(), up.y);
             }
             move_apart(s, slot, here, force, of);
         }
@@ -518,10 +518,10 @@ MSPRINGI_INLINE void pull_bundle(const mspringi_sweep *s, size_t slot, motion he
 }
 
 // Compute the springs of a slice to slices below, and move it: its other springs are done.
-MSPRINGI_INLINE void sweep_group(const mspringi_sweep *s, size_t group, size_t slot, pulls to,
+MSPRINGI_INLINE void sweep_slice(const mspringi_sweep *s, size_t slice, size_t slot, pulls to,
                                  mspringi_variant of) {
     const motion here = load_motion(s, slot, of);
-    const uint32_t *first_link = s->irregular->first_link + (group - s->irregular->first_bundle);
+    const uint32_t *first_link = s->irregular->first_link + (slice - s->irregular->first_bundle);
     const mspringi_bundle_link *links = s->irregular->links + first_link[0];
     size_t left = first_link[1] - first_link[0];
     for (; !(of & MSPRINGI_PRECISE) && left >= BUNDLE_BATCH; left -= BUNDLE_BATCH, links += BUNDLE_BATCH)
@@ -529,8 +529,8 @@ MSPRINGI_INLINE void sweep_group(const mspringi_sweep *s, size_t group, size_t s
     for (; left > 0; --left, ++links)
         pull_bundle(s, slot, here, links, 1, to, of);
     vector force = {zero(), zero()};
-    const size_t end = (s->irregular->first_slice_column[group + 1] - to.first) * LANES;
-    for (size_t slice_column = (s->irregular->first_slice_column[group] - to.first) * LANES; slice_column < end;
+    const size_t end = (s->irregular->first_slice_column[slice + 1] - to.first) * LANES;
+    for (size_t slice_column = (s->irregular->first_slice_column[slice] - to.first) * LANES; slice_column < end;
          slice_column += LANES) {
         force.x = add(force.x, load(to.x + slice_column));
         force.y = add(force.y, load(to.y + slice_column));
@@ -547,9 +547,9 @@ MSPRINGI_INLINE void bundle(const mspringi_sweep *sweep, const mspringi_span *sp
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         const pulls to = {s->carry_x, s->carry_y, s->irregular->first_slice_column[span->first_record]};
         for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
-            size_t group = span->first_record;
+            size_t slice = span->first_record;
             for (size_t slot = span->first_slot + lane; slot < end_of(span); slot += MSPRINGI_WIDTH)
-                sweep_group(s, group++, slot, to, of);
+                sweep_slice(s, slice++, slot, to, of);
         }
     }
 }
@@ -596,8 +596,8 @@ MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, c
         const motion m = load_motion(s, slot, all);
         const vec way_x = add(mul(m.vx, reach), mul(change_x, fall));
         const vec way_y = add(mul(m.vy, reach), mul(change_y, fall));
-        go(s, slot, m, choose_positive(inverse_mass, way_x, mul(m.vx, drift)),
-           choose_positive(inverse_mass, way_y, mul(m.vy, drift)), all);
+        add_displacement(s, slot, m, choose_positive(inverse_mass, way_x, mul(m.vx, drift)),
+                         choose_positive(inverse_mass, way_y, mul(m.vy, drift)), all);
         store(s->vx + slot, choose_positive(inverse_mass, add(mul(m.vx, keep), mul(change_x, gain)), m.vx));
         store(s->vy + slot, choose_positive(inverse_mass, add(mul(m.vy, keep), mul(change_y, gain)), m.vy));
     }

@@ -51,8 +51,8 @@ typedef struct spring_strip {
 
 // As mspringi_geometric_fraction().
 static inline float geometric_fraction(float relative) {
-    const float pressed = -1.5f * relative - 0.5f;
-    const float share = relative > pressed ? relative : pressed;
+    const float compressed = -1.5f * relative - 0.5f;
+    const float share = relative > compressed ? relative : compressed;
     const float positive = share > 0.0f ? share : 0.0f;
     return positive < 1.0f ? positive : 1.0f;
 }
@@ -127,12 +127,12 @@ MSPRINGI_INLINE void find_factors(const linearised *s, const float *stiffnesses,
         to->part.up[at + i] = south_east->value[i] sign north->value[i];                                           \
         to->part.diagonal[MSPRINGI_WIDTH + at + i] = north_east->value[i];                                         \
     }                                                                                                              \
-    for (size_t i = 0; !only_hand_on && i < MSPRINGI_WIDTH; ++i) {                                                 \
+    for (size_t i = 0; !only_carry && i < MSPRINGI_WIDTH; ++i) {                                                   \
         to->part.own[at + i] = (east->value[i] + north->value[i]) + north_east->value[i];                          \
         to->part.right[MSPRINGI_WIDTH + at + i] = east->value[i] + south_east->value[i];                           \
     }
 
-MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to, bool only_hand_on) {
+MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to, bool only_carry) {
     const spring_lanes *const east = &lanes[MSPRINGI_EAST], *const north = &lanes[MSPRINGI_NORTH];
     const spring_lanes *const north_east = &lanes[MSPRINGI_NORTH_EAST], *const south_east =
                                                                             &lanes[MSPRINGI_SOUTH_EAST];
@@ -149,7 +149,7 @@ MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_stri
 // `at` on.
 MSPRINGI_INLINE void assemble_block(const linearised *s, size_t slot, size_t up, const float *rests,
                                     const float *springs, float *restrict factors, size_t at,
-                                    spring_strip *restrict to, bool damped, bool only_hand_on) {
+                                    spring_strip *restrict to, bool damped, bool only_carry) {
     const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH,
                  factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
     const size_t bases[] = {
@@ -161,14 +161,14 @@ MSPRINGI_INLINE void assemble_block(const linearised *s, size_t slot, size_t up,
     float unused[MSPRINGI_FACTORS *
                  MSPRINGI_WIDTH]; // carry-only rows belong to another worker, which writes their factors
     spring_lanes lanes[MSPRINGI_DIRECTIONS];
-    const size_t first = only_hand_on ? MSPRINGI_NORTH : MSPRINGI_EAST;
+    const size_t first = only_carry ? MSPRINGI_NORTH : MSPRINGI_EAST;
     for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
         find_inverses(s, bases[i], tips[i], &lanes[i]);
     for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
         find_forces(s, bases[i], tips[i], rests + i * MSPRINGI_WIDTH, springs + i * part, &lanes[i], damped);
     for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
-        find_factors(s, springs + i * part, only_hand_on ? unused : factors + i * factor, &lanes[i], damped);
-    put_block(lanes, at, to, only_hand_on);
+        find_factors(s, springs + i * part, only_carry ? unused : factors + i * factor, &lanes[i], damped);
+    put_block(lanes, at, to, only_carry);
 }
 
 // Assemble the springs of a chain, or of a row of east springs only.
@@ -228,7 +228,7 @@ static inline void carry_strip(const mspringi_system *s, const spring_strip *str
 }
 
 // Carry the contribution of the last of `count` slots to the next strip.
-static inline void go_on(spring_strip *strip, size_t count) {
+static inline void continue_strip(spring_strip *strip, size_t count) {
     const size_t before = MSPRINGI_WIDTH - 1, last = before + count;
     strip->x.right[before] = strip->x.right[last];
     strip->y.right[before] = strip->y.right[last];
@@ -253,7 +253,7 @@ static inline void begin_strips(spring_strip *strip) {
 }
 
 MSPRINGI_INLINE void assemble_lattice_rows(const mspringi_system *system, const mspringi_span *spans,
-                                           uint32_t count, bool damped, bool only_hand_on) {
+                                           uint32_t count, bool damped, bool only_carry) {
     const mspringi_system copy = *system, *const s = &copy;
     const size_t springs = (size_t)(damped ? 2 : 1) * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
     const size_t factors = (size_t)MSPRINGI_FACTORS * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
@@ -270,12 +270,12 @@ MSPRINGI_INLINE void assemble_lattice_rows(const mspringi_system *system, const 
                 const size_t index = span->first_record + (slot + at - first) / MSPRINGI_WIDTH;
                 assemble_block(&linear, slot + at, (size_t)((int64_t)(slot + at) + span->up),
                                mspringi_system_rests(s, index), s->lattice_springs + index * springs,
-                               s->lattice_factors + index * factors, at, &strip, damped, only_hand_on);
+                               s->lattice_factors + index * factors, at, &strip, damped, only_carry);
             }
-            if (!only_hand_on)
+            if (!only_carry)
                 sum_strip(s, &strip, slot, carry, slots);
             carry_strip(s, &strip, carry, slots);
-            go_on(&strip, slots);
+            continue_strip(&strip, slots);
         }
     }
 }
@@ -285,7 +285,7 @@ MSPRINGI_INLINE void assemble_lattice(const mspringi_system *system, const mspri
     assemble_lattice_rows(system, spans, count, damped, false);
 }
 
-MSPRINGI_INLINE void hand_on_forces(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+MSPRINGI_INLINE void assemble_carry(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
                                     bool damped) {
     assemble_lattice_rows(system, spans, count, damped, true);
 }
@@ -322,7 +322,7 @@ MSPRINGI_INLINE void assemble_chain(const mspringi_system *system, const mspring
             memset(s->carry_xx + carry, 0, slots * sizeof *s->carry_xx);
             memset(s->carry_xy + carry, 0, slots * sizeof *s->carry_xy);
             memset(s->carry_yy + carry, 0, slots * sizeof *s->carry_yy);
-            go_on(&strip, slots);
+            continue_strip(&strip, slots);
         }
     }
 }
@@ -343,12 +343,12 @@ static void assemble_chain_damped(const mspringi_system *system, const mspringi_
     assemble_chain(system, spans, count, true);
 }
 
-static void hand_on_forces_plain(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
-    hand_on_forces(system, spans, count, false);
+static void assemble_carry_plain(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
+    assemble_carry(system, spans, count, false);
 }
 
-static void hand_on_forces_damped(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
-    hand_on_forces(system, spans, count, true);
+static void assemble_carry_damped(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
+    assemble_carry(system, spans, count, true);
 }
 
 #endif

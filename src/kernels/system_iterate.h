@@ -140,9 +140,9 @@ static void inertia_of_tile(const mspringi_iterate *n, const float *mass, const 
 }
 
 static void restrict_to_tile(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count, double *to) {
-    part_vec sum_x[PART_VECTORS], sum_y[PART_VECTORS], sum_turn[PART_VECTORS];
+    part_vec sum_x[PART_VECTORS], sum_y[PART_VECTORS], sum_moment[PART_VECTORS];
     for (size_t v = 0; v < PART_VECTORS; ++v)
-        sum_x[v] = sum_y[v] = sum_turn[v] = part_set(0.0f);
+        sum_x[v] = sum_y[v] = sum_moment[v] = part_set(0.0f);
     for (size_t p = 0; p < count; ++p) {
         for (size_t v = 0; v < PART_VECTORS; ++v) {
             const size_t slot = parts[p].first_slot + v * PART_LANES;
@@ -151,43 +151,43 @@ static void restrict_to_tile(const mspringi_iterate *n, const mspringi_tile_part
             const part_vec y = part_mul(weight, part_load(n->residual_y + slot));
             sum_x[v] = part_add(sum_x[v], x);
             sum_y[v] = part_add(sum_y[v], y);
-            sum_turn[v] = part_add(sum_turn[v], part_sub(part_mul(part_load(n->arm_x + slot), y),
-                                                         part_mul(part_load(n->arm_y + slot), x)));
+            sum_moment[v] = part_add(sum_moment[v], part_sub(part_mul(part_load(n->arm_x + slot), y),
+                                                             part_mul(part_load(n->arm_y + slot), x)));
         }
     }
     to[0] = sum_part(sum_x);
     to[1] = sum_part(sum_y);
-    to[2] = sum_part(sum_turn);
+    to[2] = sum_part(sum_moment);
 }
 
 // True if a part is the first of those at its slots.
-static inline bool begins_group(const mspringi_tile_part *parts, size_t p) {
+static inline bool is_first_at_slots(const mspringi_tile_part *parts, size_t p) {
     return p == 0 || parts[p].first_slot != parts[p - 1].first_slot;
 }
 
 // Set the direction. A part writes the motion of its tile to its own slots; parts of other tiles at the same slots
 // add theirs later.
-MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                          const double (*bodies)[3], float beta, mspringi_search_update what) {
+MSPRINGI_INLINE void update_search(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                                   const double (*bodies)[3], float beta, mspringi_search_update what) {
     const part_vec betas = part_set(beta);
     for (size_t p = 0; p < count; ++p) {
         const double *body = bodies[parts[p].tile];
         const part_vec shift_x = part_set((float)body[0]), shift_y = part_set((float)body[1]);
         const part_vec angle = part_set((float)body[2]);
-        const bool begins = begins_group(parts, p);
+        const bool is_first = is_first_at_slots(parts, p);
         for (size_t v = 0; v < PART_VECTORS; ++v) {
             const size_t slot = parts[p].first_slot + v * PART_LANES;
             const part_vec weight = part_load(mspringi_part_weights[parts[p].lanes] + v * PART_LANES);
             part_vec x = part_mul(weight, part_sub(shift_x, part_mul(part_load(n->arm_y + slot), angle)));
             part_vec y = part_mul(weight, part_add(shift_y, part_mul(part_load(n->arm_x + slot), angle)));
-            if (!begins) {
+            if (!is_first) {
                 x = part_add(part_load(n->direction_x + slot), x);
                 y = part_add(part_load(n->direction_y + slot), y);
             } else if (what != MSPRINGI_SEARCH_COARSE_ONLY) {
                 x = part_add(part_load(n->scaled_x + slot), x);
                 y = part_add(part_load(n->scaled_y + slot), y);
             }
-            if (begins && what == MSPRINGI_SEARCH_CONTINUE) {
+            if (is_first && what == MSPRINGI_SEARCH_CONTINUE) {
                 x = part_add(x, part_mul(betas, part_load(n->direction_x + slot)));
                 y = part_add(y, part_mul(betas, part_load(n->direction_y + slot)));
             }
@@ -197,19 +197,19 @@ MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *p
     }
 }
 
-static void turn_bodies(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                        const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_COARSE_ONLY);
+static void search_coarse_only(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                               const double (*bodies)[3], float beta) {
+    update_search(n, parts, count, bodies, beta, MSPRINGI_SEARCH_COARSE_ONLY);
 }
 
-static void turn_afresh(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                        const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_RESTART);
+static void search_restart(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                           const double (*bodies)[3], float beta) {
+    update_search(n, parts, count, bodies, beta, MSPRINGI_SEARCH_RESTART);
 }
 
-static void turn_further(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                         const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_CONTINUE);
+static void search_continue(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                            const double (*bodies)[3], float beta) {
+    update_search(n, parts, count, bodies, beta, MSPRINGI_SEARCH_CONTINUE);
 }
 
 #endif

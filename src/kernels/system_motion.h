@@ -8,10 +8,11 @@
 
 #include "kernels/system_iterate.h"
 
-static void weigh(const float *restrict inverse_mass, float scale, float *restrict mass, size_t first, size_t end) {
+static void scale_masses(const float *restrict inverse_mass, float scale, float *restrict mass, size_t first,
+                         size_t end) {
     for (size_t i = first; i < end; ++i) {
-        const float inverse = inverse_mass[i], heavy = scale / inverse;
-        mass[i] = inverse > 0.0f ? heavy : 0.0f;
+        const float inverse = inverse_mass[i], scaled_mass = scale / inverse;
+        mass[i] = inverse > 0.0f ? scaled_mass : 0.0f;
     }
 }
 
@@ -45,8 +46,8 @@ MSPRINGI_INLINE void add_moments(tile_moments *to, const mspringi_prediction *f,
     }
 }
 
-static void aim_tile(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
-                     mspringi_tile_motion *to) {
+static void find_tile_motion(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
+                             mspringi_tile_motion *to) {
     tile_moments moments;
     for (size_t i = 0; i < 7; ++i)
         for (size_t v = 0; v < PART_VECTORS; ++v)
@@ -78,17 +79,17 @@ static void aim_tile(const mspringi_prediction *f, const mspringi_tile_part *par
 }
 
 // Write to a tile's slots of a part, and 0 to the others, unless another part at these slots came first.
-MSPRINGI_INLINE void put_part(float *to, part_vec weight, part_vec value, bool begins) {
+MSPRINGI_INLINE void put_part(float *to, part_vec weight, part_vec value, bool is_first) {
     const part_vec own = part_mul(weight, value);
-    part_store(to, begins ? own : part_add(part_load(to), own));
+    part_store(to, is_first ? own : part_add(part_load(to), own));
 }
 
-static void fly(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
-                const mspringi_tile_motion *tiles) {
+static void rotate_tiles(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
+                         const mspringi_tile_motion *tiles) {
     const part_vec h = part_set(f->h);
     for (size_t p = 0; p < count; ++p) {
         const mspringi_tile_motion *t = &tiles[parts[p].tile];
-        const bool begins = begins_group(parts, p);
+        const bool is_first = is_first_at_slots(parts, p);
         const part_vec inward = part_set(t->inward), sideways = part_set(t->sideways);
         for (size_t v = 0; v < PART_VECTORS; ++v) {
             const size_t at = parts[p].first_slot + v * PART_LANES;
@@ -101,10 +102,10 @@ static void fly(const mspringi_prediction *f, const mspringi_tile_part *parts, s
             const part_vec turned_y = part_add(part_mul(inward, y), part_mul(sideways, x));
             const part_vec moved_x = part_sub(part_mul(h, vx), part_set(t->hvx));
             const part_vec moved_y = part_sub(part_mul(h, vy), part_set(t->hvy));
-            put_part(f->turned_x + at, weight, turned_x, begins);
-            put_part(f->turned_y + at, weight, turned_y, begins);
-            put_part(f->arm_x + at, weight, part_add(part_add(x, turned_x), moved_x), begins);
-            put_part(f->arm_y + at, weight, part_add(part_add(y, turned_y), moved_y), begins);
+            put_part(f->turned_x + at, weight, turned_x, is_first);
+            put_part(f->turned_y + at, weight, turned_y, is_first);
+            put_part(f->arm_x + at, weight, part_add(part_add(x, turned_x), moved_x), is_first);
+            put_part(f->arm_y + at, weight, part_add(part_add(y, turned_y), moved_y), is_first);
         }
     }
 }
@@ -131,8 +132,8 @@ static void predict(const mspringi_prediction *f, size_t first, size_t end) {
                        f->first_share, f->rate, f->to_y, f->start_vy);
 }
 
-MSPRINGI_INLINE void add_some_outside(const mspringi_outside *outside, float *restrict residual, size_t first,
-                                      size_t end, bool forced, bool second) {
+MSPRINGI_INLINE void add_outside_terms(const mspringi_outside *outside, float *restrict residual, size_t first,
+                                       size_t end, bool forced, bool second) {
     const mspringi_outside o = *outside;
     const float *restrict const mass = o.mass, *restrict const velocity = o.velocity;
     const float *restrict const turned = o.turned, *restrict const force = o.force;
@@ -150,22 +151,22 @@ MSPRINGI_INLINE void add_some_outside(const mspringi_outside *outside, float *re
 
 static void add_outside(const mspringi_outside *o, float *residual, size_t first, size_t end) {
     if (o->force && o->second)
-        add_some_outside(o, residual, first, end, true, true);
+        add_outside_terms(o, residual, first, end, true, true);
     else if (o->force)
-        add_some_outside(o, residual, first, end, true, false);
+        add_outside_terms(o, residual, first, end, true, false);
     else if (o->second)
-        add_some_outside(o, residual, first, end, false, true);
+        add_outside_terms(o, residual, first, end, false, true);
     else
-        add_some_outside(o, residual, first, end, false, false);
+        add_outside_terms(o, residual, first, end, false, false);
 }
 
 // Correct one coordinate. A pinned particle has d = 0.
-MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const float *restrict start,
-                          const float *restrict inverse_mass, const float *restrict solution,
-                          const float *restrict direction, const float *from, const float *low,
-                          const float *history, float alpha, float h, float rate, float *restrict position,
-                          float *restrict velocity, float *restrict to_low, float *restrict to_first,
-                          float *restrict to_second, mspringi_history_kind memory) {
+MSPRINGI_INLINE void correct(size_t count, const double *restrict predicted, const float *restrict start,
+                             const float *restrict inverse_mass, const float *restrict solution,
+                             const float *restrict direction, const float *from, const float *low,
+                             const float *history, float alpha, float h, float rate, float *restrict position,
+                             float *restrict velocity, float *restrict to_low, float *restrict to_first,
+                             float *restrict to_second, mspringi_history_kind memory) {
     const float per_h = 1.0f / h;
     for (size_t i = 0; i < count; ++i) {
         const float d = solution[i] + alpha * direction[i], v = velocity[i];
@@ -196,7 +197,7 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
 // By blocks, through copies on the stack, so that the history may be updated in place. Positions are copied, too,
 // since V8 11.3 (node 20) reads one for a conversion to double after it has been written.
 #define MSPRINGI_CORRECT(name, memory)                                                                             \
-    static void land_##name(const mspringi_correction *l, size_t first, size_t end) {                              \
+    static void correct_##name(const mspringi_correction *l, size_t first, size_t end) {                           \
         for (size_t i = first; i < end; i += MSPRINGI_WIDTH) {                                                     \
             float from[MSPRINGI_WIDTH], low[MSPRINGI_WIDTH], history[MSPRINGI_WIDTH], unused[MSPRINGI_WIDTH];      \
             for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {                                                 \
@@ -204,17 +205,17 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
                 low[lane] = l->low[i + lane];                                                                      \
                 history[lane] = l->first[i + lane];                                                                \
             }                                                                                                      \
-            land(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,             \
-                 l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->position + i, l->velocity + i,  \
-                 l->to_low + i, l->to_first + i, memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused,      \
-                 memory);                                                                                          \
+            correct(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,          \
+                    l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->position + i,                \
+                    l->velocity + i, l->to_low + i, l->to_first + i,                                               \
+                    memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused, memory);                          \
         }                                                                                                          \
     }
 
-MSPRINGI_CORRECT(nothing, MSPRINGI_HISTORY_NONE)
-MSPRINGI_CORRECT(change, MSPRINGI_HISTORY_VELOCITY_CHANGE)
+MSPRINGI_CORRECT(none, MSPRINGI_HISTORY_NONE)
+MSPRINGI_CORRECT(velocity_change, MSPRINGI_HISTORY_VELOCITY_CHANGE)
 MSPRINGI_CORRECT(acceleration, MSPRINGI_HISTORY_ACCELERATION)
-MSPRINGI_CORRECT(both, MSPRINGI_HISTORY_BDF2)
+MSPRINGI_CORRECT(bdf2, MSPRINGI_HISTORY_BDF2)
 
 #undef MSPRINGI_CORRECT
 #undef PART_VECTORS

@@ -42,7 +42,7 @@ MSPRINGI_PRODUCT void add_product(product_sums *sums, size_t slot, displacement 
 
 MSPRINGI_PRODUCT float multiply_lattice_rows(const mspringi_system *system, const mspringi_span *spans,
                                              uint32_t count, const float *from_x, const float *from_y, float *to_x,
-                                             float *to_y, bool only_hand_on) {
+                                             float *to_y, bool only_carry) {
     const float *const mass = system->mass;
     float *const carry_x = system->carry_xx, *const carry_y = system->carry_xy;
     const size_t factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
@@ -64,7 +64,7 @@ MSPRINGI_PRODUCT float multiply_lattice_rows(const mspringi_system *system, cons
             const displacement north_east =
                 spring_product(here, above_next, factors + MSPRINGI_NORTH_EAST * factor);
             const displacement south_east = spring_product(above, next, factors + MSPRINGI_SOUTH_EAST * factor);
-            if (!only_hand_on) {
+            if (!only_carry) {
                 const displacement east = spring_product(here, next, factors + MSPRINGI_EAST * factor);
                 const displacement right = {add(east.x, south_east.x), add(east.y, south_east.y)};
                 const vec force_x = sub(add(load(carry_x + carry), add(add(east.x, north.x), north_east.x)),
@@ -94,8 +94,8 @@ static float multiply_lattice(const mspringi_system *system, const mspringi_span
     return multiply_lattice_rows(system, spans, count, from_x, from_y, to_x, to_y, false);
 }
 
-static void hand_on_product(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
-                            const float *from_x, const float *from_y) {
+static void multiply_carry(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                           const float *from_x, const float *from_y) {
     (void)multiply_lattice_rows(system, spans, count, from_x, from_y, NULL, NULL, true);
 }
 

@@ -15,7 +15,7 @@ MSPRINGI_INLINE uint32_t bits_outside(vec square, const float *low, const float 
 }
 
 // mspringi_yield_bounds_of() for springs with a changed rest length.
-static inline void renew_bounds(const mspringi_yield_test *t, size_t spring_slot, vec moved, vec to) {
+static inline void update_bounds(const mspringi_yield_test *t, size_t spring_slot, vec moved, vec to) {
     const vec nominal = load(t->nominal + spring_slot), hardening = load(t->hardening + spring_slot),
               one = set(1.0f);
     const vec limit = load(t->plastic_limit + spring_slot), zeros = zero(), none = set(-1.0f), all = set(INFINITY);
@@ -59,22 +59,23 @@ static inline void flow(const mspringi_yield_test *t, size_t spring_slot, vec sq
                    lane = spring_slot % MSPRINGI_WIDTH;
     if (!bits)
         return;
-    mspringi_yield_keep(t, spring_slot / MSPRINGI_WIDTH, bits << lane, rests - lane);
+    mspringi_yield_save(t, spring_slot / MSPRINGI_WIDTH, bits << lane, rests - lane);
     const vec excess = sub(add(length, mul(hardening, nominal)), mul(whole, rest));
     const vec heat = mul(stiffness, mul(moved, sub(excess, mul(mul(set(0.5f), whole), moved))));
     const vec sum = load(t->heat + spring_slot), more = add(sum, heat), back = sub(zeros, moved);
     store(t->heat + spring_slot, choose_positive(moved, more, choose_positive(back, more, sum)));
     store(rests, to);
-    renew_bounds(t, spring_slot, moved, to);
+    update_bounds(t, spring_slot, moved, to);
 }
 
 // Handle LANES springs of which some are warm or flow: rare. It changes rest lengths, not positions.
-static MSPRINGI_NOINLINE void let_yield(const mspringi_yield_test *t, size_t spring_slot, uint32_t directions,
-                                        const vec *squares, float *rests, const float *stiffnesses, size_t part) {
+static MSPRINGI_NOINLINE void yield_springs(const mspringi_yield_test *t, size_t spring_slot, uint32_t directions,
+                                            const vec *squares, float *rests, const float *stiffnesses,
+                                            size_t part) {
     for (uint32_t d = 0; d < directions; ++d, spring_slot += MSPRINGI_WIDTH) {
         if (t->looks) {
             const uint32_t warm = bits_outside(squares[d], t->low + spring_slot, t->high + spring_slot);
-            mspringi_yield_note(t, spring_slot / MSPRINGI_WIDTH, warm << spring_slot % MSPRINGI_WIDTH);
+            mspringi_yield_mark_warm(t, spring_slot / MSPRINGI_WIDTH, warm << spring_slot % MSPRINGI_WIDTH);
         }
         if (t->maps && bits_outside(squares[d], t->flow_low + spring_slot, t->flow_high + spring_slot))
             flow(t, spring_slot, squares[d], rests + d * MSPRINGI_WIDTH, stiffnesses + d * part);
