@@ -5,7 +5,8 @@ export const CONTENTS = [
     ['Ten live figures', 'examples/guides/figures.html'],
     ['Choose a solver', 'examples/guides/choose.html'],
     ['The whole README', 'README.html'],
-    ['Install and link', 'README.html#install'],
+    ['Build and install', 'examples/guides/building.html'],
+    ['Vendoring', 'examples/guides/vendoring.html'],
     ['Examples', 'examples/README.html'],
   ] },
   { title: 'Guide', links: [
@@ -19,6 +20,7 @@ export const CONTENTS = [
     ['Sleep', 'examples/guides/sleep.html'],
     ['Batches', 'examples/guides/batches.html'],
     ['Determinism', 'examples/guides/determinism.html'],
+    ['Limits', 'examples/guides/limits.html'],
   ] },
   { title: 'Move here', links: [
     ['From Box2D, Chipmunk, Verlet', 'examples/guides/migration.html'],

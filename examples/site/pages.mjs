@@ -200,7 +200,7 @@ function referenceIndex() {
 /* ---------------------------------------------------------------------------------------------------------- all */
 
 // The first page is the README down to its commands.
-const readme = readFileSync(join(source, 'README.md'), 'utf8'), opening = readme.slice(0, readme.indexOf('\n## '));
+const readme = readFileSync(join(source, 'README.md'), 'utf8'), opening = readme.slice(0, readme.indexOf('\n## Two commands'));
 fromMarkdown('README.md', opening.replace(/^(# .*\n\n[^]*?\n\n)/, '$1<!-- figure jelly -->\n\n'), 'index.html');
 waiting.push('README.md', ...CONTENTS.flatMap(({ links }) => links.map(([, goal]) => goal.split('#')[0]))
   .filter((goal) => goal.endsWith('.html') && goal !== 'index.html' && !goal.startsWith('reference/'))

@@ -8,8 +8,9 @@
 
 #include <float.h>
 
-// The same bits on every machine take arithmetic in the types as written.
-#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0
+// The same bits on every machine take arithmetic in the types as written. Of 16 and 32 bits: types narrower than these
+// alone are computed in them (ISO/IEC TS 18661-3), as _Float16 of CPUs with AVX512-FP16.
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16 && FLT_EVAL_METHOD != 32
 #error "this target computes in wider types than the source has: on i386 use -msse2 -mfpmath=sse"
 #endif
 

@@ -1,5 +1,5 @@
 /// @file network.h
-/// What a network holds.
+/// The data of a network.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_NETWORK_H
@@ -20,17 +20,16 @@
 #include "store/solver.h"
 #include "tasks/tasks.h"
 
-/// What a step changes. The arrays lie behind one another in one block of memory, so that they can be copied at
-/// once. Positions are x + low_x and y + low_y: what a substep adds to a position would be rounded away the more
-/// of, the shorter the substep is.
+/// State that a step changes. One allocation, so that one copy saves it. Positions are x + low_x and y + low_y: a
+/// short substep moves a particle by less than a float's last place.
 typedef struct mspringi_state {
     float *x, *y, *vx, *vy;
     float *low_x, *low_y; ///< m, beyond single precision
 } mspringi_state;
 enum { MSPRINGI_STATE_ARRAYS = 6 };
 
-/// Part of a coordinate that its low word is at most, some units in the last place. A larger one was left by
-/// another coordinate, which somebody has written over through a view, and counts as 0.
+/// Largest low word relative to its coordinate. A larger one belongs to a coordinate that was overwritten through a
+/// view, and counts as 0.
 #define MSPRINGI_LARGEST_LOW 0x1p-21f
 
 static inline float mspringi_low_of(float coordinate, float low) {
@@ -579,10 +578,8 @@ mspring_result mspringi_check_settings(const mspring_settings *settings, mspring
 /// Refuse solver definitions that mspring_network_set_solver() would.
 mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message);
 
-/// Take back what a hook, or the host through a view, has written to slots without particle, of those in use.
+/// Clear slots without particle, which a hook or a view may have written to: among those in use, and behind them.
 void mspringi_clear_empty_slots(const mspring_network *network);
-
-/// The same of the others: spare slots behind those in use.
 void mspringi_clear_unused_slots(const mspring_network *network);
 
 /// Drop the low words that are too large for their coordinates.

@@ -370,6 +370,87 @@ static void push_and_bend(mspring_network *network, uint32_t step) {
     check_ok(mspring_network_set_rest_angles(network, first, 28, &bends[step % 3], 0));
 }
 
+/// Blocks, a rope and a loose particle that fall into a valley of heights with a wall, silt above one part of it.
+static mspring_network *on_floor(mspring_network_def *def) {
+    static const float heights[] = {4, 0.5f, -1, -0.5f, -1.5f, 0, 1, 5};
+    static const float frictions[] = {0.9f, 0.2f, 0, 0.5f, 1, 0.4f, 0.1f};
+    static const double wall[] = {-9, 0, 1, 0.2};
+    mspring_network *network = contact(def);
+    mspring_floor_def ground;
+    check_ok(mspring_network_set_contact(network, NULL));
+    check_ok(mspring_floor_def_init(&ground, sizeof ground));
+    ground.heights_x = -12;
+    ground.heights_y = -1.5;
+    ground.spacing = 4;
+    ground.heights = heights;
+    ground.height_count = COUNT_OF(heights);
+    ground.height_frictions = frictions;
+    ground.planes = wall;
+    ground.plane_count = 1;
+    ground.friction = 0.3f;
+    ground.restitution = 0.4f;
+    ground.silt_depth = 0.5f;
+    ground.silt_rate = 3;
+    check_ok(mspring_network_set_floor(network, &ground));
+    return network;
+}
+
+static mspring_network *implicit_floor(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_IMPLICIT;
+    return on_floor(def);
+}
+
+static mspring_network *direct_floor(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_DIRECT;
+    return on_floor(def);
+}
+
+/// Everything, held by grips: two on one particle, one of them bounded, one on a rope.
+static mspring_network *grips(mspring_network_def *def) {
+    static const float stiffnesses[] = {3000, 2e4f, 500, 1e6f}, bounds[] = {800, MSPRING_NEVER, 50, 4000};
+    static const mspring_id particles[] = {40, 40, 715, 300};
+    mspring_network *network = everything_damped(def);
+    for (int i = 0; i < 4; i++) {
+        mspring_grip_def grip;
+        double x, y;
+        check_ok(mspring_grip_def_init(&grip, sizeof grip));
+        check_ok(mspring_network_get_positions(network, particles[i], 1, &x, &y, 1));
+        grip.particle = particles[i];
+        grip.x = x + 0.5;
+        grip.y = y + 2.0 - i;
+        grip.stiffness = stiffnesses[i];
+        grip.damping = 0.02f * stiffnesses[i];
+        grip.max_force = bounds[i];
+        check_ok(mspring_network_add_grip(network, &grip, NULL));
+    }
+    return network;
+}
+
+static void push_and_drag(mspring_network *network, uint32_t step) {
+    push_some(network, step);
+    check_ok(mspring_network_move_grip(network, step % 4, 0.1 * step, 5 - 0.2 * (step % 11)));
+}
+
+static mspring_network *implicit_grips(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_IMPLICIT;
+    return grips(def);
+}
+
+static mspring_network *direct_grips(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_DIRECT;
+    return grips(def);
+}
+
+static mspring_network *implicit_angles(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_IMPLICIT;
+    return angles(def);
+}
+
+static mspring_network *direct_angles(mspring_network_def *def) {
+    def->solver = MSPRING_SOLVER_DIRECT;
+    return angles(def);
+}
+
 const golden_scene golden_scenes[] = {
     {"bar_80x5", bar_80x5, NULL, 30, 64, 1.0 / 64, false},
     {"bar_544x68", bar_544x68, NULL, 30, 3, 1.0 / 64, true},
@@ -405,6 +486,14 @@ const golden_scene golden_scenes[] = {
     {"all_areas", all_areas, push_some, 10, 100, 1.0 / 64, false},
     {"implicit_areas", all_areas, push_and_change_solver, 10, 80, 1.0 / 64, false},
     {"angles", angles, push_and_bend, 10, 60, 1.0 / 64, false},
+    {"implicit_angles", implicit_angles, push_and_bend, 2, 60, 1.0 / 64, false},
+    {"direct_angles", direct_angles, push_and_bend, 2, 60, 1.0 / 64, false},
+    {"floor", on_floor, NULL, 20, 160, 1.0 / 64, false},
+    {"implicit_floor", implicit_floor, NULL, 2, 80, 1.0 / 64, false},
+    {"direct_floor", direct_floor, NULL, 2, 80, 1.0 / 64, false},
+    {"grips", grips, push_and_drag, 10, 80, 1.0 / 64, false},
+    {"implicit_grips", implicit_grips, push_and_drag, 2, 80, 1.0 / 64, false},
+    {"direct_grips", direct_grips, push_and_drag, 2, 80, 1.0 / 64, false},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

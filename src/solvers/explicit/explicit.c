@@ -15,9 +15,7 @@
 #include "store/record_sharing.h"
 #include "tasks/team.h"
 
-/// Strips that are swept several times in one pass should stay in the second-level cache: this much of it. Where
-/// only a few substeps would find room there (strips are long, or ropes ask for a large skew), more of them are
-/// better off in the third level: this much of it.
+/// Cache for the strips of a pass: the second level, or the third where the second holds FEW_SUBSTEPS at most.
 #define NEAR_CACHE_BYTES ((size_t)1 << 20)
 #define FAR_CACHE_BYTES ((size_t)4 << 20)
 #define FEW_SUBSTEPS 4u
@@ -25,19 +23,18 @@
 /// Springs of the irregular part times substeps from which more than one worker is worth it.
 #define SMALLEST_SHARED_IRREGULAR 400000u
 
-/// What the workers of a sweep have in common. (The job of network/job.h is another thing.)
+/// Data that the workers of a sweep share.
 typedef struct job {
     const mspring_network *network;
     mspringi_field base;
     float h;
-    uint32_t count;               ///< substeps
-    uint32_t workers;             ///< bodies that run at the same time
-    mspringi_progress *progress;  ///< [workers]; NULL for one
-    mspringi_partition partition; ///< (wavefront)
-    const mspringi_strip
-        *irregular; ///< the irregular row's, if that is swept in layers, as strips of a wavefront of its own
-    mspringi_extrema *all_extrema; ///< [workers] if the substeps are a whole step; else NULL
-    bool bundles_are_apart;        ///< and not to be swept here
+    uint32_t count;                  ///< substeps
+    uint32_t workers;                ///< bodies that run at the same time
+    mspringi_progress *progress;     ///< [workers]; NULL for one
+    mspringi_partition partition;    ///< (wavefront)
+    const mspringi_strip *irregular; ///< the irregular row's tiers, as a wavefront of their own; or NULL
+    mspringi_extrema *all_extrema;   ///< [workers] if the substeps are a whole step; else NULL
+    bool bundles_are_apart;          ///< and not to be swept here
 } job;
 
 /* ---------------------------------------------------------------------------------------------- the wavefront */
@@ -76,7 +73,7 @@ uint32_t mspringi_explicit_carry_rows(const mspring_network *network) {
     return network->depth < enough ? network->depth : enough;
 }
 
-// If the substeps are a whole step, have the first one keep the state and the last one look at it.
+// The first substep of a whole step saves the state, the last one tracks extrema.
 static void mark_ends(const job *wavefront, mspringi_substep *substep, uint32_t number,
                       mspringi_extrema_lanes *watch) {
     if (wavefront->all_extrema && number == 0)
@@ -89,7 +86,7 @@ static void add_extrema(const job *wavefront, uint32_t worker, mspringi_extrema 
     wavefront->all_extrema[worker] = mspringi_extrema_join(wavefront->all_extrema[worker], extrema);
 }
 
-// Take one substep of a strip and, if it is the last of a whole step, what belongs after it.
+// Take one substep of a strip.
 static void sweep_strip(const job *wavefront, const mspringi_substep *substep, uint32_t worker,
                         const mspringi_strip *strip, const mspringi_halo *halo) {
     if (mspringi_sleep_state_of_strip(wavefront->network, strip) == MSPRINGI_ASLEEP)
@@ -271,8 +268,7 @@ static const mspringi_strip *find_irregular_strip(const mspringi_topology *t) {
     return NULL;
 }
 
-// Substeps for which layers of the irregular row fit so much cache, at least one: a pass has as many under way, and
-// two.
+// Substeps, at least one, whose layers fit the cache: a pass keeps two more layers than substeps in it.
 static uint32_t irregular_depth_within(const job *wavefront, size_t cache_bytes) {
     const mspringi_topology *t = &wavefront->network->topology;
     const uint32_t first = t->spans[t->rows[wavefront->irregular->first_row].first_span].first_record;
@@ -286,9 +282,8 @@ static uint32_t irregular_depth_within(const job *wavefront, size_t cache_bytes)
     return layers < 3 ? 1 : layers - 2 < MSPRINGI_DEEPEST_PASS ? (uint32_t)layers - 2 : MSPRINGI_DEEPEST_PASS;
 }
 
-// Sweep the irregular row in layers, if it has them and that is worth it: for several substeps, where a wavefront
-// has work for all workers. (100,000 particles of about 8 neighbours, which take 15 MB, 40 substeps, on a Zen 4
-// whose third-level cache others use, too: 28 ms instead of 60 to 75.)
+// Sweep the irregular row in layers for several substeps, if the wavefront has work for all workers. (Zen 4, shared
+// third-level cache, 100,000 particles of about 8 neighbours, 40 substeps: 28 ms; without 60 to 75.)
 static bool sweep_layers(const mspring_network *network, float h, mspringi_field base, uint32_t count,
                          mspringi_extrema *all_extrema) {
     const mspringi_topology *t = &network->topology;

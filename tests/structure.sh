@@ -1,0 +1,81 @@
+#!/bin/sh
+# The rules of src that a script can check; CONTRIBUTING.md has all of them.
+#
+#   tests/structure.sh SOURCE
+#
+# - A folder includes only folders above it in the map of src/README.md, so there are no cycles.
+# - The base name of a file is unique; a file has at most 600 lines, a function 60.
+# - No identifier is in use that was replaced by the field's name (tests/old_names.txt).
+# - Subjects of commits have at most 60 characters, from FIRST on. A shallow clone is not checked for that.
+set -eu
+FIRST=e1369fbbf87335dc2525e58c932e01728e43f0a0
+cd "$1/src"
+wrong=0
+
+# Print what is wrong, if anything is.
+expect_none() { # text, what is wrong with each of its lines
+  [ -z "$1" ] || {
+    echo "$1" | sed "s/^/WRONG: $2: /"
+    wrong=1
+  }
+}
+
+ranks=$(sed -n '/^## The folders/,/^## Equilibrium/s/^| \(`[^|]*\) |.*/\1/p' README.md | tr -d '`,')
+[ -n "$ranks" ] || {
+  echo "src/README.md has no table of folders" >&2
+  exit 1
+}
+grep -rn '^ *# *include "' --include='*.[ch]' --include='*.def' . | sed 's#^\./##' | awk -v ranks="$ranks" '
+  BEGIN {
+    count = split(ranks, name, /[ \n]+/)
+    for (i = 1; i <= count; i++) {
+      sub("/$", "", name[i])
+      rank[name[i]] = i
+    }
+  }
+  {
+    from = $0
+    sub("/.*", "", from)
+    to = $0
+    sub("^[^\"]*\"", "", to)
+    sub("\".*", "", to)
+    if (to !~ "/")
+      next
+    sub("/.*", "", to)
+    checked++
+    if (!(from in rank) || !(to in rank)) {
+      print "WRONG: the map of src/README.md lacks a folder: " $0
+      wrong++
+    } else if (rank[to] > rank[from]) {
+      print "WRONG: " from "/ stands above " to "/: " $0
+      wrong++
+    }
+  }
+  END {
+    print checked + 0 " includes, " wrong + 0 " wrong"
+    exit wrong > 0 || checked < 100
+  }' || wrong=1
+
+expect_none "$(find . -name '*.[ch]' -o -name '*.def' | sed 's#.*/##' | sort | uniq -d)" 'two files have this name'
+
+expect_none "$(find . -name '*.[ch]' -exec wc -l {} + | awk '$1 > 600 && $2 != "total" { print $2 " has " $1 }')" \
+  'a file has more than 600 lines'
+
+# clang-format puts the head of a function and its closing brace at the beginning of a line, and nothing else so.
+expect_none "$(find . -name '*.[ch]' -exec awk '
+  FNR == 1 { inside = 0 }
+  /^[a-zA-Z].*\(/ && !inside { start = FNR }
+  /^[^ \/].*\{$/ && !inside && !/^(typedef|struct|enum|union)/ && !/= \{/ { inside = 1 }
+  /^\}/ {
+    if (inside && FNR - start + 1 > 60)
+      print FILENAME ":" start " has " FNR - start + 1
+    inside = 0
+  }' {} +)" 'a function has more than 60 lines'
+
+cd ..
+expect_none "$(grep -rnowFf tests/old_names.txt src tests --include='*.[ch]' --include='*.def')" 'an old name'
+
+if git rev-parse --quiet --verify "$FIRST^{commit}" >/dev/null 2>&1; then
+  expect_none "$(git log --no-merges --format='%h %s' "$FIRST..HEAD" | awk 'length($0) - index($0, " ") > 60')" 'a long subject'
+fi
+exit $wrong
