@@ -21,7 +21,7 @@ mspring_result mspringi_sleep_reserve(mspring_network *network) {
         return MSPRING_OK;
     mspring_result result = mspringi_incidence_reserve(network);
     if (result == MSPRING_OK && !mspringi_store_reserve(network, MSPRINGI_STORE_SLEEP))
-        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the sleep of %zu slots",
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to let %zu slots sleep",
                                mspringi_slot_count(network));
     return result;
 }

@@ -34,7 +34,7 @@ mspring_result mspringi_stability_limit_reserve(mspring_network *network) {
                                             sizeof *network->guard_scratch);
     if (!network->guard_scratch)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                             "no memory to look at the stability of %zu slots", slots);
+                             "no memory to check the stability of %zu slots", slots);
     for (size_t slot = 0; slot < slots; ++slot)
         network->guard_scratch[slot] = 1.0f;
     return MSPRING_OK;

@@ -112,11 +112,10 @@ mspring_result mspring_network_suggest_substeps(mspring_network *network, double
     if (result != MSPRING_OK)
         return result;
     if (!(dt > 0.0 && dt < INFINITY) || !(safety > 0.0 && safety <= 1.0) || !substeps)
-        return mspringi_fail(
-            &network->message, MSPRING_ERROR_ARGUMENT,
-            "substeps of %g s with safety %g: dt must be finite and > 0, safety > 0 and at most 1, and "
-            "the place for the answer not NULL",
-            dt, safety);
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "dt is %g s, safety %g: dt must be finite and > 0, safety > 0 and at most 1, and "
+                             "substeps not NULL",
+                             dt, safety);
     double now;
     result = mspring_network_stable_dt(network, &now, NULL);
     if (result != MSPRING_OK)

@@ -97,8 +97,8 @@ static mspring_result check_floating(mspringi_statics *statics, const mspring_se
     component *components = mspringi_alloc(&network->memory, statics->particle_count, sizeof *components);
     mspring_result result = MSPRING_OK;
     if (!up || !components) {
-        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the parts of %u particles",
-                               (unsigned)statics->particle_count);
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                               "no memory for the components of %u particles", (unsigned)statics->particle_count);
     } else {
         join_components(statics, up);
         sum_components(statics, up, components);
@@ -112,8 +112,9 @@ static mspring_result check_floating(mspringi_statics *statics, const mspring_se
                 ++*left_alone;
             } else {
                 result = mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
-                                       "no spring leads from particle %u to a pinned one, directly or through "
-                                       "others: there is no equilibrium for it under (%g, %g) N",
+                                       "no equilibrium: particle %u is connected to no pinned particle, and "
+                                       "(%g, %g) N act on its component. Pin one, or set "
+                                       "MSPRING_SETTLE_LEAVE_FLOATING",
                                        (unsigned)p, components[lowest].x, components[lowest].y);
             }
         }
@@ -143,15 +144,17 @@ static double extent_of(const mspringi_statics *statics, const mspring_network *
 static mspring_result check_equilibrium(const mspringi_statics *statics, const mspringi_equilibrium *equilibrium,
                                         mspring_network *network) {
     if (!equilibrium->found)
-        return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
-                             "after %u iterations particle %u still feels %g N, and forces go up to %g N",
-                             (unsigned)equilibrium->iterations, (unsigned)equilibrium->residual.where,
-                             equilibrium->residual.force, equilibrium->residual.scale);
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_EQUILIBRIUM,
+            "no equilibrium after %u iterations: particle %u is still pulled by %g N (largest force: "
+            "%g N). Step with global_damping first",
+            (unsigned)equilibrium->iterations, (unsigned)equilibrium->residual.where, equilibrium->residual.force,
+            equilibrium->residual.scale);
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
         const double x = statics->start.x[p] + statics->moved.x[p], y = statics->start.y[p] + statics->moved.y[p];
         if (!(fabs(x) <= MSPRING_MAX_COORDINATE && fabs(y) <= MSPRING_MAX_COORDINATE))
             return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
-                                 "particle %u would come to rest at (%g, %g) m, out of bounds", (unsigned)p,
+                                 "no equilibrium within 1e12 m: particle %u would rest at (%g, %g) m", (unsigned)p,
                                  network->origin_x + x, network->origin_y + y);
     }
     return MSPRING_OK;
@@ -175,8 +178,8 @@ static mspring_result check_yields(const mspringi_statics *statics, mspring_netw
                      hardened = (double)p->hardening[spring_slot] * (rest - nominal) / nominal;
         if (fabs(strain - hardened) > TOLERATED_YIELD * (double)p->yield_strain[spring_slot])
             return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
-                                 "at rest the strain of spring %u would be %g, so it would yield first (yield "
-                                 "strain %g): let it come to rest in steps",
+                                 "no elastic equilibrium: spring %u would have strain %g, but yields at %g. Step "
+                                 "with global_damping instead",
                                  (unsigned)spring, strain, (double)p->yield_strain[spring_slot]);
     }
     return MSPRING_OK;

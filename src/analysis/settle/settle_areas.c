@@ -29,8 +29,8 @@ static mspring_result find_sides(mspringi_statics *statics, mspring_network *net
             statics->areas.sides[c] = spring == MSPRING_NONE ? MSPRING_NONE : numbers[spring];
             if (statics->areas.sides[c] == MSPRING_NONE)
                 return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                     "area %u has a side from particle %u on without a spring: settling takes none "
-                                     "of these",
+                                     "area %u has no spring on its side from particle %u on: an equilibrium needs "
+                                     "springs on all sides",
                                      (unsigned)a->list[i].id, (unsigned)a->corners[c].particle);
         }
     return MSPRING_OK;

@@ -33,7 +33,7 @@ static mspring_result allocate(mspringi_reference *r, mspring_network *network, 
         mspringi_free(&network->memory, block);
         mspringi_free(&network->memory, r->springs);
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                             "no memory for a reference of %zu particles in double precision", particles);
+                             "no memory for a reference run of %zu particles", particles);
     }
     for (size_t i = 0; i < count; ++i)
         *arrays[i] = block + i * particles;

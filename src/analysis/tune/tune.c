@@ -70,7 +70,7 @@ static mspring_result check_scene(const mspring_tune_scene *scene, double dt, ms
     if (result == MSPRING_OK && network->fractions.values)
         result = mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                "the network has relative springs, which would follow the substeps of the scene's "
-                               "fine run: give stiffness in N/m, or no scene");
+                               "fine run: set stiffness in N/m, or no scene");
     return result;
 }
 
@@ -89,7 +89,8 @@ static mspring_result check_def(const mspring_tune_def *def, mspringi_message *m
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "settings is NULL, but setting_count %u",
                              (unsigned)def->setting_count);
     if (!def->clock && !mspringi_clock())
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "this build has no clock: give one");
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "this build has no clock: set clock in mspring_tune_def");
     return MSPRING_OK;
 }
 
@@ -307,8 +308,7 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
     if (result != MSPRING_OK)
         return result;
     if (!rows || !count)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the place for rows, or their count, is NULL");
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "rows or count is NULL");
     if (!def) {
         (void)mspring_tune_def_init(&defaults, sizeof defaults);
         def = &defaults;

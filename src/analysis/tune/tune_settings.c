@@ -69,8 +69,7 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
     if (result != MSPRING_OK)
         return result;
     if (!count || (capacity > 0 && !list))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the place for settings, or their count, is NULL");
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "settings or count is NULL");
     result = mspring_network_suggest_substeps(network, dt, SAFETY, &least);
     if (result != MSPRING_OK && result != MSPRING_ERROR_UNSTABLE)
         return result;
@@ -80,7 +79,7 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
         return MSPRING_OK;
     if (capacity < s.count)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "there is room for %u settings, but %u of them", (unsigned)capacity,
+                             "there is room for %u settings, but there are %u", (unsigned)capacity,
                              (unsigned)s.count);
     const size_t struct_size = mspringi_struct_size(list);
     result = mspringi_check_outputs(list, s.count, "mspring_solver_def", sizeof *list, &network->message);
