@@ -23,8 +23,8 @@ mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
 }
 
 // Index of the first changed mass.
-static uint32_t first_other_mass(const mspring_network *network, const mspringi_selection *at,
-                                 const mspringi_values *values) {
+static uint32_t first_changed_mass(const mspring_network *network, const mspringi_selection *at,
+                                   const mspringi_values *values) {
     uint32_t i = 0;
     while (i < at->count && (network->mass[mspringi_selected(at, i)] == mspringi_value_of(values, i) ||
                              !mspringi_particle_exists(network, mspringi_selected(at, i))))
@@ -87,7 +87,7 @@ static MSPRINGI_NOINLINE void store_range(const mspring_network *network, const 
 
 static mspring_result set_masses(mspring_network *network, const mspringi_selection *at,
                                  const mspringi_values *values) {
-    const uint32_t first = first_other_mass(network, at, values);
+    const uint32_t first = first_changed_mass(network, at, values);
     if (first == at->count)
         return MSPRING_OK;
     mspring_result result = mspringi_reserve_spring_masses(network);
@@ -135,8 +135,8 @@ static bool is_fractional(float scale) {
 }
 
 // Index of the first changed scale, and whether any needs memory for scales.
-static uint32_t first_other_scale(const mspring_network *network, const mspringi_selection *at,
-                                  const mspringi_values *values, bool *fractional) {
+static uint32_t first_changed_scale(const mspring_network *network, const mspringi_selection *at,
+                                    const mspringi_values *values, bool *fractional) {
     uint32_t first = at->count;
     *fractional = false;
     for (uint32_t i = 0; i < at->count; ++i) {
@@ -168,7 +168,7 @@ static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspri
 static mspring_result set_scales(mspring_network *network, const mspringi_selection *at,
                                  const mspringi_values *values) {
     bool fractional;
-    const uint32_t first = first_other_scale(network, at, values, &fractional);
+    const uint32_t first = first_changed_scale(network, at, values, &fractional);
     mspring_result result = fractional ? mspringi_reserve_inverse_mass_scales(network) : MSPRING_OK;
     if (result != MSPRING_OK || first == at->count)
         return result;

@@ -74,7 +74,7 @@ mspring_result mspring_network_remove_springs(mspring_network *network, const ms
 /* --------------------------------------------------------------------------------------------------- recycling */
 
 // Mark removed ids as spare. Returns the lowest of them.
-static mspring_id give_back(uint8_t *marks, mspring_id first, mspring_id end, mspring_id lowest) {
+static mspring_id recycle_ids(uint8_t *marks, mspring_id first, mspring_id end, mspring_id lowest) {
     for (mspring_id id = end; id-- > first;) {
         if (marks[id] != MSPRINGI_GONE)
             continue;
@@ -90,8 +90,8 @@ mspring_result mspring_network_recycle(mspring_network *network) {
         return result;
     mspringi_id_pool *g = &network->growth;
     const mspringi_reserve *r = &network->topology.reserve;
-    g->lowest_particle = give_back(g->particles, r->first_particle, r->particle_end, g->lowest_particle);
-    g->lowest_spring = give_back(g->springs, r->first_spring, r->spring_end, g->lowest_spring);
+    g->lowest_particle = recycle_ids(g->particles, r->first_particle, r->particle_end, g->lowest_particle);
+    g->lowest_spring = recycle_ids(g->springs, r->first_spring, r->spring_end, g->lowest_spring);
     mspringi_fingerprint(network, MSPRINGI_EDIT_RECYCLED, 0);
     mspringi_notify_change(network, MSPRINGI_CHANGED_IDS, 0);
     return MSPRING_OK;

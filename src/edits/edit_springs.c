@@ -68,7 +68,7 @@ static plane plane_of(const mspring_network *network, mspring_property property)
 }
 
 // True if the value changes the spring, or must end its ramp.
-static bool differs(const mspring_network *network, mspring_property property, mspring_id spring, float value) {
+static bool is_changed(const mspring_network *network, mspring_property property, mspring_id spring, float value) {
     return mspringi_spring_exists(network, spring) &&
            (mspringi_spring_property(network, property, spring) != value ||
             (property == MSPRING_REST_LENGTH && mspringi_has_ramp(network, spring)));
@@ -137,8 +137,8 @@ static uint32_t skip_equal_listed_fractions(const mspringi_fractions *fractions,
 }
 
 // Index of the first spring from i on that changes.
-static uint32_t next_other(const mspring_network *network, const mspringi_selection *at,
-                           const mspringi_values *values, uint32_t i) {
+static uint32_t next_changed(const mspring_network *network, const mspringi_selection *at,
+                             const mspringi_values *values, uint32_t i) {
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring + at->first;
     const plane known = plane_of(network, values->property);
     const bool is_damping = values->property == MSPRING_DAMPING;
@@ -162,7 +162,7 @@ static uint32_t next_other(const mspring_network *network, const mspringi_select
         else
             i = skip_equal_listed(network, at->list, known, values->first, values->stride, i, at->count);
         if (i == at->count ||
-            differs(network, values->property, mspringi_selected(at, i), mspringi_value_of(values, i)))
+            is_changed(network, values->property, mspringi_selected(at, i), mspringi_value_of(values, i)))
             break;
     }
     return i;
@@ -206,7 +206,7 @@ static void store_limit(mspring_network *network, mspringi_spring_slot spring_sl
 }
 
 // Update plastic bounds after a change of a rest length.
-static void follow_rest_length(mspring_network *network, mspringi_spring_slot spring_slot, float had) {
+static void update_plastic_bounds(mspring_network *network, mspringi_spring_slot spring_slot, float had) {
     if (network->plastic.nominal)
         mspringi_plastic_follow(network, spring_slot, had);
 }
@@ -242,7 +242,7 @@ static mspring_result reserve(mspring_network *network, const mspringi_selection
     if (is_rest_length ? network->rest_lengths.shared_count == 0 : !network->fractions.of_spring)
         return MSPRING_OK;
     while (i < at->count && !ends_sharing(network, property, mspringi_selected(at, i)))
-        i = next_other(network, at, values, i + 1);
+        i = next_changed(network, at, values, i + 1);
     if (i >= at->count)
         return MSPRING_OK;
     return is_rest_length ? mspringi_rest_lengths_unshare(network) : mspringi_fractions_separate(network);
@@ -263,7 +263,7 @@ static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property
         mspringi_ramp_drop(network, spring);
         had = mspringi_spring_slot_get(network, spring_slot).rest_length;
         mspringi_spring_slot_set_rest_length(network, spring_slot, value);
-        follow_rest_length(network, spring_slot, had);
+        update_plastic_bounds(network, spring_slot, had);
         break;
     default:
         if (property == MSPRING_PLASTIC_STRAIN)
@@ -351,7 +351,7 @@ static inline bool set_in_plane(mspring_network *network, const plane *known, ms
     }
     *at = value;
     network->has_welds |= value == MSPRINGI_WELD;
-    follow_rest_length(network, spring_slot, had);
+    update_plastic_bounds(network, spring_slot, had);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
     return true;
 }
@@ -402,8 +402,8 @@ MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi
 }
 
 // Set changed springs from index i on.
-static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspringi_selection *at,
-                                         const mspringi_values *values, uint32_t i) {
+static MSPRINGI_NOINLINE void set_changed(mspring_network *network, const mspringi_selection *at,
+                                          const mspringi_values *values, uint32_t i) {
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring;
     const mspring_property property = values->property;
     const bool may_sleep = network->sleep.count > 0;
@@ -416,7 +416,7 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
             i = lattice.has_relative ? set_run(network, at, values, &lattice, i, true, &traces)
                                      : set_run(network, at, values, &lattice, i, false, &traces);
         else if (at->list)
-            i = next_other(network, at, values, i);
+            i = next_changed(network, at, values, i);
         if (i == at->count)
             break;
         const mspring_id spring = mspringi_selected(at, i);
@@ -430,7 +430,7 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
         } else if (spring_slot < lattice.records.end && !is_part && mspringi_spring_exists(network, spring)) {
             is_new = set_in_plane(network, &lattice.records, property, spring_slot, value);
         } else {
-            is_new = differs(network, property, spring, value);
+            is_new = is_changed(network, property, spring, value);
             if (is_new)
                 set_one(network, property, spring, spring_slot, value);
         }
@@ -452,11 +452,11 @@ mspring_result mspringi_set_spring_values(mspring_network *network, const msprin
                                           const mspringi_values *values) {
     mspring_result result =
         values->property == MSPRING_DAMPING ? check_room_for_damping(network, at, values) : MSPRING_OK;
-    const uint32_t first = result == MSPRING_OK ? next_other(network, at, values, 0) : at->count;
+    const uint32_t first = result == MSPRING_OK ? next_changed(network, at, values, 0) : at->count;
     if (first >= at->count)
         return result;
     result = reserve(network, at, values, first);
     if (result == MSPRING_OK)
-        set_others(network, at, values, first);
+        set_changed(network, at, values, first);
     return result;
 }

@@ -19,7 +19,7 @@ static size_t plane_size(const mspring_network *network) {
 }
 
 // Set the spring's bit in `reversed`: its base is its second end.
-static void turn(mspring_network *network, mspring_id spring) {
+static void set_reversed(mspring_network *network, mspring_id spring) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     uint16_t *bits = &network->extents.reversed[spring_slot / MSPRINGI_WIDTH];
     const uint16_t bit = (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
@@ -37,13 +37,13 @@ static mspring_result reserve(mspring_network *network) {
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to measure %u springs at once",
                              (unsigned)t->spring_count);
     for (mspring_id s = 0; s < t->spring_count; ++s)
-        turn(network, s);
+        set_reversed(network, s);
     return MSPRING_OK;
 }
 
 void mspringi_extents_turn(mspring_network *network, mspring_id spring) {
     if (network->extents.reversed)
-        turn(network, spring);
+        set_reversed(network, spring);
 }
 
 /* -------------------------------------------------------------------------------------------------- computation */
@@ -55,7 +55,7 @@ static inline void set_strain_of_broken(float *strain, uint32_t live) {
             strain[lane] = 0.0f;
 }
 
-static inline void turn_some(float *along_x, float *along_y, uint32_t reversed) {
+static inline void reverse_some(float *along_x, float *along_y, uint32_t reversed) {
     for (uint32_t lane = 0; reversed != 0 && reversed != UINT16_MAX && lane < MSPRINGI_WIDTH; ++lane)
         if (reversed >> lane & 1) {
             along_x[lane] = -along_x[lane] + 0.0f;
@@ -85,7 +85,7 @@ static inline void compute_word(const mspring_network *network, size_t word, con
         }
     }
     if (what == DIRECTIONS)
-        turn_some(first, second, extents->reversed[word]);
+        reverse_some(first, second, extents->reversed[word]);
     else if (what != LENGTHS)
         set_strain_of_broken(second, network->live[word]);
     if (what != STRAINS)
@@ -144,7 +144,7 @@ static inline void compute(const mspring_network *network, measure what) {
 /* ---------------------------------------------------------------------------------------------------- results */
 
 // Set the values of removed springs to 0.
-static void leave_out_what_is_gone(const mspring_network *network, float *of_spring) {
+static void clear_removed(const mspring_network *network, float *of_spring) {
     const uint8_t *there = network->growth.springs;
     for (mspring_id s = 0; there && s < network->topology.spring_count; ++s)
         of_spring[s] = there[s] == MSPRINGI_THERE ? of_spring[s] : 0.0f;
@@ -168,9 +168,9 @@ static void read_out(const mspring_network *network, float *restrict first, floa
         for (mspring_id s = 0; s < springs; ++s)
             second[s] = planes[1][spring_slot[s]];
     if (first)
-        leave_out_what_is_gone(network, first);
+        clear_removed(network, first);
     if (second)
-        leave_out_what_is_gone(network, second);
+        clear_removed(network, second);
 }
 
 static MSPRINGI_NOINLINE void measure_all(const mspring_network *network, float *length, float *direction_x,

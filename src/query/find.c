@@ -127,7 +127,7 @@ mspring_result mspring_network_particles_in_box(const mspring_network *network, 
 }
 
 // Twice the signed area of a triangle: positive if c is on the left of the line from a to b.
-static double turn(point a, point b, point c) {
+static double signed_area(point a, point b, point c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -145,7 +145,8 @@ static double fraction_of(point a, point b, point c) {
 static bool is_across(point a, point b, point c, point d, double *fraction) {
     if (!overlap(a.x, b.x, c.x, d.x) || !overlap(a.y, b.y, c.y, d.y))
         return false;
-    const double of_a = turn(c, d, a), of_b = turn(c, d, b), of_c = turn(a, b, c), of_d = turn(a, b, d);
+    const double of_a = signed_area(c, d, a), of_b = signed_area(c, d, b), of_c = signed_area(a, b, c),
+                 of_d = signed_area(a, b, d);
     if ((of_a > 0.0 && of_b > 0.0) || (of_a < 0.0 && of_b < 0.0) || (of_c > 0.0 && of_d > 0.0) ||
         (of_c < 0.0 && of_d < 0.0))
         return false;

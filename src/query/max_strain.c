@@ -8,7 +8,7 @@
 #include "store/springs.h"
 
 /// Spring slots of a chunk.
-#define PIECE ((mspringi_spring_slot)1024)
+#define CHUNK ((mspringi_spring_slot)1024)
 
 /// Largest strain, and the range of spring slots with it.
 typedef struct peak {
@@ -73,9 +73,9 @@ static MSPRINGI_NOINLINE peak find_peak(const mspring_network *network) {
     const mspringi_spring_slot spring_slots =
         (mspringi_spring_slot)(mspringi_spring_slot_words(t) * MSPRINGI_WIDTH);
     peak all = {0.0f, 0, 0};
-    for (mspringi_spring_slot first = 0; first < t->lattice_spring_slots; first += PIECE) {
+    for (mspringi_spring_slot first = 0; first < t->lattice_spring_slots; first += CHUNK) {
         const mspringi_spring_slot left = t->lattice_spring_slots - first,
-                                   end = first + (left < PIECE ? left : PIECE);
+                                   end = first + (left < CHUNK ? left : CHUNK);
         include(&all, largest_in(network, first, end), first, end);
     }
     for (mspringi_spring_slot spring_slot = t->lattice_spring_slots; spring_slot < spring_slots; ++spring_slot)

@@ -105,8 +105,8 @@ static bool exists(const mspring_network *network, mspringi_kind kind, mspring_i
 }
 
 // Removed particles and springs read as 0.
-static void leave_out_what_is_gone(const mspring_network *network, mspringi_kind kind, mspring_id first,
-                                   uint32_t count, float *out, size_t stride) {
+static void clear_removed(const mspring_network *network, mspringi_kind kind, mspring_id first, uint32_t count,
+                          float *out, size_t stride) {
     for (uint32_t i = 0; network->growth.particles && i < count; ++i)
         if (!exists(network, kind, first + i))
             out[i * stride] = 0.0f;
@@ -140,7 +140,7 @@ mspring_result mspring_network_get(const mspring_network *network, mspring_prope
     if (result != MSPRING_OK)
         return result;
     get_values(network, property, &at, values, stride);
-    leave_out_what_is_gone(network, kind, first, count, values, stride);
+    clear_removed(network, kind, first, count, values, stride);
     return MSPRING_OK;
 }
 
