@@ -82,8 +82,7 @@ mspring_result mspring_network_mark_groups(mspring_network *network, const uint3
     return MSPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------ putting
- * back */
+/* ------------------------------------------------------------------------------------------------------- resets */
 
 // List the springs with the given state, live or broken, at the mark and the other one now. A group may be listed
 // twice.

@@ -4,8 +4,7 @@
 #include "store/sections.h"
 #include "store/springs.h"
 
-/* ------------------------------------------------------------------------------------------------- groups that are
- * held */
+/* -------------------------------------------------------------------------------------------------- held groups */
 
 static void held_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_groups *g = &network->groups;
