@@ -55,8 +55,7 @@ double mspringi_statics_angle_forces(mspringi_statics *statics, const mspringi_a
     return fmax(fmax(at_a, at_b), push_particle(statics, w.to, torque * w.x, torque * w.y));
 }
 
-/* ---------------------------------------------------------------------------------------------- change of energy
- */
+/* --------------------------------------------------------------------------------------------- change of energy */
 
 // Rotation of an arm along the path. False if its length is 0 before or after.
 static bool rotation_of(const mspringi_statics *s, const arm *of, double t, mspringi_rotation *rotation) {
@@ -88,8 +87,7 @@ double mspringi_statics_angle_change(const mspringi_statics *statics, const mspr
     return k * (1.0 - 0.5 * z * z) * beyond + torque * sine;
 }
 
-/* ----------------------------------------------------------------------------------------------------- stiffness
- */
+/* ---------------------------------------------------------------------------------------------------- stiffness */
 
 static void add_block(mspringi_statics *statics, uint32_t edge, double xx, double xy, double yy) {
     mspringi_statics_springs *s = &statics->springs;
