@@ -8,13 +8,13 @@
 #include "store/changed.h"
 
 #define STRONGEST 1e30f
-#define LEAST_FILL 0.01f
-#define MOST_FILL 100.0f
-#define LEAST_AREA 1e-24
-#define MOST_AREA 1e24
+#define MIN_FILL 0.01f
+#define MAX_FILL 100.0f
+#define MIN_AREA 1e-24
+#define MAX_AREA 1e24
 
 /// Smallest area relative to its squared perimeter: a hundred times the rounding error of corners on a line.
-#define LEAST_PART 1e-6
+#define MIN_PART 1e-6
 
 /* ------------------------------------------------------------------------------------------------------ checks */
 
@@ -28,7 +28,7 @@ static mspring_result check_numbers(const mspring_area_def *def, mspringi_messag
         float value, least, most;
     } values[] = {{"stiffness", def->stiffness, 0.0f, STRONGEST},
                   {"pressure", def->pressure, is_gas ? 0.0f : -STRONGEST, STRONGEST},
-                  {"fill", def->fill, LEAST_FILL, MOST_FILL}};
+                  {"fill", def->fill, MIN_FILL, MAX_FILL}};
     for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
         if (!(values[i].value >= values[i].least && values[i].value <= values[i].most))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area's %s is %g, it must be %g to %g",
@@ -75,8 +75,8 @@ typedef struct polygon {
 // Check that an area, its own or a given rest area, is more than rounding: A / rest area is a factor of forces.
 static mspring_result check_size(mspring_network *network, const char *what, const polygon *of, double size) {
     const double perimeter = perimeter_of(network, of->particles, of->count);
-    const double least = fmax(LEAST_PART * perimeter * perimeter, LEAST_AREA);
-    if (size >= least && size <= MOST_AREA)
+    const double least = fmax(MIN_PART * perimeter * perimeter, MIN_AREA);
+    if (size >= least && size <= MAX_AREA)
         return MSPRING_OK;
     return mspringi_fail(
         &network->message, MSPRING_ERROR_ARGUMENT,

@@ -36,7 +36,7 @@ typedef struct mspringi_bouncing_particle {
     double x, y;           ///< before the substep, m
     double vx, vy;         ///< velocity of the move, m/s
     double half_x, half_y; ///< half of its change by forces, m/s
-    double most_restitution;
+    double max_restitution;
 } mspringi_bouncing_particle;
 
 /// Twice the kinetic energy per mass, in step.
@@ -63,7 +63,7 @@ static inline mspringi_bouncing_particle mspringi_bouncing_particle_from(double 
                                     .half_x = 0.5 * (undamped * vx - from_vx),
                                     .half_y = 0.5 * (undamped * vy - from_vy)};
     const double most = 1.0 - per_length * per_length * mspringi_bouncing_particle_square(&p);
-    p.most_restitution = most > 0.0 ? most : 0.0;
+    p.max_restitution = most > 0.0 ? most : 0.0;
     return p;
 }
 
@@ -84,7 +84,7 @@ MSPRINGI_BOUNCE_INLINE double mspringi_bounce(double nx, double ny, double offse
     const double depth = distance < 0.0 ? distance : 0.0;
     const double half = nx * p->half_x + ny * p->half_y;
     const double inward = half - normal_speed; // in step
-    const double e = restitution < p->most_restitution ? restitution : p->most_restitution;
+    const double e = restitution < p->max_restitution ? restitution : p->max_restitution;
     const double bounce_speed = e * inward + half;
     const double landing_speed = (depth - distance) / h;
     const bool bounces = (inward > 0.0) & (bounce_speed > landing_speed) & (e > MSPRINGI_MIN_RESTITUTION);

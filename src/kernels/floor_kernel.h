@@ -24,7 +24,7 @@
 /// Particles as in mspringi_bouncing_particle, and flags of 1 or 0.
 typedef struct bounce_block {
     double x[MSPRINGI_HALF], y[MSPRINGI_HALF], vx[MSPRINGI_HALF], vy[MSPRINGI_HALF];
-    double half_x[MSPRINGI_HALF], half_y[MSPRINGI_HALF], most_restitution[MSPRINGI_HALF];
+    double half_x[MSPRINGI_HALF], half_y[MSPRINGI_HALF], max_restitution[MSPRINGI_HALF];
     double square[MSPRINGI_HALF], slop[MSPRINGI_HALF];
     double is_hit[MSPRINGI_HALF];      ///< a surface has acted on it
     double is_deferred[MSPRINGI_HALF]; ///< deferred to mspringi_floor_bounce()
@@ -58,7 +58,7 @@ static inline mspringi_bouncing_particle bouncing_at(const bounce_block *b, size
                                         .vy = b->vy[i],
                                         .half_x = b->half_x[i],
                                         .half_y = b->half_y[i],
-                                        .most_restitution = b->most_restitution[i]};
+                                        .max_restitution = b->max_restitution[i]};
 }
 
 // True if any flag is 1. Compares bits, since a sum would be a chain of dependent additions.
@@ -101,7 +101,7 @@ static void load_bounce_block(const mspringi_floor_args *g, size_t slot, bounce_
         b->vy[i] = p.vy;
         b->half_x[i] = p.half_x;
         b->half_y[i] = p.half_y;
-        b->most_restitution[i] = p.most_restitution;
+        b->max_restitution[i] = p.max_restitution;
         b->square[i] = mspringi_bouncing_particle_square(&p);
         b->slop[i] = 0x1p-21 * (fabs(p.x) + fabs(p.y)) + 1e-12;
         b->is_hit[i] = b->is_deferred[i] = 0.0;

@@ -65,8 +65,8 @@ static void sum_strengths(const mspring_network *network, const mspringi_state *
     mspringi_areas_sum(network, sums->x, sums->y);
 }
 
-// Smallest limit of all springs. Relative springs take at most `most_relative` of the bound, which is 4.
-static double find_limit(mspring_network *network, double most_relative, mspring_id *spring) {
+// Smallest limit of all springs. Relative springs take at most `max_relative` of the bound, which is 4.
+static double find_limit(mspring_network *network, double max_relative, mspring_id *spring) {
     // Margin for the rounding of the sums.
     const double tight = 1.0 - 1e-5;
     const mspringi_state room = choose_scratch(network), *sums = &room;
@@ -83,7 +83,7 @@ static double find_limit(mspring_network *network, double most_relative, mspring
         const mspringi_quotient quotient = {
             .stiffness = (double)sums->x[a] * per_a + (double)sums->x[b] * per_b,
             .damping = (double)sums->y[a] * per_a + (double)sums->y[b] * per_b,
-            .relative = fmin(((double)sums->vx[a] + (double)sums->vx[b]) * tight, most_relative),
+            .relative = fmin(((double)sums->vx[a] + (double)sums->vx[b]) * tight, max_relative),
         };
         if (quotient.stiffness <= tightest.stiffness && quotient.damping <= tightest.damping &&
             quotient.relative <= tightest.relative)

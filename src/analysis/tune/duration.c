@@ -79,7 +79,7 @@ static mspring_result count_affordable(mspringi_tuning *tuning, double *steps) {
         seconds += fine;
     }
     const double left = PART_FOR_STEPS * def->budget - (begun - tuning->begun);
-    *steps = seconds > 0.0 ? fmax(left, 0.0) / seconds : MSPRINGI_TUNE_MOST_STEPS;
+    *steps = seconds > 0.0 ? fmax(left, 0.0) / seconds : MSPRINGI_TUNE_MAX_STEPS;
     return MSPRING_OK;
 }
 
@@ -94,7 +94,7 @@ static uint32_t run_one_period(mspringi_tuning *tuning, mspring_network *clone, 
            mspring_network_step(clone, def->dt) == MSPRING_OK) {
         add_step(tuning, clone, &s);
         const bool has_passed = period_of(clone, &s) <= s.steps * def->dt;
-        if ((s.steps >= MSPRINGI_TUNE_LEAST_STEPS && has_passed) ||
+        if ((s.steps >= MSPRINGI_TUNE_MIN_STEPS && has_passed) ||
             def->clock(def->user) - begun > PART_FOR_PERIOD * def->budget)
             break;
     }
@@ -115,15 +115,14 @@ mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning) {
         return result;
     (void)mspring_solver_def_init(&solver, sizeof solver);
     solver.solver = MSPRING_SOLVER_IMPLICIT;
-    tuning->step_count = MSPRINGI_TUNE_LEAST_STEPS;
+    tuning->step_count = MSPRINGI_TUNE_MIN_STEPS;
     const bool has_implicit = mspringi_solver_ops_of(MSPRING_SOLVER_IMPLICIT) != NULL;
     result = has_implicit ? mspring_network_set_solver(clone, &solver) : MSPRING_ERROR_LIMIT;
     if (result == MSPRING_OK) {
-        const double most = fmin(affordable, MSPRINGI_TUNE_MOST_STEPS);
+        const double most = fmin(affordable, MSPRINGI_TUNE_MAX_STEPS);
         const uint32_t steps = run_one_period(tuning, clone, most);
-        tuning->step_count = steps > MSPRINGI_TUNE_LEAST_STEPS || most < MSPRINGI_TUNE_LEAST_STEPS
-                                 ? steps
-                                 : MSPRINGI_TUNE_LEAST_STEPS;
+        tuning->step_count =
+            steps > MSPRINGI_TUNE_MIN_STEPS || most < MSPRINGI_TUNE_MIN_STEPS ? steps : MSPRINGI_TUNE_MIN_STEPS;
     } else if (result == MSPRING_ERROR_LIMIT) {
         result = MSPRING_OK; // not available for this network
     } else {

@@ -202,7 +202,7 @@ static void sum_up(const mspringi_scene_run *runs, uint32_t count, size_t quanti
 static void fill_row(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uint32_t fine_substeps,
                      double tolerance) {
     mspring_tune_row *row = &trial->row;
-    double costs[MSPRINGI_TUNE_MOST_STARTS];
+    double costs[MSPRINGI_TUNE_MAX_STARTS];
     row->flags |= MSPRING_TUNE_HAS_SCENE;
     row->fine_substeps = fine_substeps;
     for (uint32_t i = 0; i < row->scene_starts; ++i)
@@ -230,7 +230,7 @@ mspring_result mspringi_tune_scenes(mspringi_tuning *tuning) {
         result = run_start(tuning, &fine, start, fine_runs, &end);
     for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i) {
         mspringi_trial *trial = &tuning->trials[i];
-        if (can_run(trial) && trial->row.scene_starts >= MSPRINGI_TUNE_LEAST_STARTS)
+        if (can_run(trial) && trial->row.scene_starts >= MSPRINGI_TUNE_MIN_STARTS)
             fill_row(trial, fine_runs, fine.substeps, tuning->scene.tolerance);
         else
             trial->row.scene_starts = 0;

@@ -7,19 +7,19 @@
 #include "step/origin.h"
 #include "step/strain.h"
 
-#define MOST_SETTINGS 1000
-#define MOST_STEPS 100000
+#define MAX_SETTINGS 1000
+#define MAX_STEPS 100000
 
 /* ------------------------------------------------------------------------------------------------------- checks */
 
 static mspring_result check_numbers(const mspring_tune_def *def, mspringi_message *message) {
     if (!(def->dt > 0.0 && def->dt < INFINITY))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0", def->dt);
-    if (!(def->duration >= 0.0 && def->duration <= def->dt * MOST_STEPS))
+    if (!(def->duration >= 0.0 && def->duration <= def->dt * MAX_STEPS))
         return mspringi_fail(
             message, MSPRING_ERROR_ARGUMENT,
             "duration is %g s, it must be at most %d steps of %g s, or 0: as long as the motion asks",
-            def->duration, MOST_STEPS, def->dt);
+            def->duration, MAX_STEPS, def->dt);
     if (!(def->budget > 0.0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "budget is %g s, it must be > 0", def->budget);
     if (!(def->max_error > 0.0 && def->max_cost > 0.0))
@@ -42,13 +42,13 @@ static mspring_result check_scene_numbers(const mspring_tune_scene *scene, doubl
     if (scene->flags & ~known)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "flags of mspring_tune_scene are 0x%x",
                              (unsigned)scene->flags);
-    if (scene->start_count < MSPRINGI_TUNE_LEAST_STARTS || scene->start_count > MSPRINGI_TUNE_MOST_STARTS)
+    if (scene->start_count < MSPRINGI_TUNE_MIN_STARTS || scene->start_count > MSPRINGI_TUNE_MAX_STARTS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the scene's start_count is %u, it must be %d to %d",
-                             (unsigned)scene->start_count, MSPRINGI_TUNE_LEAST_STARTS, MSPRINGI_TUNE_MOST_STARTS);
-    if (!(scene->duration > 0.0 && scene->duration <= dt * MOST_STEPS))
+                             (unsigned)scene->start_count, MSPRINGI_TUNE_MIN_STARTS, MSPRINGI_TUNE_MAX_STARTS);
+    if (!(scene->duration > 0.0 && scene->duration <= dt * MAX_STEPS))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the scene's duration is %g s, it must be > 0 and at most %d steps of %g s",
-                             scene->duration, MOST_STEPS, dt);
+                             scene->duration, MAX_STEPS, dt);
     if (!(scene->kick > 0.0 && scene->kick < INFINITY && scene->max_distance > 0.0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the scene's kick is %g m/s, its max_distance %g, both must be > 0, kick finite",
@@ -82,9 +82,9 @@ static mspring_result check_def(const mspring_tune_def *def, mspringi_message *m
         result = check_numbers(def, message);
     if (result != MSPRING_OK)
         return result;
-    if (def->setting_count > MOST_SETTINGS || (def->settings && def->setting_count == 0))
+    if (def->setting_count > MAX_SETTINGS || (def->settings && def->setting_count == 0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "setting_count is %u, it must be 1 to %d",
-                             (unsigned)def->setting_count, MOST_SETTINGS);
+                             (unsigned)def->setting_count, MAX_SETTINGS);
     if (!def->settings && def->setting_count > 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "settings is NULL, but setting_count %u",
                              (unsigned)def->setting_count);
@@ -179,7 +179,7 @@ uint32_t mspringi_tune_steps_in(double duration, double dt) {
 // Number of steps of a trajectory; the upper limit if the duration is automatic.
 static uint32_t steps_of(const mspring_tune_def *def) {
     if (def->duration == 0.0)
-        return MSPRINGI_TUNE_MOST_STEPS;
+        return MSPRINGI_TUNE_MAX_STEPS;
     const uint32_t steps = mspringi_tune_steps_in(def->duration, def->dt);
     return steps > MSPRINGI_TUNE_MOMENTS ? steps : MSPRINGI_TUNE_MOMENTS;
 }
@@ -303,7 +303,7 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
 mspring_result mspring_network_tune(mspring_network *network, const mspring_tune_def *def, mspring_tune_row *rows,
                                     uint32_t capacity, uint32_t *count) {
     mspring_tune_def defaults;
-    mspring_solver_def usual[MSPRINGI_TUNE_USUAL_SETTINGS];
+    mspring_solver_def usual[MSPRINGI_TUNE_DEFAULT_SETTINGS];
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
@@ -320,9 +320,9 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
         result = check_scene(def->scene, def->dt, network);
     if (result == MSPRING_OK && !settings) {
         settings = usual;
-        for (int i = 0; i < MSPRINGI_TUNE_USUAL_SETTINGS; ++i)
+        for (int i = 0; i < MSPRINGI_TUNE_DEFAULT_SETTINGS; ++i)
             usual[i].struct_size = sizeof usual[i];
-        result = mspring_tune_settings(network, def->dt, usual, MSPRINGI_TUNE_USUAL_SETTINGS, &setting_count);
+        result = mspring_tune_settings(network, def->dt, usual, MSPRINGI_TUNE_DEFAULT_SETTINGS, &setting_count);
     }
     if (result == MSPRING_OK)
         result = check_rows(rows, capacity, setting_count, &network->message);

@@ -5,16 +5,16 @@
 
 /// Safety factor on the stable substep of the present shape for the fewest substeps: motion stiffens a network.
 #define SAFETY 0.9
-#define MOST_SUBSTEPS 1000
+#define MAX_SUBSTEPS 1000
 
 /// Number of particles up to which a factorisation in each step may pay off.
-#define MOST_PARTICLES_OF_DIRECT 20000
+#define MAX_DIRECT_PARTICLES 20000
 
 /// Iterations for the default integrator, beside the other one.
-#define USUAL_ITERATIONS 8
+#define DEFAULT_ITERATIONS 8
 
 typedef struct settings {
-    mspring_solver_def list[MSPRINGI_TUNE_USUAL_SETTINGS];
+    mspring_solver_def list[MSPRINGI_TUNE_DEFAULT_SETTINGS];
     uint32_t count;
 } settings;
 
@@ -33,7 +33,7 @@ static void add(settings *s, mspring_solver solver, mspring_integrator integrato
 
 // Add explicit settings, in increasing order of substeps.
 static void add_explicit(settings *s, uint32_t substeps) {
-    if (substeps <= MOST_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
+    if (substeps <= MAX_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
         add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, substeps, 0);
 }
 
@@ -52,9 +52,9 @@ static void list_settings(settings *s, const mspring_network *network, uint32_t 
     for (uint32_t substeps = 1; substeps <= 4; substeps *= 2) {
         for (size_t i = 0; i < sizeof iterations / sizeof iterations[0]; ++i)
             add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, substeps, iterations[i]);
-        add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, USUAL_ITERATIONS);
+        add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, DEFAULT_ITERATIONS);
     }
-    for (uint32_t substeps = 1; network->topology.particle_count <= MOST_PARTICLES_OF_DIRECT && substeps <= 2;
+    for (uint32_t substeps = 1; network->topology.particle_count <= MAX_DIRECT_PARTICLES && substeps <= 2;
          ++substeps) {
         add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, substeps, 0);
         add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, substeps, 0);

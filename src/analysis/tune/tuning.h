@@ -11,18 +11,18 @@
 #define MSPRINGI_TUNE_MOMENTS 4
 
 /// Bounds on the number of steps of a trajectory of automatic length.
-#define MSPRINGI_TUNE_MOST_STEPS 1024
-#define MSPRINGI_TUNE_LEAST_STEPS 16
+#define MSPRINGI_TUNE_MAX_STEPS 1024
+#define MSPRINGI_TUNE_MIN_STEPS 16
 
 /// Capacity for the default settings.
-#define MSPRINGI_TUNE_USUAL_SETTINGS 24
+#define MSPRINGI_TUNE_DEFAULT_SETTINGS 24
 
 /// Number of steps for the first measurement of a cost.
 #define MSPRINGI_TUNE_FIRST_STEPS 4
 
 /// Bounds on the number of starts for a result.
-#define MSPRINGI_TUNE_LEAST_STARTS 4
-#define MSPRINGI_TUNE_MOST_STARTS 64
+#define MSPRINGI_TUNE_MIN_STARTS 4
+#define MSPRINGI_TUNE_MAX_STARTS 64
 
 /// Result of one run of a scene.
 typedef struct mspringi_scene_run {
