@@ -91,11 +91,11 @@ static void wake_touched(mspring_network *network, const mspringi_contacts *cont
                 !mspringi_pair_is_resting(network, contacts, &contacts->list[i],
                                           2.0 * contacts->dt * contacts->speed))
                 continue;
-            mspringi_sleep_rouse(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
+            mspringi_sleep_wake_island(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
             again = true;
         }
     }
-    mspringi_sleep_roused(network, naps);
+    mspringi_sleep_finish_waking(network, naps);
 }
 
 // Islands that rest on each other have been still for as long as the one that was still for the shortest time: they

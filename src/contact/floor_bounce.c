@@ -92,7 +92,7 @@ static bool bounce_at_surfaces(const mspringi_floor *floor, double h, double all
 // turned back for that, whole bodies stopped that slid down a slope.)
 static void slow_down(double most, mspringi_bouncing_particle *p) {
     const double square = mspringi_bouncing_particle_square(p);
-    if (!(square > most * MSPRINGI_NO_LARGER))
+    if (!(square > most * MSPRINGI_GROWTH_MARGIN))
         return;
     const double keep = sqrt(most / square);
     p->vx = p->half_x + keep * (p->vx - p->half_x);
@@ -131,7 +131,7 @@ typedef struct hit {
 static void find_hit(const mspringi_line *line, double slop, const mspringi_free_particle *p, hit *first) {
     if (distance_from(line, p->x, p->y) < -mspringi_floor_slop(p->x, p->y))
         return;
-    const double time = mspringi_time_to(line->nx, line->ny, line->offset, slop, p);
+    const double time = mspringi_time_to_surface(line->nx, line->ny, line->offset, slop, p);
     if (time < first->time)
         *first = (hit){*line, time};
 }
@@ -177,7 +177,7 @@ static double kept_of(const mspringi_free_particle *start, const mspringi_free_p
     const double late = end->left - since, wx = vx + late * end->ax, wy = vy + late * end->ay;
     const double fallen = start->ax * (x - start->x) + start->ay * (y - start->y);
     const double most = start->wx * start->wx + start->wy * start->wy + 2.0 * fallen;
-    const double gained = wx * wx + wy * wy - most * MSPRINGI_NO_LARGER;
+    const double gained = wx * wx + wy * wy - most * MSPRINGI_GROWTH_MARGIN;
     return !(gained > 0.0) ? 1.0 : square > gained ? sqrt(1.0 - gained / square) : 0.0;
 }
 
@@ -197,7 +197,7 @@ static bool leave_segment(const mspringi_floor *floor, const mspringi_bounce_par
     const double across = line.nx * p->wx + line.ny * p->wy, along = line.nx * p->wy - line.ny * p->wx;
     const double pull = line.nx * p->ax + line.ny * p->ay;
     const bool lay = distance_from(&line, p->x, p->y) <= slop && across < 0.0 &&
-                     -across <= -how->skew * pull + MSPRINGI_LAST_PLACES * fabs(along);
+                     -across <= -how->skew * pull + MSPRINGI_TANGENT_ROUNDING * fabs(along);
     p->wx -= lay ? across * line.nx : 0.0;
     p->wy -= lay ? across * line.ny : 0.0;
     return lay;
@@ -226,7 +226,7 @@ bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const msprin
     const mspringi_free_particle start = *p;
     double restitution = floor->restitution; // of the last surface that it met
     bool has_slid = false;
-    for (int turns = 1; turns <= MSPRINGI_MOST_TURNS; ++turns) {
+    for (int turns = 1; turns <= MSPRINGI_MAX_DEFLECTIONS; ++turns) {
         const hit first = find_first_hit(floor, slop, p);
         if (!(first.time < INFINITY))
             break;
@@ -234,7 +234,7 @@ bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const msprin
         has_slid |= turns > 1 && p->ax == 0.0 && p->ay == 0.0;
         restitution = first.line.restitution;
         mspringi_bounce_free(first.line.nx, first.line.ny, first.line.offset, first.line.friction, restitution, how,
-                             first.time, turns == MSPRINGI_MOST_TURNS, p);
+                             first.time, turns == MSPRINGI_MAX_DEFLECTIONS, p);
     }
     find_end(p, &x, &y);
     const double since = p->left - how->skew, keep = has_slid ? kept_of(&start, p, since, x, y) : 1.0;
@@ -246,7 +246,7 @@ bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const msprin
         leave_surface(floor, how, &start, p, vx, vy);
     if (acts && (keep == 0.0 || !(mspringi_floor_distance(floor, x, y) >= -mspringi_floor_slop(x, y)))) {
         // A corner that leads nowhere: it stays, and turns back as fast as it bounces.
-        const double e = restitution > MSPRINGI_LEAST_RESTITUTION ? restitution : 0.0;
+        const double e = restitution > MSPRINGI_MIN_RESTITUTION ? restitution : 0.0;
         p->x = start.x;
         p->y = start.y;
         *vx = e > 0.0 ? -e * start.wx - how->skew * start.ax : 0.0;

@@ -114,7 +114,7 @@ static mspringi_floor_args args_of(const mspring_network *network, const mspring
 // bare: where there is no surface, but may be silt.
 static void touch_block(const mspring_network *network, const mspringi_floor_args *args,
                         const mspringi_bounds *bare, bool is_loose, size_t block) {
-    const mspringi_floor_fn act = is_loose ? network->kernels->fly_past : network->kernels->touch;
+    const mspringi_floor_fn act = is_loose ? network->kernels->bounce_free : network->kernels->bounce;
     if (mspringi_has_silt(&network->floor->heights)) {
         network->kernels->brake(args, block);
         if (network->kernels->beyond(args->x, args->y, block, block + MSPRINGI_WIDTH, bare) != block)
@@ -247,8 +247,8 @@ static void fly_free(const mspring_network *network, size_t slot, const gliding 
     mspringi_free_particle p = {.left = h};
     p.x = (double)s->x[slot] + (double)s->low_x[slot];
     p.y = (double)s->y[slot] + (double)s->low_y[slot];
-    p.wx = g->how.skew > 0.0 ? mspringi_in_step(vx, undamped_vx, to_vx) : vx;
-    p.wy = g->how.skew > 0.0 ? mspringi_in_step(vy, undamped_vy, to_vy) : vy;
+    p.wx = g->how.skew > 0.0 ? mspringi_velocity_in_step(vx, undamped_vx, to_vx) : vx;
+    p.wy = g->how.skew > 0.0 ? mspringi_velocity_in_step(vy, undamped_vy, to_vy) : vy;
     p.ax = (undamped_vx - vx) / h;
     p.ay = (undamped_vy - vy) / h;
     s->vx[slot] = (float)(g->after * to_vx);

@@ -1,4 +1,4 @@
-/// Declaring actuators, and giving them signals.
+/// Declaration of actuators, and their signals.
 #include "step/actuators.h"
 
 #include "base/cpu.h"
@@ -10,20 +10,20 @@
 #include "store/springs.h"
 #include "store/store.h"
 
-#define LEAST_SIGNAL 0.01f
-#define MOST_SIGNAL 100.0f
-#define MOST_CHANGES 256u
+#define MIN_SIGNAL 0.01f
+#define MAX_SIGNAL 100.0f
+#define MAX_CHANGES 256u
 
-/// Rest length that least signals take to no weld, m.
+/// Shortest rest length of an actuator, m: the smallest signals do not make it a weld.
 #define SHORTEST 1e-12f
 
 static mspring_result check(mspring_network *network, const mspring_id *springs, uint32_t count, uint32_t changes) {
     const uint32_t all = network->topology.spring_count;
     if (!springs && count > 0)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the list of springs is NULL");
-    if (changes < 1 || changes > MOST_CHANGES)
+    if (changes < 1 || changes > MAX_CHANGES)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "changes is %u, it must be 1 to %u",
-                             (unsigned)changes, (unsigned)MOST_CHANGES);
+                             (unsigned)changes, (unsigned)MAX_CHANGES);
     if (count > all)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "%u actuators are more than %u springs",
                              (unsigned)count, (unsigned)all);
@@ -82,7 +82,7 @@ static mspring_result fill(mspring_network *network, mspringi_actuators *a, cons
     return MSPRING_OK;
 }
 
-// The rest lengths of those that were actuators are parameters from now on: no frame of before fits.
+// The rest lengths of former actuators become parameters: no earlier frame fits any more.
 static void leave_lengths(mspring_network *network) {
     const mspringi_actuators *a = &network->actuators;
     if (!a->have_moved)
@@ -120,7 +120,7 @@ uint32_t mspring_network_actuator_count(const mspring_network *network) {
 /* ------------------------------------------------------------------------------------------------------ signals */
 
 static bool is_signal(float value) {
-    return value >= LEAST_SIGNAL && value <= MOST_SIGNAL;
+    return value >= MIN_SIGNAL && value <= MAX_SIGNAL;
 }
 
 static mspring_result check_signals(mspring_network *network, uint32_t first, uint32_t count, const float *signals,

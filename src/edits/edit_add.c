@@ -16,7 +16,7 @@
 #include "store/id_pool.h"
 #include "store/springs.h"
 
-// Put the place in the caller's array in front of what was wrong with it.
+// Put the index in the caller's array in front of the reason.
 static mspring_result name_definition(mspring_network *network, mspring_result result, uint32_t index) {
     const mspringi_message reason = network->message;
     return mspringi_fail(&network->message, result, "definition %u: %s", (unsigned)index, reason.text);
@@ -33,12 +33,12 @@ static mspring_result check_arrays(mspring_network *network, const void *defs, u
     return result;
 }
 
-// The lowest spare id from first on; end if there is none.
+// Lowest spare id from first on; end if there is none.
 static mspring_id find_spare(const uint8_t *marks, mspring_id first, mspring_id end) {
     return marks && first < end ? mspringi_find_byte(marks, MSPRINGI_SPARE, first, end) : end;
 }
 
-// Refuse to give more ids than are spare.
+// Return an error if fewer than `count` ids are spare.
 static mspring_result check_room(mspring_network *network, const char *what, const uint8_t *marks,
                                  mspring_id lowest, mspring_id first, mspring_id end, uint32_t count) {
     uint32_t room = 0;
@@ -191,7 +191,7 @@ static mspring_result find_rest_length(mspring_network *network, mspring_id id, 
                                      (double)s->y[b] - (double)s->y[a], rest_length);
 }
 
-// Check a spring and link its ends, so that those checked after it see it.
+// Check a spring and link its ends, so that later checks see it.
 static mspring_result link_spring(mspring_network *network, mspring_id id, const mspring_spring_def *def,
                                   size_t struct_size) {
     float rest_length;

@@ -1,4 +1,4 @@
-/// Angle springs as the host defines them.
+/// Definition of angle springs.
 #include "store/angles.h"
 
 #include <math.h>
@@ -37,7 +37,7 @@ static mspring_result check_def(mspring_network *network, const mspring_angle_de
     return check_rest_angle(network, def->rest_angle);
 }
 
-// Arms that have a direction.
+// Check that both arms have a direction.
 static mspring_result check_arms(mspring_network *network, const mspring_id particles[3]) {
     const uint32_t *slots = network->topology.slot_of_particle;
     for (int i = 0; i < 2; ++i) {
@@ -51,7 +51,7 @@ static mspring_result check_arms(mspring_network *network, const mspring_id part
     return MSPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------- adding them */
+/* ------------------------------------------------------------------------------------------------------ adding */
 
 static double rest_of(const mspring_network *network, const mspring_angle_def *def, const mspring_id particles[3]) {
     const uint32_t *slots = network->topology.slot_of_particle;
@@ -90,7 +90,7 @@ mspring_result mspring_network_remove_angle(mspring_network *network, mspring_id
     return mspringi_area_remove(network, angle, true);
 }
 
-/* ----------------------------------------------------------------------------------------------- changing them */
+/* ---------------------------------------------------------------------------------------------------- changing */
 
 mspring_result mspring_network_set_angle(mspring_network *network, mspring_id angle, const mspring_angle_def *def) {
     mspringi_area *found = NULL;
@@ -127,7 +127,7 @@ mspring_result mspring_network_set_rest_angles(mspring_network *network, mspring
     }
     if (result != MSPRING_OK || count == 0)
         return result;
-    // Ids are consecutive, and so are angles in the list: the last was found last.
+    // Ids are consecutive, and so are the angles in the list. found is the last.
     mspringi_area *of_first = found - (count - 1);
     for (uint32_t i = 0; i < count; ++i)
         mspringi_angle_set_rest(&of_first[i], rest_angles[(size_t)i * stride]);

@@ -1,8 +1,8 @@
-/// Where cells are.
+/// Search for cells.
 ///
-/// In a lattice's rows a cell is four particles with whole springs around them: sweeps can have its area.
-/// Elsewhere, as in lattices that are too small for rows, it is four particles that whole springs join each to
-/// each, two of which cross.
+/// In a lattice's rows a cell is four particles with live springs around them; sweeps can compute its area.
+/// Elsewhere, also in lattices too small for rows, it is four particles that are all connected by live springs, two
+/// of which cross.
 #include "edits/edit_areas.h"
 
 #include "store/areas.h"
@@ -13,7 +13,7 @@ static uint32_t slot_of(const mspring_network *network, mspring_id particle) {
     return network->topology.slot_of_particle[particle];
 }
 
-static void turn_over(const mspring_network *network, mspring_id corners[4]) {
+static void make_positive(const mspring_network *network, mspring_id corners[4]) {
     if (mspringi_area_within(network, corners, 4) < 0.0) {
         const mspring_id second = corners[1];
         corners[1] = corners[3];
@@ -21,18 +21,18 @@ static void turn_over(const mspring_network *network, mspring_id corners[4]) {
     }
 }
 
-// That of a lattice's rows above and right of a particle.
+// Find the cell of rows above and on the right of a particle.
 static bool find_in_rows(const mspring_network *network, mspring_id particle, mspring_id corners[4]) {
     uint32_t slots[4];
     if (!mspringi_cell_at(network, slot_of(network, particle), slots))
         return false;
     for (int i = 0; i < 4; ++i)
         corners[i] = network->topology.particle_of_slot[slots[i]];
-    turn_over(network, corners);
+    make_positive(network, corners);
     return true;
 }
 
-// Whether any corner begins a cell of rows that has all of these.
+// True if a cell of rows has the same four corners.
 static bool is_in_rows(const mspring_network *network, const mspring_id corners[4]) {
     for (int i = 0; i < 4; ++i) {
         mspring_id cell[4];
@@ -47,7 +47,7 @@ static bool is_in_rows(const mspring_network *network, const mspring_id corners[
     return false;
 }
 
-// Which side of the way from one to another a third is on.
+// True if the particle is on the left of the line between two others.
 static bool is_left(const mspring_network *network, mspring_id from, mspring_id to, mspring_id particle) {
     const mspring_id three[3] = {from, to, particle};
     return mspringi_area_within(network, three, 3) > 0.0;
@@ -58,8 +58,8 @@ static bool are_crossed(const mspring_network *network, mspring_id a, mspring_id
            is_left(network, c, d, a) != is_left(network, c, d, b);
 }
 
-// Put four particles that are joined each to each in an order around them. False: none of their springs cross.
-static bool order(const mspring_network *network, mspring_id corners[4]) {
+// Order four connected particles around their cell. False if none of their springs cross.
+static bool order_corners(const mspring_network *network, mspring_id corners[4]) {
     for (int other = 1; other < 4; ++other) {
         const mspring_id a = corners[0], b = corners[other], c = corners[other == 1 ? 2 : 1],
                          d = corners[other == 3 ? 2 : 3];
@@ -69,13 +69,13 @@ static bool order(const mspring_network *network, mspring_id corners[4]) {
         corners[1] = c;
         corners[2] = b;
         corners[3] = d;
-        turn_over(network, corners);
+        make_positive(network, corners);
         return true;
     }
     return false;
 }
 
-/// The particles of higher id that whole springs join a particle to, one after the other.
+/// Iterator over the particles of higher id that are connected to a particle by live springs.
 typedef struct neighbours {
     mspringi_incident_springs around;
     mspring_id of;
@@ -97,7 +97,7 @@ static mspring_id next(const mspring_network *network, neighbours *n) {
     return MSPRING_NONE;
 }
 
-static bool are_joined(const mspring_network *network, mspring_id low, mspring_id high) {
+static bool are_connected(const mspring_network *network, mspring_id low, mspring_id high) {
     neighbours n = begin(network, low);
     for (mspring_id other; (other = next(network, &n)) != MSPRING_NONE;)
         if (other == high)
@@ -105,20 +105,20 @@ static bool are_joined(const mspring_network *network, mspring_id low, mspring_i
     return false;
 }
 
-// Those elsewhere whose lowest corners are a pair that a spring joins: the third is joined to both, the fourth to
-// all.
-static mspring_result each_of_pair(mspring_network *network, mspring_id lowest, mspring_id second,
-                                   mspringi_cell_fn fn, void *user) {
+// Visit cells outside of rows by their lowest two corners, which a spring connects. The third is connected to both,
+// the fourth to all.
+static mspring_result visit_pair(mspring_network *network, mspring_id lowest, mspring_id second,
+                                 mspringi_cell_fn fn, void *user) {
     mspring_result result = MSPRING_OK;
     neighbours thirds = begin(network, second);
     for (mspring_id third; result == MSPRING_OK && (third = next(network, &thirds)) != MSPRING_NONE;) {
         neighbours fourths = begin(network, third);
-        if (!are_joined(network, lowest, third))
+        if (!are_connected(network, lowest, third))
             continue;
         for (mspring_id fourth; result == MSPRING_OK && (fourth = next(network, &fourths)) != MSPRING_NONE;) {
             mspring_id corners[4] = {lowest, second, third, fourth};
-            if (are_joined(network, lowest, fourth) && are_joined(network, second, fourth) &&
-                !is_in_rows(network, corners) && order(network, corners))
+            if (are_connected(network, lowest, fourth) && are_connected(network, second, fourth) &&
+                !is_in_rows(network, corners) && order_corners(network, corners))
                 result = fn(network, corners, user);
         }
     }
@@ -135,7 +135,7 @@ mspring_result mspringi_each_cell(mspring_network *network, mspringi_cell_fn fn,
             result = fn(network, corners, user);
         neighbours seconds = begin(network, p);
         for (mspring_id second; result == MSPRING_OK && (second = next(network, &seconds)) != MSPRING_NONE;)
-            result = each_of_pair(network, p, second, fn, user);
+            result = visit_pair(network, p, second, fn, user);
     }
     return result;
 }

@@ -1,4 +1,4 @@
-/// Areas as the host defines them.
+/// Definition of areas.
 #include "edits/edit_areas.h"
 
 #include <math.h>
@@ -8,14 +8,13 @@
 #include "store/changed.h"
 
 #define STRONGEST 1e30f
-#define LEAST_FILL 0.01f
-#define MOST_FILL 100.0f
-#define LEAST_AREA 1e-24
-#define MOST_AREA 1e24
+#define MIN_FILL 0.01f
+#define MAX_FILL 100.0f
+#define MIN_AREA 1e-24
+#define MAX_AREA 1e24
 
-/// Least part of the square of its perimeter that an area has: a hundred times what rounding gives corners on a
-/// line.
-#define LEAST_PART 1e-6
+/// Smallest area relative to its squared perimeter: a hundred times the rounding error of corners on a line.
+#define MIN_PART 1e-6
 
 /* ------------------------------------------------------------------------------------------------------ checks */
 
@@ -29,7 +28,7 @@ static mspring_result check_numbers(const mspring_area_def *def, mspringi_messag
         float value, least, most;
     } values[] = {{"stiffness", def->stiffness, 0.0f, STRONGEST},
                   {"pressure", def->pressure, is_gas ? 0.0f : -STRONGEST, STRONGEST},
-                  {"fill", def->fill, LEAST_FILL, MOST_FILL}};
+                  {"fill", def->fill, MIN_FILL, MAX_FILL}};
     for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
         if (!(values[i].value >= values[i].least && values[i].value <= values[i].most))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area's %s is %g, it must be %g to %g",
@@ -66,18 +65,18 @@ static double perimeter_of(const mspring_network *network, const mspring_id *par
     return sum;
 }
 
-/// Corners, in the order in which what is within them is size.
+/// Corners in the order in which the area is size.
 typedef struct polygon {
     const mspring_id *particles;
     uint32_t count;
     double size; ///< m^2
 } polygon;
 
-// Whether a size of its own, or one given for it, is more than rounding: A / rest area is a factor of forces.
+// Check that an area, its own or a given rest area, is more than rounding: A / rest area is a factor of forces.
 static mspring_result check_size(mspring_network *network, const char *what, const polygon *of, double size) {
     const double perimeter = perimeter_of(network, of->particles, of->count);
-    const double least = fmax(LEAST_PART * perimeter * perimeter, LEAST_AREA);
-    if (size >= least && size <= MOST_AREA)
+    const double least = fmax(MIN_PART * perimeter * perimeter, MIN_AREA);
+    if (size >= least && size <= MAX_AREA)
         return MSPRING_OK;
     return mspringi_fail(
         &network->message, MSPRING_ERROR_ARGUMENT,
@@ -86,7 +85,7 @@ static mspring_result check_size(mspring_network *network, const char *what, con
         what, (unsigned)of->particles[0], (unsigned)of->particles[1], (unsigned)of->particles[2], size, least);
 }
 
-// The rest area of a definition, by what the polygon has now.
+// Rest area of a definition; by default the present area of the polygon.
 static mspring_result choose_rest_area(mspring_network *network, const mspring_area_def *def, const polygon *of,
                                        double *rest_area) {
     *rest_area = def->rest_area == 0.0 ? of->size : def->rest_area;
@@ -130,7 +129,7 @@ static mspring_result check_list(mspring_network *network, const mspring_id *par
     return mspringi_check_corners(network, "area", particles, count);
 }
 
-/* ------------------------------------------------------------------------------------------------- adding them */
+/* ------------------------------------------------------------------------------------------------------ adding */
 
 static void fill(mspringi_area *area, const mspring_area_def *def, double rest_area) {
     area->kind = def->kind;
@@ -140,7 +139,7 @@ static void fill(mspringi_area *area, const mspring_area_def *def, double rest_a
     area->rest_area = rest_area;
 }
 
-// Add an area for which there is room.
+// Add an area, for which memory is reserved.
 static void add(mspring_network *network, const mspring_area_def *def, double rest_area,
                 const mspring_id *particles, uint32_t count) {
     mspringi_area made = {.count = count};
@@ -189,7 +188,7 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
     return MSPRING_OK;
 }
 
-/// What is added to each cell, and how many cells there are.
+/// Definition for each cell, and the number of cells.
 typedef struct cell_areas {
     const mspring_area_def *def;
     uint32_t count;
@@ -233,7 +232,7 @@ mspring_result mspring_network_add_cell_areas(mspring_network *network, const ms
 
 /* ------------------------------------------------------------------------------------------- changing, reading */
 
-// NULL if there is none.
+// Find an area or angle by id; NULL if there is none.
 static mspringi_area *find(const mspring_network *network, mspring_id id, bool is_angle) {
     const mspringi_areas *a = &network->areas;
     size_t low = 0, high = a->count;

@@ -1,4 +1,4 @@
-/// Breaking and restoring springs, and detaching particles, as the host asks for it.
+/// Breaking and restoring springs, and detaching particles, by the host.
 #include "base/cpu.h"
 #include "network/compact.h"
 #include "step/breaking.h"

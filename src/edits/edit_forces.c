@@ -1,9 +1,8 @@
-/// Forces for the next step, and impulses, which change velocities at once.
+/// Forces for the next step, and impulses, which change velocities immediately.
 ///
-/// What is given adds up, where a list names a particle twice as well. So the sums are made in the backup, which is
-/// free between steps, and taken from there once all of them are right: those of a list by slot, those of a range,
-/// which names each particle once, by index. Most forces are so small that no sum can go wrong: those of a range
-/// are added at once.
+/// Forces add up, also if a list names a particle twice. So new sums are computed in the backup, which is free
+/// between steps, and copied once all of them are valid: by slot for a list; by index for a range, which names each
+/// particle once. Most forces are too small to overflow a sum: those of a range are added directly.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -16,7 +15,7 @@ typedef struct pushes {
     uint32_t stride;
 } pushes;
 
-// What a call adds to: forces, or velocities times what a particle gives in to an impulse.
+// Sums of a call: forces, or velocities with inverse masses as factors.
 typedef struct target {
     mspringi_field sum;
     const float *inverse_mass; ///< NULL: forces
@@ -30,36 +29,36 @@ static mspring_result fail(mspring_network *network, const target *to, mspring_i
                          (unsigned)particle, (double)x, (double)y);
 }
 
-static bool is_right(const target *to, float x, float y) {
+static bool is_valid(const target *to, float x, float y) {
     return to->inverse_mass ? mspringi_is_speed(x) && mspringi_is_speed(y) : isfinite(x) && isfinite(y);
 }
 
-// A product of two floats is exact in double precision, so it does not matter whether it is fused with the sum.
-static float plus(float sum, float push, double factor) {
+// A product of two floats is exact in double precision, so fusing it with the sum makes no difference.
+static float add_scaled(float sum, float push, double factor) {
     return (float)((double)sum + (double)push * factor);
 }
 
-// Make the sums of a range. Returns the index of one that is not right, or the count.
+// Compute the sums of a range. Returns the index of the first invalid one, or the count.
 static MSPRINGI_NOINLINE uint32_t sum_range(const mspring_network *network, const mspringi_selection *at,
                                             const pushes *given, const target *to) {
     const uint32_t *const slots = network->topology.slot_of_particle + at->first;
     const mspringi_field sum = to->sum;
     float *const made_x = network->backup.vx, *const made_y = network->backup.vy;
-    uint32_t wrong = at->count;
+    uint32_t invalid = at->count;
     for (uint32_t i = 0; i < at->count; ++i) {
         const uint32_t slot = slots[i];
-        const bool is_there = mspringi_particle_exists(network, at->first + i);
+        const bool exists = mspringi_particle_exists(network, at->first + i);
         const uint32_t ahead = mspringi_slot_ahead(network, at, i);
         MSPRINGI_PREFETCH(&sum.x[ahead]);
         MSPRINGI_PREFETCH(&sum.y[ahead]);
         const double factor = !to->inverse_mass ? 1.0 : (double)to->inverse_mass[slot];
-        const float x = plus(sum.x[slot], given->x[(size_t)i * given->stride], factor);
-        const float y = plus(sum.y[slot], given->y[(size_t)i * given->stride], factor);
-        made_x[i] = is_there ? x : sum.x[slot];
-        made_y[i] = is_there ? y : sum.y[slot];
-        wrong = is_there && !is_right(to, x, y) && wrong == at->count ? i : wrong;
+        const float x = add_scaled(sum.x[slot], given->x[(size_t)i * given->stride], factor);
+        const float y = add_scaled(sum.y[slot], given->y[(size_t)i * given->stride], factor);
+        made_x[i] = exists ? x : sum.x[slot];
+        made_y[i] = exists ? y : sum.y[slot];
+        invalid = exists && !is_valid(to, x, y) && invalid == at->count ? i : invalid;
     }
-    return wrong;
+    return invalid;
 }
 
 static mspring_result add_range(mspring_network *network, const mspringi_selection *at, const pushes *given,
@@ -67,10 +66,10 @@ static mspring_result add_range(mspring_network *network, const mspringi_selecti
     const uint32_t *const slots = network->topology.slot_of_particle + at->first;
     const float *const made_x = network->backup.vx, *const made_y = network->backup.vy;
     const mspringi_field sum = to->sum;
-    const uint32_t wrong = sum_range(network, at, given, to);
-    if (wrong < at->count)
-        return fail(network, to, at->first + wrong, given->x[(size_t)wrong * given->stride],
-                    given->y[(size_t)wrong * given->stride]);
+    const uint32_t invalid = sum_range(network, at, given, to);
+    if (invalid < at->count)
+        return fail(network, to, at->first + invalid, given->x[(size_t)invalid * given->stride],
+                    given->y[(size_t)invalid * given->stride]);
     for (uint32_t i = 0; i < at->count; ++i) {
         sum.x[slots[i]] = made_x[i];
         sum.y[slots[i]] = made_y[i];
@@ -94,9 +93,9 @@ static MSPRINGI_NOINLINE mspring_result add_list(mspring_network *network, const
             continue;
         const float x = given->x[(size_t)i * given->stride], y = given->y[(size_t)i * given->stride];
         const double factor = to->inverse_mass ? (double)to->inverse_mass[slot] : 1.0;
-        made.x[slot] = plus(made.x[slot], x, factor);
-        made.y[slot] = plus(made.y[slot], y, factor);
-        if (!is_right(to, made.x[slot], made.y[slot]))
+        made.x[slot] = add_scaled(made.x[slot], x, factor);
+        made.y[slot] = add_scaled(made.y[slot], y, factor);
+        if (!is_valid(to, made.x[slot], made.y[slot]))
             return fail(network, to, particle, x, y);
     }
     for (uint32_t i = 0; i < at->count; ++i) {
@@ -119,30 +118,30 @@ static mspring_result add_rounding_to_nearest(mspring_network *network, const ms
 
 /* ------------------------------------------------------------------------------------------------------- forces */
 
-static bool are_all_modest(const float *forces, size_t count) {
+static bool are_all_small(const float *forces, size_t count) {
     uint32_t others = 0;
     for (size_t i = 0; i < count; ++i)
         others |= !(fabsf(forces[i]) <= MSPRINGI_MODEST);
     return others == 0;
 }
 
-// Whether no force is so large that sums of it need a look.
-static bool are_modest(const pushes *given, uint32_t count) {
+// True if all forces are too small to overflow their sums.
+static bool are_small(const pushes *given, uint32_t count) {
     const float *x = given->x, *y = given->y;
     const size_t stride = given->stride;
     if (stride == 1)
-        return are_all_modest(x, count) && are_all_modest(y, count);
+        return are_all_small(x, count) && are_all_small(y, count);
     if (stride == 2 && y == x + 1)
-        return are_all_modest(x, 2 * (size_t)count);
+        return are_all_small(x, 2 * (size_t)count);
     uint32_t others = 0;
     for (size_t i = 0; i < count; ++i)
         others |= !(fabsf(x[i * stride]) <= MSPRINGI_MODEST && fabsf(y[i * stride]) <= MSPRINGI_MODEST);
     return others == 0;
 }
 
-// Add modest forces to a range, of which all particles are there.
-static MSPRINGI_NOINLINE void add_modest(mspring_network *network, const mspringi_selection *at,
-                                         const pushes *given) {
+// Add small forces to a range without removed particles.
+static MSPRINGI_NOINLINE void add_small(mspring_network *network, const mspringi_selection *at,
+                                        const pushes *given) {
     const uint32_t *const slots = network->topology.slot_of_particle + at->first;
     const mspringi_field sum = network->forces.held;
     const size_t stride = given->stride;
@@ -155,10 +154,10 @@ static MSPRINGI_NOINLINE void add_modest(mspring_network *network, const mspring
     }
 }
 
-static void add_modest_rounding_to_nearest(mspring_network *network, const mspringi_selection *at,
-                                           const pushes *given) {
+static void add_small_rounding_to_nearest(mspring_network *network, const mspringi_selection *at,
+                                          const pushes *given) {
     const mspringi_fp_state before = mspringi_fp_enter();
-    add_modest(network, at, given);
+    add_small(network, at, given);
     mspringi_fp_leave(before);
 }
 
@@ -168,16 +167,16 @@ static mspring_result apply_forces(mspring_network *network, const mspringi_sele
     if (result != MSPRING_OK || at->count == 0)
         return result;
     const uint32_t calls = forces->held_any ? forces->held_calls : 0;
-    const bool modest =
-        !at->list && !network->growth.particles && calls < MSPRINGI_MODEST_CALLS && are_modest(given, at->count);
-    if (modest)
-        add_modest_rounding_to_nearest(network, at, given);
+    const bool is_small =
+        !at->list && !network->growth.particles && calls < MSPRINGI_MODEST_CALLS && are_small(given, at->count);
+    if (is_small)
+        add_small_rounding_to_nearest(network, at, given);
     else
         result = add_rounding_to_nearest(network, at, given, &(target){.sum = forces->held});
     if (result != MSPRING_OK)
         return result;
     forces->held_any = true;
-    forces->held_calls = modest ? calls + 1 : MSPRINGI_MODEST_CALLS;
+    forces->held_calls = is_small ? calls + 1 : MSPRINGI_MODEST_CALLS;
     return MSPRING_OK;
 }
 

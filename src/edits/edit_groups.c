@@ -1,4 +1,4 @@
-/// Dividing particles into groups.
+/// Division of particles into groups.
 #include "edits/edit_groups.h"
 
 #include "contact/contacts.h"
@@ -35,7 +35,7 @@ static mspring_result check_network(mspring_network *network, uint32_t count) {
     const uint32_t had = network->groups.count;
     mspring_solver_def solver = {.struct_size = sizeof solver};
     mspring_result result = mspring_network_get_solver(network, &solver);
-    network->groups.count = count; // the checks ask for it
+    network->groups.count = count; // the checks need it
     if (result == MSPRING_OK)
         result = mspringi_groups_check_settings(network, &network->settings);
     if (result == MSPRING_OK)
@@ -110,7 +110,7 @@ static void number_particles(const mspring_network *network, mspringi_groups *g,
             g->of_particle[p] = group;
 }
 
-// The group of a spring, or MSPRING_NONE if it leads from one to another.
+// Group of a spring, or MSPRING_NONE if its ends are in two.
 static uint32_t group_of_spring(const mspring_network *network, const mspringi_groups *g, mspring_id spring) {
     const mspringi_ends ends = mspringi_spring_ends(network, spring);
     const uint32_t a = g->of_particle[network->topology.particle_of_slot[ends.a]],
@@ -118,7 +118,7 @@ static uint32_t group_of_spring(const mspring_network *network, const mspringi_g
     return a == b ? a : MSPRING_NONE;
 }
 
-// List the springs of each group by rising ids.
+// List the springs of each group in order of their ids.
 static mspring_result list_springs(mspring_network *network, mspringi_groups *g) {
     const uint32_t springs = network->topology.spring_count;
     for (mspring_id s = 0; s < springs; ++s) {
@@ -136,7 +136,7 @@ static mspring_result list_springs(mspring_network *network, mspringi_groups *g)
         if (group < g->count)
             g->springs[--g->first_spring[group + 1]] = s;
     }
-    // Each entry has come down to the beginning of its own group: they are one too far behind.
+    // Each entry is now the beginning of the group before: shift them.
     for (uint32_t group = 0; group + 1 < g->count; ++group)
         g->first_spring[group] = g->first_spring[group + 1];
     return MSPRING_OK;
@@ -154,7 +154,7 @@ static mspring_result check_areas(mspring_network *network, const mspringi_group
     return MSPRING_OK;
 }
 
-// Pairs of different groups touch no more, or again.
+// Pairs may have moved to different groups, or to the same: find them again.
 static void look_for_pairs_anew(mspring_network *network) {
     if (!network->contacts)
         return;

@@ -1,5 +1,5 @@
 /// @file edit_groups.h
-/// What groups are put back to.
+/// Marks: states of groups for a later reset.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_EDIT_GROUPS_H
@@ -7,10 +7,10 @@
 
 #include "store/network.h"
 
-/// Allocate a mark of so many groups. On error there is none of it.
+/// Allocate a mark for `groups` groups. On error nothing is allocated.
 mspring_result mspringi_mark_allocate(mspring_network *network, mspringi_mark *mark, uint32_t groups);
 
-/// Remember what a group is like now.
+/// Save the present state of a group.
 void mspringi_mark_take(mspring_network *network, mspringi_mark *mark, uint32_t group);
 
 #endif

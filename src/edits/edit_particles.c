@@ -1,4 +1,4 @@
-/// Editing particles between steps: masses, and what scales their inverses.
+/// Edits of particles between steps: masses, and scales of inverse masses.
 #include "edits/edit_particles.h"
 
 #include <string.h>
@@ -22,9 +22,9 @@ mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
     return MSPRING_OK;
 }
 
-// Index of the first mass that is another than the particle has.
-static uint32_t first_other_mass(const mspring_network *network, const mspringi_selection *at,
-                                 const mspringi_values *values) {
+// Index of the first changed mass.
+static uint32_t first_changed_mass(const mspring_network *network, const mspringi_selection *at,
+                                   const mspringi_values *values) {
     uint32_t i = 0;
     while (i < at->count && (network->mass[mspringi_selected(at, i)] == mspringi_value_of(values, i) ||
                              !mspringi_particle_exists(network, mspringi_selected(at, i))))
@@ -48,10 +48,10 @@ static MSPRINGI_NOINLINE void store_masses(mspring_network *network, const mspri
     }
 }
 
-/// Particles of a range that are given masses together, whose inverses are found in vectors.
+/// Particles whose inverse masses are computed together, vectorised.
 enum { BATCH = 64 };
 
-// Set masses of a batch of particles, of which all are there.
+// Set the masses of a batch without removed particles.
 static inline void store_batch(const mspring_network *network, mspring_id first, const float *given, size_t stride,
                                uint32_t count) {
     const uint32_t *const slots = network->topology.slot_of_particle + first;
@@ -87,7 +87,7 @@ static MSPRINGI_NOINLINE void store_range(const mspring_network *network, const 
 
 static mspring_result set_masses(mspring_network *network, const mspringi_selection *at,
                                  const mspringi_values *values) {
-    const uint32_t first = first_other_mass(network, at, values);
+    const uint32_t first = first_changed_mass(network, at, values);
     if (first == at->count)
         return MSPRING_OK;
     mspring_result result = mspringi_reserve_spring_masses(network);
@@ -134,9 +134,9 @@ static bool is_fractional(float scale) {
     return scale > 0.0f && scale < 1.0f;
 }
 
-// Index of the first scale that is another than the particle has, and whether one needs room for scales.
-static uint32_t first_other_scale(const mspring_network *network, const mspringi_selection *at,
-                                  const mspringi_values *values, bool *fractional) {
+// Index of the first changed scale, and whether any needs memory for scales.
+static uint32_t first_changed_scale(const mspring_network *network, const mspringi_selection *at,
+                                    const mspringi_values *values, bool *fractional) {
     uint32_t first = at->count;
     *fractional = false;
     for (uint32_t i = 0; i < at->count; ++i) {
@@ -168,7 +168,7 @@ static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspri
 static mspring_result set_scales(mspring_network *network, const mspringi_selection *at,
                                  const mspringi_values *values) {
     bool fractional;
-    const uint32_t first = first_other_scale(network, at, values, &fractional);
+    const uint32_t first = first_changed_scale(network, at, values, &fractional);
     mspring_result result = fractional ? mspringi_reserve_inverse_mass_scales(network) : MSPRING_OK;
     if (result != MSPRING_OK || first == at->count)
         return result;

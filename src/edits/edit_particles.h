@@ -1,5 +1,5 @@
 /// @file edit_particles.h
-/// Masses, and what scales their inverses.
+/// Masses, and scales of inverse masses.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_EDIT_PARTICLES_H
@@ -7,7 +7,7 @@
 
 #include "store/properties.h"
 
-/// Have relative springs go on with the masses that are there before the first edit; nothing if there are none.
+/// Save the masses for relative springs before the first edit of masses. No effect without relative springs.
 mspring_result mspringi_reserve_spring_masses(mspring_network *network);
 mspring_result mspringi_reserve_inverse_mass_scales(mspring_network *network);
 

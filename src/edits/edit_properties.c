@@ -1,4 +1,4 @@
-/// Setting properties of particles and springs between steps.
+/// Edits of particle and spring properties between steps.
 #include "base/cpu.h"
 #include "edits/edit_values.h"
 
@@ -16,7 +16,7 @@ static bool exists(const mspring_network *network, mspringi_kind kind, mspring_i
     return kind == MSPRINGI_PARTICLES ? mspringi_particle_exists(network, id) : mspringi_spring_exists(network, id);
 }
 
-// Values of what a range has in it that was removed may be anything.
+// Check the values of a range. Those for removed elements are ignored.
 static mspring_result check_values(mspring_network *network, const mspringi_selection *at,
                                    const mspringi_values *values) {
     const mspringi_property *property = mspringi_property_of(values->property);

@@ -1,4 +1,4 @@
-/// Removing particles and springs, and giving their ids back.
+/// Removal of particles and springs, and recycling of their ids.
 #include "contact/grips.h"
 #include "layout/emit/spare.h"
 #include "step/breaking.h"
@@ -53,7 +53,7 @@ mspring_result mspring_network_remove_particles(mspring_network *network, const 
         return result;
     for (uint32_t i = 0; i < count; ++i)
         remove_particle(network, particles[i]);
-    mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0); // as where particles are pinned
+    mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0); // as after pinning
     finish(network);
     return MSPRING_OK;
 }
@@ -73,8 +73,8 @@ mspring_result mspring_network_remove_springs(mspring_network *network, const ms
 
 /* --------------------------------------------------------------------------------------------------- recycling */
 
-// Make spare what is gone. Returns the lowest of those.
-static mspring_id give_back(uint8_t *marks, mspring_id first, mspring_id end, mspring_id lowest) {
+// Mark removed ids as spare. Returns the lowest of them.
+static mspring_id recycle_ids(uint8_t *marks, mspring_id first, mspring_id end, mspring_id lowest) {
     for (mspring_id id = end; id-- > first;) {
         if (marks[id] != MSPRINGI_GONE)
             continue;
@@ -90,8 +90,8 @@ mspring_result mspring_network_recycle(mspring_network *network) {
         return result;
     mspringi_id_pool *g = &network->growth;
     const mspringi_reserve *r = &network->topology.reserve;
-    g->lowest_particle = give_back(g->particles, r->first_particle, r->particle_end, g->lowest_particle);
-    g->lowest_spring = give_back(g->springs, r->first_spring, r->spring_end, g->lowest_spring);
+    g->lowest_particle = recycle_ids(g->particles, r->first_particle, r->particle_end, g->lowest_particle);
+    g->lowest_spring = recycle_ids(g->springs, r->first_spring, r->spring_end, g->lowest_spring);
     mspringi_fingerprint(network, MSPRINGI_EDIT_RECYCLED, 0);
     mspringi_notify_change(network, MSPRINGI_CHANGED_IDS, 0);
     return MSPRING_OK;

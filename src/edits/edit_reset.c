@@ -1,4 +1,4 @@
-/// Marking groups, and putting them back.
+/// Marks of groups, and resets to them.
 #include <string.h>
 
 #include "base/cpu.h"
@@ -44,7 +44,7 @@ static mspring_result check_groups(mspring_network *network, const uint32_t *gro
     return MSPRING_OK;
 }
 
-// Groups by list, or all of them.
+// A list of groups, or all of them.
 typedef struct choice {
     const uint32_t *list; // NULL: all
     uint32_t count;
@@ -82,10 +82,10 @@ mspring_result mspring_network_mark_groups(mspring_network *network, const uint3
     return MSPRING_OK;
 }
 
-/* ------------------------------------------------------------------------------------------------------ putting
- * back */
+/* ------------------------------------------------------------------------------------------------------- resets */
 
-// List the springs that were live, or broken, at the mark and are not now. A group may be chosen twice.
+// List the springs with the given state, live or broken, at the mark and the other one now. A group may be listed
+// twice.
 static uint32_t list_changed(mspring_network *network, const mspringi_mark *mark, const choice *of,
                              bool were_live) {
     mspringi_groups *g = &network->groups;
@@ -100,7 +100,7 @@ static uint32_t list_changed(mspring_network *network, const mspringi_mark *mark
     return found;
 }
 
-static mspring_result put_links_back(mspring_network *network, const mspringi_mark *mark, const choice *of) {
+static mspring_result restore_links(mspring_network *network, const mspringi_mark *mark, const choice *of) {
     const mspring_id *changing = network->groups.changing;
     if (!network->edits.broke)
         return MSPRING_OK;
@@ -111,7 +111,7 @@ static mspring_result put_links_back(mspring_network *network, const mspringi_ma
     return broken > 0 ? mspring_network_break_springs(network, changing, broken) : result;
 }
 
-static void put_motion_back(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
+static void restore_motion(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
     const mspringi_groups *g = &network->groups;
     const mspringi_state *s = &network->state;
     const size_t slots = mspringi_slot_count(network);
@@ -154,7 +154,7 @@ static void put_back(mspring_network *network, const mspringi_mark *mark, uint32
     mspringi_groups *g = &network->groups;
     if (g->flags[group] & MSPRINGI_HELD)
         mspringi_groups_release(network, group);
-    put_motion_back(network, mark, group);
+    restore_motion(network, mark, group);
     for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i)
         put_length_back(network, g->springs[i], mark->lengths + 2 * (size_t)i);
 }
@@ -171,7 +171,7 @@ mspring_result mspring_network_reset_groups(mspring_network *network, const uint
     const mspringi_groups *g = &network->groups;
     const mspringi_mark *mark = to == MSPRING_RESET_MARK && g->mark.motion ? &g->mark : &g->start;
     const choice reset = choose(network, groups, count);
-    result = put_links_back(network, mark, &reset);
+    result = restore_links(network, mark, &reset);
     if (result != MSPRING_OK || reset.count == 0)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();

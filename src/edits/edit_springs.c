@@ -1,7 +1,7 @@
-/// Setting stiffness, damping, rest lengths, thresholds and what springs yield at.
+/// Edits of stiffness, damping, rest lengths, thresholds and yield parameters.
 ///
-/// Most springs of most networks lie in lattices: their values are compared, and set, where they lie. A spring that
-/// has its value already costs that comparison.
+/// Most springs lie in lattices: their values are compared and set in place. An unchanged spring costs only that
+/// comparison.
 #include "base/cpu.h"
 #include "base/hash.h"
 #include "edits/edit_values.h"
@@ -15,11 +15,11 @@
 
 /* --------------------------------------------------------------------------------------------------- comparing */
 
-// Where the values of the springs lie that can be compared without looking further, by place.
+// Array of spring values by spring slot, for direct comparison.
 typedef struct plane {
-    float *values;            ///< of place p at p % WIDTH + p / WIDTH * WIDTH * planes
+    float *values;            ///< value of spring slot p at p % WIDTH + p / WIDTH * WIDTH * planes
     uint32_t planes;          ///< 1 or 2
-    mspringi_spring_slot end; ///< of the places that it has; 0: none
+    mspringi_spring_slot end; ///< end of its spring slots; 0: none
 } plane;
 
 static inline float *in_plane(const plane *from, mspringi_spring_slot spring_slot) {
@@ -27,11 +27,10 @@ static inline float *in_plane(const plane *from, mspringi_spring_slot spring_slo
                          (size_t)(from->planes - 1) * (spring_slot & ~(mspringi_spring_slot)(MSPRINGI_WIDTH - 1))];
 }
 
-// Springs whose values are fetched before they are looked at: those of the next blocks, as steps leave none of them
-// in the near caches.
+// Prefetch distance in springs: to the next blocks, since a step leaves none of them in the near caches.
 #define AHEAD 256
 
-/// The same in a list, whose springs may lie anywhere.
+/// Prefetch distance in a list, whose springs may lie anywhere.
 #define AHEAD_IN_LIST 32
 
 static inline void fetch(const plane *from, mspringi_spring_slot spring_slot) {
@@ -39,7 +38,7 @@ static inline void fetch(const plane *from, mspringi_spring_slot spring_slot) {
         MSPRINGI_PREFETCH(in_plane(from, spring_slot));
 }
 
-// The thresholds of all springs, or NULL.
+// Thresholds of all springs, or NULL.
 static float *thresholds_of(const mspring_network *network, mspring_property property) {
     const mspringi_strain *strain = &network->strain;
     return property == MSPRING_BREAK_STRAIN    ? strain->break_strain
@@ -51,8 +50,8 @@ static float *thresholds_of(const mspring_network *network, mspring_property pro
                                                : NULL;
 }
 
-// Thresholds lie by place, and so do rest lengths of lattices once they are not shared. Of lattices stiffness and
-// damping do, too.
+// Array of a property. All thresholds have one; so have rest lengths of lattices unless shared, and stiffness and
+// damping of lattices.
 static plane plane_of(const mspring_network *network, mspring_property property) {
     const mspringi_topology *t = &network->topology;
     const uint32_t planes = network->parts - 1;
@@ -68,15 +67,15 @@ static plane plane_of(const mspring_network *network, mspring_property property)
     return (plane){NULL, 1, 0};
 }
 
-// Whether a spring is to get another value than it has. A ramp has to be ended.
-static bool differs(const mspring_network *network, mspring_property property, mspring_id spring, float value) {
+// True if the value changes the spring, or must end its ramp.
+static bool is_changed(const mspring_network *network, mspring_property property, mspring_id spring, float value) {
     return mspringi_spring_exists(network, spring) &&
            (mspringi_spring_property(network, property, spring) != value ||
             (property == MSPRING_REST_LENGTH && mspringi_has_ramp(network, spring)));
 }
 
-// Index of the first, from one on, that is not known to be in a plane already. (A broken spring has 0 in its
-// record, so that value tells nothing.)
+// Index of the first spring from i on that may change. A broken spring has 0 in its record, so that value proves
+// nothing.
 static inline uint32_t skip_equal(const mspringi_spring_slot *spring_slots, plane known, const float *values,
                                   size_t stride, uint32_t i, uint32_t count) {
     while (i < count && spring_slots[i] < known.end) {
@@ -90,7 +89,7 @@ static inline uint32_t skip_equal(const mspringi_spring_slot *spring_slots, plan
     return i;
 }
 
-// The same of a list.
+// skip_equal() for a list.
 static uint32_t skip_equal_listed(const mspring_network *network, const mspring_id *list, plane known,
                                   const float *values, size_t stride, uint32_t i, uint32_t count) {
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring;
@@ -102,7 +101,7 @@ static uint32_t skip_equal_listed(const mspring_network *network, const mspring_
     return i;
 }
 
-// The same of rest lengths that many springs share.
+// skip_equal() for shared rest lengths.
 static inline uint32_t skip_equal_rests(const mspring_network *network, const mspringi_spring_slot *spring_slots,
                                         const float *values, size_t stride, uint32_t i, uint32_t count) {
     const mspringi_rest_lengths rests = network->rest_lengths;
@@ -113,7 +112,7 @@ static inline uint32_t skip_equal_rests(const mspring_network *network, const ms
     return i;
 }
 
-// The same of fractions: springs that are relative and have theirs.
+// skip_equal() for fractions of relative springs.
 static inline uint32_t skip_equal_fractions(const mspringi_fractions *fractions, mspring_id first, bool is_damping,
                                             const float *values, size_t stride, uint32_t i, uint32_t count) {
     for (; i < count; ++i) {
@@ -124,7 +123,7 @@ static inline uint32_t skip_equal_fractions(const mspringi_fractions *fractions,
     return i;
 }
 
-// The same of a list.
+// skip_equal_fractions() for a list.
 static uint32_t skip_equal_listed_fractions(const mspringi_fractions *fractions, const mspring_id *list,
                                             bool is_damping, const float *values, size_t stride, uint32_t i,
                                             uint32_t count) {
@@ -137,9 +136,9 @@ static uint32_t skip_equal_listed_fractions(const mspringi_fractions *fractions,
     return i;
 }
 
-// Index of the first spring, from one on, that is to get another value than it has.
-static uint32_t next_other(const mspring_network *network, const mspringi_selection *at,
-                           const mspringi_values *values, uint32_t i) {
+// Index of the first spring from i on that changes.
+static uint32_t next_changed(const mspring_network *network, const mspringi_selection *at,
+                             const mspringi_values *values, uint32_t i) {
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring + at->first;
     const plane known = plane_of(network, values->property);
     const bool is_damping = values->property == MSPRING_DAMPING;
@@ -163,7 +162,7 @@ static uint32_t next_other(const mspring_network *network, const mspringi_select
         else
             i = skip_equal_listed(network, at->list, known, values->first, values->stride, i, at->count);
         if (i == at->count ||
-            differs(network, values->property, mspringi_selected(at, i), mspringi_value_of(values, i)))
+            is_changed(network, values->property, mspringi_selected(at, i), mspringi_value_of(values, i)))
             break;
     }
     return i;
@@ -206,8 +205,8 @@ static void store_limit(mspring_network *network, mspringi_spring_slot spring_sl
         mspringi_strain_store(network, spring_slot, property, value);
 }
 
-// After a rest length has been set.
-static void follow_rest_length(mspring_network *network, mspringi_spring_slot spring_slot, float had) {
+// Update plastic bounds after a change of a rest length.
+static void update_plastic_bounds(mspring_network *network, mspringi_spring_slot spring_slot, float had) {
     if (network->plastic.nominal)
         mspringi_plastic_follow(network, spring_slot, had);
 }
@@ -223,7 +222,7 @@ static mspring_result check_room_for_damping(mspring_network *network, const msp
     return MSPRING_OK;
 }
 
-// Whether another value of a spring ends that many springs share one.
+// True if the edit of this spring ends sharing of rest lengths or fractions.
 static bool ends_sharing(const mspring_network *network, mspring_property property, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     if (property == MSPRING_REST_LENGTH)
@@ -231,7 +230,7 @@ static bool ends_sharing(const mspring_network *network, mspring_property proper
     return mspringi_spring_is_relative(network, spring);
 }
 
-// Allocate what it takes to set values, of which that of index i is the first that is another than there was.
+// Allocate memory for an edit. i: index of the first changed value.
 static mspring_result reserve(mspring_network *network, const mspringi_selection *at, const mspringi_values *values,
                               uint32_t i) {
     const mspring_property property = values->property;
@@ -243,7 +242,7 @@ static mspring_result reserve(mspring_network *network, const mspringi_selection
     if (is_rest_length ? network->rest_lengths.shared_count == 0 : !network->fractions.of_spring)
         return MSPRING_OK;
     while (i < at->count && !ends_sharing(network, property, mspringi_selected(at, i)))
-        i = next_other(network, at, values, i + 1);
+        i = next_changed(network, at, values, i + 1);
     if (i >= at->count)
         return MSPRING_OK;
     return is_rest_length ? mspringi_rest_lengths_unshare(network) : mspringi_fractions_separate(network);
@@ -264,7 +263,7 @@ static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property
         mspringi_ramp_drop(network, spring);
         had = mspringi_spring_slot_get(network, spring_slot).rest_length;
         mspringi_spring_slot_set_rest_length(network, spring_slot, value);
-        follow_rest_length(network, spring_slot, had);
+        update_plastic_bounds(network, spring_slot, had);
         break;
     default:
         if (property == MSPRING_PLASTIC_STRAIN)
@@ -273,22 +272,22 @@ static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property
     }
 }
 
-// What a value adds to the hash of a call's edits: of each by itself, as a chain of them takes as long as the rest.
+// Contribution of a value to the hash of a call. Independent of the others: a chain would take as long as the rest.
 static inline uint64_t trace(uint32_t i, mspring_id spring, float value) {
     return mspringi_hash_floats(mspringi_hash(MSPRINGI_HASH_START, (uint64_t)i << 32 | spring), value, 0.0f);
 }
 
-// What it takes to set a spring of a lattice where it lies.
+// Arguments for setting springs of a lattice in place.
 typedef struct lattice_setter {
     plane records;
-    const float *mass; ///< that relative springs go by
+    const float *mass; ///< masses for relative springs
     double rate;
     bool is_damping, has_relative;
-    float mass_a, mass_b; ///< of the relative spring that was set last
+    float mass_a, mass_b; ///< masses of the relative spring set before
     double reduced_mass;
 } lattice_setter;
 
-// Most springs are between masses as the one before.
+// Most springs have the masses of the one before.
 static inline double reduced_mass_of(lattice_setter *with, float a, float b) {
     if (a != with->mass_a || b != with->mass_b) {
         with->reduced_mass = mspringi_reduced_mass((double)a, (double)b);
@@ -306,7 +305,7 @@ static lattice_setter lattice_setter_of(const mspring_network *network, mspring_
                             .has_relative = network->fractions.values != NULL};
 }
 
-// Stiffness or damping in force of a spring in a lattice that gets this value.
+// Active stiffness or damping of a relative spring in a lattice, from its new value.
 static inline float in_force(const mspring_network *network, lattice_setter *with, mspringi_spring_slot spring_slot,
                              float value) {
     const mspringi_topology *t = &network->topology;
@@ -318,7 +317,7 @@ static inline float in_force(const mspring_network *network, lattice_setter *wit
                             : mspringi_derived_stiffness(value, reduced_mass, with->rate);
 }
 
-// Set stiffness or damping of a spring that is live, in a lattice. False: it had that.
+// Set stiffness or damping of a live spring in a lattice. False if it is unchanged.
 static inline bool set_in_lattice(mspring_network *network, lattice_setter *with, mspring_id spring,
                                   mspringi_spring_slot spring_slot, float value) {
     float *record = in_plane(&with->records, spring_slot), force = value;
@@ -339,7 +338,7 @@ static inline bool set_in_lattice(mspring_network *network, lattice_setter *with
     return true;
 }
 
-// Set a rest length or threshold in its plane. False: it had that.
+// Set a rest length or threshold in its array. False if it is unchanged.
 static inline bool set_in_plane(mspring_network *network, const plane *known, mspring_property property,
                                 mspringi_spring_slot spring_slot, float value) {
     float *at = in_plane(known, spring_slot);
@@ -352,13 +351,13 @@ static inline bool set_in_plane(mspring_network *network, const plane *known, ms
     }
     *at = value;
     network->has_welds |= value == MSPRINGI_WELD;
-    follow_rest_length(network, spring_slot, had);
+    update_plastic_bounds(network, spring_slot, had);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
     return true;
 }
 
-// Set stiffness or damping of springs from index i on, as long as they are live and lie in a lattice. Nobody but
-// the fingerprint is told of them one by one. Returns the index of the first that is left.
+// Set stiffness or damping of springs from index i on, while they are live and in a lattice. Notifies only the
+// fingerprint of each. Returns the index of the first spring left.
 MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi_selection *at,
                                         const mspringi_values *values, lattice_setter *with, uint32_t i,
                                         bool has_relative, uint64_t *traces) {
@@ -402,9 +401,9 @@ MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi
     return i;
 }
 
-// Set those that differ, from index i on.
-static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspringi_selection *at,
-                                         const mspringi_values *values, uint32_t i) {
+// Set changed springs from index i on.
+static MSPRINGI_NOINLINE void set_changed(mspring_network *network, const mspringi_selection *at,
+                                          const mspringi_values *values, uint32_t i) {
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring;
     const mspring_property property = values->property;
     const bool may_sleep = network->sleep.count > 0;
@@ -417,7 +416,7 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
             i = lattice.has_relative ? set_run(network, at, values, &lattice, i, true, &traces)
                                      : set_run(network, at, values, &lattice, i, false, &traces);
         else if (at->list)
-            i = next_other(network, at, values, i);
+            i = next_changed(network, at, values, i);
         if (i == at->count)
             break;
         const mspring_id spring = mspringi_selected(at, i);
@@ -431,7 +430,7 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
         } else if (spring_slot < lattice.records.end && !is_part && mspringi_spring_exists(network, spring)) {
             is_new = set_in_plane(network, &lattice.records, property, spring_slot, value);
         } else {
-            is_new = differs(network, property, spring, value);
+            is_new = is_changed(network, property, spring, value);
             if (is_new)
                 set_one(network, property, spring, spring_slot, value);
         }
@@ -441,7 +440,7 @@ static MSPRINGI_NOINLINE void set_others(mspring_network *network, const mspring
         if (may_sleep)
             mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING, spring);
     }
-    if (property != MSPRING_PLASTIC_STRAIN) { // which is state
+    if (property != MSPRING_PLASTIC_STRAIN) { // plastic strain is state, no parameter
         mspringi_fingerprint(network, edit_of(property), at->count);
         network->parameter_fingerprint = mspringi_hash(network->parameter_fingerprint, traces);
     }
@@ -453,11 +452,11 @@ mspring_result mspringi_set_spring_values(mspring_network *network, const msprin
                                           const mspringi_values *values) {
     mspring_result result =
         values->property == MSPRING_DAMPING ? check_room_for_damping(network, at, values) : MSPRING_OK;
-    const uint32_t first = result == MSPRING_OK ? next_other(network, at, values, 0) : at->count;
+    const uint32_t first = result == MSPRING_OK ? next_changed(network, at, values, 0) : at->count;
     if (first >= at->count)
         return result;
     result = reserve(network, at, values, first);
     if (result == MSPRING_OK)
-        set_others(network, at, values, first);
+        set_changed(network, at, values, first);
     return result;
 }

@@ -36,31 +36,31 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm256_sqrt_ps(a);
 }
-// 1 / square, or 0 where there is no direction.
+// 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     return _mm256_and_ps(_mm256_div_ps(_mm256_set1_ps(1.0f), square),
                          _mm256_cmp_ps(square, _mm256_set1_ps(MSPRINGI_NO_DIRECTION), _CMP_GT_OQ));
 }
-// a where selector > 0, b elsewhere.
+// a where selector > 0, else b.
 static inline vec choose_positive(vec selector, vec a, vec b) {
     return _mm256_blendv_ps(b, a, _mm256_cmp_ps(selector, _mm256_setzero_ps(), _CMP_GT_OQ));
 }
-// A bit for each lane: 1 where a > b.
+// Bit of each lane with a > b.
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_GT_OQ));
 }
-// Which lanes of a are outside of least to most.
+// Mask of the lanes of a below least or above most.
 static inline mask outside(vec a, vec least, vec most) {
     return _mm256_or_ps(_mm256_cmp_ps(a, least, _CMP_LT_OQ), _mm256_cmp_ps(a, most, _CMP_GT_OQ));
 }
 static inline mask either(mask a, mask b) {
     return _mm256_or_ps(a, b);
 }
-// Not 0 if any lane is.
+// Not 0 if any lane is set.
 static inline uint32_t any_lane(mask a) {
     return (uint32_t)_mm256_movemask_ps(a);
 }
-// The last lane of before, then all lanes of a but its last.
+// Shift by one lane: the last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     const __m256i halo =
         _mm256_castps_si256(_mm256_permute2f128_ps(a, before, 0x03)); // upper of before, lower of a
@@ -80,7 +80,7 @@ static inline vec load_two(const float *gathered, uint32_t low, uint32_t high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(gathered + 4 * (size_t)low)),
                                 _mm_load_ps(gathered + 4 * (size_t)high), 1);
 }
-// Four values of each of LANES nodes, from [node][4].
+// Load four values of each of LANES nodes, from [node][4].
 static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
     *x = load_two(gathered, nodes[0], nodes[4]);
     *y = load_two(gathered, nodes[1], nodes[5]);
@@ -97,7 +97,7 @@ static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy)
     }
 }
 
-// Absolute values, as integers: those of floats are in the same order, with NaN above all.
+// Absolute values as integers: the order is that of floats, with NaN above all.
 static inline __m256i absolute(vec a) {
     return _mm256_and_si256(_mm256_castps_si256(a), _mm256_set1_epi32(0x7fffffff));
 }
@@ -109,7 +109,7 @@ static inline float largest_lane(vec a) {
     return _mm_cvtss_f32(_mm_castsi128_ps(half));
 }
 
-// The larger of a and of the size of b.
+// The larger of a and |b|.
 static inline vec larger_size(vec a, vec b) {
     return _mm256_castsi256_ps(_mm256_max_epi32(_mm256_castps_si256(a), absolute(b)));
 }

@@ -36,31 +36,31 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm512_sqrt_ps(a);
 }
-// 1 / square, or 0 where there is no direction.
+// 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     return _mm512_maskz_div_ps(_mm512_cmp_ps_mask(square, _mm512_set1_ps(MSPRINGI_NO_DIRECTION), _CMP_GT_OQ),
                                _mm512_set1_ps(1.0f), square);
 }
-// a where selector > 0, b elsewhere.
+// a where selector > 0, else b.
 static inline vec choose_positive(vec selector, vec a, vec b) {
     return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(selector, _mm512_setzero_ps(), _CMP_GT_OQ), b, a);
 }
-// A bit for each lane: 1 where a > b.
+// Bit of each lane with a > b.
 static inline uint32_t bits_greater(vec a, vec b) {
     return _mm512_cmp_ps_mask(a, b, _CMP_GT_OQ);
 }
-// Which lanes of a are outside of least to most.
+// Mask of the lanes of a below least or above most.
 static inline mask outside(vec a, vec least, vec most) {
     return (mask)(_mm512_cmp_ps_mask(a, least, _CMP_LT_OQ) | _mm512_cmp_ps_mask(a, most, _CMP_GT_OQ));
 }
 static inline mask either(mask a, mask b) {
     return (mask)(a | b);
 }
-// Not 0 if any lane is.
+// Not 0 if any lane is set.
 static inline uint32_t any_lane(mask a) {
     return a;
 }
-// The last lane of before, then all lanes of a but its last.
+// Shift by one lane: the last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     return _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(a), _mm512_castps_si512(before), 15));
 }
@@ -78,14 +78,15 @@ static inline __m256 load_two(const float *gathered, uint32_t low, uint32_t high
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(gathered + 4 * (size_t)low)),
                                 _mm_load_ps(gathered + 4 * (size_t)high), 1);
 }
-// The nodes first, first + 4, first + 8 and first + 12 of a list. (Two halves take 5 % less time than quarter after
-// quarter, since an insertion into 512 bits takes two turns.)
+// Load the nodes first, first + 4, first + 8 and first + 12 of a list. Two halves take 5 % less time than four
+// quarters, since an insertion into 512 bits takes two cycles.
 static inline vec load_four(const float *gathered, const uint32_t *nodes) {
     const __m256 low = load_two(gathered, nodes[0], nodes[4]), high = load_two(gathered, nodes[8], nodes[12]);
     return _mm512_castpd_ps(
         _mm512_insertf64x4(_mm512_castps_pd(_mm512_castps256_ps512(low)), _mm256_castps_pd(high), 1));
 }
-// Four values of each of LANES nodes, from [node][4]. As a call it makes a random graph a third slower.
+// Load four values of each of LANES nodes, from [node][4]. Inline: as a call it makes a random graph a third
+// slower.
 MSPRINGI_INLINE void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
     *x = load_four(gathered, nodes);
     *y = load_four(gathered, nodes + 1);
@@ -104,8 +105,8 @@ static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy)
     }
 }
 
-// Absolute values, as integers: those of floats are in the same order, with NaN above all. (Comparisons into a mask
-// wait for each other: 3 cycles for each vector.)
+// Absolute values as integers: the order is that of floats, with NaN above all. Comparisons into a mask depend on
+// each other: 3 cycles for each vector.
 static inline __m512i absolute(vec a) {
     return _mm512_and_si512(_mm512_castps_si512(a), _mm512_set1_epi32(0x7fffffff));
 }
@@ -114,7 +115,7 @@ static inline float largest_lane(vec a) {
     return _mm_cvtss_f32(_mm_castsi128_ps(_mm_cvtsi32_si128(bits)));
 }
 
-// The larger of a and of the size of b.
+// The larger of a and |b|.
 static inline vec larger_size(vec a, vec b) {
     return _mm512_castsi512_ps(_mm512_max_epi32(_mm512_castps_si512(a), absolute(b)));
 }

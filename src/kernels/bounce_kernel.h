@@ -1,15 +1,15 @@
 /// @file bounce_kernel.h
-/// What a straight surface does to one particle in a substep. Written without branches, so that blocks of particles
-/// (floor_kernel.h, free_kernel.h) and single ones (contact/floor_bounce.c) go through the same operations.
+/// Action of a straight surface on one particle in a substep. Branch-free, so that blocks of particles
+/// (floor_kernel.h, free_kernel.h) and single ones (contact/floor_bounce.c) take the same operations.
 ///
-/// After a substep of symplectic Euler a velocity is that of half a substep ago. What the scheme keeps of linear
-/// springs, exactly, is
+/// After a substep of symplectic Euler, velocities lag half a substep behind. For linear springs the integrator
+/// conserves exactly
 ///     E~ = T(w) + V - h^2/8 F . F / m,   with w = v + h/2 F/m, the velocity in step with the positions,
-/// where only w changes by an impulse. So contact is decided at x, before the move, with w = (v + v') / 2: it
-/// neither moves x nor makes |w| larger, and takes energy whatever the forces do.
+/// in which an impulse changes w only. So contact acts at x, before the move, on w = (v + v') / 2. It neither moves
+/// x nor increases |w|, so it dissipates energy whatever the forces are.
 ///
-/// Global damping leaves v' = d (v + h F/m). It has acted at x, too, before the contact, which meets what it left:
-/// w = v' - h/2 F/m, with F/m = (v' / d - v) / h. (As a part of F it would push on what the contact has turned.)
+/// With global damping v' = d (v + h F/m). Damping acts at x too, before the contact, which acts on its result: w =
+/// v' - h/2 F/m, with F/m = (v' / d - v) / h. As a part of F it would act on the velocity after contact.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_BOUNCE_KERNEL_H
@@ -25,18 +25,18 @@
 #define MSPRINGI_BOUNCE_INLINE static inline __attribute__((always_inline))
 #endif
 
-/// A restitution that is as good as none: such particles land exactly, others are thrown back from where they are.
-#define MSPRINGI_LEAST_RESTITUTION 0.1
+/// Restitution that counts as none: such particles land exactly, others bounce from their present position.
+#define MSPRINGI_MIN_RESTITUTION 0.1
 
-/// Room for rounding where |w|^2 must not grow.
-#define MSPRINGI_NO_LARGER (1.0 + 1e-9)
+/// Margin for rounding where |w|^2 must not grow.
+#define MSPRINGI_GROWTH_MARGIN (1.0 + 1e-9)
 
-/// A particle with springs, about to move.
+/// A particle with springs before its move.
 typedef struct mspringi_bouncing_particle {
     double x, y;           ///< before the substep, m
-    double vx, vy;         ///< the velocity that it is to move by, m/s
-    double half_x, half_y; ///< half of what forces have changed that by
-    double most_restitution;
+    double vx, vy;         ///< velocity of the move, m/s
+    double half_x, half_y; ///< half of its change by forces, m/s
+    double max_restitution;
 } mspringi_bouncing_particle;
 
 /// Twice the kinetic energy per mass, in step.
@@ -45,11 +45,13 @@ static inline double mspringi_bouncing_particle_square(const mspringi_bouncing_p
     return wx * wx + wy * wy;
 }
 
-/// Of a particle that has moved to (x, y) at (vx, vy), and was at (from_vx, from_vy) before. Without global damping
-/// (vx, vy) would be undamped times as large. Where particles go a large part of their springs' length in a
-/// substep, h |w| = s l, the scheme itself makes energy of what a bounce gives back to them. So restitution is at
-/// most 1 - (4 s)^2. (300 bodies of 2 to 20 particles that fall 10 m, at restitution 1: 1 instead of 94 of them
-/// gain more than the free ones at 0.5 of what is stable in any shape.) per_length is 4 h / l.
+/// Particle that has moved to (x, y) at (vx, vy), with (from_vx, from_vy) before. Without global damping its
+/// velocity would be undamped times (vx, vy). per_length is 4 h / l.
+///
+/// If particles move a large part of their springs' length in a substep, h |w| = s l, the integrator itself gains
+/// energy from a bounce. So restitution is at most 1 - (4 s)^2. Of 300 bodies of 2 to 20 particles that fall 10 m
+/// at restitution 1, 1 instead of 94 gain more energy than the free ones, at 0.5 of the substep that is stable in
+/// any shape.
 static inline mspringi_bouncing_particle mspringi_bouncing_particle_from(double x, double y, double vx, double vy,
                                                                          double from_vx, double from_vy,
                                                                          double undamped, double h,
@@ -61,42 +63,46 @@ static inline mspringi_bouncing_particle mspringi_bouncing_particle_from(double 
                                     .half_x = 0.5 * (undamped * vx - from_vx),
                                     .half_y = 0.5 * (undamped * vy - from_vy)};
     const double most = 1.0 - per_length * per_length * mspringi_bouncing_particle_square(&p);
-    p.most_restitution = most > 0.0 ? most : 0.0;
+    p.max_restitution = most > 0.0 ? most : 0.0;
     return p;
 }
 
-/// What friction takes of a velocity along a surface that has given so much across it.
+/// Change of a tangential velocity by friction, at most `most`.
 static inline double mspringi_clamp_friction(double along, double most) {
     const double least = -most, not_less = along < least ? least : along;
     return along > most ? most : not_less;
 }
 
-/// Let a surface act on a particle that would come further below it than is allowed. Thrown back, it goes from
-/// where it is, if that is fast enough to leave; else it lands on the surface. Returns 1 if it acts, else 0.
+/// Let a surface act on a particle that would end more than `allowed` below it. It bounces from its present
+/// position if that is fast enough to leave; else it lands on the surface. Returns 1 if the surface acts, else 0.
 MSPRINGI_BOUNCE_INLINE double mspringi_bounce(double nx, double ny, double offset, double friction,
                                               double restitution, double h, double allowed,
                                               mspringi_bouncing_particle *p) {
     const double distance = nx * p->x + ny * p->y + offset;
-    const double across = nx * p->vx + ny * p->vy;
-    const bool acts = distance + h * across < -allowed;
+    const double normal_speed = nx * p->vx + ny * p->vy;
+    const bool acts = distance + h * normal_speed < -allowed;
     const double depth = distance < 0.0 ? distance : 0.0;
     const double half = nx * p->half_x + ny * p->half_y;
-    const double inward = half - across; // in step
-    const double e = restitution < p->most_restitution ? restitution : p->most_restitution;
-    const double thrown = e * inward + half;
-    const double landing = (depth - distance) / h;
-    const bool bounces = (inward > 0.0) & (thrown > landing) & (e > MSPRINGI_LEAST_RESTITUTION);
-    const double away = bounces ? thrown : landing;
-    const double out = away > across ? away : across;
-    const double given = out - across;
-    // Along the surface it is braked, but does not come to be faster, in step.
-    const double along = nx * p->vy - ny * p->vx;
-    const double goes = along - (nx * p->half_y - ny * p->half_x);
-    const double left = goes - mspringi_clamp_friction(along, friction * given);
-    const double most = fabs(goes);
-    const double kept = fabs(left) > most * MSPRINGI_NO_LARGER ? (left > 0.0 ? most : -most) : left;
-    const double taken = goes - kept;
-    const double vx = p->vx + (given * nx + taken * ny), vy = p->vy + (given * ny - taken * nx);
+    const double inward = half - normal_speed; // in step
+    const double e = restitution < p->max_restitution ? restitution : p->max_restitution;
+    const double bounce_speed = e * inward + half;
+    const double landing_speed = (depth - distance) / h;
+    const bool bounces = (inward > 0.0) & (bounce_speed > landing_speed) & (e > MSPRINGI_MIN_RESTITUTION);
+    const double target_speed = bounces ? bounce_speed : landing_speed;
+    const double end_speed = target_speed > normal_speed ? target_speed : normal_speed;
+    const double normal_change = end_speed - normal_speed;
+    // Friction slows the particle along the surface, and never speeds it up, in step.
+    const double tangent_speed = nx * p->vy - ny * p->vx;
+    const double tangent_in_step = tangent_speed - (nx * p->half_y - ny * p->half_x);
+    const double tangent_braked =
+        tangent_in_step - mspringi_clamp_friction(tangent_speed, friction * normal_change);
+    const double most = fabs(tangent_in_step);
+    const double tangent_end = fabs(tangent_braked) > most * MSPRINGI_GROWTH_MARGIN
+                                   ? (tangent_braked > 0.0 ? most : -most)
+                                   : tangent_braked;
+    const double tangent_change = tangent_in_step - tangent_end;
+    const double vx = p->vx + (normal_change * nx + tangent_change * ny),
+                 vy = p->vy + (normal_change * ny - tangent_change * nx);
     const double x = p->x - depth * nx, y = p->y - depth * ny;
     p->vx = acts ? vx : p->vx;
     p->vy = acts ? vy : p->vy;
@@ -105,18 +111,18 @@ MSPRINGI_BOUNCE_INLINE double mspringi_bounce(double nx, double ny, double offse
     return acts ? 1.0 : 0.0;
 }
 
-/* ---------------------------------------------------------------------------------------------- without springs */
+/* ----------------------------------------------------------------------------------------------- free particles */
 
 /// A particle without springs, on a parabola.
 typedef struct mspringi_free_particle {
     double x, y;
-    double wx, wy; ///< in step with that
+    double wx, wy; ///< in step with the position
     double ax, ay; ///< acceleration, m/s^2
-    double left;   ///< of the substep, s
+    double left;   ///< rest of the substep, s
 } mspringi_free_particle;
 
-/// Of a velocity that forces have made `undamped` of `from`, and global damping `to` of that, the one in step.
-static inline double mspringi_in_step(double from, double undamped, double to) {
+/// Velocity in step. Forces changed it from `from` to `undamped`, then global damping to `to`.
+static inline double mspringi_velocity_in_step(double from, double undamped, double to) {
     return 0.5 * (from + to - (undamped - to));
 }
 
@@ -126,30 +132,30 @@ static inline mspringi_free_particle mspringi_free_particle_from(double x, doubl
                                                                  double h) {
     return (mspringi_free_particle){.x = x - h * vx,
                                     .y = y - h * vy,
-                                    .wx = mspringi_in_step(from_vx, undamped * vx, vx),
-                                    .wy = mspringi_in_step(from_vy, undamped * vy, vy),
+                                    .wx = mspringi_velocity_in_step(from_vx, undamped * vx, vx),
+                                    .wy = mspringi_velocity_in_step(from_vy, undamped * vy, vy),
                                     .ax = (undamped * vx - from_vx) / h,
                                     .ay = (undamped * vy - from_vy) / h,
                                     .left = h};
 }
 
-/// How it is turned.
+/// Parameters of a bounce.
 typedef struct mspringi_bounce_params {
-    double h;    ///< of the substep, s
-    double skew; ///< by which a velocity that is stored is behind w: h / 2, or 0 after implicit substeps
+    double h;    ///< length of the substep, s
+    double skew; ///< lag of stored velocities behind w, s: h / 2, or 0 after implicit substeps
 } mspringi_bounce_params;
 
-/// What rounding leaves across of a velocity along a surface.
-#define MSPRINGI_LAST_PLACES 0x1p-22
+/// Rounding of a tangential velocity in its normal part, relative.
+#define MSPRINGI_TANGENT_ROUNDING 0x1p-22
 
-/// Distances that are none to a particle that lies on a surface: far below the last places of coordinates.
+/// Distance that counts as contact, m: far below the last places of coordinates.
 static inline double mspringi_flight_slop(double x, double y) {
     return 0x1p-31 * (fabs(x) + fabs(y)) + 1e-15;
 }
 
-/// Seconds until it meets a surface that it would be below at the end of the substep; INFINITY if it would not.
-static inline double mspringi_time_to(double nx, double ny, double offset, double slop,
-                                      const mspringi_free_particle *p) {
+/// Time until the particle meets a surface that it would end below, s; INFINITY if it would not.
+static inline double mspringi_time_to_surface(double nx, double ny, double offset, double slop,
+                                              const mspringi_free_particle *p) {
     const double distance = nx * p->x + ny * p->y + offset;
     const double speed = nx * p->wx + ny * p->wy, pull = nx * p->ax + ny * p->ay;
     const double end = distance + p->left * (speed + 0.5 * p->left * pull);
@@ -165,42 +171,46 @@ static inline double mspringi_time_to(double nx, double ny, double offset, doubl
     return end < -slop ? before_end : INFINITY;
 }
 
-/// Turn it where it meets a surface after so many seconds: it bounces, or lies on the surface for the rest of the
-/// substep if that is the last turn, or if the bounce would be shorter than a substep. (At rest v = 0, so that w =
-/// h a / 2: what presses it on counts as friction takes it, and no bounce. Of what slides, the last places of its
-/// velocity point across the surface, too: at restitution 1 they made it bounce from rest.) Returns whether it
+/// Deflect a particle where it meets a surface after `time`. It bounces, or lies on the surface for the rest of the
+/// substep: if this is the last deflection, or if the bounce would be shorter than a substep. Returns true if it
 /// bounces.
+///
+/// At rest v = 0, so w = h a / 2: it counts for friction, not for a bounce. The normal part of a sliding velocity
+/// has rounding errors. At restitution 1 these made particles bounce from rest.
 static inline bool mspringi_bounce_free(double nx, double ny, double offset, double friction, double restitution,
                                         const mspringi_bounce_params *how, double time, bool is_last,
                                         mspringi_free_particle *p) {
     const double x = p->x + time * (p->wx + 0.5 * time * p->ax), y = p->y + time * (p->wy + 0.5 * time * p->ay);
-    const double wx = p->wx + time * p->ax, wy = p->wy + time * p->ay, left = p->left - time;
-    const double off = nx * x + ny * y + offset;
-    const double speed = nx * wx + ny * wy, along = nx * wy - ny * wx;
-    const double pull = nx * p->ax + ny * p->ay, pull_along = nx * p->ay - ny * p->ax;
-    const double inward = speed < 0.0 ? -speed : 0.0, pressing = pull < 0.0 ? -pull : 0.0;
-    const double up = restitution * inward, rest = left - how->skew;
-    const bool lies = is_last | (up <= 0.5 * how->h * pressing + MSPRINGI_LAST_PLACES * fabs(along));
-    const double borne = inward - rest * pull;
-    const double given = lies ? (borne > 0.0 ? borne : 0.0) : up + inward;
-    const double goes = lies ? along + rest * pull_along : along;
-    const double kept = goes - mspringi_clamp_friction(goes, friction * given), out = lies ? 0.0 : up;
-    p->x = x - off * nx;
-    p->y = y - off * ny;
-    p->wx = out * nx - kept * ny;
-    p->wy = out * ny + kept * nx;
-    p->ax = lies ? 0.0 : p->ax;
-    p->ay = lies ? 0.0 : p->ay;
-    p->left = is_last ? 0.0 : left;
-    return !lies;
+    const double wx = p->wx + time * p->ax, wy = p->wy + time * p->ay, time_left = p->left - time;
+    const double distance = nx * x + ny * y + offset;
+    const double normal_speed = nx * wx + ny * wy, tangent_speed = nx * wy - ny * wx;
+    const double normal_pull = nx * p->ax + ny * p->ay, tangent_pull = nx * p->ay - ny * p->ax;
+    const double inward = normal_speed < 0.0 ? -normal_speed : 0.0,
+                 pressing = normal_pull < 0.0 ? -normal_pull : 0.0;
+    const double bounce_speed = restitution * inward, rest = time_left - how->skew;
+    const bool is_resting =
+        is_last | (bounce_speed <= 0.5 * how->h * pressing + MSPRINGI_TANGENT_ROUNDING * fabs(tangent_speed));
+    const double pressed_speed = inward - rest * normal_pull;
+    const double normal_change = is_resting ? (pressed_speed > 0.0 ? pressed_speed : 0.0) : bounce_speed + inward;
+    const double sliding_speed = is_resting ? tangent_speed + rest * tangent_pull : tangent_speed;
+    const double tangent_end = sliding_speed - mspringi_clamp_friction(sliding_speed, friction * normal_change),
+                 end_speed = is_resting ? 0.0 : bounce_speed;
+    p->x = x - distance * nx;
+    p->y = y - distance * ny;
+    p->wx = end_speed * nx - tangent_end * ny;
+    p->wy = end_speed * ny + tangent_end * nx;
+    p->ax = is_resting ? 0.0 : p->ax;
+    p->ay = is_resting ? 0.0 : p->ay;
+    p->left = is_last ? 0.0 : time_left;
+    return !is_resting;
 }
 
-/// Turns of a particle in a substep.
-#define MSPRINGI_MOST_TURNS 8
+/// Deflections of a particle in a substep.
+#define MSPRINGI_MAX_DEFLECTIONS 8
 
 /* --------------------------------------------------------------------------------------------------------- silt */
 
-/// How high a field of heights is at so many spacings from the first one.
+/// Height of a field of heights. place: distance from the first one, in spacings.
 MSPRINGI_BOUNCE_INLINE double mspringi_height_at(const float *heights, uint32_t count, double place) {
     const double last = (double)(count - 1), not_less = place >= 0.0 ? place : 0.0;
     const double within = not_less < last ? not_less : last;
@@ -210,8 +220,8 @@ MSPRINGI_BOUNCE_INLINE double mspringi_height_at(const float *heights, uint32_t 
     return low + (within - (double)part) * (high - low);
 }
 
-/// The share of a velocity that silt takes in a substep of implicit Euler: of v' = v - h rate share v'. rate_h is
-/// rate times h, share 1 at the ground and 0 from so much above it on.
+/// Fraction of a velocity that silt takes in a substep of implicit Euler: v' = v - h rate share v'. rate_h is rate
+/// times h; share is 1 at the ground and 0 from depth above it.
 static inline double mspringi_silt_damping_at(double above, double depth, double rate_h) {
     const double share = 1.0 - above / depth, some = share > 0.0 ? share : 0.0;
     const double brakes = rate_h * (some < 1.0 ? some : 1.0);

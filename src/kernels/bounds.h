@@ -1,5 +1,5 @@
 /// @file bounds.h
-/// Which slots are not within a box, in the vectors of sweep.h.
+/// Search for slots outside a box, in the vectors of sweep.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_BOUNDS_H

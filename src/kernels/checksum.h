@@ -1,6 +1,6 @@
 /// @file checksum.h
-/// The checksum of snapshots, taken of what is copied into them or read. The same source for every instruction set:
-/// compilers make vectors of it, and whole numbers have the same sums in any order.
+/// Checksum of snapshots, computed while they are copied or read. All instruction sets share this source: compilers
+/// vectorise it, and sums of integers do not depend on the order.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_KERNELS_CHECKSUM_H
@@ -23,8 +23,8 @@ static inline uint64_t little_endian(uint64_t word) {
     return turned;
 }
 
-// Fletcher's sums (1982), of 64-bit words modulo 2^64: the first differ when a word is changed, the second when
-// words have changed places. Several of them side by side.
+// Fletcher's sums (1982) of 64-bit words modulo 2^64: the first detects changed words, the second exchanged ones.
+// Several of them side by side.
 MSPRINGI_SUMMED void sum_words(uint8_t *to, const uint8_t *from, size_t units, mspringi_checksum *checksum,
                                bool copies) {
     mspringi_checksum c = *checksum;
@@ -43,8 +43,8 @@ MSPRINGI_SUMMED void sum_words(uint8_t *to, const uint8_t *from, size_t units, m
     *checksum = c;
 }
 
-// (At AVX-512, of what is not in the second-level cache: 10 % more time than copying alone, where copying and then
-// summing up, at SSE2 and a part of the first-level cache at a time, takes twice as long.)
+// AVX-512, data beyond the second-level cache: 10 % more time than a copy alone. To copy first and then sum up,
+// with SSE2 and a part of the first-level cache at a time, takes twice as long.
 static void take_checksum(uint8_t *to, const uint8_t *from, size_t units, mspringi_checksum *sums) {
     if (to)
         sum_words(to, from, units, sums, true);

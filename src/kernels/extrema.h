@@ -1,5 +1,5 @@
 /// @file extrema.h
-/// What there is to see of values and of motion, in the vectors of sweep.h.
+/// Maxima of absolute values and of motion, in the vectors of sweep.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_EXTREMA_H
@@ -26,7 +26,7 @@ static inline float largest_watched(const float *lanes) {
 
 static mspringi_extrema extrema_of(const mspringi_extrema_lanes *watch) {
     return (mspringi_extrema){largest_watched(watch->coordinate), largest_watched(watch->speed),
-                            largest_watched(watch->change)};
+                              largest_watched(watch->change)};
 }
 
 #endif

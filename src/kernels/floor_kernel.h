@@ -1,7 +1,6 @@
 /// @file floor_kernel.h
-/// What a floor does to the particles of a block after a substep, all at once: the operations of floor_bounce.c, in
-/// its order, for what most particles do in most substeps. Plain C in blocks of MSPRINGI_WIDTH lanes, as in
-/// system_assemble.h.
+/// Action of a floor on the particles of a block after a substep, in parallel: the operations of floor_bounce.c in
+/// their order, for the common cases. Plain C in blocks of MSPRINGI_WIDTH lanes, as in system_assemble.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FLOOR_KERNEL_H
@@ -17,27 +16,28 @@
 #define MSPRINGI_FLOOR_INLINE static inline __attribute__((always_inline))
 #endif
 
-/// Lanes of a block that particles with springs are touched by: many blocks lie on a floor by few of theirs. (A
-/// lattice of 6 x 6 that lies there took 1.50 instead of 1.38 times the step of one that does not.)
+/// Lanes of a half block. Particles with springs are handled by half blocks, since a block often touches a floor
+/// with few of them. With whole blocks, a lattice of 6 x 6 on a floor took 1.50 instead of 1.38 times the step of a
+/// free one.
 #define MSPRINGI_HALF (MSPRINGI_WIDTH / 2)
 
-/// Particles as mspringi_bouncing_particle has them, and 1 or 0 for what is true of them or not.
-typedef struct touching {
+/// Particles as in mspringi_bouncing_particle, and flags of 1 or 0.
+typedef struct bounce_block {
     double x[MSPRINGI_HALF], y[MSPRINGI_HALF], vx[MSPRINGI_HALF], vy[MSPRINGI_HALF];
-    double half_x[MSPRINGI_HALF], half_y[MSPRINGI_HALF], most_restitution[MSPRINGI_HALF];
+    double half_x[MSPRINGI_HALF], half_y[MSPRINGI_HALF], max_restitution[MSPRINGI_HALF];
     double square[MSPRINGI_HALF], slop[MSPRINGI_HALF];
-    double is_hit[MSPRINGI_HALF];  ///< a surface has acted on it
-    double is_left[MSPRINGI_HALF]; ///< to others
-} touching;
+    double is_hit[MSPRINGI_HALF];      ///< a surface has acted on it
+    double is_deferred[MSPRINGI_HALF]; ///< deferred to mspringi_floor_bounce()
+} bounce_block;
 
-/// The straight part of a field of heights below each body.
+/// Straight part of a field of heights below each particle.
 typedef struct parts_below {
     double number[MSPRINGI_WIDTH];
     double nx[MSPRINGI_WIDTH], ny[MSPRINGI_WIDTH], offset[MSPRINGI_WIDTH];
     double friction[MSPRINGI_WIDTH], restitution[MSPRINGI_WIDTH];
 } parts_below;
 
-/// Straight surfaces: the same one for each particle, or one for each, stride apart.
+/// Straight surfaces: one for all particles (stride 0), or one for each (stride 1).
 typedef struct surfaces {
     const double *nx, *ny, *offset, *friction, *restitution;
     size_t stride;
@@ -51,17 +51,17 @@ MSPRINGI_FLOOR_INLINE surfaces surfaces_of_parts(const parts_below *parts) {
     return (surfaces){parts->nx, parts->ny, parts->offset, parts->friction, parts->restitution, 1};
 }
 
-static inline mspringi_bouncing_particle going_at(const touching *b, size_t i) {
+static inline mspringi_bouncing_particle bouncing_at(const bounce_block *b, size_t i) {
     return (mspringi_bouncing_particle){.x = b->x[i],
                                         .y = b->y[i],
                                         .vx = b->vx[i],
                                         .vy = b->vy[i],
                                         .half_x = b->half_x[i],
                                         .half_y = b->half_y[i],
-                                        .most_restitution = b->most_restitution[i]};
+                                        .max_restitution = b->max_restitution[i]};
 }
 
-// Whether any flag is 1: by their bits, since adding them up would take one after the other.
+// True if any flag is 1. Compares bits, since a sum would be a chain of dependent additions.
 MSPRINGI_FLOOR_INLINE bool is_any(const double *flags, size_t lanes) {
     uint64_t bits[MSPRINGI_WIDTH], all = 0;
     memcpy(bits, flags, lanes * sizeof *bits);
@@ -71,9 +71,9 @@ MSPRINGI_FLOOR_INLINE bool is_any(const double *flags, size_t lanes) {
     return all != 0;
 }
 
-// Which particles a floor may act on.
-MSPRINGI_FLOOR_INLINE void find_held(const mspringi_floor_args *g, size_t slot, size_t lanes,
-                                     double *restrict is_held) {
+// Flag the particles that a floor may act on.
+MSPRINGI_FLOOR_INLINE void find_active(const mspringi_floor_args *g, size_t slot, size_t lanes,
+                                       double *restrict is_active) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot,
                           *restrict active_inverse_mass = g->active_inverse_mass + slot;
     const mspringi_bounds clear = g->clear;
@@ -81,11 +81,11 @@ MSPRINGI_FLOOR_INLINE void find_held(const mspringi_floor_args *g, size_t slot, 
     for (size_t i = 0; i < lanes; ++i) {
         const bool is_clear =
             (x[i] >= clear.min_x) & (x[i] <= clear.max_x) & (y[i] >= clear.min_y) & (y[i] <= clear.max_y);
-        is_held[i] = ((active_inverse_mass[i] > 0.0f) & !is_clear) ? 1.0 : 0.0;
+        is_active[i] = ((active_inverse_mass[i] > 0.0f) & !is_clear) ? 1.0 : 0.0;
     }
 }
 
-static void load_touching(const mspringi_floor_args *g, size_t slot, touching *restrict b) {
+static void load_bounce_block(const mspringi_floor_args *g, size_t slot, bounce_block *restrict b) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot;
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
@@ -101,21 +101,21 @@ static void load_touching(const mspringi_floor_args *g, size_t slot, touching *r
         b->vy[i] = p.vy;
         b->half_x[i] = p.half_x;
         b->half_y[i] = p.half_y;
-        b->most_restitution[i] = p.most_restitution;
+        b->max_restitution[i] = p.max_restitution;
         b->square[i] = mspringi_bouncing_particle_square(&p);
         b->slop[i] = 0x1p-21 * (fabs(p.x) + fabs(p.y)) + 1e-12;
-        b->is_hit[i] = b->is_left[i] = 0.0;
+        b->is_hit[i] = b->is_deferred[i] = 0.0;
     }
 }
 
 // Let a straight surface act on each particle.
-MSPRINGI_FLOOR_INLINE void touch_line(const mspringi_floor_args *g, surfaces s, touching *restrict b) {
+MSPRINGI_FLOOR_INLINE void bounce_off(const mspringi_floor_args *g, surfaces s, bounce_block *restrict b) {
     const double *restrict nx = s.nx, *restrict ny = s.ny, *restrict offset = s.offset;
     const double *restrict friction = s.friction, *restrict restitution = s.restitution;
     const double h = g->h;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
-        mspringi_bouncing_particle p = going_at(b, i);
+        mspringi_bouncing_particle p = bouncing_at(b, i);
         const double was_hit = b->is_hit[i];
         const size_t at = i * s.stride;
         const double is_hit =
@@ -128,10 +128,10 @@ MSPRINGI_FLOOR_INLINE void touch_line(const mspringi_floor_args *g, surfaces s, 
     }
 }
 
-// Whether a straight surface would act on any particle; those that were beyond it are left. (Of several surfaces,
-// most are far from most blocks.)
-MSPRINGI_FLOOR_INLINE bool look_at_line(const mspringi_floor_args *g, surfaces s, const double *restrict is_held,
-                                        touching *restrict b) {
+// True if a straight surface would act on any particle. Defers those that were below it. Most of several surfaces
+// are far from most blocks.
+MSPRINGI_FLOOR_INLINE bool is_surface_reached(const mspringi_floor_args *g, surfaces s,
+                                              const double *restrict is_active, bounce_block *restrict b) {
     const double *restrict all_nx = s.nx, *restrict all_ny = s.ny, *restrict all_offset = s.offset;
     const double h = g->h;
     double any[MSPRINGI_HALF];
@@ -140,15 +140,15 @@ MSPRINGI_FLOOR_INLINE bool look_at_line(const mspringi_floor_args *g, surfaces s
         const double nx = all_nx[i * s.stride], ny = all_ny[i * s.stride];
         const double distance = nx * b->x[i] + ny * b->y[i] + all_offset[i * s.stride];
         const double across = nx * b->vx[i] + ny * b->vy[i];
-        any[i] = distance + h * across < 0.0 ? is_held[i] : 0.0;
-        b->is_left[i] += distance < -b->slop[i] ? 1.0 : 0.0;
+        any[i] = distance + h * across < 0.0 ? is_active[i] : 0.0;
+        b->is_deferred[i] += distance < -b->slop[i] ? 1.0 : 0.0;
     }
     return is_any(any, MSPRINGI_HALF);
 }
 
 /* ------------------------------------------------------------------------------------------------------ heights */
 
-// The numbers of the parts that are below so many x.
+// Find the numbers of the parts below each x.
 MSPRINGI_FLOOR_INLINE void find_parts(const mspringi_floor_args *g, const double *restrict x, size_t lanes,
                                       double *restrict numbers) {
     const double left = g->left, spacing = g->spacing, last = (double)(g->height_count - 1);
@@ -166,7 +166,7 @@ MSPRINGI_FLOOR_INLINE void find_parts(const mspringi_floor_args *g, const double
         numbers[i] = (double)(int32_t)numbers[i];
 }
 
-// Friction or restitution of the parts: the level ones go on as the outermost others.
+// Friction or restitution of the parts. The level ends take the values of the outermost parts.
 MSPRINGI_FLOOR_INLINE void find_values(const mspringi_floor_args *g, const float *values, double uniform,
                                        const double *restrict number, size_t lanes, double *restrict to) {
     const int32_t last = (int32_t)g->height_count - 2;
@@ -197,75 +197,75 @@ MSPRINGI_FLOOR_INLINE void find_lines(const mspringi_floor_args *g, size_t lanes
     find_values(g, g->restitutions, g->restitution, parts->number, lanes, parts->restitution);
 }
 
-// Leave those that are not above or below the same part any more.
-MSPRINGI_FLOOR_INLINE void leave_moved(const mspringi_floor_args *g, const parts_below *parts,
-                                       const double *restrict x, size_t lanes, double *restrict is_left) {
+// Defer particles that are no longer above or below the same part.
+MSPRINGI_FLOOR_INLINE void defer_moved(const mspringi_floor_args *g, const parts_below *parts,
+                                       const double *restrict x, size_t lanes, double *restrict is_deferred) {
     double numbers[MSPRINGI_WIDTH];
     find_parts(g, x, lanes, numbers);
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i)
-        is_left[i] += numbers[i] != parts->number[i] ? 1.0 : 0.0;
+        is_deferred[i] += numbers[i] != parts->number[i] ? 1.0 : 0.0;
 }
 
-static inline void find_ends(const mspringi_floor_args *g, const touching *restrict b, double *restrict x) {
+static inline void find_ends(const mspringi_floor_args *g, const bounce_block *restrict b, double *restrict x) {
     const double h = g->h;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i)
         x[i] = b->x[i] + h * b->vx[i];
 }
 
-static void begin_heights(const mspringi_floor_args *g, touching *b, parts_below *parts) {
+static void begin_heights(const mspringi_floor_args *g, bounce_block *b, parts_below *parts) {
     double ends[MSPRINGI_HALF];
     find_ends(g, b, ends);
     find_parts(g, ends, MSPRINGI_HALF, parts->number);
     find_lines(g, MSPRINGI_HALF, parts);
-    leave_moved(g, parts, b->x, MSPRINGI_HALF, b->is_left);
+    defer_moved(g, parts, b->x, MSPRINGI_HALF, b->is_deferred);
 }
 
-static void touch_heights(const mspringi_floor_args *g, const parts_below *parts, const double *is_held,
-                          touching *b) {
+static void bounce_heights(const mspringi_floor_args *g, const parts_below *parts, const double *is_active,
+                           bounce_block *b) {
     double ends[MSPRINGI_HALF];
     if (g->line_count > 0) {
         find_ends(g, b, ends);
-        leave_moved(g, parts, ends, MSPRINGI_HALF, b->is_left);
-        leave_moved(g, parts, b->x, MSPRINGI_HALF, b->is_left);
+        defer_moved(g, parts, ends, MSPRINGI_HALF, b->is_deferred);
+        defer_moved(g, parts, b->x, MSPRINGI_HALF, b->is_deferred);
     }
     const surfaces below = surfaces_of_parts(parts);
-    if (look_at_line(g, below, is_held, b))
-        touch_line(g, below, b);
+    if (is_surface_reached(g, below, is_active, b))
+        bounce_off(g, below, b);
     find_ends(g, b, ends);
-    leave_moved(g, parts, ends, MSPRINGI_HALF, b->is_left);
-    leave_moved(g, parts, b->x, MSPRINGI_HALF, b->is_left);
+    defer_moved(g, parts, ends, MSPRINGI_HALF, b->is_deferred);
+    defer_moved(g, parts, b->x, MSPRINGI_HALF, b->is_deferred);
 }
 
 /* ------------------------------------------------------------------------------------------------------ blocks */
 
-// Leave those that come beyond a straight surface.
-MSPRINGI_FLOOR_INLINE void leave_beyond(surfaces s, const double *restrict x, const double *restrict y,
-                                        const double *restrict slop, size_t lanes, double *restrict is_left) {
+// Defer particles that end below a straight surface.
+MSPRINGI_FLOOR_INLINE void defer_below(surfaces s, const double *restrict x, const double *restrict y,
+                                       const double *restrict slop, size_t lanes, double *restrict is_deferred) {
     const double *restrict nx = s.nx, *restrict ny = s.ny, *restrict offset = s.offset;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i) {
         const double distance = nx[i * s.stride] * x[i] + ny[i * s.stride] * y[i] + offset[i * s.stride];
-        is_left[i] += distance < -0.25 * slop[i] ? 1.0 : 0.0;
+        is_deferred[i] += distance < -0.25 * slop[i] ? 1.0 : 0.0;
     }
 }
 
-MSPRINGI_FLOOR_INLINE void leave_stuck(const mspringi_floor_args *g, const parts_below *parts, const double *x,
-                                       const double *y, const double *slop, size_t lanes, double *is_left) {
+MSPRINGI_FLOOR_INLINE void defer_stuck(const mspringi_floor_args *g, const parts_below *parts, const double *x,
+                                       const double *y, const double *slop, size_t lanes, double *is_deferred) {
     for (uint32_t i = 0; i < g->line_count; ++i)
-        leave_beyond(surfaces_of_line(&g->lines[i]), x, y, slop, lanes, is_left);
+        defer_below(surfaces_of_line(&g->lines[i]), x, y, slop, lanes, is_deferred);
     if (g->height_count > 0)
-        leave_beyond(surfaces_of_parts(parts), x, y, slop, lanes, is_left);
+        defer_below(surfaces_of_parts(parts), x, y, slop, lanes, is_deferred);
 }
 
-// Leave those that are faster than before.
-static void leave_faster(touching *restrict b) {
+// Defer particles that became faster.
+static void defer_faster(bounce_block *restrict b) {
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
-        const mspringi_bouncing_particle p = going_at(b, i);
-        b->is_left[i] +=
-            mspringi_bouncing_particle_square(&p) > b->square[i] * MSPRINGI_NO_LARGER ? b->is_hit[i] : 0.0;
+        const mspringi_bouncing_particle p = bouncing_at(b, i);
+        b->is_deferred[i] +=
+            mspringi_bouncing_particle_square(&p) > b->square[i] * MSPRINGI_GROWTH_MARGIN ? b->is_hit[i] : 0.0;
     }
 }
 
@@ -276,7 +276,7 @@ MSPRINGI_FLOOR_INLINE void choose(const float *restrict moved, const float *rest
         to[i] = moved[i] > 0.0f ? from[i] : to[i];
 }
 
-/// Where particles of a block come to.
+/// State of a block's particles after the floor.
 typedef struct block_end {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH], vx[MSPRINGI_WIDTH], vy[MSPRINGI_WIDTH];
     float is_moved[MSPRINGI_WIDTH];
@@ -308,21 +308,22 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
     choose(b->is_moved, to_vy, lanes, vy);
 }
 
-// Which have come to their end, of those that are held and that a surface has acted on; the others that are held
-// and left, as bits.
-MSPRINGI_FLOOR_INLINE uint32_t find_moved(const double *restrict is_held, const double *restrict is_hit,
-                                          const double *restrict is_left, size_t lanes, float *restrict is_moved) {
+// Flag the active particles that a surface has acted on and that are complete. Returns the active deferred ones, as
+// bits.
+MSPRINGI_FLOOR_INLINE uint32_t find_moved(const double *restrict is_active, const double *restrict is_hit,
+                                          const double *restrict is_deferred, size_t lanes,
+                                          float *restrict is_moved) {
     uint32_t left = 0;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i)
-        is_moved[i] = ((is_held[i] > 0.0) & (is_hit[i] > 0.0) & (is_left[i] == 0.0)) ? 1.0f : 0.0f;
+        is_moved[i] = ((is_active[i] > 0.0) & (is_hit[i] > 0.0) & (is_deferred[i] == 0.0)) ? 1.0f : 0.0f;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i)
-        left |= ((is_left[i] > 0.0) & (is_held[i] > 0.0)) ? 1u << i : 0u;
+        left |= ((is_deferred[i] > 0.0) & (is_active[i] > 0.0)) ? 1u << i : 0u;
     return left;
 }
 
-static void find_end(const mspringi_floor_args *g, const touching *restrict b, block_end *restrict end) {
+static void find_end(const mspringi_floor_args *g, const bounce_block *restrict b, block_end *restrict end) {
     const double h = g->h;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
@@ -333,34 +334,34 @@ static void find_end(const mspringi_floor_args *g, const touching *restrict b, b
     }
 }
 
-static uint32_t touch_half(const mspringi_floor_args *g, size_t slot, const double *is_held) {
-    touching b;
+static uint32_t bounce_half(const mspringi_floor_args *g, size_t slot, const double *is_active) {
+    bounce_block b;
     parts_below parts;
     block_end end;
-    load_touching(g, slot, &b);
+    load_bounce_block(g, slot, &b);
     if (g->height_count > 0)
         begin_heights(g, &b, &parts);
     for (uint32_t i = 0; i < g->line_count; ++i)
-        if (look_at_line(g, surfaces_of_line(&g->lines[i]), is_held, &b))
-            touch_line(g, surfaces_of_line(&g->lines[i]), &b);
+        if (is_surface_reached(g, surfaces_of_line(&g->lines[i]), is_active, &b))
+            bounce_off(g, surfaces_of_line(&g->lines[i]), &b);
     if (g->height_count > 0)
-        touch_heights(g, &parts, is_held, &b);
-    leave_faster(&b);
+        bounce_heights(g, &parts, is_active, &b);
+    defer_faster(&b);
     find_end(g, &b, &end);
     if (g->line_count + (g->height_count > 0) > 1)
-        leave_stuck(g, &parts, end.x, end.y, b.slop, MSPRINGI_HALF, b.is_left);
-    const uint32_t left = find_moved(is_held, b.is_hit, b.is_left, MSPRINGI_HALF, end.is_moved);
+        defer_stuck(g, &parts, end.x, end.y, b.slop, MSPRINGI_HALF, b.is_deferred);
+    const uint32_t left = find_moved(is_active, b.is_hit, b.is_deferred, MSPRINGI_HALF, end.is_moved);
     store_block(g, slot, MSPRINGI_HALF, &end);
     return left;
 }
 
-static uint32_t touch(const mspringi_floor_args *g, size_t slot) {
+static uint32_t bounce(const mspringi_floor_args *g, size_t slot) {
     uint32_t left = 0;
     for (uint32_t first = 0; first < MSPRINGI_WIDTH; first += MSPRINGI_HALF) {
-        double is_held[MSPRINGI_HALF];
-        find_held(g, slot + first, MSPRINGI_HALF, is_held);
-        if (is_any(is_held, MSPRINGI_HALF))
-            left |= touch_half(g, slot + first, is_held) << first;
+        double is_active[MSPRINGI_HALF];
+        find_active(g, slot + first, MSPRINGI_HALF, is_active);
+        if (is_any(is_active, MSPRINGI_HALF))
+            left |= bounce_half(g, slot + first, is_active) << first;
     }
     return left;
 }

@@ -15,7 +15,7 @@ static const mspringi_kernels *const levels[] = {
 #undef LEVEL
 };
 
-// The lowest level is that of all that is not built in.
+// Levels that are not built in fall back to the lowest.
 const mspringi_kernels *mspringi_kernels_of(mspring_simd level) {
     for (size_t i = 0; i < sizeof levels / sizeof levels[0]; ++i)
         if (levels[i]->level == level)

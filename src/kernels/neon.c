@@ -36,32 +36,32 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return vsqrtq_f32(a);
 }
-// 1 / square, or 0 where there is no direction.
+// 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     const uint32x4_t inverse = vreinterpretq_u32_f32(vdivq_f32(vdupq_n_f32(1.0f), square));
     return vreinterpretq_f32_u32(vandq_u32(inverse, vcgtq_f32(square, vdupq_n_f32(MSPRINGI_NO_DIRECTION))));
 }
-// a where selector > 0, b elsewhere.
+// a where selector > 0, else b.
 static inline vec choose_positive(vec selector, vec a, vec b) {
     return vbslq_f32(vcgtzq_f32(selector), a, b);
 }
-// A bit for each lane: 1 where a > b.
+// Bit of each lane with a > b.
 static inline uint32_t bits_greater(vec a, vec b) {
     static const uint32_t bits[LANES] = {1, 2, 4, 8};
     return vaddvq_u32(vandq_u32(vcgtq_f32(a, b), vld1q_u32(bits)));
 }
-// Which lanes of a are outside of least to most.
+// Mask of the lanes of a below least or above most.
 static inline mask outside(vec a, vec least, vec most) {
     return vorrq_u32(vcgtq_f32(least, a), vcgtq_f32(a, most));
 }
 static inline mask either(mask a, mask b) {
     return vorrq_u32(a, b);
 }
-// Not 0 if any lane is.
+// Not 0 if any lane is set.
 static inline uint32_t any_lane(mask a) {
     return vmaxvq_u32(a);
 }
-// The last lane of before, then all lanes of a but its last.
+// Shift by one lane: the last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     return vextq_f32(before, a, 3);
 }
@@ -72,7 +72,7 @@ static inline vec first_halves(vec a, vec b) {
 static inline vec second_halves(vec a, vec b) {
     return vcombine_f32(vget_high_f32(a), vget_high_f32(b));
 }
-// Four values of each of LANES nodes, from [node][4].
+// Load four values of each of LANES nodes, from [node][4].
 static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
     const vec a = vld1q_f32(gathered + 4 * (size_t)nodes[0]), b = vld1q_f32(gathered + 4 * (size_t)nodes[1]);
     const vec c = vld1q_f32(gathered + 4 * (size_t)nodes[2]), d = vld1q_f32(gathered + 4 * (size_t)nodes[3]);
@@ -88,7 +88,7 @@ static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy)
     vst4q_f32(gathered, nodes);
 }
 
-// The larger of a and of the size of b; the maximum of NaN and a number is NaN here.
+// The larger of a and |b|; the maximum of NaN and a number is NaN here.
 static inline vec larger_size(vec a, vec b) {
     return vmaxq_f32(a, vabsq_f32(b));
 }

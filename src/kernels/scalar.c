@@ -1,4 +1,4 @@
-/// The definition of a sweep: plain C, one slot at a time. What the other kernels compute, they compute in this
+/// Definition of a sweep: plain C, one slot at a time. The other kernels compute the same operations in the same
 /// order.
 #include "kernels/kernels.h"
 #include "kernels/spring_law.h"
@@ -17,26 +17,25 @@ typedef struct motion {
     float x, y, vx, vy, low_x, low_y;
 } motion;
 
-static inline motion at(const mspringi_sweep *s, size_t slot) {
+static inline motion motion_at(const mspringi_sweep *s, size_t slot) {
     return (motion){s->x[slot], s->y[slot], s->vx[slot], s->vy[slot], s->low_x[slot], s->low_y[slot]};
 }
 
-// The difference of two near positions is exact, but it lacks what they have beyond single precision: half a unit
-// in the last place of a position of 900 m is 3e-5 m, the strain of 2 kN of iron.
-static inline vector way_between(motion base, motion tip, mspringi_variant of) {
+// The difference of two close positions is exact, but lacks their low words. Half a unit in the last place of a
+// position of 900 m is 3e-5 m, the strain of 2 kN of iron.
+static inline vector vector_between(motion base, motion tip, mspringi_variant of) {
     const vector way = {base.x - tip.x, base.y - tip.y};
     if (!(of & MSPRINGI_PRECISE))
         return way;
     return (vector){way.x + (base.low_x - tip.low_x), way.y + (base.low_y - tip.low_y)};
 }
 
-// The force of one spring on its tip; that on its base is the opposite. With d from the tip to the base
+// Force of one spring on its tip; that on its base is the opposite. With d from the tip to the base
 //     F = ((L - rest_length) (k L) + c (dv . d)) / L^2 * d
-// so that the root and the division do not wait for each other. record is where its stiffness is, with its damping
-// behind.
+// so that root and division are independent. record points to the stiffness, followed by the damping.
 static inline vector spring_force(motion base, motion tip, float rest_length, const float *record,
                                   mspringi_variant of) {
-    const vector way = way_between(base, tip, of);
+    const vector way = vector_between(base, tip, of);
     const float dx = way.x, dy = way.y;
     const float square = dx * dx + dy * dy, length = sqrtf(square);
     const float inverse = square > MSPRINGI_NO_DIRECTION ? 1.0f / square : 0.0f;
@@ -61,14 +60,14 @@ static inline float float_of(uint32_t bits) {
     return value;
 }
 
-// The larger of a and of the size of b. Sizes are compared as integers: those of floats are in the same order, with
-// NaN above all.
+// The larger of a and |b|. Absolute values are compared as integers: the order is that of floats, with NaN above
+// all.
 static inline float larger_size(float a, float b) {
     const uint32_t size = absolute_bits(b);
     return size > absolute_bits(a) ? float_of(size) : a;
 }
 
-static inline void keep_motion(const mspringi_sweep *s, size_t slot) {
+static inline void save_motion(const mspringi_sweep *s, size_t slot) {
     const size_t slots = (size_t)(s->y - s->x);
     s->keep[slot] = s->x[slot];
     s->keep[slot + slots] = s->y[slot];
@@ -91,8 +90,8 @@ static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
     }
 }
 
-// Kahan's sum: what a position does not take of a way is left for the next.
-static inline void go(const mspringi_sweep *s, size_t slot, float way_x, float way_y) {
+// Move by Kahan's compensated sum: the low word keeps the rounding error for the next move.
+static inline void add_displacement(const mspringi_sweep *s, size_t slot, float way_x, float way_y) {
     way_x = way_x + s->low_x[slot];
     way_y = way_y + s->low_y[slot];
     const float x = s->x[slot] + way_x, y = s->y[slot] + way_y;
@@ -102,32 +101,32 @@ static inline void go(const mspringi_sweep *s, size_t slot, float way_x, float w
     s->y[slot] = y;
 }
 
-// Symplectic Euler: v' = (F h / m + (v + g h)) d, with d the decay. A pinned particle keeps its velocity. (As g h
-// is never -0, so is v + g h, and it does not matter which sign a force of 0 has.)
+// Symplectic Euler: v' = (F h / m + (v + g h)) d, with d the decay. A pinned particle keeps its velocity. As g h is
+// never -0, neither is v + g h, so the sign of a zero force does not matter.
 static inline void move(const mspringi_sweep *s, size_t slot, vector force, mspringi_variant of) {
     if (of & MSPRINGI_FORCED) {
         force.x = force.x + s->force_x[slot];
         force.y = force.y + s->force_y[slot];
     }
     if (s->keep)
-        keep_motion(s, slot);
+        save_motion(s, slot);
     const float inverse_mass = s->inverse_mass[slot];
     if (inverse_mass > 0.0f) {
         const float inverse_mass_h = inverse_mass * s->h;
         s->vx[slot] = (force.x * inverse_mass_h + (s->vx[slot] + s->gravity_h_x)) * s->decay;
         s->vy[slot] = (force.y * inverse_mass_h + (s->vy[slot] + s->gravity_h_y)) * s->decay;
     }
-    go(s, slot, s->vx[slot] * s->h, s->vy[slot] * s->h);
+    add_displacement(s, slot, s->vx[slot] * s->h, s->vy[slot] * s->h);
     if (s->watch)
         watch_motion(s, slot);
 }
 
-/// Forces that a slot's springs exert on the slot to the right and on the slot above that.
-typedef struct handed_on {
+/// Forces that a slot's springs carry to the slot on the right and to the slot above that.
+typedef struct carried_forces {
     vector right, diagonal;
-} handed_on;
+} carried_forces;
 
-// Where the springs of a slot are in lattice records.
+// Springs of a slot in lattice records.
 typedef struct lattice_springs {
     const float *rest_lengths; ///< [direction][lane], from the slot's lane on
     const float *records;      ///< [direction][part after the rest length][lane]
@@ -137,15 +136,15 @@ static inline size_t record_of(const mspringi_span *span, size_t slot) {
     return span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
 }
 
-static inline size_t place_in_lattice(const mspringi_span *span, size_t slot) {
+static inline size_t lattice_slot(const mspringi_span *span, size_t slot) {
     return record_of(span, slot) * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
 }
 
 static inline lattice_springs springs_of(const mspringi_sweep *s, const mspringi_span *span, size_t slot) {
     const size_t block = record_of(span, slot);
-    const size_t places = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH, lane = slot % MSPRINGI_WIDTH;
-    return (lattice_springs){s->rest_lengths + s->rests_of_block[block] * places + lane,
-                             s->lattice_springs + s->springs_of_block[block] * places * (s->parts - 1) + lane};
+    const size_t values = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH, lane = slot % MSPRINGI_WIDTH;
+    return (lattice_springs){s->rest_lengths + s->rests_of_block[block] * values + lane,
+                             s->lattice_springs + s->springs_of_block[block] * values * (s->parts - 1) + lane};
 }
 
 static inline mspringi_yield_values yield_values(const mspringi_yield_test *t, size_t spring_slot) {
@@ -153,22 +152,22 @@ static inline mspringi_yield_values yield_values(const mspringi_yield_test *t, s
                                    t->plastic_limit[spring_slot], t->gain[spring_slot]};
 }
 
-// Look at a spring that is warm, and map it if it flows. What is broken has no stiffness.
-static void let_yield(const mspringi_yield_test *t, size_t spring_slot, float square, float *rest,
-                      float stiffness) {
+// Test a warm spring, and update it if it flows. A broken one has no stiffness.
+static void yield_spring(const mspringi_yield_test *t, size_t spring_slot, float square, float *rest,
+                         float stiffness) {
     const mspringi_yield_bounds bounds = {t->low[spring_slot], t->high[spring_slot], t->flow_low[spring_slot],
                                           t->flow_high[spring_slot]};
     const uint32_t lane = spring_slot % MSPRINGI_WIDTH, bit = 1u << lane;
     const float length = sqrtf(square);
     if (square > bounds.high || bounds.low > square)
-        mspringi_yield_note(t, spring_slot / MSPRINGI_WIDTH, bit);
+        mspringi_yield_mark_warm(t, spring_slot / MSPRINGI_WIDTH, bit);
     if (!t->maps || !(stiffness > 0.0f))
         return;
     const mspringi_yield_values values = yield_values(t, spring_slot);
     const float to = mspringi_yield_rest(values, bounds, square, length, *rest);
     if (!(to > *rest || *rest > to))
         return;
-    mspringi_yield_keep(t, spring_slot / MSPRINGI_WIDTH, bit, rest - lane);
+    mspringi_yield_save(t, spring_slot / MSPRINGI_WIDTH, bit, rest - lane);
     t->heat[spring_slot] = t->heat[spring_slot] + mspringi_yield_heat(values, stiffness, length, *rest, to);
     *rest = to;
     const mspringi_yield_bounds renewed = mspringi_yield_bounds_of(values, to);
@@ -178,7 +177,7 @@ static void let_yield(const mspringi_yield_test *t, size_t spring_slot, float sq
     t->flow_high[spring_slot] = renewed.flow_high;
 }
 
-// A spring is looked at before the force that its rest length gives.
+// Test a spring before its rest length enters the force.
 static inline void test_spring(const mspringi_yield_test *t, size_t spring_slot, motion base, motion tip,
                                float *rest, float stiffness, mspringi_variant of) {
     float dx = base.x - tip.x, dy = base.y - tip.y;
@@ -188,12 +187,12 @@ static inline void test_spring(const mspringi_yield_test *t, size_t spring_slot,
     }
     const float square = dx * dx + dy * dy;
     if (square > t->test_high[spring_slot] || t->test_low[spring_slot] > square)
-        let_yield(t, spring_slot, square, rest, stiffness);
+        yield_spring(t, spring_slot, square, rest, stiffness);
 }
 
 static inline void test_in_lattice(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
                                    mspringi_direction direction, motion base, motion tip, mspringi_variant of) {
-    const size_t spring_slot = place_in_lattice(span, slot) + (size_t)direction * MSPRINGI_WIDTH;
+    const size_t spring_slot = lattice_slot(span, slot) + (size_t)direction * MSPRINGI_WIDTH;
     const float *records = springs_of(s, span, slot).records;
     test_spring(s->test, spring_slot, base, tip, s->test->lattice_rests + spring_slot,
                 records[direction * (s->parts - 1) * MSPRINGI_WIDTH], of);
@@ -206,10 +205,11 @@ static inline vector lattice_force(motion base, motion tip, lattice_springs spri
                         springs.records + direction * parts * MSPRINGI_WIDTH, of);
 }
 
-// What the area of a slot's cell adds to the forces of its diagonals: with D and D' the ways along them, from tips
-// to bases, f = f0 - f1 D x D' along the normals. See store/areas.h.
-static inline void press(const mspringi_sweep *s, const mspringi_span *span, size_t slot, vector to_north_east,
-                         vector to_south_east, vector *north_east, vector *south_east) {
+// Add the force of the slot's cell area to those of its diagonals: with D and D' the diagonals from tips to bases,
+// f = f0 - f1 D x D' along the normals. See store/areas.h.
+static inline void add_area_force(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
+                                  vector to_north_east, vector to_south_east, vector *north_east,
+                                  vector *south_east) {
     const size_t block = span->first_record + (slot / MSPRINGI_WIDTH - span->first_slot / MSPRINGI_WIDTH);
     const float *cells = s->cells + 2 * block * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
     const float cross = to_north_east.x * to_south_east.y - to_north_east.y * to_south_east.x;
@@ -222,25 +222,26 @@ static inline void press(const mspringi_sweep *s, const mspringi_span *span, siz
 
 static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
                            mspringi_variant of) {
-    handed_on before = {{0.0f, 0.0f}, {0.0f, 0.0f}};
+    carried_forces before = {{0.0f, 0.0f}, {0.0f, 0.0f}};
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
             const size_t up = (size_t)((int64_t)slot + span->up), carry = (size_t)((int64_t)slot + span->carry);
-            const motion here = at(s, slot), next = at(s, slot + 1), above = at(s, up), above_next = at(s, up + 1);
+            const motion here = motion_at(s, slot), next = motion_at(s, slot + 1), above = motion_at(s, up),
+                         above_next = motion_at(s, up + 1);
             if (of & MSPRINGI_TESTED) {
                 test_in_lattice(s, span, slot, MSPRINGI_EAST, here, next, of);
                 test_in_lattice(s, span, slot, MSPRINGI_NORTH, here, above, of);
                 test_in_lattice(s, span, slot, MSPRINGI_NORTH_EAST, here, above_next, of);
                 test_in_lattice(s, span, slot, MSPRINGI_SOUTH_EAST, next, above, of);
             }
-            const lattice_springs springs = springs_of(s, span, slot); // which may be others when one has flowed
+            const lattice_springs springs = springs_of(s, span, slot); // after the tests, which may change it
             const vector east = lattice_force(here, next, springs, MSPRINGI_EAST, of);
             const vector north = lattice_force(here, above, springs, MSPRINGI_NORTH, of);
             vector north_east = lattice_force(here, above_next, springs, MSPRINGI_NORTH_EAST, of);
             vector south_east = lattice_force(next, above, springs, MSPRINGI_SOUTH_EAST, of);
             if (of & MSPRINGI_CELLS)
-                press(s, span, slot, way_between(here, above_next, of), way_between(next, above, of), &north_east,
-                      &south_east);
+                add_area_force(s, span, slot, vector_between(here, above_next, of), vector_between(next, above, of),
+                               &north_east, &south_east);
 
             const vector force = {((s->carry_x[carry] + before.right.x) - (east.x + north.x)) - north_east.x,
                                   ((s->carry_y[carry] + before.right.y) - (east.y + north.y)) - north_east.y};
@@ -253,10 +254,10 @@ static inline void lattice(const mspringi_sweep *s, const mspringi_span *spans, 
     }
 }
 
-// The east spring of a slot of a chain, or of a lattice row with nothing above.
+// Force of the east spring of a slot in a chain, or in a lattice row with nothing above.
 static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
                                  mspringi_variant of) {
-    const motion here = at(s, slot), next = at(s, slot + 1);
+    const motion here = motion_at(s, slot), next = motion_at(s, slot + 1);
     if (span->record_slots != MSPRINGI_WIDTH) {
         if (of & MSPRINGI_TESTED)
             test_in_lattice(s, span, slot, MSPRINGI_EAST, here, next, of);
@@ -272,7 +273,7 @@ static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *s
                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
 }
 
-// East springs only.
+// Rows of east springs only.
 MSPRINGI_INLINE void sweep_chain(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
                                  mspringi_variant of) {
     vector left = {0.0f, 0.0f};
@@ -298,8 +299,8 @@ static inline motion node_at(const mspringi_sweep *s, size_t node, mspringi_vari
     return (motion){gathered[0], gathered[1], half[0], half[1], gathered[2], gathered[3]};
 }
 
-// The force of the irregular part on one of its nodes: the sum over the slice columns of its group, in their order,
-// from a first one on.
+// Force of the irregular part on one of its nodes: the sum over the slice columns of its slice, in order, from
+// `slice_columns` on.
 static inline vector irregular_force(const mspringi_sweep *s, size_t node, motion here, uint32_t slice_columns,
                                      mspringi_variant of) {
     const mspringi_sell *irregular = s->irregular;
@@ -317,27 +318,28 @@ static inline vector irregular_force(const mspringi_sweep *s, size_t node, motio
     return sum;
 }
 
-// The force of the first slice column of a node's group, if that is upright, to the node in the same lane of the
-// next one.
+// Force of the first slice column of a node's slice, if it is upright: its springs lead to the same lane of the
+// next slice.
 static inline vector upright_force(const mspringi_sweep *s, size_t slot, size_t node, mspringi_variant of) {
     const float *record =
         s->irregular_springs +
         (size_t)s->irregular->first_slice_column[node / MSPRINGI_WIDTH] * s->parts * MSPRINGI_WIDTH +
         node % MSPRINGI_WIDTH;
-    return spring_force(at(s, slot + MSPRINGI_WIDTH), at(s, slot), record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                        record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
+    return spring_force(motion_at(s, slot + MSPRINGI_WIDTH), motion_at(s, slot),
+                        record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH], record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH,
+                        of);
 }
 
 MSPRINGI_INLINE void sweep_irregular(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
                                      mspringi_variant of) {
     const uint8_t *is_upright = s->irregular->is_interleaved;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        vector handed[MSPRINGI_WIDTH] = {{0.0f, 0.0f}}; // by the group before
+        vector carried[MSPRINGI_WIDTH] = {{0.0f, 0.0f}}; // from the slice before
         size_t node = (size_t)span->first_record * MSPRINGI_WIDTH;
         for (size_t slot = span->first_slot; slot < span->end_slot; ++slot, ++node) {
             const bool has_upright = is_upright && is_upright[node / MSPRINGI_WIDTH];
-            vector *below = &handed[slot % MSPRINGI_WIDTH];
-            vector force = irregular_force(s, node, at(s, slot), has_upright, of);
+            vector *below = &carried[slot % MSPRINGI_WIDTH];
+            vector force = irregular_force(s, node, motion_at(s, slot), has_upright, of);
             force = (vector){force.x + below->x, force.y + below->y};
             *below = (vector){0.0f, 0.0f};
             if (has_upright) {
@@ -350,37 +352,37 @@ MSPRINGI_INLINE void sweep_irregular(const mspringi_sweep *s, const mspringi_spa
     }
 }
 
-// The force of a spring from a bundle's group to one below, at both ends.
+// Compute the force of a spring from a bundle's slice to one below, at both ends.
 MSPRINGI_INLINE void pull_bundle(const mspringi_sweep *s, size_t slot, const mspringi_bundle_link *link,
                                  size_t first_slice_column, mspringi_variant of) {
     const float *record =
         s->irregular_springs + (size_t)link->slice_column * s->parts * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
-    const vector pull =
-        spring_force(at(s, slot + link->below), at(s, slot), record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                     record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
+    const vector pull = spring_force(motion_at(s, slot + link->below), motion_at(s, slot),
+                                     record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                                     record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);
     s->carry_x[link->slice_column - first_slice_column] = pull.x;
     s->carry_y[link->slice_column - first_slice_column] = pull.y;
     s->carry_x[link->back - first_slice_column] = 0.0f - pull.x;
     s->carry_y[link->back - first_slice_column] = 0.0f - pull.y;
 }
 
-// The same forces as those of irregular part(), each computed once, and summed up in the same order. The carry row
-// holds them by slice column.
+// The forces of irregular(), each computed once and summed in the same order. The carry row holds them by slice
+// column.
 MSPRINGI_INLINE void sweep_bundle(const mspringi_sweep *s, const mspringi_span *spans, uint32_t count,
                                   mspringi_variant of) {
     const mspringi_sell *irregular = s->irregular;
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
-        const size_t groups = (span->end_slot - span->first_slot) / MSPRINGI_WIDTH;
+        const size_t slices = (span->end_slot - span->first_slot) / MSPRINGI_WIDTH;
         const size_t first_slice_column = irregular->first_slice_column[span->first_record];
-        for (size_t i = 0; i < groups * MSPRINGI_WIDTH; ++i) { // lane after lane
-            const size_t group = span->first_record + i % groups;
-            const size_t slot = span->first_slot + i % groups * MSPRINGI_WIDTH + i / groups;
-            const uint32_t *first_link = irregular->first_link + (group - irregular->first_bundle);
+        for (size_t i = 0; i < slices * MSPRINGI_WIDTH; ++i) { // lane after lane
+            const size_t slice = span->first_record + i % slices;
+            const size_t slot = span->first_slot + i % slices * MSPRINGI_WIDTH + i / slices;
+            const uint32_t *first_link = irregular->first_link + (slice - irregular->first_bundle);
             for (uint32_t link = first_link[0]; link < first_link[1]; ++link)
                 pull_bundle(s, slot, &irregular->links[link], first_slice_column, of);
             vector force = {0.0f, 0.0f};
-            for (size_t slice_column = irregular->first_slice_column[group];
-                 slice_column < irregular->first_slice_column[group + 1]; ++slice_column) {
+            for (size_t slice_column = irregular->first_slice_column[slice];
+                 slice_column < irregular->first_slice_column[slice + 1]; ++slice_column) {
                 force.x = force.x + s->carry_x[slice_column - first_slice_column];
                 force.y = force.y + s->carry_y[slice_column - first_slice_column];
             }
@@ -389,8 +391,8 @@ MSPRINGI_INLINE void sweep_bundle(const mspringi_sweep *s, const mspringi_span *
     }
 }
 
-// The variants of each of these share two copies, one of them for precise networks. (gcc would make one for each
-// variant, 12 kB for the three, and no longer inline others.)
+// All variants of each of these share two copies, one of them precise. gcc would make a copy for each variant, 12
+// kB for the three, and no longer inline others.
 #if defined(__GNUC__) && !defined(__clang__)
 #define SHARED static __attribute__((noinline, noclone))
 #else
@@ -439,7 +441,7 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-// As move(), with the particle in registers.
+// move() for several substeps, with the particle in registers.
 static inline void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_free_motion *glide,
                          bool forced) {
     for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
@@ -451,8 +453,8 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *span, con
         }
         const float vx = s->vx[slot], vy = s->vy[slot];
         const bool is_free = inverse_mass > 0.0f;
-        go(s, slot, is_free ? vx * glide->reach + change_x * glide->fall : vx * glide->drift,
-           is_free ? vy * glide->reach + change_y * glide->fall : vy * glide->drift);
+        add_displacement(s, slot, is_free ? vx * glide->reach + change_x * glide->fall : vx * glide->drift,
+                         is_free ? vy * glide->reach + change_y * glide->fall : vy * glide->drift);
         s->vx[slot] = is_free ? vx * glide->keep + change_x * glide->gain : vx;
         s->vy[slot] = is_free ? vy * glide->keep + change_y * glide->gain : vy;
     }

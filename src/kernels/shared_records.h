@@ -1,5 +1,5 @@
 /// @file shared_records.h
-/// Lattice blocks of which some have equal records: for each of them the one whose record is read.
+/// Lattice blocks with equal records share one of them.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SHARED_RECORDS_H
@@ -8,15 +8,15 @@
 #include <stdint.h>
 
 typedef struct mspringi_shared_records {
-    uint32_t *of_block; ///< [lattice blocks] the block whose record is read for each
-    uint32_t *readers;  ///< [lattice blocks] other blocks that each block's record is read for
-    uint32_t *home;     ///< [lattice blocks] a block that each was like before its springs were set
-    uint8_t *is_set;    ///< [lattice blocks] whether springs of it were, since it was compared with that
-    uint64_t changes;   ///< springs that were set since all were looked at
-    uint64_t compared;  ///< of these, those of before the last comparison
+    uint32_t *of_block; ///< [lattice blocks] the block that holds the shared record
+    uint32_t *readers;  ///< [lattice blocks] number of other blocks that read this block's record
+    uint32_t *home;     ///< [lattice blocks] a block with an equal record before springs were set
+    uint8_t *is_set;    ///< [lattice blocks] true if springs were set since the last comparison with that
+    uint64_t changes;   ///< springs set since the last full comparison
+    uint64_t compared;  ///< those of them before the last comparison
 } mspringi_shared_records;
 
-/// A block's record is about to change: have it read for no other, and be read for it.
+/// Give a block a record of its own, which no other reads, before it changes.
 static inline void mspringi_shared_records_unshare_block(mspringi_shared_records *shared, uint32_t block,
                                                          uint32_t blocks) {
     if (shared->of_block[block] != block) {
@@ -24,8 +24,8 @@ static inline void mspringi_shared_records_unshare_block(mspringi_shared_records
         shared->of_block[block] = block;
         return;
     }
-    // The last of those that read it has the record for all from now on: whoever sets one spring after the other
-    // comes there late. (A scan of the 3,683 blocks of our ship takes 0.4 us.)
+    // The last reader takes over the shared record: a loop over springs in order gets there late. A scan of the
+    // 3,683 blocks of our ship takes 0.4 us.
     uint32_t left = shared->readers[block], heir = block;
     shared->readers[block] = 0;
     for (uint32_t b = blocks; left > 0;) {

@@ -1,7 +1,7 @@
 /// @file silt_kernel.h
-/// How silt brakes the particles of a block in a substep, before the floor acts on them. It takes a share of w, the
-/// velocity in step with the positions before the move (see bounce_kernel.h), so it takes energy whatever the
-/// forces do.
+/// Braking of a block's particles by silt in a substep, before the floor acts on them. It acts on w, the velocity
+/// in step with the positions before the move (see bounce_kernel.h). So it dissipates energy whatever the forces
+/// are.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SILT_KERNEL_H
@@ -9,48 +9,49 @@
 
 #include "kernels/floor_kernel.h"
 
-// The shares of their velocities that silt takes.
-static void find_taken(const mspringi_floor_args *g, size_t slot, double *restrict taken) {
+// Find the fraction of each velocity that silt takes.
+static void find_fractions(const mspringi_floor_args *g, size_t slot, double *restrict fractions) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot, *restrict heights = g->heights;
     const double left = g->left, spacing = g->spacing, bottom = g->bottom;
     const double depth = g->silt_depth, rate_h = g->silt_rate * g->h;
     const uint32_t count = g->height_count;
-    find_held(g, slot, MSPRINGI_WIDTH, taken);
+    find_active(g, slot, MSPRINGI_WIDTH, fractions);
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double ground = bottom + mspringi_height_at(heights, count, ((double)x[i] - left) / spacing);
-        const double takes = mspringi_silt_damping_at((double)y[i] - ground, depth, rate_h);
-        taken[i] = taken[i] > 0.0 ? takes : 0.0;
+        const double fraction = mspringi_silt_damping_at((double)y[i] - ground, depth, rate_h);
+        fractions[i] = fractions[i] > 0.0 ? fraction : 0.0;
     }
 }
 
-/// One of the two coordinates, by slot.
-typedef struct braking {
+/// One coordinate, by slot.
+typedef struct brake_arrays {
     const float *from;
     float *before, *velocity, *position, *low, *impulse;
-} braking;
+} brake_arrays;
 
-// What the velocities change by. (from may be velocity.)
-static void find_changes(const mspringi_floor_args *g, const double *restrict taken, const braking *b,
+// Find the changes of velocity. from may alias velocity.
+static void find_changes(const mspringi_floor_args *g, const double *restrict fractions, const brake_arrays *b,
                          float *restrict change) {
     const float *v = b->velocity, *from = b->from;
     const double undamped = g->undamped;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const double is = (double)v[i], w = is - 0.5 * (undamped * is - (double)from[i]);
-        const float braked = (float)(is - taken[i] * w) - v[i];
-        change[i] = taken[i] > 0.0 ? braked : 0.0f;
+        const double velocity = (double)v[i], w = velocity - 0.5 * (undamped * velocity - (double)from[i]);
+        const float braked = (float)(velocity - fractions[i] * w) - v[i];
+        change[i] = fractions[i] > 0.0 ? braked : 0.0f;
     }
 }
 
-// Positions follow by Kahan's sum, as in sweeps.
-static void brake_along(const mspringi_floor_args *g, size_t slot, const double *restrict taken, const braking *b) {
+// Apply the changes. Positions follow by Kahan's sum, as in sweeps.
+static void brake_along(const mspringi_floor_args *g, size_t slot, const double *restrict fractions,
+                        const brake_arrays *b) {
     const float *restrict inverse_mass = g->inverse_mass + slot;
     float *restrict v = b->velocity, *restrict at = b->position, *restrict low = b->low,
                     *restrict given = b->impulse;
     float change[MSPRINGI_WIDTH];
     const double h = g->h, undamped = g->undamped;
-    find_changes(g, taken, b, change);
+    find_changes(g, fractions, b, change);
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const float mass = 1.0f / inverse_mass[i], impulse = given[i] + mass * change[i];
@@ -71,18 +72,18 @@ static void brake_along(const mspringi_floor_args *g, size_t slot, const double 
 }
 
 static void brake(const mspringi_floor_args *g, size_t slot) {
-    double taken[MSPRINGI_WIDTH];
-    find_taken(g, slot, taken);
-    if (!is_any(taken, MSPRINGI_WIDTH))
+    double fractions[MSPRINGI_WIDTH];
+    find_fractions(g, slot, fractions);
+    if (!is_any(fractions, MSPRINGI_WIDTH))
         return;
     float *const before_x = g->before_vx ? g->before_vx + slot : NULL;
     float *const before_y = g->before_vy ? g->before_vy + slot : NULL;
-    const braking along = {g->from_vx + slot, before_x,        g->vx + slot,
-                           g->x + slot,       g->low_x + slot, g->impulse_x + slot};
-    const braking up = {g->from_vy + slot, before_y,        g->vy + slot,
-                        g->y + slot,       g->low_y + slot, g->impulse_y + slot};
-    brake_along(g, slot, taken, &along);
-    brake_along(g, slot, taken, &up);
+    const brake_arrays along = {g->from_vx + slot, before_x,        g->vx + slot,
+                                g->x + slot,       g->low_x + slot, g->impulse_x + slot};
+    const brake_arrays up = {g->from_vy + slot, before_y,        g->vy + slot,
+                             g->y + slot,       g->low_y + slot, g->impulse_y + slot};
+    brake_along(g, slot, fractions, &along);
+    brake_along(g, slot, fractions, &up);
 }
 
 #endif

@@ -1,4 +1,4 @@
-/// SSE2: four lanes. Part of every x86-64 CPU, and of what i386 is built for.
+/// SSE2: four lanes. Part of every x86-64 CPU; i386 builds require it.
 #include "kernels/kernels.h"
 
 #if defined(MSPRINGI_X86)
@@ -36,38 +36,38 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm_sqrt_ps(a);
 }
-// 1 / square, or 0 where there is no direction.
+// 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     return _mm_and_ps(_mm_div_ps(_mm_set1_ps(1.0f), square),
                       _mm_cmpgt_ps(square, _mm_set1_ps(MSPRINGI_NO_DIRECTION)));
 }
-// a where selector > 0, b elsewhere.
+// a where selector > 0, else b.
 static inline vec choose_positive(vec selector, vec a, vec b) {
     const mask is_positive = _mm_cmpgt_ps(selector, _mm_setzero_ps());
     return _mm_or_ps(_mm_and_ps(is_positive, a), _mm_andnot_ps(is_positive, b));
 }
-// A bit for each lane: 1 where a > b.
+// Bit of each lane with a > b.
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)_mm_movemask_ps(_mm_cmpgt_ps(a, b));
 }
-// Which lanes of a are outside of least to most.
+// Mask of the lanes of a below least or above most.
 static inline mask outside(vec a, vec least, vec most) {
     return _mm_or_ps(_mm_cmplt_ps(a, least), _mm_cmpgt_ps(a, most));
 }
 static inline mask either(mask a, mask b) {
     return _mm_or_ps(a, b);
 }
-// Not 0 if any lane is.
+// Not 0 if any lane is set.
 static inline uint32_t any_lane(mask a) {
     return (uint32_t)_mm_movemask_ps(a);
 }
-// The last lane of before, then all lanes of a but its last.
+// Shift by one lane: the last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     const vec halo = _mm_shuffle_ps(before, a, _MM_SHUFFLE(0, 0, 3, 3));
     return _mm_shuffle_ps(halo, a, _MM_SHUFFLE(2, 1, 2, 0));
 }
 
-// Four values of each of LANES nodes, from [node][4].
+// Load four values of each of LANES nodes, from [node][4].
 static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
     *x = _mm_load_ps(gathered + 4 * (size_t)nodes[0]);
     *y = _mm_load_ps(gathered + 4 * (size_t)nodes[1]);
@@ -83,7 +83,7 @@ static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy)
     _mm_store_ps(gathered + 12, vy);
 }
 
-// Absolute values, as integers: those of floats are in the same order, with NaN above all.
+// Absolute values as integers: the order is that of floats, with NaN above all.
 static inline __m128i absolute(vec a) {
     return _mm_and_si128(_mm_castps_si128(a), _mm_set1_epi32(0x7fffffff));
 }
@@ -98,7 +98,7 @@ static inline float largest_lane(vec a) {
     return _mm_cvtss_f32(_mm_castsi128_ps(bits));
 }
 
-// The larger of a and of the size of b.
+// The larger of a and |b|.
 static inline vec larger_size(vec a, vec b) {
     return _mm_castsi128_ps(larger(_mm_castps_si128(a), absolute(b)));
 }

@@ -1,10 +1,9 @@
 /// @file strain_kernel.h
-/// The strain pass: finding the few springs that are stretched so far that something may happen, for vectors of
-/// LANES springs.
+/// The strain pass: finds the few springs with a strain that matters, in vectors of LANES springs.
 ///
-/// A spring's stretch |L - rest_length| is compared with strain * rest_length, so there is no division; what comes
-/// out is a bit for each lane, and hardly ever are there any. What they mean is found one by one, by whoever
-/// called. Springs that are stressed stay so for long: those are looked at closer here.
+/// It compares the stretch |L - rest_length| with strain * rest_length, without a division. The result is one bit
+/// for each lane, rarely set. The caller handles these springs one by one. Stressed springs stay stressed for long,
+/// so they are tested further here.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_STRAIN_KERNEL_H
@@ -18,7 +17,7 @@
 #define MSPRINGI_STRETCH static inline __attribute__((always_inline))
 #endif
 
-// Bits of LANES springs, dead ones among them, whose stretch is over a limit: |stretch| is the larger of it and its
+// Bits of LANES springs, broken ones included, with a stretch above a limit: |stretch| is the larger of it and its
 // negative.
 MSPRINGI_STRETCH uint32_t over_limit(vec stretch, vec negative, vec limit) {
     return bits_greater(stretch, limit) | bits_greater(negative, limit);
@@ -33,16 +32,16 @@ MSPRINGI_STRETCH vec length_between(vec base_x, vec base_y, vec tip_x, vec tip_y
     return square_root(add(mul(dx, dx), mul(dy, dy)));
 }
 
-// Bits of LANES springs, dead ones among them, that are stretched by more than their least.
+// Bits of LANES springs, broken ones included, that are stretched by more than their least strain.
 MSPRINGI_STRETCH uint32_t over_least(vec base_x, vec base_y, vec tip_x, vec tip_y, const float *rest_lengths,
                                      const float *least) {
     const vec length = length_between(base_x, base_y, tip_x, tip_y), rest_length = load(rest_lengths);
     return over_limit(sub(length, rest_length), sub(rest_length, length), mul(load(least), rest_length));
 }
 
-// Of a word of springs from slots base on to slots tip on, bits of those that break, or relax if they are stressed.
-static MSPRINGI_NOINLINE uint32_t judge_stressed(const mspringi_strain_sweep *s, size_t word, size_t base,
-                                                 size_t tip, const float *rest_lengths) {
+// Bits of the stressed springs that break or relax, of a word of springs from the slots at base to those at tip.
+static MSPRINGI_NOINLINE uint32_t test_stressed(const mspringi_strain_sweep *s, size_t word, size_t base,
+                                                size_t tip, const float *rest_lengths) {
     uint32_t bits = 0;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; lane += LANES) {
         const size_t spring_slot = word * MSPRINGI_WIDTH + lane;
@@ -65,7 +64,7 @@ static MSPRINGI_NOINLINE uint32_t judge_stressed(const mspringi_strain_sweep *s,
     return bits;
 }
 
-/// Blocks whose thresholds are fetched before stressed springs of them are looked at.
+/// Distance in blocks at which thresholds of stressed springs are prefetched.
 #define STRAIN_AHEAD 4
 
 MSPRINGI_STRETCH void fetch_thresholds(const mspringi_strain_sweep *s, size_t word) {
@@ -82,7 +81,7 @@ MSPRINGI_STRETCH uint32_t append_hit(const mspringi_strain_sweep *s, size_t word
     uint32_t bits = over & s->live[word];
     if (stressed)
         bits = (bits & ~stressed) |
-               (s->stress ? stressed & judge_stressed(s, word, base, tip, rest_lengths) : stressed);
+               (s->stress ? stressed & test_stressed(s, word, base, tip, rest_lengths) : stressed);
     if (bits)
         hits[count++] = (mspringi_strain_hit){(uint32_t)word, bits};
     return count;

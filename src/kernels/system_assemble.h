@@ -1,11 +1,10 @@
 /// @file system_assemble.h
 /// Assembly of the linear system of an implicit substep. Plain C in blocks of MSPRINGI_WIDTH lanes, which compilers
-/// turn into vectors of whatever each instruction set's file is compiled for: the operations and their order are
-/// the same in all of them.
+/// vectorise for each instruction set: operations and order are the same in all of them.
 ///
-/// In double precision as far as positions and forces go. A stiff spring's force hangs on differences of position
-/// that single precision does not resolve: at 10^12 N/m a bar of 1 m springs bears its weight with strains of
-/// 10^-6, ten times what it can tell in a length.
+/// Positions and forces are in double precision. The force of a stiff spring depends on differences of position
+/// below single precision: at 10^12 N/m a bar of 1 m springs carries its weight with strains of 10^-6, ten times
+/// the resolution of a length.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_ASSEMBLE_H
@@ -17,24 +16,23 @@
 #include "kernels/spring_law.h"
 #include "kernels/system_iterate.h"
 
-/// MSPRINGI_WIDTH springs of one direction on their way to force and factors. Each is a long chain of operations
-/// that wait for each other: so what can be computed of all directions is, before the next thing is. (One spring
-/// after the other took 186 ns for a block of 544x68, AVX-512, and this 148.)
+/// MSPRINGI_WIDTH springs of one direction, from inverse length to force and factors. Each is a long chain of
+/// dependent operations, so each stage is computed for all directions before the next. A block of 544x68 with
+/// AVX-512: 148 ns, one spring after the other 186 ns.
 typedef struct spring_lanes {
-    float inverse[MSPRINGI_WIDTH];                                    ///< of the length, nearly, 1/m
+    float inverse[MSPRINGI_WIDTH];                                    ///< approximate inverse length, 1/m
     float extension[MSPRINGI_WIDTH];                                  ///< m
     float x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH];                       ///< direction
     double force_x[MSPRINGI_WIDTH], force_y[MSPRINGI_WIDTH];          ///< on the base
     float xx[MSPRINGI_WIDTH], xy[MSPRINGI_WIDTH], yy[MSPRINGI_WIDTH]; ///< block of the matrix
 } spring_lanes;
 
-/// Slots whose springs are computed before they are summed up. What is handed on to the next slot is read a place
-/// further on than it was written: right after it, before it has left for the cache, a processor would wait.
+/// Slots whose springs are computed before the sums. The sums read what is carried to the next slot one lane
+/// further on than it was written. Immediately after the write, this would stall until the store reaches the cache.
 #define MSPRINGI_STRIP (4 * MSPRINGI_WIDTH)
 
-/// What the springs of a strip add to one quantity: of each slot, to itself, to the slot at its right, to the one
-/// above, and to the one above and at its right. What is handed on to the right begins at the slot before the
-/// strip, at WIDTH - 1.
+/// Contributions of a strip's springs to one quantity: for each slot, to itself, to the slot above, to the one on
+/// the right, and to the one above that. The latter two begin at the slot before the strip, at WIDTH - 1.
 typedef struct strip_of_doubles {
     double own[MSPRINGI_STRIP], up[MSPRINGI_STRIP];
     double right[MSPRINGI_WIDTH + MSPRINGI_STRIP], diagonal[MSPRINGI_WIDTH + MSPRINGI_STRIP];
@@ -48,25 +46,25 @@ typedef struct spring_strip {
     strip_of_floats xx, xy, yy;
 } spring_strip;
 
-/// Squared length, m^2, that any spring has at least: one of no length has no direction, but a finite inverse.
+/// Smallest squared length, m^2. A spring of length 0 has no direction, but a finite inverse.
 #define NO_SQUARE 1e-36f
 
 // As mspringi_geometric_fraction().
 static inline float geometric_fraction(float relative) {
-    const float pressed = -1.5f * relative - 0.5f;
-    const float share = relative > pressed ? relative : pressed;
+    const float compressed = -1.5f * relative - 0.5f;
+    const float share = relative > compressed ? relative : compressed;
     const float positive = share > 0.0f ? share : 0.0f;
     return positive < 1.0f ? positive : 1.0f;
 }
 
-/// Of a system, what its springs are computed of.
+/// Parameters of the linearisation.
 typedef struct linearised {
     const double *x, *y;
     const float *vx, *vy;
     float scale, damping_rate;
 } linearised;
 
-// The springs from the slots base ... to the slots tip ...
+// The springs from the slots at base to those at tip.
 MSPRINGI_INLINE void find_inverses(const linearised *s, size_t base, size_t tip, spring_lanes *restrict to) {
     const double *const x = s->x, *const y = s->y;
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
@@ -75,7 +73,7 @@ MSPRINGI_INLINE void find_inverses(const linearised *s, size_t base, size_t tip,
     }
 }
 
-// By a step of Newton's method for the inverse, and one more for the length.
+// One step of Newton's method for the inverse, and another for the length.
 MSPRINGI_INLINE void find_forces(const linearised *s, size_t base, size_t tip, const float *rest_lengths,
                                  const float *stiffnesses, spring_lanes *restrict to, bool damped) {
     const double *const x = s->x, *const y = s->y;
@@ -123,19 +121,18 @@ MSPRINGI_INLINE void find_factors(const linearised *s, const float *stiffnesses,
     }
 }
 
-// Into a strip's slots at ..., in the order of sweep.h. Forces change sign at the tip, blocks do not.
+// Write to a strip's slots from `at` on, in the order of sweep.h. Forces change sign at the tip, blocks do not.
 #define MSPRINGI_PUT(part, value, sign)                                                                            \
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {                                                                  \
         to->part.up[at + i] = south_east->value[i] sign north->value[i];                                           \
         to->part.diagonal[MSPRINGI_WIDTH + at + i] = north_east->value[i];                                         \
     }                                                                                                              \
-    for (size_t i = 0; !only_hand_on && i < MSPRINGI_WIDTH; ++i) {                                                 \
+    for (size_t i = 0; !only_carry && i < MSPRINGI_WIDTH; ++i) {                                                   \
         to->part.own[at + i] = (east->value[i] + north->value[i]) + north_east->value[i];                          \
         to->part.right[MSPRINGI_WIDTH + at + i] = east->value[i] + south_east->value[i];                           \
     }
 
-MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to,
-                               bool only_hand_on) {
+MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_strip *restrict to, bool only_carry) {
     const spring_lanes *const east = &lanes[MSPRINGI_EAST], *const north = &lanes[MSPRINGI_NORTH];
     const spring_lanes *const north_east = &lanes[MSPRINGI_NORTH_EAST], *const south_east =
                                                                             &lanes[MSPRINGI_SOUTH_EAST];
@@ -148,10 +145,11 @@ MSPRINGI_INLINE void put_block(const spring_lanes *lanes, size_t at, spring_stri
 
 #undef MSPRINGI_PUT
 
-// The lattice springs of the slots slot ..., below the slots up ..., into a strip's slots at ...
+// Assemble the lattice springs of the slots from `slot` on, below those from `up` on, into a strip's slots from
+// `at` on.
 MSPRINGI_INLINE void assemble_block(const linearised *s, size_t slot, size_t up, const float *rests,
                                     const float *springs, float *restrict factors, size_t at,
-                                    spring_strip *restrict to, bool damped, bool only_hand_on) {
+                                    spring_strip *restrict to, bool damped, bool only_carry) {
     const size_t part = (size_t)(damped ? 2 : 1) * MSPRINGI_WIDTH,
                  factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
     const size_t bases[] = {
@@ -160,22 +158,22 @@ MSPRINGI_INLINE void assemble_block(const linearised *s, size_t slot, size_t up,
                            [MSPRINGI_NORTH] = up,
                            [MSPRINGI_NORTH_EAST] = up + 1,
                            [MSPRINGI_SOUTH_EAST] = slot + 1};
-    float unused[MSPRINGI_FACTORS * MSPRINGI_WIDTH]; // whoever has rows that only hand on keeps theirs
+    float unused[MSPRINGI_FACTORS *
+                 MSPRINGI_WIDTH]; // carry-only rows belong to another worker, which writes their factors
     spring_lanes lanes[MSPRINGI_DIRECTIONS];
-    const size_t first = only_hand_on ? MSPRINGI_NORTH : MSPRINGI_EAST;
+    const size_t first = only_carry ? MSPRINGI_NORTH : MSPRINGI_EAST;
     for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
         find_inverses(s, bases[i], tips[i], &lanes[i]);
     for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
         find_forces(s, bases[i], tips[i], rests + i * MSPRINGI_WIDTH, springs + i * part, &lanes[i], damped);
     for (size_t i = first; i < MSPRINGI_DIRECTIONS; ++i)
-        find_factors(s, springs + i * part, only_hand_on ? unused : factors + i * factor, &lanes[i], damped);
-    put_block(lanes, at, to, only_hand_on);
+        find_factors(s, springs + i * part, only_carry ? unused : factors + i * factor, &lanes[i], damped);
+    put_block(lanes, at, to, only_carry);
 }
 
-// The same of a chain's springs, or those of a row that has east springs only.
+// Assemble the springs of a chain, or of a row of east springs only.
 MSPRINGI_INLINE void assemble_east(const linearised *s, size_t slot, const float *rests, const float *springs,
-                                   float *restrict factors, size_t at, spring_strip *restrict to,
-                                   bool damped) {
+                                   float *restrict factors, size_t at, spring_strip *restrict to, bool damped) {
     spring_lanes east;
     find_inverses(s, slot, slot + 1, &east);
     find_forces(s, slot, slot + 1, rests, springs, &east, damped);
@@ -189,8 +187,7 @@ MSPRINGI_INLINE void assemble_east(const linearised *s, size_t slot, const float
     }
 }
 
-// Of the slots of a strip, sum up one quantity: what the carry row hands to them, their own, and what comes from
-// the left.
+// Sum one quantity over the slots of a strip: from the carry row, from the slot itself, and from the left.
 static inline void sum_forces(const strip_of_doubles *of, size_t count, const double *restrict carry,
                               float *restrict to) {
     for (size_t i = 0; i < count; ++i)
@@ -202,7 +199,7 @@ static inline void sum_blocks(const strip_of_floats *of, size_t count, const flo
         to[i] = (carry[i] + of->own[i]) + of->right[MSPRINGI_WIDTH - 1 + i];
 }
 
-// What a strip hands on to the row above.
+// Leave a strip's part of the carry row.
 static inline void carry_forces(const strip_of_doubles *of, size_t count, double *restrict carry) {
     for (size_t i = 0; i < count; ++i)
         // NOLINTNEXTLINE(gcc-analyzer-use-of-uninitialized-value): all blocks of the strip are put before
@@ -230,8 +227,8 @@ static inline void carry_strip(const mspringi_system *s, const spring_strip *str
     carry_blocks(&strip->yy, count, s->carry_yy + carry);
 }
 
-// Let what the last of count slots hands on come from the slot before the next strip.
-static inline void go_on(spring_strip *strip, size_t count) {
+// Carry the contribution of the last of `count` slots to the next strip.
+static inline void continue_strip(spring_strip *strip, size_t count) {
     const size_t before = MSPRINGI_WIDTH - 1, last = before + count;
     strip->x.right[before] = strip->x.right[last];
     strip->y.right[before] = strip->y.right[last];
@@ -245,7 +242,7 @@ static inline void go_on(spring_strip *strip, size_t count) {
     strip->yy.diagonal[before] = strip->yy.diagonal[last];
 }
 
-// Nothing comes from the slot before the first strip.
+// Start without a contribution from the left.
 static inline void begin_strips(spring_strip *strip) {
     const size_t before = MSPRINGI_WIDTH - 1;
     strip->x.right[before] = strip->x.diagonal[before] = 0.0;
@@ -256,7 +253,7 @@ static inline void begin_strips(spring_strip *strip) {
 }
 
 MSPRINGI_INLINE void assemble_lattice_rows(const mspringi_system *system, const mspringi_span *spans,
-                                           uint32_t count, bool damped, bool only_hand_on) {
+                                           uint32_t count, bool damped, bool only_carry) {
     const mspringi_system copy = *system, *const s = &copy;
     const size_t springs = (size_t)(damped ? 2 : 1) * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
     const size_t factors = (size_t)MSPRINGI_FACTORS * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
@@ -273,27 +270,27 @@ MSPRINGI_INLINE void assemble_lattice_rows(const mspringi_system *system, const 
                 const size_t index = span->first_record + (slot + at - first) / MSPRINGI_WIDTH;
                 assemble_block(&linear, slot + at, (size_t)((int64_t)(slot + at) + span->up),
                                mspringi_system_rests(s, index), s->lattice_springs + index * springs,
-                               s->lattice_factors + index * factors, at, &strip, damped, only_hand_on);
+                               s->lattice_factors + index * factors, at, &strip, damped, only_carry);
             }
-            if (!only_hand_on)
+            if (!only_carry)
                 sum_strip(s, &strip, slot, carry, slots);
             carry_strip(s, &strip, carry, slots);
-            go_on(&strip, slots);
+            continue_strip(&strip, slots);
         }
     }
 }
 
-MSPRINGI_INLINE void assemble_lattice(const mspringi_system *system, const mspringi_span *spans,
-                                      uint32_t count, bool damped) {
+MSPRINGI_INLINE void assemble_lattice(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                                      bool damped) {
     assemble_lattice_rows(system, spans, count, damped, false);
 }
 
-MSPRINGI_INLINE void hand_on_forces(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+MSPRINGI_INLINE void assemble_carry(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
                                     bool damped) {
     assemble_lattice_rows(system, spans, count, damped, true);
 }
 
-// East springs only.
+// Rows of east springs only.
 MSPRINGI_INLINE void assemble_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
                                     bool damped) {
     const mspringi_system copy = *system, *const s = &copy;
@@ -302,7 +299,7 @@ MSPRINGI_INLINE void assemble_chain(const mspringi_system *system, const mspring
     begin_strips(&strip);
     for (const mspringi_span *span = spans; span < spans + count; ++span) {
         const bool is_chain = span->record_slots == MSPRINGI_WIDTH;
-        // A chain's records have the rest lengths in front.
+        // chain records begin with the rest lengths
         const size_t parts = damped ? 2 : 1, stride = (parts + is_chain) * span->record_slots;
         const size_t factor_stride = (size_t)MSPRINGI_FACTORS * span->record_slots;
         const float *records = is_chain ? s->chain_springs : s->lattice_springs;
@@ -325,7 +322,7 @@ MSPRINGI_INLINE void assemble_chain(const mspringi_system *system, const mspring
             memset(s->carry_xx + carry, 0, slots * sizeof *s->carry_xx);
             memset(s->carry_xy + carry, 0, slots * sizeof *s->carry_xy);
             memset(s->carry_yy + carry, 0, slots * sizeof *s->carry_yy);
-            go_on(&strip, slots);
+            continue_strip(&strip, slots);
         }
     }
 }
@@ -346,12 +343,12 @@ static void assemble_chain_damped(const mspringi_system *system, const mspringi_
     assemble_chain(system, spans, count, true);
 }
 
-static void hand_on_forces_plain(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
-    hand_on_forces(system, spans, count, false);
+static void assemble_carry_plain(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
+    assemble_carry(system, spans, count, false);
 }
 
-static void hand_on_forces_damped(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
-    hand_on_forces(system, spans, count, true);
+static void assemble_carry_damped(const mspringi_system *system, const mspringi_span *spans, uint32_t count) {
+    assemble_carry(system, spans, count, true);
 }
 
 #endif

@@ -1,6 +1,6 @@
 /// @file system_double.h
-/// The blocks of the matrix in double precision, for a direct solution: see solvers/direct/direct.c. Plain C in
-/// blocks of MSPRINGI_WIDTH lanes, as in system_assemble.h.
+/// Matrix blocks in double precision for a direct solution: see solvers/direct/direct.c. Plain C in blocks of
+/// MSPRINGI_WIDTH lanes, as in system_assemble.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_DOUBLE_H
@@ -8,7 +8,7 @@
 
 #include "kernels/system.h"
 
-// Nothing is in a lane without spring. No sum of these is -0, so that to add 0 to it changes nothing.
+// Lanes without a spring are 0. No sum is -0, so adding 0 changes nothing.
 static inline void add_lanes(double *restrict to, const double *restrict values, uint32_t lanes) {
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
         to[i] += lanes >> i & 1 ? values[i] : 0.0;
@@ -32,7 +32,7 @@ static void add_edges(const mspringi_edge_block *block, const float *restrict fa
         edges->xy[i] = -xy[i];
         edges->yy[i] = -yy[i];
     }
-    // A node that is an end of two springs here has the first place's come first, as one by one.
+    // A node with two springs here adds that of the lower spring slot first, as one by one.
     const uint32_t first = block->base < block->tip ? block->tip : block->base;
     const uint32_t second = block->base < block->tip ? block->base : block->tip;
     add_lanes(nodes->xx + first, xx, block->lanes);

@@ -1,7 +1,7 @@
 /// @file system_energy.h
 /// Momenta and energies before and after an implicit substep: see solvers/implicit/energy_budget.h. Plain C in
-/// blocks of MSPRINGI_WIDTH lanes, as in system_assemble.h. All in double precision: beside the stiffness of iron,
-/// lengths that are rounded to floats would make more energy than a body at rest has.
+/// blocks of MSPRINGI_WIDTH lanes, as in system_assemble.h. In double precision: at the stiffness of iron, lengths
+/// rounded to single precision would create more energy than a body at rest has.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_ENERGY_H
@@ -12,7 +12,7 @@
 #include "base/cpu.h"
 #include "kernels/system_iterate.h"
 
-// In pairs, as sum_block_lanes() does. (As a loop over halves it took a tenth of the pass.)
+// Sum in pairs, as sum_block_lanes() does. A loop over halves took a tenth of the pass.
 static inline double sum_wide_lanes(const double *lanes) {
     double sums[MSPRINGI_WIDTH / 4];
     for (size_t i = 0; i < MSPRINGI_WIDTH / 4; ++i)
@@ -22,7 +22,7 @@ static inline double sum_wide_lanes(const double *lanes) {
 
 /* ------------------------------------------------------------------------------------------------------ moments */
 
-// The parameters are what compilers know to be apart from each other.
+// Parameters, since compilers know that restrict parameters do not alias.
 static MSPRINGI_NOINLINE void
 add_moments_of_block(const float *restrict place_x, const float *restrict place_y, const float *restrict low_x,
                      const float *restrict low_y, const float *restrict velocity_x,
@@ -63,12 +63,12 @@ static void sum_moments(const mspringi_motion *m, size_t first, size_t end, cons
 
 /* --------------------------------------------------------------------------------------------- elastic energy */
 
-/// Where the slots of a block are, m. Each is rounded to double precision once for all of its springs.
+/// Positions of a block's slots, m, rounded to double precision once for all of its springs.
 typedef struct block_places {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH];
 } block_places;
 
-// The parameters are what compilers know to be apart from each other.
+// Parameters, since compilers know that restrict parameters do not alias.
 MSPRINGI_INLINE void round_places(const float *restrict x, const float *restrict y, const float *restrict low_x,
                                   const float *restrict low_y, block_places *restrict to) {
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
@@ -81,12 +81,12 @@ static MSPRINGI_NOINLINE void find_places(const mspringi_motion *m, size_t slot,
     round_places(m->x + slot, m->y + slot, m->low_x + slot, m->low_y + slot, to);
 }
 
-/// Energy of springs, twice, and k l^2, by lane.
+/// Twice the energy of springs, and k l^2, by lane.
 typedef struct elastic_lanes {
     double energy[MSPRINGI_WIDTH], length[MSPRINGI_WIDTH];
 } elastic_lanes;
 
-// Of one spring.
+// Twice the energy of one spring.
 MSPRINGI_INLINE double twice_energy(double x, double y, float rest_length, float stiffness, double *length) {
     const double square = x * x + y * y, extension = sqrt(square) - (double)rest_length, k = (double)stiffness;
     *length += k * square;
@@ -105,7 +105,7 @@ static MSPRINGI_NOINLINE void find_elastic_east(const block_places *restrict her
     }
 }
 
-// In the order east, north, north-east, south-east.
+// Directions in the order east, north, north-east, south-east.
 static MSPRINGI_NOINLINE void find_elastic(const block_places *restrict here, const block_places *restrict next,
                                            const block_places *restrict above,
                                            const block_places *restrict above_next,
@@ -131,8 +131,8 @@ static MSPRINGI_NOINLINE void find_elastic(const block_places *restrict here, co
     }
 }
 
-// The springs of a row's block. A slot's right neighbour is read from the state again: read from here a place
-// further on than it was written, it would have to wait for the cache.
+// Sum over the springs of a row's block. A slot's right neighbour is loaded from the state again: one lane off from
+// a recent write, the load would stall.
 MSPRINGI_INLINE void put_elastic(const mspringi_motion *m, size_t slot, size_t up, size_t directions,
                                  const float *rest_lengths, const float *stiffnesses, size_t stride,
                                  mspringi_elastic *to) {

@@ -1,13 +1,13 @@
 /// @file system_iterate.h
-/// What an iteration of conjugate gradients does beside the product: plain C in blocks of MSPRINGI_WIDTH slots, or
-/// of the MSPRINGI_QUARTER slots of a part of a tile, as system_assemble.h is. Every sum is one of lanes, added up
-/// pairwise at the end, so its order is the same for every instruction set.
+/// Iteration of conjugate gradients without the product. Plain C in blocks of MSPRINGI_WIDTH slots, or of the
+/// MSPRINGI_QUARTER slots of a part of a tile, as in system_assemble.h. Sums are by lane, added in pairs at the
+/// end, so their order is the same for every instruction set.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_ITERATE_H
 #define MSPRINGI_SYSTEM_ITERATE_H
 
-// Vectors within a part of a tile: those of the instruction set, or half of them where they are longer than a part.
+// Vectors for parts of a tile: those of the instruction set, or halves of them if they are longer than a part.
 #ifndef PART_LANES
 #define PART_LANES LANES
 typedef vec part_vec;
@@ -41,8 +41,8 @@ static inline float sum_block_lanes(float *lanes) {
     return lanes[0];
 }
 
-// Single precision has rounded the blocks: a millionth of their size on top keeps those positive definite that are
-// so by their mass alone, such as a taut rope's.
+// Invert the diagonal blocks. They are rounded to single precision: a millionth of their trace is added, which
+// keeps those positive definite that are so by their mass alone, such as a taut rope's.
 static void invert(const mspringi_system *s, size_t first, size_t end) {
     const float *restrict const masses = s->mass;
     float *restrict const block_xx = s->xx, *restrict const block_xy = s->xy, *restrict const block_yy = s->yy;
@@ -59,12 +59,11 @@ static void invert(const mspringi_system *s, size_t first, size_t end) {
     }
 }
 
-// The parameters are what compilers know to be apart from each other.
+// Parameters, since compilers know that restrict parameters do not alias.
 MSPRINGI_INLINE float advance_chunk(size_t slots, float alpha, bool is_first, const float *restrict px,
-                                    const float *restrict py, const float *restrict qx,
-                                    const float *restrict qy, const float *restrict xx,
-                                    const float *restrict xy, const float *restrict yy, float *restrict dx,
-                                    float *restrict dy, float *restrict rx, float *restrict ry,
+                                    const float *restrict py, const float *restrict qx, const float *restrict qy,
+                                    const float *restrict xx, const float *restrict xy, const float *restrict yy,
+                                    float *restrict dx, float *restrict dy, float *restrict rx, float *restrict ry,
                                     float *restrict zx, float *restrict zy) {
     float sums[MSPRINGI_WIDTH] = {0.0f};
     for (size_t slot = 0; slot < slots; slot += MSPRINGI_WIDTH) {
@@ -84,8 +83,8 @@ MSPRINGI_INLINE float advance_chunk(size_t slots, float alpha, bool is_first, co
     return sum_block_lanes(sums);
 }
 
-MSPRINGI_INLINE void advance_chunks(const mspringi_system *s, const mspringi_iterate *n, float alpha,
-                                    bool is_first, size_t first, size_t end, float *sums) {
+MSPRINGI_INLINE void advance_chunks(const mspringi_system *s, const mspringi_iterate *n, float alpha, bool is_first,
+                                    size_t first, size_t end, float *sums) {
     for (size_t at = first; at < end; at += MSPRINGI_CHUNK) {
         const size_t slots = end - at < MSPRINGI_CHUNK ? end - at : MSPRINGI_CHUNK;
         sums[at / MSPRINGI_CHUNK] = advance_chunk(
@@ -105,7 +104,7 @@ static void advance(const mspringi_system *s, const mspringi_iterate *n, float a
 
 /* -------------------------------------------------------------------------------------------------- by tile */
 
-/// Vectors in a part.
+/// Number of vectors in a part.
 #define PART_VECTORS (MSPRINGI_PART / PART_LANES)
 
 MSPRINGI_INLINE double sum_part(const part_vec *sums) {
@@ -116,7 +115,7 @@ MSPRINGI_INLINE double sum_part(const part_vec *sums) {
                     ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7])));
 }
 
-// In double precision: tiles of particles of the same mass, however many, are to get the same share of a force.
+// In double precision, so that tiles of particles of equal mass, however many, get equal shares of a force.
 static void inertia_of_tile(const mspringi_iterate *n, const float *mass, const mspringi_tile_part *parts,
                             size_t count, double *to) {
     double sum[MSPRINGI_PART] = {0.0}, inertia[MSPRINGI_PART] = {0.0};
@@ -141,9 +140,9 @@ static void inertia_of_tile(const mspringi_iterate *n, const float *mass, const 
 }
 
 static void restrict_to_tile(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count, double *to) {
-    part_vec sum_x[PART_VECTORS], sum_y[PART_VECTORS], sum_turn[PART_VECTORS];
+    part_vec sum_x[PART_VECTORS], sum_y[PART_VECTORS], sum_moment[PART_VECTORS];
     for (size_t v = 0; v < PART_VECTORS; ++v)
-        sum_x[v] = sum_y[v] = sum_turn[v] = part_set(0.0f);
+        sum_x[v] = sum_y[v] = sum_moment[v] = part_set(0.0f);
     for (size_t p = 0; p < count; ++p) {
         for (size_t v = 0; v < PART_VECTORS; ++v) {
             const size_t slot = parts[p].first_slot + v * PART_LANES;
@@ -152,43 +151,43 @@ static void restrict_to_tile(const mspringi_iterate *n, const mspringi_tile_part
             const part_vec y = part_mul(weight, part_load(n->residual_y + slot));
             sum_x[v] = part_add(sum_x[v], x);
             sum_y[v] = part_add(sum_y[v], y);
-            sum_turn[v] = part_add(sum_turn[v], part_sub(part_mul(part_load(n->arm_x + slot), y),
-                                                         part_mul(part_load(n->arm_y + slot), x)));
+            sum_moment[v] = part_add(sum_moment[v], part_sub(part_mul(part_load(n->arm_x + slot), y),
+                                                             part_mul(part_load(n->arm_y + slot), x)));
         }
     }
     to[0] = sum_part(sum_x);
     to[1] = sum_part(sum_y);
-    to[2] = sum_part(sum_turn);
+    to[2] = sum_part(sum_moment);
 }
 
-// Whether a part is the first of those at its slots.
-static inline bool begins_group(const mspringi_tile_part *parts, size_t p) {
+// True if a part is the first of those at its slots.
+static inline bool is_first_at_slots(const mspringi_tile_part *parts, size_t p) {
     return p == 0 || parts[p].first_slot != parts[p - 1].first_slot;
 }
 
-// The slots of a tile's part get its body's motion; those of other tiles at the same slots theirs, when their turn
-// comes.
-MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                          const double (*bodies)[3], float beta, mspringi_search_update what) {
+// Set the direction. A part writes the motion of its tile to its own slots; parts of other tiles at the same slots
+// add theirs later.
+MSPRINGI_INLINE void update_search(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                                   const double (*bodies)[3], float beta, mspringi_search_update what) {
     const part_vec betas = part_set(beta);
     for (size_t p = 0; p < count; ++p) {
         const double *body = bodies[parts[p].tile];
         const part_vec shift_x = part_set((float)body[0]), shift_y = part_set((float)body[1]);
         const part_vec angle = part_set((float)body[2]);
-        const bool begins = begins_group(parts, p);
+        const bool is_first = is_first_at_slots(parts, p);
         for (size_t v = 0; v < PART_VECTORS; ++v) {
             const size_t slot = parts[p].first_slot + v * PART_LANES;
             const part_vec weight = part_load(mspringi_part_weights[parts[p].lanes] + v * PART_LANES);
             part_vec x = part_mul(weight, part_sub(shift_x, part_mul(part_load(n->arm_y + slot), angle)));
             part_vec y = part_mul(weight, part_add(shift_y, part_mul(part_load(n->arm_x + slot), angle)));
-            if (!begins) {
+            if (!is_first) {
                 x = part_add(part_load(n->direction_x + slot), x);
                 y = part_add(part_load(n->direction_y + slot), y);
             } else if (what != MSPRINGI_SEARCH_COARSE_ONLY) {
                 x = part_add(part_load(n->scaled_x + slot), x);
                 y = part_add(part_load(n->scaled_y + slot), y);
             }
-            if (begins && what == MSPRINGI_SEARCH_CONTINUE) {
+            if (is_first && what == MSPRINGI_SEARCH_CONTINUE) {
                 x = part_add(x, part_mul(betas, part_load(n->direction_x + slot)));
                 y = part_add(y, part_mul(betas, part_load(n->direction_y + slot)));
             }
@@ -198,19 +197,19 @@ MSPRINGI_INLINE void turn(const mspringi_iterate *n, const mspringi_tile_part *p
     }
 }
 
-static void turn_bodies(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                        const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_COARSE_ONLY);
+static void search_coarse_only(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                               const double (*bodies)[3], float beta) {
+    update_search(n, parts, count, bodies, beta, MSPRINGI_SEARCH_COARSE_ONLY);
 }
 
-static void turn_afresh(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                        const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_RESTART);
+static void search_restart(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                           const double (*bodies)[3], float beta) {
+    update_search(n, parts, count, bodies, beta, MSPRINGI_SEARCH_RESTART);
 }
 
-static void turn_further(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
-                         const double (*bodies)[3], float beta) {
-    turn(n, parts, count, bodies, beta, MSPRINGI_SEARCH_CONTINUE);
+static void search_continue(const mspringi_iterate *n, const mspringi_tile_part *parts, size_t count,
+                            const double (*bodies)[3], float beta) {
+    update_search(n, parts, count, bodies, beta, MSPRINGI_SEARCH_CONTINUE);
 }
 
 #endif

@@ -1,6 +1,6 @@
 /// @file system_motion.h
-/// What an implicit substep does before and after its linear system: see solvers/implicit/integrator.c for the
-/// formulas. Plain C by slot, or vectors within the parts of a tile, as in system_iterate.h.
+/// Implicit substep before and after its linear system; formulas in solvers/implicit/integrator.c. Plain C by slot,
+/// or vectors for the parts of a tile, as in system_iterate.h.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_MOTION_H
@@ -8,17 +8,18 @@
 
 #include "kernels/system_iterate.h"
 
-static void weigh(const float *restrict inverse_mass, float scale, float *restrict mass, size_t first, size_t end) {
+static void scale_masses(const float *restrict inverse_mass, float scale, float *restrict mass, size_t first,
+                         size_t end) {
     for (size_t i = first; i < end; ++i) {
-        const float inverse = inverse_mass[i], heavy = scale / inverse;
-        mass[i] = inverse > 0.0f ? heavy : 0.0f;
+        const float inverse = inverse_mass[i], scaled_mass = scale / inverse;
+        mass[i] = inverse > 0.0f ? scaled_mass : 0.0f;
     }
 }
 
-/* ------------------------------------------------------------------------------------------------ flying tiles */
+/* --------------------------------------------------------------------------------------- rigid motion of tiles */
 
-/// Sums by lane over a tile, about a point in it that moves along: mass, first moments of place and velocity,
-/// moment of momentum and of inertia.
+/// Sums by lane over a tile, about a moving point in it: mass, first moments of position and velocity, angular
+/// momentum and moment of inertia.
 typedef struct tile_moments {
     part_vec sums[7][PART_VECTORS];
 } tile_moments;
@@ -45,8 +46,8 @@ MSPRINGI_INLINE void add_moments(tile_moments *to, const mspringi_prediction *f,
     }
 }
 
-static void aim_tile(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
-                     mspringi_tile_motion *to) {
+static void find_tile_motion(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
+                             mspringi_tile_motion *to) {
     tile_moments moments;
     for (size_t i = 0; i < 7; ++i)
         for (size_t v = 0; v < PART_VECTORS; ++v)
@@ -66,9 +67,9 @@ static void aim_tile(const mspringi_prediction *f, const mspringi_tile_part *par
     const double h = (double)f->h;
     const double x = sums[1] / sums[0], y = sums[2] / sums[0], vx = sums[3] / sums[0], vy = sums[4] / sums[0];
     const double moment = sums[5] - sums[0] * (x * vy - y * vx), inertia = sums[6] - sums[0] * (x * x + y * y);
-    // The rotation whose half angle has this tangent: of the angle omega h up to its third power, whatever that is.
+    // Tangent of half the rotation. The angle equals omega h up to third order, and is finite for any omega h.
     const double half = inertia > 1e-6 * sums[6] ? 0.5 * h * moment / inertia : 0.0;
-    const double inward = -2.0 * half * half / (1.0 + half * half); // cos - 1; half of it times half: sin - omega h
+    const double inward = -2.0 * half * half / (1.0 + half * half); // cos - 1; times half: sin - omega h
     to->x = (float)x;
     to->y = (float)y;
     to->hvx = (float)(h * vx);
@@ -77,18 +78,18 @@ static void aim_tile(const mspringi_prediction *f, const mspringi_tile_part *par
     to->sideways = (float)(half * inward);
 }
 
-// Slots of a part's vectors that are not the tile's get 0, unless others of the same slots have been there.
-MSPRINGI_INLINE void put_part(float *to, part_vec weight, part_vec value, bool begins) {
+// Write to a tile's slots of a part, and 0 to the others, unless another part at these slots came first.
+MSPRINGI_INLINE void put_part(float *to, part_vec weight, part_vec value, bool is_first) {
     const part_vec own = part_mul(weight, value);
-    part_store(to, begins ? own : part_add(part_load(to), own));
+    part_store(to, is_first ? own : part_add(part_load(to), own));
 }
 
-static void fly(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
-                const mspringi_tile_motion *tiles) {
+static void rotate_tiles(const mspringi_prediction *f, const mspringi_tile_part *parts, size_t count,
+                         const mspringi_tile_motion *tiles) {
     const part_vec h = part_set(f->h);
     for (size_t p = 0; p < count; ++p) {
         const mspringi_tile_motion *t = &tiles[parts[p].tile];
-        const bool begins = begins_group(parts, p);
+        const bool is_first = is_first_at_slots(parts, p);
         const part_vec inward = part_set(t->inward), sideways = part_set(t->sideways);
         for (size_t v = 0; v < PART_VECTORS; ++v) {
             const size_t at = parts[p].first_slot + v * PART_LANES;
@@ -101,17 +102,17 @@ static void fly(const mspringi_prediction *f, const mspringi_tile_part *parts, s
             const part_vec turned_y = part_add(part_mul(inward, y), part_mul(sideways, x));
             const part_vec moved_x = part_sub(part_mul(h, vx), part_set(t->hvx));
             const part_vec moved_y = part_sub(part_mul(h, vy), part_set(t->hvy));
-            put_part(f->turned_x + at, weight, turned_x, begins);
-            put_part(f->turned_y + at, weight, turned_y, begins);
-            put_part(f->arm_x + at, weight, part_add(part_add(x, turned_x), moved_x), begins);
-            put_part(f->arm_y + at, weight, part_add(part_add(y, turned_y), moved_y), begins);
+            put_part(f->turned_x + at, weight, turned_x, is_first);
+            put_part(f->turned_y + at, weight, turned_y, is_first);
+            put_part(f->arm_x + at, weight, part_add(part_add(x, turned_x), moved_x), is_first);
+            put_part(f->arm_y + at, weight, part_add(part_add(y, turned_y), moved_y), is_first);
         }
     }
 }
 
 /* ----------------------------------------------------------------------------------------------------- by slot */
 
-// The parameters are what compilers know to be apart from each other.
+// Parameters, since compilers know that restrict parameters do not alias.
 static void predict_coordinate(size_t first, size_t end, const float *restrict position, const float *restrict low,
                                const float *restrict velocity, const float *restrict history,
                                const float *restrict turned, const float *restrict inverse_mass, float h,
@@ -131,8 +132,8 @@ static void predict(const mspringi_prediction *f, size_t first, size_t end) {
                        f->first_share, f->rate, f->to_y, f->start_vy);
 }
 
-MSPRINGI_INLINE void add_some_outside(const mspringi_outside *outside, float *restrict residual, size_t first,
-                                      size_t end, bool forced, bool second) {
+MSPRINGI_INLINE void add_outside_terms(const mspringi_outside *outside, float *restrict residual, size_t first,
+                                       size_t end, bool forced, bool second) {
     const mspringi_outside o = *outside;
     const float *restrict const mass = o.mass, *restrict const velocity = o.velocity;
     const float *restrict const turned = o.turned, *restrict const force = o.force;
@@ -150,22 +151,22 @@ MSPRINGI_INLINE void add_some_outside(const mspringi_outside *outside, float *re
 
 static void add_outside(const mspringi_outside *o, float *residual, size_t first, size_t end) {
     if (o->force && o->second)
-        add_some_outside(o, residual, first, end, true, true);
+        add_outside_terms(o, residual, first, end, true, true);
     else if (o->force)
-        add_some_outside(o, residual, first, end, true, false);
+        add_outside_terms(o, residual, first, end, true, false);
     else if (o->second)
-        add_some_outside(o, residual, first, end, false, true);
+        add_outside_terms(o, residual, first, end, false, true);
     else
-        add_some_outside(o, residual, first, end, false, false);
+        add_outside_terms(o, residual, first, end, false, false);
 }
 
-// A pinned particle has d = 0.
-MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const float *restrict start,
-                          const float *restrict inverse_mass, const float *restrict solution,
-                          const float *restrict direction, const float *from, const float *low,
-                          const float *history, float alpha, float h, float rate, float *restrict position,
-                          float *restrict velocity, float *restrict to_low, float *restrict to_first,
-                          float *restrict to_second, mspringi_history_kind memory) {
+// Correct one coordinate. A pinned particle has d = 0.
+MSPRINGI_INLINE void correct(size_t count, const double *restrict predicted, const float *restrict start,
+                             const float *restrict inverse_mass, const float *restrict solution,
+                             const float *restrict direction, const float *from, const float *low,
+                             const float *history, float alpha, float h, float rate, float *restrict position,
+                             float *restrict velocity, float *restrict to_low, float *restrict to_first,
+                             float *restrict to_second, mspringi_history_kind memory) {
     const float per_h = 1.0f / h;
     for (size_t i = 0; i < count; ++i) {
         const float d = solution[i] + alpha * direction[i], v = velocity[i];
@@ -193,10 +194,10 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
     }
 }
 
-// In whole blocks and by way of the stack, so that the history may be written to where it was read. Positions go
-// that way, too, because V8 11.3 (node 20) reads one that it converts to double after it has been written.
-#define MSPRINGI_CORRECT(name, memory)                                                                                \
-    static void land_##name(const mspringi_correction *l, size_t first, size_t end) {                                 \
+// By blocks, through copies on the stack, so that the history may be updated in place. Positions are copied, too,
+// since V8 11.3 (node 20) reads one for a conversion to double after it has been written.
+#define MSPRINGI_CORRECT(name, memory)                                                                             \
+    static void correct_##name(const mspringi_correction *l, size_t first, size_t end) {                           \
         for (size_t i = first; i < end; i += MSPRINGI_WIDTH) {                                                     \
             float from[MSPRINGI_WIDTH], low[MSPRINGI_WIDTH], history[MSPRINGI_WIDTH], unused[MSPRINGI_WIDTH];      \
             for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {                                                 \
@@ -204,17 +205,17 @@ MSPRINGI_INLINE void land(size_t count, const double *restrict predicted, const 
                 low[lane] = l->low[i + lane];                                                                      \
                 history[lane] = l->first[i + lane];                                                                \
             }                                                                                                      \
-            land(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,             \
-                 l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->position + i, l->velocity + i,  \
-                 l->to_low + i, l->to_first + i, memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused,     \
-                 memory);                                                                                          \
+            correct(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,          \
+                    l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->position + i,                \
+                    l->velocity + i, l->to_low + i, l->to_first + i,                                               \
+                    memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused, memory);                          \
         }                                                                                                          \
     }
 
-MSPRINGI_CORRECT(nothing, MSPRINGI_HISTORY_NONE)
-MSPRINGI_CORRECT(change, MSPRINGI_HISTORY_VELOCITY_CHANGE)
+MSPRINGI_CORRECT(none, MSPRINGI_HISTORY_NONE)
+MSPRINGI_CORRECT(velocity_change, MSPRINGI_HISTORY_VELOCITY_CHANGE)
 MSPRINGI_CORRECT(acceleration, MSPRINGI_HISTORY_ACCELERATION)
-MSPRINGI_CORRECT(both, MSPRINGI_HISTORY_BDF2)
+MSPRINGI_CORRECT(bdf2, MSPRINGI_HISTORY_BDF2)
 
 #undef MSPRINGI_CORRECT
 #undef PART_VECTORS

@@ -1,7 +1,7 @@
 /// @file system_multiply.h
-/// The product with the matrix of an implicit substep, for vectors of LANES slots: the innermost loop of the
-/// implicit solver. The shape is that of sweep.h: a spring's share is computed once, at the row that owns it, and
-/// handed on to the right and to the row above.
+/// Product with the matrix of an implicit substep, in vectors of LANES slots: the innermost loop of the implicit
+/// solver. As in sweep.h, the row that owns a spring computes it once, and carries it to the right and to the row
+/// above.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SYSTEM_MULTIPLY_H
@@ -13,7 +13,7 @@
 #define MSPRINGI_PRODUCT static inline __attribute__((always_inline))
 #endif
 
-/// A displacement, or a product, of LANES particles.
+/// Displacement, or product, of LANES particles.
 typedef struct displacement {
     vec x, y;
 } displacement;
@@ -24,16 +24,17 @@ MSPRINGI_PRODUCT displacement spring_product(displacement base, displacement tip
     const vec geometric = load(factors + MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH);
     const vec dx = sub(tip.x, base.x), dy = sub(tip.y, base.y);
     const vec along = add(mul(pull_x, dx), mul(pull_y, dy));
-    const displacement result = {add(mul(geometric, dx), mul(pull_x, along)), add(mul(geometric, dy), mul(pull_y, along))};
+    const displacement result = {add(mul(geometric, dx), mul(pull_x, along)),
+                                 add(mul(geometric, dy), mul(pull_y, along))};
     return result;
 }
 
-/// Sums by lane of a block, of LANES lanes each.
+/// Sums by lane of a block.
 typedef struct product_sums {
     _Alignas(64) float lanes[MSPRINGI_WIDTH];
 } product_sums;
 
-// Add from . to of the LANES slots at slot.
+// Add from . to of LANES slots.
 MSPRINGI_PRODUCT void add_product(product_sums *sums, size_t slot, displacement from, displacement to) {
     float *const lanes = sums->lanes + slot % MSPRINGI_WIDTH;
     store(lanes, add(load(lanes), add(mul(from.x, to.x), mul(from.y, to.y))));
@@ -41,7 +42,7 @@ MSPRINGI_PRODUCT void add_product(product_sums *sums, size_t slot, displacement 
 
 MSPRINGI_PRODUCT float multiply_lattice_rows(const mspringi_system *system, const mspringi_span *spans,
                                              uint32_t count, const float *from_x, const float *from_y, float *to_x,
-                                             float *to_y, bool only_hand_on) {
+                                             float *to_y, bool only_carry) {
     const float *const mass = system->mass;
     float *const carry_x = system->carry_xx, *const carry_y = system->carry_xy;
     const size_t factor = (size_t)MSPRINGI_FACTORS * MSPRINGI_WIDTH;
@@ -63,7 +64,7 @@ MSPRINGI_PRODUCT float multiply_lattice_rows(const mspringi_system *system, cons
             const displacement north_east =
                 spring_product(here, above_next, factors + MSPRINGI_NORTH_EAST * factor);
             const displacement south_east = spring_product(above, next, factors + MSPRINGI_SOUTH_EAST * factor);
-            if (!only_hand_on) {
+            if (!only_carry) {
                 const displacement east = spring_product(here, next, factors + MSPRINGI_EAST * factor);
                 const displacement right = {add(east.x, south_east.x), add(east.y, south_east.y)};
                 const vec force_x = sub(add(load(carry_x + carry), add(add(east.x, north.x), north_east.x)),
@@ -72,7 +73,7 @@ MSPRINGI_PRODUCT float multiply_lattice_rows(const mspringi_system *system, cons
                                         shift_in(before_right.y, right.y));
                 const displacement to = {sub(mul(load(mass + slot), here.x), force_x),
                                          sub(mul(load(mass + slot), here.y), force_y)};
-                // They are NULL only if springs are handed on and no more.
+                // to_x and to_y are NULL only for carry rows.
                 // cppcheck-suppress nullPointerArithmetic
                 store(to_x + slot, to.x);
                 // cppcheck-suppress nullPointerArithmetic
@@ -93,12 +94,12 @@ static float multiply_lattice(const mspringi_system *system, const mspringi_span
     return multiply_lattice_rows(system, spans, count, from_x, from_y, to_x, to_y, false);
 }
 
-static void hand_on_product(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
-                            const float *from_x, const float *from_y) {
+static void multiply_carry(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
+                           const float *from_x, const float *from_y) {
     (void)multiply_lattice_rows(system, spans, count, from_x, from_y, NULL, NULL, true);
 }
 
-// East springs only.
+// Rows of east springs only.
 static float multiply_chain(const mspringi_system *system, const mspringi_span *spans, uint32_t count,
                             const float *from_x, const float *from_y, float *to_x, float *to_y) {
     const float *const mass = system->mass;

@@ -1,5 +1,5 @@
 /// @file system_table.h
-/// The part of an instruction set's table that is for the implicit solver, or nothing if the build leaves that out.
+/// The implicit solver's part of an instruction set's table, empty if the build omits that solver.
 ///
 /// SPDX-License-Identifier: MIT
 
@@ -17,20 +17,20 @@
 
 #define MSPRINGI_SYSTEM_TABLE                                                                                      \
     {                                                                                                              \
-        .scale_masses = weigh, .find_tile_motion = aim_tile, .rotate_tiles = fly, .predict = predict,              \
-        .assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},                                     \
+        .scale_masses = scale_masses, .find_tile_motion = find_tile_motion, .rotate_tiles = rotate_tiles,          \
+        .predict = predict, .assemble_lattice = {assemble_lattice_plain, assemble_lattice_damped},                 \
         .assemble_chain = {assemble_chain_plain, assemble_chain_damped},                                           \
-        .carry_forces = {hand_on_forces_plain, hand_on_forces_damped}, .add_outside = add_outside,                 \
+        .carry_forces = {assemble_carry_plain, assemble_carry_damped}, .add_outside = add_outside,                 \
         .invert = invert, .multiply_lattice = multiply_lattice, .multiply_chain = multiply_chain,                  \
-        .carry_product = hand_on_product, .advance = advance, .inertia_of_tile = inertia_of_tile,                  \
+        .carry_product = multiply_carry, .advance = advance, .inertia_of_tile = inertia_of_tile,                   \
         .restrict_to_tile = restrict_to_tile,                                                                      \
-        .update_search = {[MSPRINGI_SEARCH_COARSE_ONLY] = turn_bodies,                                             \
-                          [MSPRINGI_SEARCH_RESTART] = turn_afresh,                                                 \
-                          [MSPRINGI_SEARCH_CONTINUE] = turn_further},                                              \
-        .correct = {[MSPRINGI_HISTORY_NONE] = land_nothing,                                                        \
-                    [MSPRINGI_HISTORY_VELOCITY_CHANGE] = land_change,                                              \
-                    [MSPRINGI_HISTORY_ACCELERATION] = land_acceleration,                                           \
-                    [MSPRINGI_HISTORY_BDF2] = land_both},                                                          \
+        .update_search = {[MSPRINGI_SEARCH_COARSE_ONLY] = search_coarse_only,                                      \
+                          [MSPRINGI_SEARCH_RESTART] = search_restart,                                              \
+                          [MSPRINGI_SEARCH_CONTINUE] = search_continue},                                           \
+        .correct = {[MSPRINGI_HISTORY_NONE] = correct_none,                                                        \
+                    [MSPRINGI_HISTORY_VELOCITY_CHANGE] = correct_velocity_change,                                  \
+                    [MSPRINGI_HISTORY_ACCELERATION] = correct_acceleration,                                        \
+                    [MSPRINGI_HISTORY_BDF2] = correct_bdf2},                                                       \
         .moments = sum_moments, .elastic = sum_elastic, .add_edges = add_edges                                     \
     }
 

@@ -1,4 +1,4 @@
-/// WebAssembly SIMD: four lanes. Part of every module that was built for it: there is no asking at run time.
+/// WebAssembly SIMD: four lanes. A build-time choice: a module cannot test for it at run time.
 #include "kernels/kernels.h"
 
 #if defined(MSPRINGI_WASM)
@@ -36,31 +36,31 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return wasm_f32x4_sqrt(a);
 }
-// 1 / square, or 0 where there is no direction.
+// 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     return wasm_v128_and(wasm_f32x4_div(wasm_f32x4_splat(1.0f), square),
                          wasm_f32x4_gt(square, wasm_f32x4_splat(MSPRINGI_NO_DIRECTION)));
 }
-// a where selector > 0, b elsewhere.
+// a where selector > 0, else b.
 static inline vec choose_positive(vec selector, vec a, vec b) {
     return wasm_v128_bitselect(a, b, wasm_f32x4_gt(selector, wasm_f32x4_splat(0.0f)));
 }
-// A bit for each lane: 1 where a > b.
+// Bit of each lane with a > b.
 static inline uint32_t bits_greater(vec a, vec b) {
     return (uint32_t)wasm_i32x4_bitmask(wasm_f32x4_gt(a, b));
 }
-// Which lanes of a are outside of least to most.
+// Mask of the lanes of a below least or above most.
 static inline mask outside(vec a, vec least, vec most) {
     return wasm_v128_or(wasm_f32x4_gt(least, a), wasm_f32x4_gt(a, most));
 }
 static inline mask either(mask a, mask b) {
     return wasm_v128_or(a, b);
 }
-// Not 0 if any lane is.
+// Not 0 if any lane is set.
 static inline uint32_t any_lane(mask a) {
     return wasm_v128_any_true(a);
 }
-// The last lane of before, then all lanes of a but its last.
+// Shift by one lane: the last lane of before, then all lanes of a but its last.
 static inline vec shift_in(vec before, vec a) {
     return wasm_i32x4_shuffle(before, a, 3, 4, 5, 6);
 }
@@ -73,7 +73,7 @@ static inline void transpose(vec *a, vec *b, vec *c, vec *d) {
     *c = wasm_i32x4_shuffle(ab_high, cd_high, 0, 1, 4, 5);
     *d = wasm_i32x4_shuffle(ab_high, cd_high, 2, 3, 6, 7);
 }
-// Four values of each of LANES nodes, from [node][4].
+// Load four values of each of LANES nodes, from [node][4].
 static inline void load_gathered(const float *gathered, const uint32_t *nodes, vec *x, vec *y, vec *vx, vec *vy) {
     *x = wasm_v128_load(gathered + 4 * (size_t)nodes[0]);
     *y = wasm_v128_load(gathered + 4 * (size_t)nodes[1]);
@@ -89,14 +89,14 @@ static inline void store_gathered(float *gathered, vec x, vec y, vec vx, vec vy)
     wasm_v128_store(gathered + 12, vy);
 }
 
-// As integers: NaN is above infinity, as floats it would be whatever the host's processor makes of it.
+// Compared as integers, NaN is above infinity. As floats the result would depend on the host's processor.
 static inline float largest_lane(vec a) {
     a = wasm_i32x4_max(a, wasm_i32x4_shuffle(a, a, 2, 3, 0, 1));
     a = wasm_i32x4_max(a, wasm_i32x4_shuffle(a, a, 1, 0, 3, 2));
     return wasm_f32x4_extract_lane(a, 0);
 }
 
-// The larger of a and of the size of b.
+// The larger of a and |b|.
 static inline vec larger_size(vec a, vec b) {
     return wasm_i32x4_max(a, wasm_f32x4_abs(b));
 }

@@ -1,6 +1,6 @@
 /// @file yield_kernel.h
-/// The look for springs that may yield, for vectors of LANES springs: squares of lengths against two bounds, so
-/// there is neither root nor division. What a hit means is found one by one, by whoever called.
+/// Search for springs that may yield, in vectors of LANES springs: squared lengths against two bounds, without root
+/// or division. The caller handles hits one by one.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_YIELD_KERNEL_H
@@ -8,7 +8,7 @@
 
 #include "kernels/strain_kernel.h"
 
-// Bits of LANES springs, dead ones among them, that are out of their bounds.
+// Bits of LANES springs, broken ones included, that are outside their bounds.
 MSPRINGI_STRETCH uint32_t out_of_bounds(vec base_x, vec base_y, vec tip_x, vec tip_y, const float *low,
                                         const float *high) {
     const vec dx = sub(tip_x, base_x), dy = sub(tip_y, base_y);

@@ -1,11 +1,11 @@
 /// @file yield_law.h
-/// The law of springs that yield, in single precision, as the kernels have it: see step/plastic.h. Solved for the
-/// rest length r that a spring of length L has after it has flowed,
+/// Law of plastic springs in single precision, as in the kernels: see step/plastic.h. The rest length r of a spring
+/// of length L after flow is
 ///
 ///     stretched    r = (L + (H - y) r0) / (1 + H),  at most   (1 + P) r0
 ///     compressed   r = (L + (H + y) r0) / (1 + H),  at least  (1 - P) r0
 ///
-/// so there is no division if 1 / (1 + H) is known. sweep.h does the same for vectors, in the same order.
+/// so 1 / (1 + H) replaces the division. yield_sweep.h does the same in vectors, in the same order.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_YIELD_LAW_H
@@ -14,21 +14,21 @@
 #include <math.h>
 #include <stdbool.h>
 
-/// Share of the yield strain from which on a spring is warm, so that its strip is tested in each substep.
+/// Fraction of the yield strain above which a spring is warm, so that its strip is tested in each substep.
 #define MSPRINGI_WARM_SHARE 0.7f
 
-/// What a spring yields at.
+/// Yield parameters of a spring.
 typedef struct mspringi_yield_values {
     float nominal, yield_strain, hardening, plastic_limit;
     float gain; ///< 1 / (1 + hardening)
 } mspringi_yield_values;
 
-/// Squares of lengths: between low and high a spring is cold, between the others it does not flow.
+/// Squared lengths. Between low and high a spring is cold; between flow_low and flow_high it does not flow.
 typedef struct mspringi_yield_bounds {
     float low, high, flow_low, flow_high;
 } mspringi_yield_bounds;
 
-/// The rest length that a spring has after its return to the yield surface; rest if it does not flow.
+/// Rest length after the return to the yield surface; rest if the spring does not flow.
 static inline float mspringi_yield_rest(mspringi_yield_values v, mspringi_yield_bounds bounds, float square,
                                         float length, float rest) {
     const float slope = v.gain * length;
@@ -42,7 +42,7 @@ static inline float mspringi_yield_rest(mspringi_yield_values v, mspringi_yield_
     return square - bounds.flow_high > 0.0f && up - rest > 0.0f ? up : rest;
 }
 
-/// What a spring of that stiffness turns into heat when its rest length goes from rest to another.
+/// Heat from a change of the rest length, J.
 static inline float mspringi_yield_heat(mspringi_yield_values v, float stiffness, float length, float rest,
                                         float to) {
     const float moved = to - rest, whole = 1.0f + v.hardening;
@@ -50,7 +50,7 @@ static inline float mspringi_yield_heat(mspringi_yield_values v, float stiffness
     return stiffness * (moved * (excess - (0.5f * whole) * moved));
 }
 
-/// The bounds of a spring with that rest length.
+/// Bounds of a spring with this rest length.
 static inline mspringi_yield_bounds mspringi_yield_bounds_of(mspringi_yield_values v, float rest) {
     const float most = v.nominal * (1.0f + v.plastic_limit), least = v.nominal * (1.0f - v.plastic_limit);
     const float centre = (1.0f + v.hardening) * rest - v.hardening * v.nominal;

@@ -1,21 +1,21 @@
 /// @file yield_sweep.h
-/// What a tested sweep does beside its forces: find the springs that are near to what they yield at, and give those
-/// that flow another rest length. yield_law.h has the same for one spring. It is part of sweep.h.
+/// Test of a sweep for springs near their yield limit, and return of flowing ones to the yield surface. yield_law.h
+/// has the same for one spring. Included by sweep.h.
 ///
-/// The springs of LANES slots cost eight comparisons with bounds. Only if one is out of its bounds, a function that
-/// is not inlined looks closer.
+/// The springs of LANES slots cost eight comparisons with bounds. A function that is not inlined tests further if
+/// one is out of bounds.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_YIELD_SWEEP_H
 #define MSPRINGI_YIELD_SWEEP_H
 
-// Bits of LANES springs that are outside of two squares of lengths.
+// Bits of LANES springs outside their bounds on the squared length.
 MSPRINGI_INLINE uint32_t bits_outside(vec square, const float *low, const float *high) {
     return bits_greater(square, load(high)) | bits_greater(load(low), square);
 }
 
-// mspringi_yield_bounds_of() of the springs whose rest length has moved.
-static inline void renew_bounds(const mspringi_yield_test *t, size_t spring_slot, vec moved, vec to) {
+// mspringi_yield_bounds_of() for springs with a changed rest length.
+static inline void update_bounds(const mspringi_yield_test *t, size_t spring_slot, vec moved, vec to) {
     const vec nominal = load(t->nominal + spring_slot), hardening = load(t->hardening + spring_slot),
               one = set(1.0f);
     const vec limit = load(t->plastic_limit + spring_slot), zeros = zero(), none = set(-1.0f), all = set(INFINITY);
@@ -36,7 +36,7 @@ static inline void renew_bounds(const mspringi_yield_test *t, size_t spring_slot
     }
 }
 
-// mspringi_yield_rest() and mspringi_yield_heat() of LANES springs. What is broken has no stiffness.
+// mspringi_yield_rest() and mspringi_yield_heat() for LANES springs. A broken one has no stiffness.
 static inline void flow(const mspringi_yield_test *t, size_t spring_slot, vec square, float *rests,
                         const float *stiffnesses) {
     const vec nominal = load(t->nominal + spring_slot), yield = load(t->yield_strain + spring_slot);
@@ -59,29 +59,31 @@ static inline void flow(const mspringi_yield_test *t, size_t spring_slot, vec sq
                    lane = spring_slot % MSPRINGI_WIDTH;
     if (!bits)
         return;
-    mspringi_yield_keep(t, spring_slot / MSPRINGI_WIDTH, bits << lane, rests - lane);
+    mspringi_yield_save(t, spring_slot / MSPRINGI_WIDTH, bits << lane, rests - lane);
     const vec excess = sub(add(length, mul(hardening, nominal)), mul(whole, rest));
     const vec heat = mul(stiffness, mul(moved, sub(excess, mul(mul(set(0.5f), whole), moved))));
     const vec sum = load(t->heat + spring_slot), more = add(sum, heat), back = sub(zeros, moved);
     store(t->heat + spring_slot, choose_positive(moved, more, choose_positive(back, more, sum)));
     store(rests, to);
-    renew_bounds(t, spring_slot, moved, to);
+    update_bounds(t, spring_slot, moved, to);
 }
 
-// Rarely called: of these springs some are warm, or flow. Rest lengths are another then, positions are not.
-static MSPRINGI_NOINLINE void let_yield(const mspringi_yield_test *t, size_t spring_slot, uint32_t directions,
-                                        const vec *squares, float *rests, const float *stiffnesses, size_t part) {
+// Handle LANES springs of which some are warm or flow: rare. It changes rest lengths, not positions.
+static MSPRINGI_NOINLINE void yield_springs(const mspringi_yield_test *t, size_t spring_slot, uint32_t directions,
+                                            const vec *squares, float *rests, const float *stiffnesses,
+                                            size_t part) {
     for (uint32_t d = 0; d < directions; ++d, spring_slot += MSPRINGI_WIDTH) {
         if (t->looks) {
             const uint32_t warm = bits_outside(squares[d], t->low + spring_slot, t->high + spring_slot);
-            mspringi_yield_note(t, spring_slot / MSPRINGI_WIDTH, warm << spring_slot % MSPRINGI_WIDTH);
+            mspringi_yield_mark_warm(t, spring_slot / MSPRINGI_WIDTH, warm << spring_slot % MSPRINGI_WIDTH);
         }
         if (t->maps && bits_outside(squares[d], t->flow_low + spring_slot, t->flow_high + spring_slot))
             flow(t, spring_slot, squares[d], rests + d * MSPRINGI_WIDTH, stiffnesses + d * part);
     }
 }
 
-// Whether any of the springs of LANES slots of a lattice is outside of what low and high have from their place on.
+// True if any spring of LANES slots of a lattice is outside its bounds. low and high point to those of the first
+// slot.
 MSPRINGI_INLINE uint32_t any_in_lattice(const float *low, const float *high, vec east, vec north, vec north_east,
                                         vec south_east) {
     const size_t width = MSPRINGI_WIDTH;

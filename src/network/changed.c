@@ -58,7 +58,7 @@ static void notify_floor(const mspring_network *network) {
 #define LOG log_spring(network, index);
 #define COPY mspringi_job_track(network, index);
 #define COPY_ALL mspringi_job_track_all(network);
-#define SLEEP_ANEW mspringi_sleep_anew(network);
+#define SLEEP_ANEW mspringi_sleep_reset(network);
 #define FREE_SLOT free_slot(network, index);
 #define COPY_SPRING mspringi_job_track(network, mspringi_slot_of_spring(&network->topology, index));
 #define WAKE mspringi_wake(network);

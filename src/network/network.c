@@ -315,7 +315,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = mspringi_areas_of_builder(network, builder);
     if (result == MSPRING_OK && network->guard_scratch && network->solver.ops->has_stability_limit)
-        mspringi_stability_limit_learn(network);
+        mspringi_stability_limit_adapt(network);
     return result;
 }
 

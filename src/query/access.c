@@ -1,4 +1,4 @@
-/// Reading and writing the state from outside, by id; the hash.
+/// Access of the host to the state, by id; the hash.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -11,7 +11,7 @@
 
 /* ---------------------------------------------------------------------------------------------------------- get */
 
-// A removed particle is where the local origin is, whatever the host has written to its slot through a view.
+// A removed particle is at the local origin, even if the host wrote to its slot through a view.
 static void get_positions(const mspring_network *network, const mspringi_selection *at, double *x, double *y,
                           size_t stride) {
     const double origin_x = network->origin_x, origin_y = network->origin_y;
@@ -107,7 +107,7 @@ mspring_result mspring_network_get_velocities_at(const mspring_network *network,
 
 /* --------------------------------------------------------------------------------------------- set positions */
 
-// Positions in either precision: exactly one of the two pairs of arrays is there.
+// Positions in either precision: exactly one pair of arrays is not NULL.
 typedef struct positions {
     const double *x, *y;
     const float *x_float, *y_float;
@@ -137,7 +137,7 @@ static mspring_result check_position(mspring_network *network, mspring_id id, do
                          (unsigned)id, x, y);
 }
 
-// A range of all particles takes the origin along.
+// A range of all particles moves the origin along.
 static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, const mspringi_selection *at,
                                                       const positions *to) {
     const bool all = !at->list && at->count == network->topology.particle_count;

@@ -1,4 +1,4 @@
-/// What a host draws springs from: their ends and flags, for a range of ids.
+/// Ends and flags of a range of springs, for drawing.
 #include "store/selection.h"
 #include "store/springs.h"
 

@@ -1,7 +1,7 @@
 /// Length, direction and strain of all springs at once.
 ///
-/// Springs are computed in the order of their places, sixteen of a record at a time, into planes of scratch by
-/// place.
+/// Springs are computed in the order of their spring slots, sixteen of a record at a time, into scratch planes
+/// indexed by spring slot.
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +9,7 @@
 #include "store/springs.h"
 #include "store/store.h"
 
-/// What is computed in one pass, into one plane or two.
+/// Result of a pass, in one plane or two.
 typedef enum measure { LENGTHS, STRAINS, LENGTHS_AND_STRAINS, DIRECTIONS } measure;
 
 enum { PLANE_COUNT = 2 };
@@ -18,8 +18,8 @@ static size_t plane_size(const mspring_network *network) {
     return mspringi_spring_slot_words(&network->topology) * MSPRINGI_WIDTH;
 }
 
-// Note whether the base of a spring is its second end.
-static void turn(mspring_network *network, mspring_id spring) {
+// Set the spring's bit in `reversed`: its base is its second end.
+static void set_reversed(mspring_network *network, mspring_id spring) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     uint16_t *bits = &network->extents.reversed[spring_slot / MSPRINGI_WIDTH];
     const uint16_t bit = (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
@@ -37,25 +37,25 @@ static mspring_result reserve(mspring_network *network) {
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to measure %u springs at once",
                              (unsigned)t->spring_count);
     for (mspring_id s = 0; s < t->spring_count; ++s)
-        turn(network, s);
+        set_reversed(network, s);
     return MSPRING_OK;
 }
 
 void mspringi_extents_turn(mspring_network *network, mspring_id spring) {
     if (network->extents.reversed)
-        turn(network, spring);
+        set_reversed(network, spring);
 }
 
-/* ---------------------------------------------------------------------------------------------------- computing */
+/* -------------------------------------------------------------------------------------------------- computation */
 
-// Change the lanes that have a bit: what all have is no matter of lanes, and what none has is done.
+// Clear the strain of broken springs. Words without any are common.
 static inline void set_strain_of_broken(float *strain, uint32_t live) {
     for (uint32_t lane = 0; live != UINT16_MAX && lane < MSPRINGI_WIDTH; ++lane)
         if (!(live >> lane & 1))
             strain[lane] = 0.0f;
 }
 
-static inline void turn_some(float *along_x, float *along_y, uint32_t reversed) {
+static inline void reverse_some(float *along_x, float *along_y, uint32_t reversed) {
     for (uint32_t lane = 0; reversed != 0 && reversed != UINT16_MAX && lane < MSPRINGI_WIDTH; ++lane)
         if (reversed >> lane & 1) {
             along_x[lane] = -along_x[lane] + 0.0f;
@@ -63,7 +63,7 @@ static inline void turn_some(float *along_x, float *along_y, uint32_t reversed) 
         }
 }
 
-// The springs of one word of places, from the slots base ... on to the slots tip ... on, into the planes. Broken
+// Compute the springs of one word, from the slots from `base` on to those from `tip` on, into the planes. Broken
 // ones have no strain; no direction is -0.
 static inline void compute_word(const mspring_network *network, size_t word, const float *x, const float *y,
                                 size_t base, size_t tip, const float *rest_lengths, measure what) {
@@ -71,7 +71,7 @@ static inline void compute_word(const mspring_network *network, size_t word, con
     const float sign = what == DIRECTIONS && extents->reversed[word] == UINT16_MAX ? -1.0f : 1.0f;
     const size_t at = word * MSPRINGI_WIDTH;
     float first[MSPRINGI_WIDTH],
-        second[MSPRINGI_WIDTH]; // not in the planes, which for all the compiler knows are x
+        second[MSPRINGI_WIDTH]; // not in the planes, which may alias x for the compiler
     for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const float dx = x[tip + lane] - x[base + lane], dy = y[tip + lane] - y[base + lane];
         const float length = sqrtf(dx * dx + dy * dy);
@@ -85,7 +85,7 @@ static inline void compute_word(const mspring_network *network, size_t word, con
         }
     }
     if (what == DIRECTIONS)
-        turn_some(first, second, extents->reversed[word]);
+        reverse_some(first, second, extents->reversed[word]);
     else if (what != LENGTHS)
         set_strain_of_broken(second, network->live[word]);
     if (what != STRAINS)
@@ -94,7 +94,7 @@ static inline void compute_word(const mspring_network *network, size_t word, con
         memcpy(extents->scratch + plane_size(network) + at, second, sizeof second);
 }
 
-// The springs of the irregular part and the inactive ones, gathered sixteen at a time.
+// Compute the springs of the irregular part and the inactive ones, gathered sixteen at a time.
 static inline void compute_irregular_springs(const mspring_network *network, measure what) {
     const mspringi_topology *t = &network->topology;
     const uint32_t count = t->irregular_capacity + t->inactive_count;
@@ -141,16 +141,16 @@ static inline void compute(const mspring_network *network, measure what) {
     compute_irregular_springs(network, what);
 }
 
-/* ------------------------------------------------------------------------------------------------ reading out */
+/* ---------------------------------------------------------------------------------------------------- results */
 
-// Springs that were removed lie somewhere yet, but have nothing that could be measured.
-static void leave_out_what_is_gone(const mspring_network *network, float *of_spring) {
+// Set the values of removed springs to 0.
+static void clear_removed(const mspring_network *network, float *of_spring) {
     const uint8_t *there = network->growth.springs;
     for (mspring_id s = 0; there && s < network->topology.spring_count; ++s)
         of_spring[s] = there[s] == MSPRINGI_THERE ? of_spring[s] : 0.0f;
 }
 
-// From the two planes; either place to write to may be NULL.
+// Copy the two planes to the host; first or second may be NULL.
 static void read_out(const mspring_network *network, float *restrict first, float *restrict second) {
     const mspring_id springs = network->topology.spring_count;
     const mspringi_spring_slot *restrict spring_slot = network->topology.slot_of_spring;
@@ -168,9 +168,9 @@ static void read_out(const mspring_network *network, float *restrict first, floa
         for (mspring_id s = 0; s < springs; ++s)
             second[s] = planes[1][spring_slot[s]];
     if (first)
-        leave_out_what_is_gone(network, first);
+        clear_removed(network, first);
     if (second)
-        leave_out_what_is_gone(network, second);
+        clear_removed(network, second);
 }
 
 static MSPRINGI_NOINLINE void measure_all(const mspring_network *network, float *length, float *direction_x,

@@ -1,5 +1,5 @@
-/// What lies where: the nearest particle, those in a circle or a box, and springs across a line. All go over ids in
-/// their order and compare in double precision, with the low words of positions.
+/// Searches by position: the nearest particle, those in a circle or a box, springs across a line. All visit ids in
+/// order and compare in double precision, with the low words of positions.
 #include <math.h>
 
 #include "store/springs.h"
@@ -8,7 +8,7 @@ typedef struct point {
     double x, y;
 } point;
 
-/// Where found ids are listed: no more than there is room for, but all are counted.
+/// List of found ids: it counts all, and stores up to its capacity.
 typedef struct found {
     mspring_id *ids;
     double *fractions; ///< may be NULL
@@ -24,7 +24,7 @@ static void add_found(found *to, mspring_id id, double fraction) {
     ++to->count;
 }
 
-// A world position as one from the local origin, with which sums are as exact as positions are.
+// Convert a world position to local coordinates, in which sums are as exact as positions.
 static point local_point(const mspring_network *network, double x, double y) {
     return (point){x - network->origin_x, y - network->origin_y};
 }
@@ -34,7 +34,7 @@ static point point_of(const mspring_network *network, uint32_t slot) {
 }
 
 static bool is_coordinate(double x) {
-    return fabs(x) <= MSPRING_MAX_COORDINATE; // and no NaN
+    return fabs(x) <= MSPRING_MAX_COORDINATE; // false for NaN
 }
 
 static mspring_result check_point(const mspring_network *network, double x, double y) {
@@ -126,8 +126,8 @@ mspring_result mspring_network_particles_in_box(const mspring_network *network, 
     return MSPRING_OK;
 }
 
-// Twice the area of a triangle: positive if c lies to the left of the way from a to b.
-static double turn(point a, point b, point c) {
+// Twice the signed area of a triangle: positive if c is on the left of the line from a to b.
+static double signed_area(point a, point b, point c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
@@ -135,21 +135,22 @@ static bool overlap(double a, double b, double c, double d) {
     return fmax(fmin(a, b), fmin(c, d)) <= fmin(fmax(a, b), fmax(c, d));
 }
 
-// How much of the way from a to b comes before c, which lies on it.
+// Fraction of the line from a to b at which c lies.
 static double fraction_of(point a, point b, point c) {
     const double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
     return square > 0.0 ? fmin(fmax(((c.x - a.x) * dx + (c.y - a.y) * dy) / square, 0.0), 1.0) : 0.0;
 }
 
-// Whether the way from a to b meets the spring from c to d, and after how much of it.
+// True if the line from a to b crosses the spring from c to d. fraction: position of the crossing on the line.
 static bool is_across(point a, point b, point c, point d, double *fraction) {
     if (!overlap(a.x, b.x, c.x, d.x) || !overlap(a.y, b.y, c.y, d.y))
         return false;
-    const double of_a = turn(c, d, a), of_b = turn(c, d, b), of_c = turn(a, b, c), of_d = turn(a, b, d);
+    const double of_a = signed_area(c, d, a), of_b = signed_area(c, d, b), of_c = signed_area(a, b, c),
+                 of_d = signed_area(a, b, d);
     if ((of_a > 0.0 && of_b > 0.0) || (of_a < 0.0 && of_b < 0.0) || (of_c > 0.0 && of_d > 0.0) ||
         (of_c < 0.0 && of_d < 0.0))
         return false;
-    // On one line they meet where the nearer end is, or at once if that lies behind.
+    // Collinear: they meet at the nearer end, or at 0 if that is behind a.
     *fraction = of_a != of_b ? of_a / (of_a - of_b) : fmin(fraction_of(a, b, c), fraction_of(a, b, d));
     return true;
 }

@@ -1,5 +1,5 @@
-/// The largest strain: found in the order of places, where the springs of lattices lie side by side. Then the first
-/// id is looked for among those that lie where it was found.
+/// Largest strain. Springs are searched in the order of their spring slots, in which lattices are contiguous. Then
+/// the first id with this strain is searched among the springs of the chunk in which it was found.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -7,10 +7,10 @@
 #include "store/rest_lengths.h"
 #include "store/springs.h"
 
-/// Places that are compared at once.
-#define PIECE ((mspringi_spring_slot)1024)
+/// Spring slots of a chunk.
+#define CHUNK ((mspringi_spring_slot)1024)
 
-/// The largest strain, and the places that may have it.
+/// Largest strain, and the range of spring slots with it.
 typedef struct peak {
     float strain;
     mspringi_spring_slot first, end;
@@ -20,8 +20,8 @@ static inline float low_of(float coordinate, float low, bool may_be_stale) {
     return may_be_stale ? mspringi_low_of(coordinate, low) : low;
 }
 
-// Raise the largest strain of each lane to that of sixteen places of a lattice: as mspringi_measure() has them, but
-// in a loop for vectors.
+// Raise the largest strain of each lane to those of sixteen spring slots of a lattice: as mspringi_measure(), but
+// vectorisable.
 MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi_spring_slot first,
                                         bool may_be_stale, bool has_welds, float *restrict most) {
     const mspringi_state s = network->state;
@@ -73,9 +73,9 @@ static MSPRINGI_NOINLINE peak find_peak(const mspring_network *network) {
     const mspringi_spring_slot spring_slots =
         (mspringi_spring_slot)(mspringi_spring_slot_words(t) * MSPRINGI_WIDTH);
     peak all = {0.0f, 0, 0};
-    for (mspringi_spring_slot first = 0; first < t->lattice_spring_slots; first += PIECE) {
+    for (mspringi_spring_slot first = 0; first < t->lattice_spring_slots; first += CHUNK) {
         const mspringi_spring_slot left = t->lattice_spring_slots - first,
-                                   end = first + (left < PIECE ? left : PIECE);
+                                   end = first + (left < CHUNK ? left : CHUNK);
         include(&all, largest_in(network, first, end), first, end);
     }
     for (mspringi_spring_slot spring_slot = t->lattice_spring_slots; spring_slot < spring_slots; ++spring_slot)

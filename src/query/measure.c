@@ -11,7 +11,7 @@ static bool is_pinned(const mspring_network *network, mspring_id particle) {
     return network->inverse_mass[network->topology.slot_of_particle[particle]] == 0.0f;
 }
 
-// Length of a spring, and how fast it grows.
+// Length of a spring, and its rate of change.
 static double spring_length(const mspring_network *network, const mspringi_spring_values *r, double *rate) {
     const mspringi_state *s = &network->state;
     const double dx = mspringi_x_of(s, r->tip) - mspringi_x_of(s, r->base);
@@ -56,7 +56,7 @@ float mspringi_spring_force(const mspring_network *network, mspring_id spring) {
     return length > 0.0 ? (float)force : 0.0f;
 }
 
-// What a spring that has flowed has stored by its hardening.
+// Energy stored by the hardening of a spring that has flowed.
 static double hardening_energy(const mspring_network *network, mspring_id spring, double stiffness) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     const double flow = (double)mspringi_spring_slot_own_length(network, spring_slot) -

@@ -1,4 +1,4 @@
-/// What groups are like.
+/// Queries about groups.
 #include "base/cpu.h"
 #include "store/id_pool.h"
 
@@ -57,7 +57,7 @@ static mspring_result check_observation(const mspring_network *network, uint32_t
     return MSPRING_OK;
 }
 
-// The centre, its velocity and the box, in local coordinates.
+// Centre, its velocity and the box, in local coordinates.
 static void observe_body(const mspring_network *network, uint32_t group, double *row) {
     const mspringi_groups *g = &network->groups;
     const mspringi_state *s = &network->state;

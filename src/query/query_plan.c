@@ -1,4 +1,4 @@
-/// What a network says of itself: its sizes, its error, its last step, and how it was laid out.
+/// Queries about a network: its sizes, its error, its last step, and its layout.
 #include <math.h>
 
 #include "solvers/explicit/explicit.h"

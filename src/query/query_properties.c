@@ -1,4 +1,4 @@
-/// Reading properties of particles and springs.
+/// Access to properties of particles and springs.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -9,8 +9,8 @@
 
 /* ---------------------------------------------------------------------------------------- strains and lengths */
 
-// The same as mspringi_spring_slot_length() and mspringi_spring_slot_strain() to the last bit or so. Most springs
-// lie in lattices. Low words are differences of what is near to each other, so single precision is enough.
+// Equal to mspringi_spring_slot_length() and mspringi_spring_slot_strain() up to rounding. Most springs lie in
+// lattices. Differences of low words between neighbours are small, so single precision suffices.
 static inline float low_of(float coordinate, float low, bool may_be_stale) {
     return may_be_stale ? mspringi_low_of(coordinate, low) : low;
 }
@@ -45,8 +45,7 @@ static inline void measure(const mspring_network *network, mspring_property prop
     }
 }
 
-// Loops of their own for ranges at the usual stride, and for low words that are of what is there: nobody can have
-// written to it.
+// Special loops for contiguous ranges, and for networks without a writable view, whose low words need no check.
 static void measure_all(const mspring_network *network, mspring_property property, const mspringi_selection *at,
                         float *out, size_t stride) {
     const mspringi_spring_slot *all = network->topology.slot_of_spring,
@@ -105,9 +104,9 @@ static bool exists(const mspring_network *network, mspringi_kind kind, mspring_i
     return kind == MSPRINGI_PARTICLES ? mspringi_particle_exists(network, id) : mspringi_spring_exists(network, id);
 }
 
-// What was removed has 0.
-static void leave_out_what_is_gone(const mspring_network *network, mspringi_kind kind, mspring_id first,
-                                   uint32_t count, float *out, size_t stride) {
+// Removed particles and springs read as 0.
+static void clear_removed(const mspring_network *network, mspringi_kind kind, mspring_id first, uint32_t count,
+                          float *out, size_t stride) {
     for (uint32_t i = 0; network->growth.particles && i < count; ++i)
         if (!exists(network, kind, first + i))
             out[i * stride] = 0.0f;
@@ -141,7 +140,7 @@ mspring_result mspring_network_get(const mspring_network *network, mspring_prope
     if (result != MSPRING_OK)
         return result;
     get_values(network, property, &at, values, stride);
-    leave_out_what_is_gone(network, kind, first, count, values, stride);
+    clear_removed(network, kind, first, count, values, stride);
     return MSPRING_OK;
 }
 

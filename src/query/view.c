@@ -1,7 +1,7 @@
-/// The state's arrays, lent to the host: to read, or to write until the next step.
+/// Views of the state's arrays for the host: read-only, or writable until the next step.
 #include "store/network.h"
 
-// What both kinds of view are filled with.
+// Members of both kinds of view.
 #define VIEW_OF(network)                                                                                           \
     {                                                                                                              \
         .slot_count = (uint32_t)mspringi_slot_count(network),                                                      \

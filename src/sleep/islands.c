@@ -1,18 +1,17 @@
-/// Which islands there are, and what of the rows is swept while some of them sleep.
+/// Islands, and the blocks that are swept while some of them sleep.
 ///
-/// Rows are swept by blocks. A block with a particle that is awake is swept as ever, and what sleeps in it is held
-/// as if it were pinned: its inverse mass is 0 for the time. Blocks without are left out, whole strips of them
-/// without being looked at. No live spring joins what sleeps to what is awake, so nothing that matters is left out
-/// with them.
+/// Rows are swept by blocks. A block with an awake particle is swept as usual, with its sleeping particles pinned:
+/// their active inverse mass is 0. Other blocks are skipped, and whole strips of them unread. No live spring
+/// connects a sleeping particle to an awake one, so skipped blocks do not matter.
 #include <math.h>
 #include <string.h>
 
 #include "sleep/sleep.h"
 #include "store/roots.h"
 
-/* ---------------------------------------------------------------------------------------------- the islands */
+/* -------------------------------------------------------------------------------------------------- islands */
 
-// Into scratch by slot.
+// Write the number of each slot's island to scratch.
 static uint32_t number_islands(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     const mspringi_topology *t = &network->topology;
@@ -25,14 +24,14 @@ static uint32_t number_islands(mspring_network *network) {
             s->lowest[count] = slot;
             s->scratch[slot] = count++;
         } else {
-            s->scratch[slot] = s->scratch[s->scratch[slot]]; // lower, so it is a number already
+            s->scratch[slot] = s->scratch[s->scratch[slot]]; // lower, so numbered already
         }
     }
     return count;
 }
 
-// The new islands have been still for as long as the least of the old ones that they are of; asleep is longest.
-static void hand_on_stillness(mspring_network *network, uint32_t count) {
+// Inherit the time at rest: the shortest of the old islands that a new one contains. Sleep counts as the longest.
+static void inherit_rest_time(mspring_network *network, uint32_t count) {
     mspringi_sleep *s = &network->sleep;
     for (uint32_t i = 0; i < count; ++i)
         s->kept[i] = s->count > 0 ? INFINITY : 0.0;
@@ -55,7 +54,7 @@ static void hand_on_stillness(mspring_network *network, uint32_t count) {
     s->has_kept = false;
 }
 
-static void find_islands_of_blocks(const mspring_network *network) {
+static void assign_block_islands(const mspring_network *network) {
     const mspringi_sleep *s = &network->sleep;
     for (uint32_t block = 0; block < network->topology.block_count; ++block) {
         const uint32_t *island = s->island + (size_t)block * MSPRINGI_WIDTH;
@@ -78,18 +77,18 @@ void mspringi_islands_find(mspring_network *network) {
         return;
     }
     const uint32_t count = number_islands(network);
-    hand_on_stillness(network, count);
+    inherit_rest_time(network, count);
     uint32_t *const before = s->island;
     s->island = s->scratch;
     s->scratch = before;
     s->count = count;
     s->links = links;
-    find_islands_of_blocks(network);
+    assign_block_islands(network);
     if (s->sleeping > 0)
         mspringi_islands_map(network);
 }
 
-/* ------------------------------------------------------------------------------------------------- the blocks */
+/* ----------------------------------------------------------------------------------------------------- blocks */
 
 static void map_block(const mspring_network *network, uint32_t block) {
     const mspringi_sleep *s = &network->sleep;
@@ -105,9 +104,10 @@ static void map_block(const mspring_network *network, uint32_t block) {
     s->swept[block] = awake != 0;
 }
 
-// A spring to the lower right has its record below its upper end, where nothing may be. One to the upper right, of
-// a block's last slot, hands its force on by way of the block beside, where nothing may be either.
-static void sweep_beside(const mspring_network *network) {
+// Also sweep blocks that a swept block's springs pass through, even without particles. A south-east spring has its
+// record in the block below its upper end. A north-east spring of a block's last slot carries its force through the
+// next block.
+static void sweep_spring_blocks(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const uint32_t last_lane = 1u << (MSPRINGI_WIDTH - 1);
     uint8_t *swept = network->sleep.swept;
@@ -121,8 +121,8 @@ static void sweep_beside(const mspring_network *network) {
     }
 }
 
-// Whether what a block hands to the row above is taken there.
-static bool is_handed_on(const mspring_network *network, uint32_t block) {
+// True if the row above takes the carry of this block.
+static bool has_swept_carry(const mspring_network *network, uint32_t block) {
     const mspringi_topology *t = &network->topology;
     const uint32_t i = block - t->lattice_first;
     return i >= t->lattice_blocks || network->sleep.swept[t->up_of_block[i]];
@@ -132,7 +132,7 @@ static void map_span(const mspring_network *network, const mspringi_span *span, 
     for (uint32_t block = span->first_slot / MSPRINGI_WIDTH; block * MSPRINGI_WIDTH < span->end_slot; ++block) {
         const bool is_swept = network->sleep.swept[block];
         *any |= is_swept;
-        *all &= is_swept && is_handed_on(network, block);
+        *all &= is_swept && has_swept_carry(network, block);
     }
 }
 
@@ -145,7 +145,7 @@ static void map_strip(const mspring_network *network, uint32_t number) {
         map_span(network, &t->spans[i], &all, &any);
     if (strip->assigned_span != MSPRING_NONE)
         map_span(network, &t->spans[strip->assigned_span], &all, &any);
-    network->sleep.share[number] = (uint8_t)(all ? MSPRINGI_AWAKE : any ? MSPRINGI_PARTLY : MSPRINGI_ASLEEP);
+    network->sleep.share[number] = (uint8_t)(all ? MSPRINGI_AWAKE : any ? MSPRINGI_PARTLY_ASLEEP : MSPRINGI_ASLEEP);
 }
 
 void mspringi_islands_map(mspring_network *network) {
@@ -153,13 +153,13 @@ void mspringi_islands_map(mspring_network *network) {
     network->sleep.is_mapped = true;
     for (uint32_t block = 0; block < t->block_count; ++block)
         map_block(network, block);
-    sweep_beside(network);
+    sweep_spring_blocks(network);
     for (uint32_t strip = 0; strip < t->strip_count; ++strip)
         map_strip(network, strip);
     network->sleep.masses = network->edits.masses;
 }
 
-void mspringi_islands_weigh(mspring_network *network) {
+void mspringi_islands_update_masses(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     for (size_t block = 0; block < network->topology.block_count; ++block)
         for (size_t slot = block * MSPRINGI_WIDTH; s->swept[block] && slot < (block + 1) * MSPRINGI_WIDTH; ++slot)

@@ -1,8 +1,8 @@
-/// When islands fall asleep, and what wakes them.
+/// Falling asleep and waking.
 ///
-/// What an island was when it fell asleep is kept, and compared with what it is: views and hooks write to it
-/// without telling, and a game sets masses and forces in every frame that are mostly those of the frame before.
-/// Edits of springs tell by themselves.
+/// Islands are compared with a copy of their state at the time they fell asleep. Views and hooks write without
+/// notice, and a game sets masses and forces in every frame, mostly to the values of the frame before. Edits of
+/// springs notify.
 #include "sleep/sleep.h"
 
 #include <math.h>
@@ -21,7 +21,7 @@ mspring_result mspringi_sleep_reserve(mspring_network *network) {
         return MSPRING_OK;
     mspring_result result = mspringi_incidence_reserve(network);
     if (result == MSPRING_OK && !mspringi_store_reserve(network, MSPRINGI_STORE_SLEEP))
-        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the sleep of %zu slots",
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to let %zu slots sleep",
                                mspringi_slot_count(network));
     return result;
 }
@@ -30,7 +30,7 @@ void mspringi_sleep_forget(mspringi_sleep *s) {
     *s = (mspringi_sleep){0};
 }
 
-/* -------------------------------------------------------------------------------------------------- the state */
+/* ------------------------------------------------------------------------------------------------------ state */
 
 static bool state_differs(const mspring_network *network, size_t slot) {
     const size_t slots = mspringi_slot_count(network);
@@ -45,7 +45,7 @@ static bool mass_differs(const mspring_network *network, size_t slot) {
     return network->inverse_mass[slot] != network->sleep.inverse_mass[slot];
 }
 
-// Whether something of a block, all or the masses, is other than it was kept; whether or not it sleeps.
+// True if the state or the masses of a block differ from the copy, asleep or not.
 static bool block_differs(const mspring_network *network, size_t block, bool state, bool masses) {
     const size_t slots = mspringi_slot_count(network), first = block * MSPRINGI_WIDTH;
     const mspringi_sleep *s = &network->sleep;
@@ -62,12 +62,12 @@ bool mspringi_sleeper_is_disturbed(const mspring_network *network, size_t slot) 
            mass_differs(network, slot);
 }
 
-// Whether positions, velocities or masses may have changed since they were looked at.
+// True if positions, velocities or masses may have changed since the last check.
 static bool may_have_moved(const mspring_network *network) {
     return network->is_open || network->sleep.moved != network->edits.state;
 }
 
-// The first slot that sleeps and has been disturbed, from one on; the number of slots if there is none.
+// First disturbed sleeping slot from `slot` on; the number of slots if there is none.
 static size_t next_disturbed(const mspring_network *network, size_t slot, bool state, bool masses) {
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
@@ -96,13 +96,13 @@ bool mspringi_sleep_is_disturbed(const mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- waking */
 
-static void keep_stillness(mspringi_sleep *s) {
+static void save_rest_times(mspringi_sleep *s) {
     if (!s->has_kept)
         memcpy(s->kept, s->still, s->count * sizeof *s->kept);
     s->has_kept = true;
 }
 
-// What sleeps has a past: it has been at rest.
+// The time at rest of a woken island restarts at 0.
 static void set_awake(mspring_network *network, uint32_t island) {
     mspringi_sleep *s = &network->sleep;
     const bool slept = s->still[island] < 0.0;
@@ -122,7 +122,7 @@ void mspringi_wake(mspring_network *network) {
     set_all_awake(network);
 }
 
-void mspringi_sleep_anew(mspring_network *network) {
+void mspringi_sleep_reset(mspring_network *network) {
     mspringi_wake(network);
     network->sleep.count = 0;
 }
@@ -147,12 +147,12 @@ void mspringi_wake_spring(mspring_network *network, mspring_id spring) {
     mspringi_wake_slot(network, tip);
 }
 
-static void map_if_changed(mspring_network *network, uint64_t naps) {
+static void map_if_changed(mspring_network *network, uint64_t sleep_changes) {
     mspringi_sleep *s = &network->sleep;
-    if (s->sleeping > 0 && (!s->is_mapped || naps != network->edits.sleep_changes))
+    if (s->sleeping > 0 && (!s->is_mapped || sleep_changes != network->edits.sleep_changes))
         mspringi_islands_map(network);
     else if (s->sleeping > 0 && s->masses != network->edits.masses)
-        mspringi_islands_weigh(network);
+        mspringi_islands_update_masses(network);
 }
 
 static void wake_disturbed(mspring_network *network, bool state, bool masses) {
@@ -160,7 +160,7 @@ static void wake_disturbed(mspring_network *network, bool state, bool masses) {
     const size_t slots = mspringi_slot_count(network);
     for (size_t slot = 0; (slot = next_disturbed(network, slot, state, masses)) < slots;) {
         const size_t block = slot / MSPRINGI_WIDTH;
-        keep_stillness(s);
+        save_rest_times(s);
         set_awake(network, s->island[slot]);
         slot = s->block_island[block] != MSPRING_NONE ? (block + 1) * MSPRINGI_WIDTH : slot + 1;
     }
@@ -170,11 +170,11 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
     mspringi_sleep *s = &network->sleep;
     if (s->sleeping == 0)
         return;
-    const uint64_t naps = network->edits.sleep_changes;
-    // A substep of another length changes relative springs, and how many there are may change by itself.
+    const uint64_t sleep_changes = network->edits.sleep_changes;
+    // Relative springs change with the substep, and an automatic number of substeps may change.
     const bool same_h = !network->fractions.values || attempt->h == network->relative_h;
     if (!same_h || network->origin_x != s->origin_x || network->origin_y != s->origin_y) {
-        keep_stillness(s);
+        save_rest_times(s);
         set_all_awake(network);
         return;
     }
@@ -185,65 +185,65 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
         wake_disturbed(network, state, masses);
     if (!network->is_open && !s->has_kept)
         s->moved = network->edits.state;
-    map_if_changed(network, naps);
+    map_if_changed(network, sleep_changes);
 }
 
-void mspringi_sleep_rouse(mspring_network *network, uint32_t island) {
-    keep_stillness(&network->sleep);
+void mspringi_sleep_wake_island(mspring_network *network, uint32_t island) {
+    save_rest_times(&network->sleep);
     set_awake(network, island);
 }
 
-void mspringi_sleep_roused(mspring_network *network, uint64_t naps) {
-    map_if_changed(network, naps);
+void mspringi_sleep_finish_waking(mspring_network *network, uint64_t sleep_changes) {
+    map_if_changed(network, sleep_changes);
 }
 
 bool mspringi_sleep_is_idle(const mspring_network *network) {
     return mspringi_sleep_is_whole(network) && !network->sleep.has_force && !network->forces.held_any;
 }
 
-// A change of force counts that would bring a particle to the speed that is no sleep any more within the time after
-// which it would have been asleep again.
-static uint32_t wake_block_by_forces(const mspring_network *network, mspringi_field force, size_t first) {
+// Lanes to wake: the change of force would bring a particle to the sleep speed within the sleep time.
+static uint32_t find_forced_lanes(const mspring_network *network, mspringi_field force, size_t first) {
     const mspringi_sleep *s = &network->sleep;
     const float speed = network->settings.sleep_speed, time = network->settings.sleep_time;
     static const float none[MSPRINGI_WIDTH];
     const float *x = force.x ? force.x + first : none, *y = force.x ? force.y + first : none;
-    uint32_t felt[MSPRINGI_WIDTH], bits = 0;
+    uint32_t is_disturbed[MSPRINGI_WIDTH], bits = 0;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const float dx = fabsf(x[lane] - s->force.x[first + lane]), dy = fabsf(y[lane] - s->force.y[first + lane]);
         const float inverse_mass = s->inverse_mass[first + lane];
-        felt[lane] =
+        is_disturbed[lane] =
             (uint32_t) !(dx * inverse_mass * time <= speed) | (uint32_t) !(dy * inverse_mass * time <= speed);
     }
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
-        bits |= felt[lane] << lane;
+        bits |= is_disturbed[lane] << lane;
     return bits & s->sleepers[first / MSPRINGI_WIDTH];
 }
 
-// Once the forces from outside are known: wake what feels others than when it fell asleep.
+// Wake particles if their external force has changed since they fell asleep.
 static void wake_by_forces(mspring_network *network, mspringi_field force) {
     mspringi_sleep *s = &network->sleep;
     s->in_force = force;
     if (s->sleeping == 0 || (!force.x && !s->has_force))
         return;
-    const uint64_t naps = network->edits.sleep_changes;
+    const uint64_t sleep_changes = network->edits.sleep_changes;
     for (size_t block = 0; block < network->topology.block_count; ++block) {
         if (s->sleepers[block] == 0)
             continue;
         const size_t first = block * MSPRINGI_WIDTH;
-        for (uint32_t bits = wake_block_by_forces(network, force, first), lane = 0; bits >> lane != 0; ++lane) {
+        for (uint32_t bits = find_forced_lanes(network, force, first), lane = 0; bits >> lane != 0; ++lane) {
             if (!(bits >> lane & 1))
                 continue;
-            keep_stillness(s);
+            save_rest_times(s);
             set_awake(network, s->island[first + lane]);
         }
     }
-    map_if_changed(network, naps);
+    map_if_changed(network, sleep_changes);
 }
 
-/* ------------------------------------------------------------------------------------------------- in a step */
+/* ------------------------------------------------------------------------------------------------------ step */
 
-// Some solvers leave alone what is not swept; others go by larger pieces.
+// True if the solver may move a sleeping block. Some solvers skip blocks that are not swept; others work on larger
+// units.
 static bool is_held(const mspring_network *network, size_t block) {
     const mspringi_sleep *s = &network->sleep;
     return s->sleepers[block] != 0 && (s->swept[block] || !network->running->ops->skips_sleepers);
@@ -279,14 +279,14 @@ void mspringi_sleep_put_back(const mspring_network *network) {
     }
 }
 
-// Wake what hooks have moved.
+// Wake islands that hooks have moved.
 static void update_sleep(mspring_network *network, double dt) {
     (void)dt;
     if (network->sleep.sleeping == 0 || network->hook_count == 0)
         return;
-    const uint64_t naps = network->edits.sleep_changes;
+    const uint64_t sleep_changes = network->edits.sleep_changes;
     wake_disturbed(network, true, false);
-    map_if_changed(network, naps);
+    map_if_changed(network, sleep_changes);
 }
 
 static void restore(mspring_network *network) {
@@ -310,29 +310,29 @@ void mspringi_sleep_undo(mspring_network *network) {
     if (s->sleeping == 0)
         return;
     mspringi_islands_map(network);
-    s->masses = network->edits.masses - 1; // what woke of another mass still has it
+    s->masses = network->edits.masses - 1; // islands woken by a changed mass still have that mass
 }
 
 /* ------------------------------------------------------------------------------------------- falling asleep */
 
-// Slots of a block that are faster than what is still, or pinned and on their way.
-static uint32_t moving_in_block(const mspring_network *network, size_t first) {
+// Slots of a block that are faster than the sleep speed, or pinned and moving.
+static uint32_t find_moving_lanes(const mspring_network *network, size_t first) {
     const mspringi_state *state = &network->state;
     const float speed = network->settings.sleep_speed;
-    uint32_t loud[MSPRINGI_WIDTH], bits = 0;
+    uint32_t is_moving[MSPRINGI_WIDTH], bits = 0;
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const float vx = state->vx[first + lane], vy = state->vy[first + lane];
         const uint32_t is_fast = (uint32_t) !(fabsf(vx) <= speed) | (uint32_t) !(fabsf(vy) <= speed);
         const uint32_t is_driven = (uint32_t) !(network->inverse_mass[first + lane] > 0.0f) &
                                    ((uint32_t)(vx != 0.0f) | (uint32_t)(vy != 0.0f));
-        loud[lane] = is_fast | is_driven;
+        is_moving[lane] = is_fast | is_driven;
     }
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
-        bits |= loud[lane] << lane;
+        bits |= is_moving[lane] << lane;
     return bits;
 }
 
-// Mark the islands that are not still.
+// Mark islands that are not at rest.
 static void mark_moving(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_sleep *s = &network->sleep;
@@ -341,7 +341,7 @@ static void mark_moving(const mspring_network *network) {
         const uint32_t one = s->block_island[block], first = block * MSPRINGI_WIDTH;
         if ((s->sleeping > 0 && !s->swept[block]) || (one != MSPRING_NONE && s->mark[one]))
             continue;
-        const uint32_t bits = moving_in_block(network, first);
+        const uint32_t bits = find_moving_lanes(network, first);
         for (uint32_t lane = 0; bits >> lane != 0; ++lane)
             if (bits >> lane & 1 && s->island[first + lane] != MSPRING_NONE)
                 s->mark[s->island[first + lane]] = 1;
@@ -353,7 +353,7 @@ static void mark_moving(const mspring_network *network) {
     }
 }
 
-// Let dt pass, and mark those whose time has come instead. Returns whether there are any.
+// Advance the time at rest by dt, and mark the islands that are due to sleep. True if there are any.
 static bool mark_sleepy(const mspring_network *network, double dt) {
     const mspringi_sleep *s = &network->sleep;
     bool any = false;
@@ -370,8 +370,7 @@ static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field f
     const mspringi_state *state = &network->state;
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
-    // A block that is swept for what else is in it adds 0 to the position, and so to what is below it: -0 would
-    // become +0.
+    // A block that is swept for its other slots adds 0 to the position and its low word, which would make -0 +0.
     state->low_x[slot] = mspringi_low_of(state->x[slot], state->low_x[slot]);
     state->low_y[slot] = mspringi_low_of(state->y[slot], state->low_y[slot]);
     mspringi_move_by(state, slot, 0.0f, 0.0f);
@@ -406,7 +405,7 @@ void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {
     mspringi_islands_map(network);
 }
 
-// The local origin has moved along: exactly, with all there is.
+// The local origin has moved, exactly. Move the copy with it.
 static void follow_origin(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
     if (s->sleeping == 0 || (s->origin_x == network->origin_x && s->origin_y == network->origin_y))
@@ -451,10 +450,10 @@ const mspringi_stage mspringi_stage_waking = {.is_used = is_used,
                                               .roll_back = restore,
                                               .undo = drop_force};
 
-// The last of a step's stages: it sees what all others have done.
+// The last stage of a step: it sees the effects of all others.
 const mspringi_stage mspringi_stage_falling_asleep = {.is_used = is_used, .after_step = fall_asleep};
 
-/* ------------------------------------------------------------------------------------------------ moving along */
+/* ---------------------------------------------------------------------------------------------------- relayout */
 
 void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
     mspringi_sleep *s = &to->sleep;
@@ -492,7 +491,7 @@ void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
     s->masses = had->masses;
 }
 
-/* ---------------------------------------------------------------------------------------------------- the host */
+/* --------------------------------------------------------------------------------------------------------- API */
 
 mspring_result mspring_network_wake(mspring_network *network) {
     mspring_result result = mspringi_check_call(network);

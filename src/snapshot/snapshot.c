@@ -7,9 +7,8 @@
 #include "store/changed.h"
 #include "store/sections.h"
 
-/// In the order in which they are loaded: all goes by which particles and springs there are, ramps go by the
-/// springs' values, stressed springs by what is broken, sleep by what has been edited, and a solver's tiles by what
-/// sleeps.
+/// Sections in the order of loading. All depend on the existing particles and springs, ramps on the springs'
+/// values, stressed springs on the broken ones, sleep on all edits, and a solver's tiles on sleep.
 static const mspringi_section *const sections[] = {
     &mspringi_section_growth,         &mspringi_section_settings,      &mspringi_section_steps,
     &mspringi_section_motion,         &mspringi_section_masses,        &mspringi_section_forces,
@@ -103,7 +102,7 @@ mspring_result mspring_network_snapshot_size(const mspring_network *network, msp
     return result;
 }
 
-// Write a section with what goes before and behind it.
+// Write a section with its header and padding.
 static void put_section(const mspring_network *network, const mspringi_section *section, uint64_t size,
                         mspringi_writer *to) {
     mspringi_put(to, section->tag, 4, 1);
@@ -149,7 +148,7 @@ mspring_result mspring_network_save(const mspring_network *network, mspring_snap
 
 /* ----------------------------------------------------------------------------------------------------- loading */
 
-/// Where each section is in a snapshot; size 0 if it is not.
+/// Position of each section in a snapshot; size 0 if absent.
 typedef struct found {
     const uint8_t *from[SECTIONS];
     size_t size[SECTIONS];
@@ -231,7 +230,7 @@ static mspring_result find_sections(mspring_network *network, const mspringi_sna
     return MSPRING_OK;
 }
 
-// Parameters that a frame leaves out stay as they are.
+// True if a section is loaded. A frame has no parameters; they stay as they are.
 static bool concerns(const mspringi_section *section, const mspringi_snapshot_header *header) {
     return !section->parameters || header->contents == MSPRING_SNAPSHOT_ALL;
 }

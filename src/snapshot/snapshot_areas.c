@@ -1,4 +1,4 @@
-/// Areas and angle springs, in a snapshot.
+/// Snapshot of areas and angle springs.
 #include "store/angles.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 
 #define ANGLE_KIND 2u
 
-/// An area as it is saved. An angle has its damping in place of the pressure, and its rest angle in place of the
+/// Saved form of an area. An angle has its damping in the place of the pressure, and its rest angle in that of the
 /// rest area.
 typedef struct record {
     uint32_t id, kind, count;
@@ -19,7 +19,7 @@ typedef struct record {
 } record;
 
 static void hand_area(mspringi_io *io, record *r) {
-    mspringi_hand(io, &r->id, 3, sizeof(uint32_t)); // and those that follow
+    mspringi_hand(io, &r->id, 3, sizeof(uint32_t)); // and the next two
     mspringi_hand(io, &r->stiffness, 3, sizeof(float));
     MSPRINGI_HAND(io, r->rest);
 }
@@ -30,7 +30,7 @@ static void hand_corner(mspringi_io *io, mspringi_corner *corner) {
     MSPRINGI_HAND(io, corner->reach);
 }
 
-// Without a section there has never been an area.
+// No section means that there never was an area.
 static void areas_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_areas *a = &network->areas;
     mspringi_io io = mspringi_io_to(to);
@@ -122,11 +122,11 @@ static mspring_result areas_check(mspring_network *network, const uint8_t *from,
     }
     if (result == MSPRING_OK)
         result = mspringi_section_end(network, section, &io);
-    // Room for all of them, whatever is there now.
+    // memory for all of them, whatever the network has now
     return result == MSPRING_OK && head[1] > 0 ? mspringi_areas_reserve(network, head[1], corners, angles) : result;
 }
 
-// After the section of growth: areas with a corner that is not there are left out.
+// Load after the section of added and removed ids: areas with a missing corner are dropped.
 static void areas_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_areas *a = &network->areas;
     mspringi_io io = mspringi_io_from(from, size);
@@ -150,14 +150,14 @@ static void areas_load(mspring_network *network, const uint8_t *from, size_t siz
         a->angle_count += is_whole && area->is_angle;
         a->corner_count += is_whole ? area->count : 0;
     }
-    network->edits.values++; // what is stable in any shape
+    network->edits.values++; // affects the limit in any shape
 }
 
 const mspringi_section mspringi_section_areas = {"area", "areas", true, NULL, areas_save, areas_check, areas_load};
 
 /* ------------------------------------------------------------------------------------------------- rest angles */
 
-// The host may set them before each step: frames have them, too.
+// In frames, too, since the host may set them before each step.
 static void rest_angles_save(const mspring_network *network, mspringi_writer *to) {
     for (size_t i = 0; i < network->areas.count; ++i)
         if (network->areas.list[i].is_angle)
@@ -175,7 +175,7 @@ static mspring_result rest_angles_check(mspring_network *network, const uint8_t 
     return mspringi_section_check_size(network, section, size % sizeof(double), 0);
 }
 
-// After the areas, which say how many there are.
+// Load after the areas, which have their number.
 static void rest_angles_load(mspring_network *network, const uint8_t *from, size_t size) {
     size_t left = size / sizeof(double);
     for (size_t i = 0; i < network->areas.count && left > 0; ++i) {

@@ -1,4 +1,4 @@
-/// The shape by which contact finds outlines, in a snapshot. What else contact is, is a setting of the host.
+/// Snapshot of the shape from which contact finds outlines. The rest of contact is a setting of the host.
 #include <math.h>
 
 #include "contact/contacts.h"
@@ -14,7 +14,7 @@ static size_t shape_size(const mspring_network *network) {
     return network->contacts ? bytes(network) : 0;
 }
 
-// NaN stands for what is not known.
+// NaN stands for unknown.
 static void shape_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_outline *o = &network->contacts->outline;
     const double origin[] = {o->origin_x, o->origin_y};
@@ -53,18 +53,18 @@ static mspring_result shape_check(mspring_network *network, const uint8_t *from,
     return MSPRING_OK;
 }
 
-// A network without contact needs none, and one that has it keeps its own if the snapshot has none.
+// A network without contact ignores the shape. One with contact keeps its own if the snapshot has none.
 static void shape_load(mspring_network *network, const uint8_t *from, size_t size) {
     if (!network->contacts)
         return;
     mspringi_outline *o = &network->contacts->outline;
     double x, y;
-    network->contacts->colliders.reported = UINT64_MAX; // colliders got nothing in a step of another run
+    network->contacts->colliders.reported = UINT64_MAX; // no impulses on colliders from a step of another run
     mspringi_contact_events_reset(network->contacts);
     if (size == 0)
         return;
     from = read_place(from, &x, &y);
-    o->is_found &= x == o->origin_x && y == o->origin_y; // what breaks besides, edits tell
+    o->is_found &= x == o->origin_x && y == o->origin_y; // breaking notifies otherwise
     o->origin_x = x;
     o->origin_y = y;
     for (mspring_id p = 0; p < network->topology.reserve.particle_end; ++p) {

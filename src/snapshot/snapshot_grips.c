@@ -1,4 +1,4 @@
-/// What the host holds, in a snapshot.
+/// Snapshot of the host's grips.
 #include "contact/grips.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 
 #define STRONGEST 1e30f
 
-/// One of them, as it is saved.
+/// Saved form of a grip.
 typedef struct record {
     uint32_t reserved;
     mspringi_grip grip;
@@ -33,7 +33,7 @@ static void hand_grip(mspringi_io *io, record *r) {
     MSPRINGI_HAND(io, r->grip.impulse_y);
 }
 
-// Without a section there has never been a grip.
+// No section means that there never was a grip.
 static void grips_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_io io = mspringi_io_to(to);
     mspring_id next_id = network->grips.next_id;
@@ -94,7 +94,7 @@ static mspring_result grips_check(mspring_network *network, const uint8_t *from,
     return result == MSPRING_OK && count > 0 ? mspringi_grips_reserve(network) : result;
 }
 
-// After the section of growth: a grip on what is not there is left out.
+// Load after the section of added and removed ids: a grip on a missing particle is dropped.
 static void grips_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_io io = mspringi_io_from(from, size);
     mspringi_grips *grips = &network->grips;

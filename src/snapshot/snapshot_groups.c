@@ -1,11 +1,10 @@
-/// Which groups are held, and where actuators are, in a snapshot.
+/// Snapshot of held groups and of actuators.
 #include "step/actuators.h"
 #include "step/plastic.h"
 #include "store/sections.h"
 #include "store/springs.h"
 
-/* ------------------------------------------------------------------------------------------------- groups that are
- * held */
+/* -------------------------------------------------------------------------------------------------- held groups */
 
 static void held_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_groups *g = &network->groups;
@@ -24,7 +23,7 @@ static mspring_result held_check(mspring_network *network, const uint8_t *from, 
     return result;
 }
 
-// The next step looks at flags alone: see mspringi_groups_begin().
+// The next step reads only the flags: see mspringi_groups_begin().
 static void held_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_groups *g = &network->groups;
     g->held = 0;
@@ -39,7 +38,7 @@ const mspringi_section mspringi_section_held = {
 
 /* ---------------------------------------------------------------------------------------------------- actuators */
 
-// Of each: the rest length in force, the one that signals ask for, and that before any flow.
+// Values of an actuator: the present rest length, the one that signals ask for, and the one before any flow.
 enum { VALUES = 3 };
 static void actuators_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_actuators *a = &network->actuators;
@@ -81,7 +80,7 @@ static mspring_result actuators_check(mspring_network *network, const uint8_t *f
     return MSPRING_OK;
 }
 
-// After the springs' values, and what has become of them.
+// Load after the springs' values and plastic strains.
 static void actuators_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_actuators *a = &network->actuators;
     uint32_t head[2];

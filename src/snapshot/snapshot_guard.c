@@ -1,4 +1,4 @@
-/// What the guard of the stability limit knows from step to step, in a snapshot.
+/// Snapshot of the guard's state between steps.
 #include <float.h>
 #include <math.h>
 
@@ -8,18 +8,18 @@
 #include "store/sections.h"
 
 typedef struct record {
-    double dt; ///< what is stable in any shape, s, and for which spring
+    double dt; ///< longest substep that is stable in any shape, s; its spring is below
     float h, global_damping, peak;
     uint32_t policy, reserved, spring, state, fallback_steps;
     mspringi_solver_basis fallback; ///< MSPRING_GUARD_IMPLICIT
 } record;
 
-/// Whether dt is known, and whether that was before the last edit.
+/// State of dt: unknown, from before the last edit, or up to date.
 enum { UNKNOWN, OUTDATED, KNOWN };
 
 static void hand(mspringi_io *io, record *r) {
     MSPRINGI_HAND(io, r->dt);
-    mspringi_hand(io, &r->h, 3, sizeof(float)); // and those that follow
+    mspringi_hand(io, &r->h, 3, sizeof(float)); // and the next two
     mspringi_hand(io, &r->policy, 5, sizeof(uint32_t));
     if (r->policy != MSPRING_GUARD_IMPLICIT)
         return;
@@ -49,7 +49,7 @@ static void guard_save(const mspring_network *network, mspringi_writer *to) {
     hand(&io, &r);
 }
 
-// See that there is a fallback with such tiles. One that is in use is not touched.
+// Make sure of a fallback with these tiles. One in use is not changed.
 static mspring_result check_fallback(mspring_network *network, const mspringi_solver_basis *basis) {
     const uint32_t size = basis->tile_size, here = mspringi_solver_get_basis(&network->fallback).tile_size;
     if (!(basis->scale >= DBL_MIN && basis->scale <= DBL_MAX && basis->turn_inertia >= 0.0f &&
@@ -95,12 +95,12 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
     network->guard = (mspringi_guard){.h = head.h,
                                       .global_damping = head.global_damping,
                                       .peak = head.peak,
-                                      .speed = INFINITY, // are not known
+                                      .speed = INFINITY, // unknown
                                       .coordinate = INFINITY,
                                       .fallback_steps = head.fallback_steps};
     if (head.policy == MSPRING_GUARD_IMPLICIT)
         network->fallback.ops->set_basis(network->fallback.object, network, &head.fallback);
-    // Edits of before and after are counted differently.
+    // the counters of edits differ between runs
     mspringi_any_shape *any_shape = &network->any_shape;
     *any_shape = (mspringi_any_shape){
         .masses = network->edits.masses, .values = network->edits.values - 1, .growth = network->edits.growth};

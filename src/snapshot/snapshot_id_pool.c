@@ -1,5 +1,4 @@
-/// What has been added and removed, in a snapshot: which ids there are, where the spare ones lie, and what added
-/// springs join.
+/// Snapshot of added and removed ids: existing ids, slots of spare ones, and ends of added springs.
 #include <string.h>
 
 #include "base/bytes.h"
@@ -11,14 +10,14 @@
 #include "store/sections.h"
 #include "store/springs.h"
 
-/// Of a spare spring.
+/// Flags of a spare spring.
 enum { IS_RELATIVE = 1, IS_LAID_OUT = 2 };
 
-/// Where the parts of the section are.
+/// Pointers to the parts of the section.
 typedef struct growth {
     uint32_t particle_count, spring_count;
     const uint8_t *particles, *springs; ///< marks of all ids
-    const uint8_t *slots;               ///< [spare particles] IS_LAID_OUT, or 0: in the slot that is kept for it
+    const uint8_t *slots;               ///< [spare particles] IS_LAID_OUT, or 0: in its reserved slot
     const uint8_t *kinds;               ///< [spare springs] IS_RELATIVE, IS_LAID_OUT
     const uint8_t *ends;                ///< [2 * spare springs] ids of particles
 } growth;
@@ -28,7 +27,7 @@ static size_t size_of(const mspringi_topology *t) {
            (size_t)9 * mspringi_spare_springs(t);
 }
 
-// Without spare ids there is something to save once one has been removed.
+// Without spare ids the section is needed once an id has been removed.
 static size_t growth_size(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const uint8_t *particles = network->growth.particles, *springs = network->growth.springs;
@@ -108,7 +107,7 @@ static mspring_result check_particle(mspring_network *network, const growth *g, 
     if (is_spare && g->slots[i] != 0 &&
         (g->slots[i] != IS_LAID_OUT || t->initial_slots[i] == mspringi_spare_slot(t, p)))
         return mspringi_section_fail(network, section, "particle %u lies where it cannot", (unsigned)p);
-    // Some have been left out of a compact plan.
+    // A compact layout may leave out particles.
     if (g->particles[p] == MSPRINGI_THERE && !is_spare && t->slot_of_particle[p] < MSPRINGI_WIDTH)
         return mspringi_section_fail(network, section, "particle %u is there, which the plan leaves out",
                                      (unsigned)p);
@@ -151,7 +150,7 @@ static mspring_result check_spring(mspring_network *network, const growth *g, ms
                                         (unsigned)s, MSPRINGI_ID(a), MSPRINGI_ID(b));
 }
 
-// All are there in a snapshot without this section: some have been left out of a compact plan.
+// A snapshot without this section has all particles. Return an error if a compact layout leaves one out.
 static mspring_result check_none_is_left_out(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     for (mspring_id p = 0; network->growth.particles && p < t->particle_count; ++p)
@@ -161,7 +160,7 @@ static mspring_result check_none_is_left_out(mspring_network *network) {
     return MSPRING_OK;
 }
 
-// Whether an added spring is to join what it joins now, or is not there now nor then.
+// True if an added spring keeps its ends, or is absent both now and in the snapshot.
 static bool stays(const mspring_network *network, const growth *g, mspring_id s) {
     const mspringi_topology *t = &network->topology;
     const uint32_t i = s - t->reserve.first_spring;
@@ -219,8 +218,8 @@ static void put(mspringi_topology *t, mspring_id p, uint32_t slot, bool is_there
         t->particle_of_slot[slot] = p;
 }
 
-// Where each particle is; what it is follows in other sections. In the plan of before a compaction spare ones are
-// in the slots that are kept for them.
+// Load the slot of a particle; other sections have its values. In the layout before a compaction, spare particles
+// are in their reserved slots.
 static void load_particle(mspring_network *network, const growth *g, mspring_id p) {
     mspringi_topology *t = &network->topology, *whole = &network->whole;
     const bool is_spare = p >= t->reserve.first_particle, is_there = g->particles[p] == MSPRINGI_THERE;
@@ -233,7 +232,7 @@ static void load_particle(mspring_network *network, const growth *g, mspring_id 
     network->growth.particles[p] = g->particles[p];
 }
 
-// Take out a spring that is not to be there, or is to be another one.
+// Remove a spring that is absent in the snapshot, or differs from it.
 static void unload_spring(mspring_network *network, const growth *g, mspring_id s) {
     const mspringi_topology *t = &network->topology;
     if (!mspringi_spring_exists(network, s) || stays(network, g, s))
@@ -244,7 +243,7 @@ static void unload_spring(mspring_network *network, const growth *g, mspring_id 
     mspringi_solvers_clear_spring(network, mspringi_slot_of_spring(t, s));
 }
 
-// Put in one that is to be there, broken and without values for the time being.
+// Add a spring of the snapshot, broken and without values as yet.
 static void load_spring(mspring_network *network, const growth *g, mspring_id s) {
     mspringi_topology *t = &network->topology;
     const uint32_t i = s - t->reserve.first_spring;
@@ -288,7 +287,7 @@ static void load_all(mspring_network *network, const growth *g) {
     mspringi_notify_change(network, MSPRINGI_CHANGED_GRAFTS, 0);
 }
 
-// A snapshot without this section is of a network without spare ids, of which nothing had been removed.
+// A snapshot without this section has no spare ids, and nothing was removed.
 static void growth_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_topology *t = &network->topology;
     if (!network->growth.particles)

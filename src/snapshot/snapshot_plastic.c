@@ -1,4 +1,4 @@
-/// What springs yield at and have become by it, in a snapshot.
+/// Snapshot of yield parameters and plastic strains.
 #include <math.h>
 
 #include "step/plastic.h"
@@ -7,9 +7,9 @@
 #include "store/sections.h"
 #include "store/springs.h"
 
-/* ------------------------------------------------------------------------------------------ what they yield at */
+/* -------------------------------------------------------------------------------------------- yield parameters */
 
-/// Largest rest length before any flow, m: the longest spring may be the tenth part of its own.
+/// Largest rest length before any flow, m: a spring may shrink to a tenth of it.
 #define LONGEST_NOMINAL 1e14f
 
 typedef struct yielding {
@@ -74,9 +74,9 @@ static void yielding_load(mspring_network *network, const uint8_t *from, size_t 
 const mspringi_section mspringi_section_yielding = {"yiel",        "yield strains", true,         yielding_size,
                                                     yielding_save, yielding_check,  yielding_load};
 
-/* -------------------------------------------------------------------------------------- what they have become */
+/* -------------------------------------------------------------------------------------------- plastic strains */
 
-// Counts, and if some spring is bent, rest lengths: frames have none of these otherwise.
+// Counts, and rest lengths if a spring has flowed; frames have rest lengths for no other reason.
 typedef struct counts {
     uint64_t count, is_bent;
     double dissipated;
@@ -123,7 +123,7 @@ static mspring_result bent_check(mspring_network *network, const uint8_t *from, 
     return result == MSPRING_OK ? mspringi_plastic_reserve(network) : result;
 }
 
-// Ramps have been ended, and come back after this.
+// Load before the ramps, which were cleared.
 static void bent_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_plastic *p = &network->plastic;
     mspringi_io io = mspringi_io_from(from, size);

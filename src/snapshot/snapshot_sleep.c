@@ -1,4 +1,4 @@
-/// Which islands sleep, and for how long the others have been still, in a snapshot.
+/// Snapshot of sleeping islands, and of the time at rest of the others.
 ///
 /// Islands have no names that edits would leave alone: what sleeps is told by particle, and how long others have
 /// been still by their lowest slots. Edits of springs have woken those that they change, so the others are found
@@ -12,16 +12,16 @@
 
 typedef struct sleep_head {
     float speed, time;
-    uint32_t still_count; ///< islands that are awake and have been still
+    uint32_t still_count; ///< awake islands with a time at rest
     uint32_t any_asleep, has_force;
 } sleep_head;
 
 static void hand_head(mspringi_io *io, sleep_head *head) {
-    mspringi_hand(io, &head->speed, 2, sizeof(float)); // and those that follow
+    mspringi_hand(io, &head->speed, 2, sizeof(float)); // and the next one
     mspringi_hand(io, &head->still_count, 3, sizeof(uint32_t));
 }
 
-// A slot, and for how long its island has been still.
+// Slot and time at rest of its island.
 static void hand_still(mspringi_io *io, uint32_t *slot, double *still) {
     MSPRINGI_HAND(io, *slot);
     MSPRINGI_HAND(io, *still);
@@ -113,7 +113,7 @@ static mspring_result sleep_check(mspring_network *network, const uint8_t *from,
     return result == MSPRING_OK && head.speed > 0.0f ? mspringi_sleep_reserve(network) : result;
 }
 
-// Mark the islands all of whose particles sleep.
+// Mark the islands whose particles are all asleep.
 static void mark_asleep(const mspring_network *network, mspringi_io *io) {
     const mspringi_sleep *sleep = &network->sleep;
     const uint32_t particles = network->topology.reserve.particle_end;
@@ -127,7 +127,7 @@ static void mark_asleep(const mspring_network *network, mspringi_io *io) {
     }
 }
 
-// After all that could disturb it.
+// Load after all sections that could disturb sleep.
 static void sleep_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_sleep *sleep = &network->sleep;
     mspringi_io io = mspringi_io_from(from, size);

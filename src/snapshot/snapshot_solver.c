@@ -1,7 +1,7 @@
-/// What a solver carries from step to step, in a snapshot, and the network's precision.
+/// Snapshot of a solver's state between steps, and of the network's precision.
 #include "store/sections.h"
 
-// A solver that carries nothing has no section.
+// A solver without such state has no section.
 static void implicit_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_solver *solver = &network->solver;
     if (solver->ops->save)
@@ -27,7 +27,7 @@ const mspringi_section mspringi_section_implicit = {"impl",        "implicit sol
 
 /* --------------------------------------------------------------------------------------------------- precision */
 
-// There if low words count in the lengths of springs, which is the network's own for good: 1.
+// 1 if low words count in the lengths of springs, else absent. Fixed at creation.
 static void precision_save(const mspring_network *network, mspringi_writer *to) {
     if (network->is_precise)
         mspringi_put(to, &(uint32_t){1}, 1, sizeof(uint32_t));

@@ -1,4 +1,4 @@
-/// What edits and strain have made of the springs, in a snapshot.
+/// Snapshot of the springs as edits and strain have changed them.
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@
 #include "store/sections.h"
 #include "store/springs.h"
 
-/* ------------------------------------------------------------------------------------------------ bits by place */
+/* ------------------------------------------------------------------------------------------ bits by spring slot */
 
 static size_t words_size(const mspring_network *network) {
     return mspringi_spring_slot_words(&network->topology) * sizeof(uint16_t);
@@ -35,7 +35,7 @@ static void broken_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_put(to, network->live, mspringi_spring_slot_words(&network->topology), sizeof *network->live);
 }
 
-// A spring that is inactive was broken when the network was compacted, and a restored one ends that.
+// An inactive spring was broken when the network was compacted. Restoring it would invalidate the layout.
 static mspring_result broken_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_broken;
     const mspringi_topology *t = &network->topology;
@@ -48,8 +48,8 @@ static mspring_result broken_check(mspring_network *network, const uint8_t *from
     return result == MSPRING_OK ? mspringi_breaking_reserve(network) : result;
 }
 
-// Most often no spring has broken since, or been restored, and looking at each would take half of loading a frame.
-// (Where springs may have been added or removed each is looked at.)
+// True if the live bits are unchanged, the common case; comparing each spring would take half of loading a frame.
+// False if springs may have been added or removed.
 static bool are_as_in(const mspring_network *network, const uint8_t *from) {
     const size_t words = mspringi_spring_slot_words(&network->topology);
     bool same = !network->growth.springs;
@@ -84,8 +84,8 @@ const mspringi_section mspringi_section_broken = {"brok",      "broken springs",
 
 /* ----------------------------------------------------------------------------------------------------- values */
 
-// Of each spring its stiffness and damping, as if it were not broken, and its rest length. Of one on a ramp the
-// latter is on its way; the ramp has its own.
+// Values of a spring: nominal stiffness and damping, and rest length. That of a spring on a ramp is the present
+// one; the ramp has its own.
 enum { VALUES = 3 };
 
 static size_t values_size(const mspring_network *network) {
@@ -192,7 +192,7 @@ static void thresholds_load(mspring_network *network, mspring_property property,
                               size > 0 ? mspringi_float_at(from, s) : none);
 }
 
-// A section of thresholds of one kind: none if no spring has ever had one.
+// A section of thresholds of one kind, absent if no spring ever had one.
 #define THRESHOLDS(name, tag, words, property, array, has_any)                                                     \
     static size_t name##_size(const mspring_network *network) {                                                    \
         return thresholds_size(network, network->strain.has_any);                                                  \
@@ -234,7 +234,7 @@ static mspring_result stressed_check(mspring_network *network, const uint8_t *fr
     return result == MSPRING_OK ? mspringi_strain_reserve(network) : result;
 }
 
-// Only springs that are whole are stressed.
+// Only live springs are stressed.
 static void stressed_load(mspring_network *network, const uint8_t *from, size_t size) {
     const size_t words = mspringi_spring_slot_words(&network->topology);
     uint16_t *stressed = network->strain.stressed;
@@ -253,7 +253,7 @@ const mspringi_section mspringi_section_stressed = {"stsd",        "stressed spr
 
 /* ------------------------------------------------------------------------------------------------------ ramps */
 
-#define LONGEST_SPRING 1e13 // m, between the corners of where particles may be
+#define LONGEST_SPRING 1e13 // m, diagonal of the square of valid positions
 
 static void hand_ramp(mspringi_io *io, mspringi_ramp *ramp) {
     MSPRINGI_HAND(io, ramp->spring);
@@ -291,7 +291,7 @@ static mspring_result ramps_check(mspring_network *network, const uint8_t *from,
 static void ramps_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_io io = mspringi_io_from(from, size);
     network->ramps.count = 0;
-    while (io.left > 0) { // One of a spring that is not there can only be forged: it has no ends to wake.
+    while (io.left > 0) { // skips forged ramps of missing springs, which have no ends to wake
         mspringi_ramp ramp;
         hand_ramp(&io, &ramp);
         if (mspringi_spring_exists(network, ramp.spring))

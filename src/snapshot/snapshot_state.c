@@ -1,4 +1,4 @@
-/// Settings, steps so far, motion, masses and forces in a snapshot.
+/// Snapshot of settings, step count, motion, masses and forces.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -21,7 +21,7 @@ typedef struct settings {
 static void hand_settings(mspringi_io *io, settings *s) {
     MSPRINGI_HAND(io, s->origin_x);
     MSPRINGI_HAND(io, s->origin_y);
-    mspringi_hand(io, &s->recentre_distance, 7, sizeof(float)); // and those that follow
+    mspringi_hand(io, &s->recentre_distance, 7, sizeof(float)); // and the next six
     mspringi_hand(io, &s->substeps, 3, sizeof(uint32_t));
 }
 
@@ -41,7 +41,7 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
     hand_settings(&io, &s);
     if (mspringi_section_end(network, section, &io) != MSPRING_OK)
         return MSPRING_ERROR_SNAPSHOT;
-    // A network may have walked: its origin is no further than a particle may be from where it was put.
+    // A network may have moved: its origin is up to MSPRING_MAX_COORDINATE from its initial place.
     const double largest = 2.0 * MSPRING_MAX_COORDINATE;
     if (!(fabs(s.origin_x) <= largest && fabs(s.origin_y) <= largest && s.recentre_distance > 0.0f))
         return mspringi_section_fail(network, section, "the origin is (%g, %g) m", s.origin_x, s.origin_y);
@@ -81,7 +81,7 @@ static void settings_load(mspring_network *network, const uint8_t *from, size_t 
 const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,        NULL,
                                                     settings_save, settings_check, settings_load};
 
-/* ---------------------------------------------------------------------------------------------- steps so far */
+/* ------------------------------------------------------------------------------------------------ step count */
 
 static void hand_steps(mspringi_io *io, mspringi_steps *steps) {
     MSPRINGI_HAND(io, steps->count);
@@ -124,16 +124,16 @@ const mspringi_section mspringi_section_steps = {"step", "steps", false, NULL, s
 
 /* ------------------------------------------------------------------------------------------------ whole arrays */
 
-// Whether all of so many floats are no larger than that. (To look at all slots in a row, and only if something is
-// wrong at each particle's, takes a fifth of the time.)
+// True if all floats are at most `largest`. Checking all slots in a row, and single particles only after a failure,
+// takes a fifth of the time.
 static bool are_within(const uint8_t *from, size_t count, float largest) {
-    uint32_t others = 0; // as wide as a float, for vectors
+    uint32_t others = 0; // as wide as a float, for vectorisation
     for (size_t i = 0; i < count; ++i)
         others |= !(fabsf(mspringi_float_at(from, i)) <= largest);
     return others == 0;
 }
 
-// Whether they are these. False on machines where that takes longer.
+// True if all floats are equal. Always false on big-endian hosts, where the comparison is slow.
 static bool are_same(const uint8_t *from, const float *values, size_t count) {
     return !MSPRINGI_BIG_ENDIAN_HOST && memcmp(from, values, count * sizeof *values) == 0;
 }
@@ -164,7 +164,7 @@ static mspring_result check_motion(mspring_network *network, const uint8_t *from
                                        (double)x, (double)y, (double)vx, (double)vy);
 }
 
-// The slots that particles may be in: to which of its two a spare one goes is in another section.
+// Check all slots that particles may occupy. Another section says which of its two a spare one is in.
 static mspring_result motion_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_topology *t = &network->topology;
     const size_t third = motion_floats(network) / MSPRINGI_STATE_ARRAYS * 2; // positions; velocities; low words
@@ -182,7 +182,7 @@ static mspring_result motion_check(mspring_network *network, const uint8_t *from
     return result;
 }
 
-// A low word that is too large for its coordinate counts as 0 as long as it is not used, and is 0 from here on.
+// A low word too large for its coordinate counts as 0 while unused, and becomes 0 here.
 static void motion_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_get(from, network->state.x, size / sizeof(float), sizeof(float));
     mspringi_clear_unused_slots(network);
@@ -196,8 +196,8 @@ const mspringi_section mspringi_section_motion = {
 
 /* ----------------------------------------------------------------------------------------------------- masses */
 
-// First what there is: a mass for each particle; then inverse masses by slot or, where some are scaled, a scale for
-// each particle; then, where they differ, the masses that relative springs go by.
+// Contents of the section: kind; a mass for each particle; inverse masses by slot or, if some are scaled, a scale
+// for each particle; and the masses of relative springs if they differ.
 enum { SCALED = 1, SPRING_MASSES = 2 };
 
 static uint32_t masses_kind(const mspring_network *network) {
@@ -256,7 +256,7 @@ static bool are_scales(const uint8_t *from, size_t count) {
     return others == 0;
 }
 
-// Whether all is well with them at first sight. What is not scaled has a scale of 0 or 1.
+// True if all values are valid. An unscaled particle has a scale of 0 or 1.
 static bool are_right(const mspring_network *network, const masses *m) {
     const size_t particles = network->topology.reserve.particle_end;
     return are_masses(m->mass, particles) &&
@@ -264,7 +264,7 @@ static bool are_right(const mspring_network *network, const masses *m) {
            (!(m->kind & SCALED) || are_scales(m->inverse_or_scale, particles));
 }
 
-// Whether the network has them already, as it most often does.
+// True if the network already has these masses, the common case.
 static bool has_masses(const mspring_network *network, const masses *m) {
     const size_t particles = network->topology.reserve.particle_end;
     return !network->growth.particles && m->kind == masses_kind(network) &&
@@ -275,7 +275,7 @@ static bool has_masses(const mspring_network *network, const masses *m) {
            (!(m->kind & SPRING_MASSES) || are_same(m->spring_mass, network->spring_mass, particles));
 }
 
-// What is not scaled has inverse mass 0 or the inverse of its mass: a scale of 0 or 1.
+// Scale of an inverse mass. An unscaled one is 0 or the inverse of the mass: its scale is 0 or 1.
 static float scale_in(const mspring_network *network, const masses *m, mspring_id particle) {
     if (m->kind & SCALED)
         return mspringi_float_at(m->inverse_or_scale, particle);
@@ -361,7 +361,7 @@ static mspring_result forces_check(mspring_network *network, const uint8_t *from
     return result == MSPRING_OK ? mspringi_field_reserve(network, &network->forces.held) : result;
 }
 
-// Forces on nobody can only be forged: a particle that is added would find them.
+// Forces on empty slots, from a forged snapshot, are dropped: a particle added later would feel them.
 static void forces_load(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_field held = network->forces.held;
     const size_t slots = mspringi_slot_count(network);

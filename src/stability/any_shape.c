@@ -1,10 +1,10 @@
-/// A bound on the substep that no motion of the network can break.
+/// Bound on the substep for every shape of the network.
 ///
-/// In any shape a spring's tangent stiffness is at most its stiffness in every direction, and so is its damping: A
-/// + 2 D (see pencil.h) is at most the Laplacian of the graph with the weights w = h^2 k + 2 h c, once for x and
-/// once for y. Its largest eigenvalue is also that of the matrix over springs G^T M^-1 G w (G the incidence
-/// matrix), whose row sums are at most S(a) / m_a + S(b) / m_b, with S the sum of the weights at a particle. (For
-/// graphs without weights: Anderson and Morley 1985.)
+/// A spring's tangent stiffness in any shape is at most its stiffness in every direction, and so is its damping. A
+/// + 2 D (see pencil.h) is therefore at most the Laplacian of the graph with the weights w = h^2 k + 2 h c, once
+/// for x and once for y. Its largest eigenvalue is also that of the matrix over springs G^T M^-1 G w (G the
+/// incidence matrix), whose row sums are at most S(a) / m_a + S(b) / m_b, with S the sum of the weights at a
+/// particle. (For graphs without weights: Anderson and Morley 1985.)
 #include "stability/stability.h"
 
 #include <math.h>
@@ -33,8 +33,8 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
                                .relative_damping = damping * reduced_mass};
 }
 
-// Where sums by slot may be written: where looks work, or else in the backup.
-static mspringi_state find_room(const mspring_network *network) {
+// Memory for sums by slot: the guard's scratch arrays, else the backup.
+static mspringi_state choose_scratch(const mspring_network *network) {
     if (!network->guard_scratch)
         return network->backup;
     return (mspringi_state){.x = mspringi_stability_limit_scratch(network, 0),
@@ -43,8 +43,9 @@ static mspringi_state find_room(const mspring_network *network) {
                             .vy = mspringi_stability_limit_scratch(network, 3)};
 }
 
-// Sums over the springs at each slot, per mass: stiffness in x, damping in y, the relative springs' in vx.
-static void sum_up(const mspring_network *network, const mspringi_state *sums) {
+// Sum over the springs at each slot: stiffness in x, damping in y, and the strength of relative springs per mass in
+// vx.
+static void sum_strengths(const mspring_network *network, const mspringi_state *sums) {
     memset(sums->x, 0, 4 * mspringi_slot_count(network) * sizeof *sums->x);
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[i];
@@ -64,14 +65,14 @@ static void sum_up(const mspring_network *network, const mspringi_state *sums) {
     mspringi_areas_sum(network, sums->x, sums->y);
 }
 
-// The smallest limit of all springs. Relative ones count with at most so much of the bound, which is 4.
-static double find(mspring_network *network, double most_relative, mspring_id *spring) {
-    // Room for the rounding of the sums.
+// Smallest limit of all springs. Relative springs take at most `max_relative` of the bound, which is 4.
+static double find_limit(mspring_network *network, double max_relative, mspring_id *spring) {
+    // Margin for the rounding of the sums.
     const double tight = 1.0 - 1e-5;
-    const mspringi_state room = find_room(network), *sums = &room;
+    const mspringi_state room = choose_scratch(network), *sums = &room;
     double smallest = INFINITY;
-    mspringi_quotient tightest = {0.0, 0.0, 0.0}; // whose limit is the smallest
-    sum_up(network, sums);
+    mspringi_quotient tightest = {0.0, 0.0, 0.0}; // quotient with the smallest limit so far
+    sum_strengths(network, sums);
     *spring = MSPRING_NONE;
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         uint32_t a, b;
@@ -82,7 +83,7 @@ static double find(mspring_network *network, double most_relative, mspring_id *s
         const mspringi_quotient quotient = {
             .stiffness = (double)sums->x[a] * per_a + (double)sums->x[b] * per_b,
             .damping = (double)sums->y[a] * per_a + (double)sums->y[b] * per_b,
-            .relative = fmin(((double)sums->vx[a] + (double)sums->vx[b]) * tight, most_relative),
+            .relative = fmin(((double)sums->vx[a] + (double)sums->vx[b]) * tight, max_relative),
         };
         if (quotient.stiffness <= tightest.stiffness && quotient.damping <= tightest.damping &&
             quotient.relative <= tightest.relative)
@@ -94,14 +95,14 @@ static double find(mspring_network *network, double most_relative, mspring_id *s
             *spring = i;
         }
     }
-    // Corners of an area need no spring between them.
+    // Corners of an area may have no spring between them.
     const mspringi_quotient areas = {.stiffness = mspringi_areas_largest(network, sums->x),
                                      .damping = mspringi_areas_largest(network, sums->y)};
     smallest = fmin(smallest, mspringi_quotient_limit(&areas, 0.0f));
     return smallest * tight;
 }
 
-static bool is_of_now(const mspringi_any_shape *known, const mspringi_edits *edits) {
+static bool is_current(const mspringi_any_shape *known, const mspringi_edits *edits) {
     return known->is_known && known->masses == edits->masses && known->values == edits->values &&
            known->growth == edits->growth;
 }
@@ -109,11 +110,11 @@ static bool is_of_now(const mspringi_any_shape *known, const mspringi_edits *edi
 double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring) {
     mspringi_any_shape *known = &network->any_shape, *last = &network->last_shape;
     const mspringi_edits *edits = &network->edits;
-    if (!is_of_now(known, edits)) {
-        if (!is_of_now(last, edits)) {
+    if (!is_current(known, edits)) {
+        if (!is_current(last, edits)) {
             *last = (mspringi_any_shape){
                 .masses = edits->masses, .values = edits->values, .growth = edits->growth, .is_known = true};
-            last->dt = find(network, INFINITY, &last->spring);
+            last->dt = find_limit(network, INFINITY, &last->spring);
         }
         *known = *last;
     }
@@ -125,10 +126,10 @@ double mspringi_stable_with_relative(mspring_network *network) {
     mspring_id spring;
     mspringi_any_shape *last = &network->last_shape;
     (void)mspringi_stable_in_any_shape(network, &spring);
-    if (!is_of_now(last, &network->edits))
+    if (!is_current(last, &network->edits))
         *last = network->any_shape;
     if (!(last->mixed_dt > 0.0))
-        last->mixed_dt = find(network, 2.0, &spring);
+        last->mixed_dt = find_limit(network, 2.0, &spring);
     return last->mixed_dt;
 }
 

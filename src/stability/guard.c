@@ -1,12 +1,14 @@
-/// What goes wrong, before it is to be seen: substeps above the limit (see pencil.h), and numbers out of bounds.
+/// Detection of unstable steps: substeps above the stability limit (see pencil.h), and values out of bounds.
 ///
-/// Up to the substep that is stable in any shape nothing needs to be looked at. Above it, the limit of the shape
-/// that the network has is: before a step whose substep is another one, and after one that has changed a particle's
-/// velocity twice as much as one had at the last look. A bound tells first whether it can be near at all
-/// (certificate.c). If it can, a search tells with certainty that it is not (limit_search.c), if it finds that: so
-/// a step of a network that is below the limit is never refused. A look is as short as a few substeps, so that no
-/// frame is late for it. What a short search overlooks grows, changes velocities more, and is looked for again in
-/// the same motion, which has more of it each time; the step in which it is found is the one that is taken back.
+/// A substep that is stable in any shape needs no check. A longer one is compared with the limit of the present
+/// shape in two cases: before a step with a new substep, and after a step that changed a velocity by twice the peak
+/// of the last check. A bound first tests if the limit can be near at all (certificate.c). If so, a search looks
+/// for an unstable motion (limit_search.c). Its eigenvalue is a lower bound, so a step below the limit is never
+/// rejected.
+///
+/// A check takes as long as a few substeps, so no frame is late. An instability that a short search misses grows,
+/// changes velocities more and triggers the next search. This starts from the motion of the step, in which the
+/// unstable mode is stronger each time. The step in which it is found is rolled back.
 #include "stability/guard.h"
 
 #include <math.h>
@@ -16,25 +18,24 @@
 #include "stability/stability.h"
 #include "stability/stability_limit.h"
 
-/// Growth of the largest change of a velocity, from look to look at the limit.
+/// Growth of the largest change of velocity from one check of the limit to the next.
 #define SUSPICIOUS 2.0f
 
-/// What is left of that in each step without a look: half in 2839 steps, so that looks are rare where nothing
-/// grows.
-#define FADING (4095.0f / 4096.0f)
+/// Decay of that peak in a step without a check: half in 2839 steps, so checks are rare where nothing grows.
+#define PEAK_DECAY (4095.0f / 4096.0f)
 
-/// Change that nobody looks at, in shortest rest lengths per substep.
+/// Change of velocity below which nothing is checked, in shortest rest lengths per substep.
 #define HARMLESS 1e-3
 
-/// Iterations from no particular vector, and from the motion.
+/// Iterations of a search from noise, and from the motion.
 #define ITERATIONS 100
 #define ITERATIONS_FROM_MOTION 12
 
-/// Substeps, for each of which a step with that many may take an iteration; springs times iterations that any step
-/// may take; and iterations that each look takes.
+/// Substeps of a step for each iteration it may take; iterations times springs that any step may take; fewest
+/// iterations.
 #define SUBSTEPS_OF_ITERATION 4
 #define SMALL_WORK 40000u
-#define LEAST_ITERATIONS 2
+#define MIN_ITERATIONS 2
 
 /* --------------------------------------------------------------------------------------------------- bounds */
 
@@ -45,7 +46,7 @@ static bool is_in_bounds(const mspring_network *network, uint32_t slot) {
            fabsf(s->vy[slot]) <= fastest;
 }
 
-// Name a particle that left the bounds: the first that is still a number, since what is none spreads to others.
+// Report the first particle out of bounds whose state is still a number, since NaN spreads to others.
 static mspring_result check_bounds(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_state *s = &network->state;
     const mspringi_topology *t = &network->topology;
@@ -65,7 +66,7 @@ static mspring_result check_bounds(mspring_network *network, const mspringi_atte
     network->outcome.particle = named;
     if (!isfinite(x + y + vx + vy))
         return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                             "unstable: substeps of %g s throw particle %u out of the range of numbers. %s",
+                             "unstable: substeps of %g s throw particle %u to infinity or NaN. %s",
                              (double)attempt->h, (unsigned)named, cure);
     return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
                          "unstable: substeps of %g s throw particle %u to (%g, %g) m at (%g, %g) m/s, at most %g. "
@@ -102,17 +103,17 @@ void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *
     network->outcome.flags |= MSPRING_STEP_PUT_BACK;
 }
 
-// The same at the end of a step.
+// Clamp the state at the end of a step.
 static mspringi_extrema put_back(mspring_network *network) {
     mspringi_guard_clamp_state(network, &network->backup);
     mspringi_floor_roll_back(network->floor);
     return mspringi_guard_extrema(network, 0, mspringi_used_slots(network));
 }
 
-/* --------------------------------------------------------------------------------------------------- the limit */
+/* --------------------------------------------------------------------------------------------- stability limit */
 
-// Name the tightest spring, and the end of it that is more easily moved.
-static mspring_result explain_border(mspring_network *network, const mspringi_attempt *attempt) {
+// Report the tightest spring, and the lighter of its ends.
+static mspring_result report_limit(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_topology *t = &network->topology;
     const mspring_id spring = mspringi_tightest_spring(network, (double)attempt->h);
     if (spring == MSPRING_NONE)
@@ -135,19 +136,18 @@ static mspring_result explain_border(mspring_network *network, const mspringi_at
         (double)attempt->h, (unsigned)spring, (unsigned)moved);
 }
 
-// Iterations that a search may take: so many that they take no longer than half of the step's substeps, unless the
-// network is small.
+// Number of iterations of a search, at most half the time of the step's substeps. Small networks may take more.
 static int affordable_iterations(const mspring_network *network, uint32_t substeps, int most) {
     const uint32_t by_step = substeps / SUBSTEPS_OF_ITERATION;
     const uint32_t by_size = SMALL_WORK / (network->topology.spring_count + 1);
     const uint32_t count = by_step > by_size ? by_step : by_size;
-    return count >= (uint32_t)most ? most : count > LEAST_ITERATIONS ? (int)count : LEAST_ITERATIONS;
+    return count >= (uint32_t)most ? most : count > MIN_ITERATIONS ? (int)count : MIN_ITERATIONS;
 }
 
-static mspring_result look_at_border(mspring_network *network, const mspringi_attempt *attempt, bool from_motion) {
+static mspring_result check_limit(mspring_network *network, const mspringi_attempt *attempt, bool from_motion) {
     const float h = attempt->h;
     const double decay = (double)mspringi_decay(network->settings.global_damping, h);
-    // Vectors are floats: room for their rounding.
+    // Margin for the rounding of single-precision vectors.
     const double sharp = 2.0 * (1.0 + 1.0 / decay), bound = sharp * (1.0 + 1e-4);
     if (mspringi_stability_limit_is_below(network, (double)h, sharp))
         return MSPRING_OK;
@@ -156,10 +156,10 @@ static mspring_result look_at_border(mspring_network *network, const mspringi_at
     const uint32_t moved = from_motion ? attempt->substeps : 0;
     if (!(mspringi_stability_limit_search(network, (double)h, moved, bound, iterations) > bound))
         return MSPRING_OK;
-    return explain_border(network, attempt);
+    return report_limit(network, attempt);
 }
 
-/* --------------------------------------------------------------------------------------------------- the steps */
+/* ------------------------------------------------------------------------------------------------------- steps */
 
 mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *message) {
     if (policy < MSPRING_GUARD_GROWTH || policy > MSPRING_GUARD_CLAMP_BOUNDS)
@@ -180,8 +180,8 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
                                                                     : result;
 }
 
-// Solvers without a limit have forces of areas without springs all around from the start of a substep; but one
-// whose speeds are clamped takes any step.
+// Check areas without springs all around. In solvers without a stability limit, their forces are those at the start
+// of a substep. The clamped solver takes any step.
 static mspring_result check_areas(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_areas *areas = &network->areas;
     if (areas->unringed == 0 || network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS ||
@@ -209,17 +209,17 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
     if (same && (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
-        guard->watches = true; // edits cost nothing here; what they do to the limit is seen in the velocities
+        guard->watches = true; // too early to see the effect of edits; velocities will show it
         return MSPRING_OK;
     }
     mspring_id spring;
     guard->watches = (double)h > mspringi_stable_in_any_shape(network, &spring);
     guard->h = h;
     guard->global_damping = network->settings.global_damping;
-    return guard->watches && !same ? look_at_border(network, attempt, false) : MSPRING_OK;
+    return guard->watches && !same ? check_limit(network, attempt, false) : MSPRING_OK;
 }
 
-// NaN, if there is one, counts as the largest, as in the kernels.
+// Larger value; NaN counts as the largest, as in the kernels.
 static float larger(float a, float b) {
     return b > a || b != b ? b : a;
 }
@@ -241,17 +241,17 @@ mspringi_extrema mspringi_guard_extrema(const mspring_network *network, size_t f
         larger(vx.value, vy.value), larger(vx.change, vy.change)};
 }
 
-/// Fewest slots that workers look at together.
-#define SMALLEST_SHARED_LOOK 32768
+/// Fewest slots for which workers share the pass.
+#define MIN_SHARED_SLOTS 32768
 
-typedef struct look {
+typedef struct extrema_task {
     const mspring_network *network;
     uint32_t workers;
     mspringi_extrema seen[MSPRING_MAX_WORKERS];
-} look;
+} extrema_task;
 
-static void look_at_share(void *argument, uint32_t index, uint32_t worker) {
-    look *all = argument;
+static void find_share_extrema(void *argument, uint32_t index, uint32_t worker) {
+    extrema_task *all = argument;
     const size_t blocks = mspringi_used_slots(all->network) / MSPRINGI_WIDTH;
     (void)worker;
     all->seen[index] = mspringi_guard_extrema(all->network, blocks * index / all->workers * MSPRINGI_WIDTH,
@@ -259,32 +259,31 @@ static void look_at_share(void *argument, uint32_t index, uint32_t worker) {
 }
 
 mspringi_extrema mspringi_guard_extrema_of_all(const mspring_network *network) {
-    look all = {.network = network, .workers = mspringi_tasks_workers(network->tasks)};
-    if (mspringi_used_slots(network) < SMALLEST_SHARED_LOOK)
+    extrema_task all = {.network = network, .workers = mspringi_tasks_workers(network->tasks)};
+    if (mspringi_used_slots(network) < MIN_SHARED_SLOTS)
         return mspringi_guard_extrema(network, 0, mspringi_used_slots(network));
-    mspringi_tasks_run(network->tasks, all.workers, look_at_share, &all);
+    mspringi_tasks_run(network->tasks, all.workers, find_share_extrema, &all);
     for (uint32_t i = 1; i < all.workers; ++i)
         all.seen[0] = mspringi_extrema_join(all.seen[0], all.seen[i]);
     return all.seen[0];
 }
 
-// Change that is as good as none, m/s.
-static float calm_change(const mspring_network *network, float h) {
+// Change of velocity too small to check, m/s.
+static float harmless_change(const mspring_network *network, float h) {
     const double harmless = HARMLESS * network->shortest / (double)h;
     return harmless < 1e15 ? (float)harmless : 1e15f;
 }
 
-// Whether the largest change of a velocity in a step is more than usual.
+// True if the largest change of velocity in a step is unusual. Updates the peak.
 static bool is_suspicious(mspring_network *network, float h, float change) {
     mspringi_guard *guard = &network->guard;
-    const bool suspicious = change > SUSPICIOUS * fmaxf(guard->peak, calm_change(network, h));
-    guard->peak = suspicious ? change : guard->peak * FADING;
+    const bool suspicious = change > SUSPICIOUS * fmaxf(guard->peak, harmless_change(network, h));
+    guard->peak = suspicious ? change : guard->peak * PEAK_DECAY;
     return suspicious;
 }
 
-// What no speed is above after a step. Where changes are watched speeds are not (see sweep.h for what either
-// takes), as no particle is faster than the fastest was before by more than the largest change; with room for
-// rounding.
+// Upper bound of all speeds after a step, m/s. A kernel that watches changes skips speeds (costs: see sweep.h): no
+// particle is faster than the fastest before plus the largest change, with a margin for rounding.
 static float bound_speed(const mspring_network *network, mspringi_extrema extrema) {
     const mspringi_guard *guard = &network->guard;
     if (!(guard->watches && guard->knows_speed))
@@ -295,8 +294,8 @@ static float bound_speed(const mspring_network *network, mspringi_extrema extrem
                : mspringi_guard_extrema(network, 0, mspringi_used_slots(network)).speed;
 }
 
-// What no coordinate is above after a step. One substep takes none further than by the speed at its end, unless
-// a floor does: then all of it has been looked at.
+// Upper bound of all coordinates after a step, m. One substep moves a particle by its final speed at most, except
+// at a floor, where every coordinate was read.
 static float bound_coordinate(const mspring_network *network, float h, float speed, mspringi_extrema extrema) {
     const mspringi_guard *guard = &network->guard;
     if (!guard->knows_coordinate)
@@ -330,11 +329,11 @@ mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attem
             return result;
     }
     if (guard->watches && is_suspicious(network, h, extrema.change)) {
-        const mspring_result result = look_at_border(network, attempt, true);
+        const mspring_result result = check_limit(network, attempt, true);
         if (result != MSPRING_OK)
             return result;
     }
-    // What sleeps is not seen, and the bounds of the next step hold only after one of the same kind.
+    // Sleeping particles are skipped, and the bounds serve only a step of the same kind.
     const bool is_known = attempt->solver->ops->has_stability_limit;
     guard->speed = is_known ? larger(speed, network->settings.sleep_speed) : INFINITY;
     guard->coordinate = is_known && network->sleep.sleeping == 0 ? coordinate : INFINITY;

@@ -1,5 +1,5 @@
 /// @file guard.h
-/// Finding out that a step went wrong.
+/// Detection of unstable steps.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_GUARD_H
@@ -8,35 +8,34 @@
 #include "store/network.h"
 #include "store/solver.h"
 
-/// Refuse what is no policy.
+/// Return an error for an unknown policy.
 mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *message);
 
-/// Whether a network with this policy looks at the limit.
+/// True if this policy checks the stability limit.
 bool mspringi_guard_checks_limit(mspring_guard policy);
 
-/// Reserve what this policy needs, unless it is there.
+/// Reserve memory for this policy, unless it is reserved.
 mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard policy);
 
-/// Before a step: MSPRING_OK, or MSPRING_ERROR_UNSTABLE with a message if its substeps are
-/// found to be above the limit.
+/// Check the substep before a step: MSPRING_ERROR_UNSTABLE, with a message, if it exceeds the limit.
 mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_attempt *attempt);
 
-/// Look at the slots first to end - 1, multiples of MSPRINGI_WIDTH, whose state before the step is in the backup.
-/// May be called by several threads at once.
+/// Extrema of the slots first to end - 1, multiples of MSPRINGI_WIDTH. The backup has the state before the step.
+/// Thread-safe.
 mspringi_extrema mspringi_guard_extrema(const mspring_network *network, size_t first, size_t end);
-/// The same of all slots, by all workers: each is to keep what it has written in its own core's cache.
+/// Extrema of all slots, by all workers: each reads the slots that it wrote, from its own cache.
 mspringi_extrema mspringi_guard_extrema_of_all(const mspring_network *network);
 
-/// After substeps of h from what mspringi_guard_begin() saw: the same, with bounds for what was not watched.
+/// Fill in bounds for the extrema that were not watched in substeps of h since mspringi_guard_begin().
 mspringi_extrema mspringi_guard_bound(const mspring_network *network, float h, mspringi_extrema extrema);
 
-/// Put what is out of bounds back into them: before is the state of before the step, or NULL.
+/// Clamp the state to its bounds. before: the state before the step, or NULL.
 void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *before);
 
-/// The extrema of both, in whatever order they are joined.
+/// Extrema of both sets of slots. The order of joining does not matter.
 mspringi_extrema mspringi_extrema_join(mspringi_extrema a, mspringi_extrema b);
 
-/// Judge the state that the substeps have led to by the extrema of all slots. That of before is in the backup.
+/// Check the state after the substeps by the extrema of all slots. The backup has the state before the step.
 mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt,
                                   mspringi_extrema extrema);
 

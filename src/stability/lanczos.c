@@ -1,7 +1,7 @@
-/// The Lanczos iteration (Lanczos 1950; Parlett, The Symmetric Eigenvalue Problem, 1980, chapter 13): in the space
-/// that a vector and its images span, S is tridiagonal. Extreme eigenvalues are found first, long before rounding
-/// makes the vectors lose their orthogonality, so there is no reorthogonalisation, and three vectors are enough.
-/// The eigenvector takes a second run, along the same vectors.
+/// Lanczos iteration (Lanczos 1950; Parlett, The Symmetric Eigenvalue Problem, 1980, chapter 13): S is tridiagonal
+/// in the Krylov space of a vector. Extreme eigenvalues converge long before rounding destroys the orthogonality of
+/// the vectors. So there is no reorthogonalisation, and three vectors suffice. The eigenvector takes a second run
+/// over the same vectors.
 #include "stability/lanczos.h"
 
 #include <math.h>
@@ -11,12 +11,11 @@
 
 #include "stability/tridiagonal.h"
 
-/// Iterations between two looks at the tridiagonal matrix.
-#define LOOK 4
+/// Iterations between two solutions of the tridiagonal matrix.
+#define CHECK_PERIOD 4
 
-/// Iterations before an eigenvalue is believed to be the largest: a start near an eigenvector hides the others for
-/// a while.
-#define LEAST 16
+/// Fewest iterations: a start near an eigenvector hides larger eigenvalues for a while.
+#define MIN_ITERATIONS 16
 
 static double dot(const double *a, const double *b, size_t size) {
     double sum = 0.0;
@@ -25,14 +24,13 @@ static double dot(const double *a, const double *b, size_t size) {
     return sum;
 }
 
-// next = S here, less its parts along here and before. What the run before has found is what diagonal and beside
-// say.
+// next = S here, minus its parts along here and before. known_diagonal, from the first run, saves a dot product.
 static void advance(const mspringi_lanczos *p, const double *before, const double *here, double *next,
-                    double beside, const double *known_diagonal, double *diagonal) {
+                    double off_diagonal, const double *known_diagonal, double *diagonal) {
     p->apply(p->context, here, next);
     *diagonal = known_diagonal ? *known_diagonal : dot(here, next, p->size);
     for (size_t i = 0; i < p->size; ++i)
-        next[i] -= *diagonal * here[i] + beside * before[i];
+        next[i] -= *diagonal * here[i] + off_diagonal * before[i];
 }
 
 static void divide(double *vector, double by, size_t size) {
@@ -40,29 +38,29 @@ static void divide(double *vector, double by, size_t size) {
         vector[i] /= by;
 }
 
-// Run along the vectors that T was made of, and sum them up.
+// Repeat the run and sum up the eigenvector.
 static void sum_up(const mspringi_lanczos *p, const mspringi_tridiagonal *t, const double *weights) {
     double *before = p->work[0], *here = p->work[1], *next = p->work[2], diagonal;
     memcpy(here, p->vector, p->size * sizeof *here);
     for (size_t i = 0; i < p->size; ++i)
         p->vector[i] = weights[0] * here[i];
     for (int j = 0; j + 1 < t->size; ++j) {
-        advance(p, before, here, next, j > 0 ? t->beside[j - 1] : 0.0, &t->diagonal[j], &diagonal);
-        divide(next, t->beside[j], p->size);
+        advance(p, before, here, next, j > 0 ? t->off_diagonal[j - 1] : 0.0, &t->diagonal[j], &diagonal);
+        divide(next, t->off_diagonal[j], p->size);
         for (size_t i = 0; i < p->size; ++i)
             p->vector[i] += weights[j + 1] * next[i];
-        double *const free_again = before;
+        double *const oldest = before;
         before = here;
         here = next;
-        next = free_again;
+        next = oldest;
     }
-    // Where vectors have lost their orthogonality, the sum is not of length 1.
+    // Not of length 1 yet if orthogonality was lost.
     divide(p->vector, sqrt(dot(p->vector, p->vector, p->size)), p->size);
 }
 
 mspringi_ritz mspringi_lanczos_largest(const mspringi_lanczos *p, double tolerance) {
     mspringi_tridiagonal t = {.size = 0};
-    double weights[MSPRINGI_LANCZOS_MOST];
+    double weights[MSPRINGI_LANCZOS_MAX];
     mspringi_ritz ritz = {0.0, 0.0};
     double scale = 0.0;
     double *before = p->work[0], *here = p->work[1], *next = p->work[2];
@@ -74,23 +72,23 @@ mspringi_ritz mspringi_lanczos_largest(const mspringi_lanczos *p, double toleran
     memcpy(here, p->vector, p->size * sizeof *here);
     for (bool done = false; !done;) {
         const int j = t.size++;
-        advance(p, before, here, next, j > 0 ? t.beside[j - 1] : 0.0, NULL, &t.diagonal[j]);
-        t.beside[j] = sqrt(dot(next, next, p->size));
-        // Nothing left but rounding: the space is closed under S.
-        scale = fmax(scale, fmax(fabs(t.diagonal[j]), t.beside[j]));
-        const bool closed = t.beside[j] <= 1e-12 * scale;
-        const bool full = closed || t.size == MSPRINGI_LANCZOS_MOST;
-        if (full || t.size % LOOK == 0) {
+        advance(p, before, here, next, j > 0 ? t.off_diagonal[j - 1] : 0.0, NULL, &t.diagonal[j]);
+        t.off_diagonal[j] = sqrt(dot(next, next, p->size));
+        // Only rounding is left: the space is invariant under S.
+        scale = fmax(scale, fmax(fabs(t.diagonal[j]), t.off_diagonal[j]));
+        const bool closed = t.off_diagonal[j] <= 1e-12 * scale;
+        const bool full = closed || t.size == MSPRINGI_LANCZOS_MAX;
+        if (full || t.size % CHECK_PERIOD == 0) {
             ritz.value = mspringi_tridiagonal_top(&t, weights);
-            ritz.residual = closed ? 0.0 : t.beside[j] * fabs(weights[j]);
-            done = full || (t.size >= LEAST && ritz.residual <= tolerance * ritz.value);
+            ritz.residual = closed ? 0.0 : t.off_diagonal[j] * fabs(weights[j]);
+            done = full || (t.size >= MIN_ITERATIONS && ritz.residual <= tolerance * ritz.value);
         }
         if (!done) {
-            divide(next, t.beside[j], p->size);
-            double *const free_again = before;
+            divide(next, t.off_diagonal[j], p->size);
+            double *const oldest = before;
             before = here;
             here = next;
-            next = free_again;
+            next = oldest;
         }
     }
     sum_up(p, &t, weights);
@@ -98,8 +96,7 @@ mspringi_ritz mspringi_lanczos_largest(const mspringi_lanczos *p, double toleran
 }
 
 double mspringi_noise(size_t n) {
-    uint64_t bits =
-        ((uint64_t)n + 1) * UINT64_C(0x9e3779b97f4a7c15); // the mixer of SplitMix64 (Steele et al. 2014)
+    uint64_t bits = ((uint64_t)n + 1) * UINT64_C(0x9e3779b97f4a7c15); // mixer of SplitMix64 (Steele et al. 2014)
     bits = (bits ^ (bits >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
     bits = (bits ^ (bits >> 27)) * UINT64_C(0x94d049bb133111eb);
     return (double)(bits >> 11) * 0x1p-52 - 1.0;

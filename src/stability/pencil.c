@@ -9,7 +9,7 @@
 
 double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping) {
     double h = 0.0;
-    // With global damping the bound itself grows with h: from below to the first h that meets it.
+    // Global damping raises the bound with h: iterate from below to the first h that meets it.
     for (int turn = 0; turn < 100; ++turn) {
         const double bound = 2.0 + 2.0 / (double)mspringi_decay(global_damping, (float)h),
                      room = bound - q->relative;
@@ -17,7 +17,7 @@ double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping)
             return 0.0;
         if (room == INFINITY)
             return INFINITY;
-        // The positive root of h^2 stiffness + 2 h damping = room, without cancellation.
+        // Positive root of h^2 stiffness + 2 h damping = room, without cancellation.
         const double divisor = q->damping + sqrt(q->damping * q->damping + q->stiffness * room);
         const double before = h;
         h = divisor > 0.0 ? room / divisor : INFINITY;
@@ -55,9 +55,9 @@ void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_linear_sp
     quotient->relative += s->strength.relative_stiffness * stretch + 2.0 * s->strength.relative_damping * speed;
 }
 
-// The spring as the limit takes it, on the safe side: see mspringi_pencil_set().
-static mspringi_linear_spring see_safely(const mspring_network *network, mspring_id spring,
-                                         mspringi_spring_slot spring_slot) {
+// Linearise a spring conservatively: see mspringi_pencil_set().
+static mspringi_linear_spring linearise_conservatively(const mspring_network *network, mspring_id spring,
+                                                       mspringi_spring_slot spring_slot) {
     mspringi_linear_spring seen = mspringi_linearise_spring(network, spring, spring_slot);
     if (!seen.directed)
         seen.across = 1.0;
@@ -76,7 +76,7 @@ void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
         pencil->terms[i] = (struct mspringi_pencil_term){0};
         if (!mspringi_spring_exists(network, i))
             continue;
-        const mspringi_linear_spring s = see_safely(network, i, spring_slot);
+        const mspringi_linear_spring s = linearise_conservatively(network, i, spring_slot);
         const double stiffness = h * h * s.strength.stiffness + s.strength.relative_stiffness;
         const double damping = 2.0 * (h * s.strength.damping + s.strength.relative_damping);
         const double all = s.directed ? stiffness * s.across : stiffness + damping;
@@ -113,11 +113,11 @@ mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const 
         const mspringi_spring_slot spring_slot = pencil->network->topology.slot_of_spring[i];
         if (!mspringi_spring_exists(pencil->network, i))
             continue;
-        mspringi_linear_spring s = see_safely(pencil->network, i, spring_slot);
+        mspringi_linear_spring s = linearise_conservatively(pencil->network, i, spring_slot);
         const double *const at_a = vector + 2 * (size_t)s.a, *const at_b = vector + 2 * (size_t)s.b;
         const double dx = pencil->root[s.b] * at_b[0] - pencil->root[s.a] * at_a[0];
         const double dy = pencil->root[s.b] * at_b[1] - pencil->root[s.a] * at_a[1];
-        if (!s.directed) { // then along the displacement, whatever that is
+        if (!s.directed) { // a direction along the displacement is the worst
             const double length = sqrt(dx * dx + dy * dy);
             s.nx = length > 0.0 ? dx / length : 0.0;
             s.ny = length > 0.0 ? dy / length : 0.0;

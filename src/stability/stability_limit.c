@@ -1,4 +1,4 @@
-/// Passes over all springs for the stability limit: those of lattices and chains by kernels, the others here.
+/// Passes over all springs for the stability limit: kernels visit lattices and chains, this file the rest.
 #include "stability/stability_limit.h"
 
 #include <math.h>
@@ -7,14 +7,14 @@
 #include "store/one_way.h"
 #include "store/springs.h"
 
-/// A spring that no kernel takes, as stability_limit.h of the kernels has it.
-typedef struct single {
+/// A spring outside the kernels. Members as in kernels/limit_kernel.h.
+typedef struct single_spring {
     uint32_t base, tip;
     float nx, ny, across, along, stiffness;
-} single;
+} single_spring;
 
-static single see(const mspringi_stability_limit *b, const mspringi_spring_values *values) {
-    single s = {.base = values->base, .tip = values->tip};
+static single_spring linearise(const mspringi_stability_limit *b, const mspringi_spring_values *values) {
+    single_spring s = {.base = values->base, .tip = values->tip};
     s.along = s.stiffness = b->stiffness * values->stiffness;
     s.along += b->damping * values->damping;
     const float dx = b->x[s.tip] - b->x[s.base], dy = b->y[s.tip] - b->y[s.base];
@@ -26,25 +26,28 @@ static single see(const mspringi_stability_limit *b, const mspringi_spring_value
     return s;
 }
 
-static single see_single(const mspring_network *network, const mspringi_stability_limit *b, uint32_t irregular) {
+static single_spring linearise_irregular(const mspring_network *network, const mspringi_stability_limit *b,
+                                         uint32_t irregular) {
     const mspringi_topology *t = &network->topology;
     const uint32_t at = t->irregular.entry[2 * (size_t)irregular], parts = network->parts;
     const float *record = network->irregular_springs + (size_t)(at / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts;
     record += at % MSPRINGI_WIDTH;
-    return see(b, &(mspringi_spring_values){
-                      .base = t->irregular_a[irregular],
-                      .tip = t->irregular_b[irregular],
-                      .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                      .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
-                      .damping = parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH] : 0.0f});
+    return linearise(b, &(mspringi_spring_values){.base = t->irregular_a[irregular],
+                                                  .tip = t->irregular_b[irregular],
+                                                  .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                                                  .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
+                                                  .damping = parts > MSPRINGI_DAMPING
+                                                                 ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH]
+                                                                 : 0.0f});
 }
 
-// What a spring that only pulls or only pushes counts with beyond what it has.
-static single see_one_way(const mspring_network *network, const mspringi_stability_limit *b, mspring_id spring) {
+// Linearise the surcharge on a one-way spring: MSPRINGI_ONE_WAY_SHARE minus the spring itself.
+static single_spring linearise_surcharge(const mspring_network *network, const mspringi_stability_limit *b,
+                                         mspring_id spring) {
     mspringi_spring_values values = mspringi_spring_get(network, spring);
     values.stiffness *= (float)MSPRINGI_ONE_WAY_SHARE - 1.0f;
     values.damping = 0.0f;
-    return see(b, &values);
+    return linearise(b, &values);
 }
 
 mspringi_stability_limit mspringi_stability_limit_at(const mspring_network *network, double h) {
@@ -66,7 +69,7 @@ mspringi_stability_limit mspringi_stability_limit_at(const mspring_network *netw
                                       .damping = (float)(2.0 * h)};
 }
 
-static void bound(const mspringi_stability_limit *b, single s) {
+static void add_bound(const mspringi_stability_limit *b, single_spring s) {
     if (!(s.along > 0.0f) || !(s.nx * s.nx + s.ny * s.ny > 0.0f))
         return;
     const float both = b->in[0][s.base] + b->in[0][s.tip];
@@ -79,7 +82,7 @@ static void bound(const mspringi_stability_limit *b, single s) {
     }
 }
 
-static void image(const mspringi_stability_limit *b, single s) {
+static void add_image(const mspringi_stability_limit *b, single_spring s) {
     if (!(s.along > 0.0f))
         return;
     const float dx = b->in[0][s.tip] - b->in[0][s.base], dy = b->in[1][s.tip] - b->in[1][s.base];
@@ -92,25 +95,25 @@ static void image(const mspringi_stability_limit *b, single s) {
     b->out[1][s.tip] += b->inverse_mass[s.tip] * y;
 }
 
-static void take_others(const mspring_network *network, const mspringi_stability_limit *b,
-                        void (*take)(const mspringi_stability_limit *b, single s)) {
+static void visit_others(const mspring_network *network, const mspringi_stability_limit *b,
+                         void (*visit)(const mspringi_stability_limit *b, single_spring s)) {
     for (uint32_t i = 0; i < network->topology.irregular_count; ++i)
-        take(b, see_single(network, b, i));
+        visit(b, linearise_irregular(network, b, i));
     for (mspring_id i = 0; network->one_way.side && i < network->topology.reserve.first_spring; ++i)
         if (mspringi_side_of(network, i) != 0 && mspringi_spring_exists(network, i))
-            take(b, see_one_way(network, b, i));
+            visit(b, linearise_surcharge(network, b, i));
 }
 
 void mspringi_stability_limit_bound(const mspring_network *network, const mspringi_stability_limit *b) {
     network->kernels->bound_lattice(b);
     network->kernels->bound_chain(b);
-    take_others(network, b, bound);
+    visit_others(network, b, add_bound);
     mspringi_areas_bound(network, b);
 }
 
 void mspringi_stability_limit_image(const mspring_network *network, const mspringi_stability_limit *b) {
     network->kernels->image_lattice(b);
     network->kernels->image_chain(b);
-    take_others(network, b, image);
+    visit_others(network, b, add_image);
     mspringi_areas_image(network, b);
 }

@@ -1,15 +1,15 @@
-/// The stability limit as the host asks for it.
+/// Stability limit in the present shape, on request of the host.
 #include <math.h>
 
 #include "base/cpu.h"
 #include "stability/pencil.h"
 #include "stability/stability.h"
 
-/// Residual at which the eigenvalue is good enough, as a part of it. The limit is its square root.
+/// Residual of a converged eigenvalue, relative to the eigenvalue. The limit is its square root.
 #define TOLERANCE 2e-3
 
-/// Change of the limit at which it is found, as a part of it.
-#define SETTLED 5e-4
+/// Relative change of the limit at convergence.
+#define LIMIT_TOLERANCE 5e-4
 
 typedef struct workspace {
     mspringi_pencil pencil;
@@ -32,33 +32,33 @@ static mspring_result reserve(mspring_network *network, workspace *work) {
     work->lanczos.apply = mspringi_pencil_apply;
     work->lanczos.size = 2 * particles;
     work->lanczos.vector = mspringi_alloc(&network->memory, 2 * particles, sizeof *work->lanczos.vector);
-    bool whole = work->pencil.root && work->pencil.terms && work->lanczos.vector;
+    bool has_all = work->pencil.root && work->pencil.terms && work->lanczos.vector;
     for (int i = 0; i < 3; ++i) {
         work->lanczos.work[i] = mspringi_alloc(&network->memory, 2 * particles, sizeof *work->lanczos.work[i]);
-        whole = whole && work->lanczos.work[i];
+        has_all = has_all && work->lanczos.work[i];
     }
     work->lanczos.context = &work->pencil;
-    if (whole)
+    if (has_all)
         return MSPRING_OK;
     release(network, work);
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to find the stable dt of %u particles",
                          (unsigned)particles);
 }
 
-// Add to each component a number that is different for each: no mode is left out of the start.
-static void shake(double *vector, size_t size, double amount) {
+// Perturb each component differently, so that the start contains every mode.
+static void perturb(double *vector, size_t size, double amount) {
     for (size_t i = 0; i < size; ++i)
         vector[i] += amount * mspringi_noise(i);
 }
 
-// Every vector gives an upper bound of the limit, and at the limit that of the eigenvector is sharp: take the
-// eigenvector at the last bound, its bound, and so on. The bounds fall, and so fast that few turns are enough.
-static double find_border(const mspring_network *network, workspace *work, double start) {
+// Any vector gives an upper bound of the limit; the eigenvector at the limit gives the limit itself. So iterate:
+// eigenvector at the last bound, then its bound. The bounds fall so fast that few iterations suffice.
+static double find_limit(const mspring_network *network, workspace *work, double start) {
     const size_t size = work->lanczos.size;
-    double border = start;
-    shake(work->lanczos.vector, size, 1.0);
+    double limit = start;
+    perturb(work->lanczos.vector, size, 1.0);
     for (int turn = 0; turn < 12; ++turn) {
-        mspringi_pencil_set(&work->pencil, border);
+        mspringi_pencil_set(&work->pencil, limit);
         const mspringi_ritz ritz = mspringi_lanczos_largest(&work->lanczos, TOLERANCE);
         if (!(ritz.value > 0.0))
             return INFINITY;
@@ -67,15 +67,15 @@ static double find_border(const mspring_network *network, workspace *work, doubl
         quotient.stiffness *= margin;
         quotient.damping *= margin;
         quotient.relative *= margin;
-        const double before = border;
-        border = mspringi_quotient_limit(&quotient, network->settings.global_damping);
+        const double before = limit;
+        limit = mspringi_quotient_limit(&quotient, network->settings.global_damping);
         // Without dampers and relative springs the eigenvector is the same at every h.
-        if ((quotient.damping == 0.0 && quotient.relative == 0.0) || !(border > 0.0 && border < INFINITY) ||
-            fabs(border - before) <= SETTLED * border)
+        if ((quotient.damping == 0.0 && quotient.relative == 0.0) || !(limit > 0.0 && limit < INFINITY) ||
+            fabs(limit - before) <= LIMIT_TOLERANCE * limit)
             break;
-        shake(work->lanczos.vector, size, 1.0 / sqrt((double)size));
+        perturb(work->lanczos.vector, size, 1.0 / sqrt((double)size));
     }
-    return border;
+    return limit;
 }
 
 static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, double *now) {
@@ -85,8 +85,8 @@ static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, doubl
     if (result != MSPRING_OK)
         return result;
     const double any_shape = mspringi_stable_in_any_shape(network, &spring);
-    *now = any_shape < INFINITY ? find_border(network, &work, any_shape) : INFINITY;
-    if (network->areas.count == 0) // whose stiffness grows with the network
+    *now = any_shape < INFINITY ? find_limit(network, &work, any_shape) : INFINITY;
+    if (network->areas.count == 0) // the stiffness of areas grows with the network
         *now = fmax(*now, any_shape);
     release(network, &work);
     return MSPRING_OK;
@@ -112,11 +112,10 @@ mspring_result mspring_network_suggest_substeps(mspring_network *network, double
     if (result != MSPRING_OK)
         return result;
     if (!(dt > 0.0 && dt < INFINITY) || !(safety > 0.0 && safety <= 1.0) || !substeps)
-        return mspringi_fail(
-            &network->message, MSPRING_ERROR_ARGUMENT,
-            "substeps of %g s with safety %g: dt must be finite and > 0, safety > 0 and at most 1, and "
-            "the place for the answer not NULL",
-            dt, safety);
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "dt is %g s, safety %g: dt must be finite and > 0, safety > 0 and at most 1, and "
+                             "substeps not NULL",
+                             dt, safety);
     double now;
     result = mspring_network_stable_dt(network, &now, NULL);
     if (result != MSPRING_OK)

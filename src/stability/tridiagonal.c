@@ -3,11 +3,11 @@
 #include <math.h>
 #include <stdbool.h>
 
-// Pivots of x - T. All are positive just if x is above all eigenvalues.
+// Pivots of x - T. All are positive if and only if x is above all eigenvalues.
 static bool is_above(const mspringi_tridiagonal *t, double x, double *pivots) {
     double pivot = 1.0;
     for (int i = 0; i < t->size; ++i) {
-        pivot = x - t->diagonal[i] - (i > 0 ? t->beside[i - 1] * t->beside[i - 1] / pivot : 0.0);
+        pivot = x - t->diagonal[i] - (i > 0 ? t->off_diagonal[i - 1] * t->off_diagonal[i - 1] / pivot : 0.0);
         if (!(pivot > 0.0))
             return false;
         pivots[i] = pivot;
@@ -16,13 +16,13 @@ static bool is_above(const mspringi_tridiagonal *t, double x, double *pivots) {
 }
 
 double mspringi_tridiagonal_top(const mspringi_tridiagonal *t, double *vector) {
-    double low = t->diagonal[0], high = t->diagonal[0], pivots[MSPRINGI_LANCZOS_MOST];
+    double low = t->diagonal[0], high = t->diagonal[0], pivots[MSPRINGI_LANCZOS_MAX];
     for (int i = 0; i < t->size; ++i) {
-        const double reach = (i > 0 ? t->beside[i - 1] : 0.0) + (i + 1 < t->size ? t->beside[i] : 0.0);
+        const double reach = (i > 0 ? t->off_diagonal[i - 1] : 0.0) + (i + 1 < t->size ? t->off_diagonal[i] : 0.0);
         low = fmax(low, t->diagonal[i]);
         high = fmax(high, t->diagonal[i] + reach);
     }
-    high += 1e-15 * fabs(high); // above, not at it
+    high += 1e-15 * fabs(high); // strictly above
     for (int halving = 0; halving < 60 && high - low > 1e-15 * fabs(high); ++halving) {
         const double middle = 0.5 * (low + high);
         if (is_above(t, middle, pivots))
@@ -34,7 +34,8 @@ double mspringi_tridiagonal_top(const mspringi_tridiagonal *t, double *vector) {
     double square = 1.0;
     const bool above = is_above(t, high, pivots);
     for (int i = 1; i < t->size; ++i) {
-        vector[i] = above && t->beside[i - 1] > 0.0 ? pivots[i - 1] * vector[i - 1] / t->beside[i - 1] : 0.0;
+        vector[i] =
+            above && t->off_diagonal[i - 1] > 0.0 ? pivots[i - 1] * vector[i - 1] / t->off_diagonal[i - 1] : 0.0;
         square += vector[i] * vector[i];
     }
     for (int i = 0; i < t->size; ++i)

@@ -368,7 +368,7 @@ typedef struct mspringi_sleep {
     float *active_inverse_mass;    ///< [slots] inverse mass, 0 of what sleeps
     uint16_t *sleepers;            ///< [blocks] a bit for each slot
     uint8_t *swept;                ///< [blocks] 1 where a particle is awake, or springs are of one that is
-    uint8_t *share;                ///< [strips] mspringi_share
+    uint8_t *share;                ///< [strips] mspringi_strip_sleep
     mspringi_span *runs;           ///< [spans] runs of blocks of a row while that is swept, from its first span on
     bool has_force;                ///< force is not all zero
     double origin_x, origin_y;     ///< that state is relative to, m

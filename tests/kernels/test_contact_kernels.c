@@ -208,7 +208,7 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
         const block before = make_block(&floor, h);
         block found = before;
         const mspringi_floor_args ground = ground_of(&floor, &found, h, n % 4 == 0 ? 1.25 : 1.0, clear);
-        const uint32_t left = is_loose ? kernels->fly_past(&ground, 0) : kernels->touch(&ground, 0);
+        const uint32_t left = is_loose ? kernels->bounce_free(&ground, 0) : kernels->bounce(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {
             block expected = before;
             const bool is_left = left >> i & 1;

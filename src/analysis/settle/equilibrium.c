@@ -32,7 +32,7 @@ bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count,
     statics->outside = vectors_at(block, particles, &used);
     statics->force = vectors_at(block, particles, &used);
     statics->step = vectors_at(block, particles, &used);
-    statics->bend = vectors_at(block, particles, &used);
+    statics->curvature = vectors_at(block, particles, &used);
     statics->spare = vectors_at(block, particles, &used);
     double **const single[] = {&statics->xx, &statics->xy, &statics->yy, &statics->scale};
     for (size_t i = 0; i < sizeof single / sizeof single[0]; ++i)
@@ -75,20 +75,20 @@ mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd 
 
 /* ------------------------------------------------------------------------------------------------------ springs */
 
-/// A spring as it lies now.
-typedef struct lie {
+/// A spring in the present shape.
+typedef struct spring_vector {
     double x, y, length; ///< from a to b
-} lie;
+} spring_vector;
 
-static lie lie_of(const mspringi_statics *statics, uint32_t spring) {
+static spring_vector vector_of_spring(const mspringi_statics *statics, uint32_t spring) {
     const mspringi_statics_springs *s = &statics->springs;
     const uint32_t a = s->a[spring], b = s->b[spring];
     const double x = s->x[spring] + (statics->moved.x[b] - statics->moved.x[a]);
     const double y = s->y[spring] + (statics->moved.y[b] - statics->moved.y[a]);
-    return (lie){x, y, sqrt(x * x + y * y)};
+    return (spring_vector){x, y, sqrt(x * x + y * y)};
 }
 
-// Whether a spring that only pulls is shorter than at rest, or one that only pushes longer.
+// True if a one-way spring is slack: one that only pulls and is short, or one that only pushes and is long.
 static bool is_slack(const mspringi_statics_springs *s, uint32_t spring, double length) {
     return s->side[spring] * (length - s->rest_length[spring]) < 0.0;
 }
@@ -104,7 +104,7 @@ mspringi_residual mspringi_statics_forces(mspringi_statics *statics) {
             residual.scale = fmax(residual.scale, fmax(fabs(force.x[p]), fabs(force.y[p])));
     }
     for (uint32_t i = 0; i < s->count; ++i) {
-        const lie now = lie_of(statics, i);
+        const spring_vector now = vector_of_spring(statics, i);
         if (!(now.length > 0.0) || is_slack(s, i, now.length))
             continue;
         const double pull = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, s->stiffness[i], now.length - s->rest_length[i]),
@@ -140,17 +140,17 @@ static double half_square(double stretch) {
     return 0.5 * stretch * stretch;
 }
 
-// The change of a spring's length is taken from the change of its square, and the change of its energy from that:
-// both are as small as they are, where a difference of energies would be lost in their rounding.
+// A difference of energies would be lost in rounding. So the change of length follows from that of the squared
+// length, and the change of energy from the change of length.
 double mspringi_statics_energy_change(const mspringi_statics *statics, double t, double *error) {
     const mspringi_statics_springs *s = &statics->springs;
-    const mspringi_vectors step = statics->step, bend = statics->bend;
+    const mspringi_vectors step = statics->step, curvature = statics->curvature;
     double size = 0.0, change = mspringi_statics_area_change(statics, t, &size);
     for (uint32_t i = 0; i < s->count; ++i) {
         const uint32_t a = s->a[i], b = s->b[i];
-        const lie now = lie_of(statics, i);
-        const double dx = t * ((step.x[b] - step.x[a]) + t * (bend.x[b] - bend.x[a]));
-        const double dy = t * ((step.y[b] - step.y[a]) + t * (bend.y[b] - bend.y[a]));
+        const spring_vector now = vector_of_spring(statics, i);
+        const double dx = t * ((step.x[b] - step.x[a]) + t * (curvature.x[b] - curvature.x[a]));
+        const double dy = t * ((step.y[b] - step.y[a]) + t * (curvature.y[b] - curvature.y[a]));
         const double x = now.x + dx, y = now.y + dy, length = sqrt(x * x + y * y), sum = length + now.length;
         if (!(sum > 0.0))
             continue;
@@ -167,8 +167,8 @@ double mspringi_statics_energy_change(const mspringi_statics *statics, double t,
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
         if (statics->fixed[p])
             continue;
-        const double work = t * (statics->outside.x[p] * (step.x[p] + t * bend.x[p]) +
-                                 statics->outside.y[p] * (step.y[p] + t * bend.y[p]));
+        const double work = t * (statics->outside.x[p] * (step.x[p] + t * curvature.x[p]) +
+                                 statics->outside.y[p] * (step.y[p] + t * curvature.y[p]));
         change -= work;
         size += fabs(work);
     }
@@ -178,8 +178,8 @@ double mspringi_statics_energy_change(const mspringi_statics *statics, double t,
 
 /* --------------------------------------------------------------------------------------------------- stiffness */
 
-/// Part of its stiffness that a slack spring has in the matrix. From 1e-6 to 1 a slack rope of 40 links took as
-/// many iterations; with 0 it took more than twice as many.
+/// Stiffness of a slack spring in the matrix, relative to its own. A slack rope of 40 links took as many iterations
+/// with 1e-6 as with 1, but more than twice as many with 0.
 #define SLACK_SHARE 1e-6
 
 static void add_to_node(mspringi_statics *statics, uint32_t p, double xx, double xy, double yy, double scale) {
@@ -189,16 +189,15 @@ static void add_to_node(mspringi_statics *statics, uint32_t p, double xx, double
     statics->scale[p] += scale;
 }
 
-// K = k (t I + (1 - t) n n^T), t = 1 - L0 / l, n the direction. A spring of length 0 has none and is taken to be
-// stiff in all. One that is slack has so little stiffness that it changes no way, but enough to have the matrix
-// definite.
+// K = k (t I + (1 - t) n n^T), t = 1 - L0 / l, n the direction. A spring of length 0 has no direction and is stiff
+// in all. A slack spring keeps just enough stiffness for a positive definite matrix.
 static void add_spring(mspringi_statics *statics, uint32_t spring, bool clamped) {
     const mspringi_statics_springs *s = &statics->springs;
-    const lie now = lie_of(statics, spring);
-    const bool slack = is_slack(s, spring, now.length);
-    const double k = slack ? SLACK_SHARE * s->stiffness[spring] : s->stiffness[spring];
+    const spring_vector now = vector_of_spring(statics, spring);
+    const bool is_slack_now = is_slack(s, spring, now.length);
+    const double k = is_slack_now ? SLACK_SHARE * s->stiffness[spring] : s->stiffness[spring];
     const double nx = now.length > 0.0 ? now.x / now.length : 0.0, ny = now.length > 0.0 ? now.y / now.length : 0.0;
-    const double across = now.length > 0.0 && !slack ? 1.0 - s->rest_length[spring] / now.length : 1.0;
+    const double across = now.length > 0.0 && !is_slack_now ? 1.0 - s->rest_length[spring] / now.length : 1.0;
     const double t = clamped ? fmax(0.0, across) : across;
     const double along = k * (1.0 - t), xx = k * t + along * nx * nx, xy = along * nx * ny,
                  yy = k * t + along * ny * ny;
@@ -213,7 +212,7 @@ static void add_spring(mspringi_statics *statics, uint32_t spring, bool clamped)
 bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shift) {
     const uint32_t count = statics->particle_count;
     const mspringi_statics_springs *s = &statics->springs;
-    memset(statics->xx, 0, 4 * (size_t)count * sizeof *statics->xx); // and xy, yy, scale, which lie behind it
+    memset(statics->xx, 0, 4 * (size_t)count * sizeof *statics->xx); // and xy, yy, scale, which follow it in memory
     for (uint32_t i = 0; i < s->count; ++i)
         add_spring(statics, i, clamped);
     for (uint32_t i = s->count; i < s->edge_count; ++i)
@@ -222,7 +221,7 @@ bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shi
     double stiffest = 0.0;
     for (uint32_t p = 0; p < count; ++p)
         stiffest = statics->fixed[p] ? stiffest : fmax(stiffest, statics->scale[p]);
-    // A particle without spring has no stiffness: any will do, as no force is on it.
+    // A particle without springs has no stiffness. Any will do, as no force acts on it.
     const double least = stiffest > 0.0 ? 1e-12 * stiffest : 1.0;
     for (uint32_t p = 0; p < count; ++p) {
         const double add = shift * fmax(statics->scale[p], least) + (statics->scale[p] > 0.0 ? 0.0 : least);
@@ -233,7 +232,7 @@ bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shi
     return mspringi_cholesky_double_factor(&statics->factor, &matrix) == MSPRING_NONE;
 }
 
-/* --------------------------------------------------------------------------------------------------------- ways */
+/* -------------------------------------------------------------------------------------------------- Newton step */
 
 static void solve(mspringi_statics *statics, mspringi_vectors v) {
     for (uint32_t p = 0; p < statics->particle_count; ++p)
@@ -242,14 +241,14 @@ static void solve(mspringi_statics *statics, mspringi_vectors v) {
     mspringi_cholesky_double_solve(&statics->factor, v.x, v.y);
 }
 
-// Half of the second derivative of a spring's force along the step, with d the vector of the spring, n its
-// direction and s the change of d, of which sn is along n and sp across:
+// Half the second derivative of a spring's force along the step: d is the vector of the spring, n its direction,
+// and s the change of d, with sn its part along n and sp across:
 //
 //     (k (l - L0) n)'' = k L0 (2 sn sp + |sp|^2 n) / l^2
-static void add_bend(mspringi_statics *statics, uint32_t spring) {
+static void add_curvature(mspringi_statics *statics, uint32_t spring) {
     const mspringi_statics_springs *s = &statics->springs;
     const uint32_t a = s->a[spring], b = s->b[spring];
-    const lie now = lie_of(statics, spring);
+    const spring_vector now = vector_of_spring(statics, spring);
     if (!(now.length > 0.0) || is_slack(s, spring, now.length))
         return;
     const double nx = now.x / now.length, ny = now.y / now.length;
@@ -258,18 +257,18 @@ static void add_bend(mspringi_statics *statics, uint32_t spring) {
     const double k = 0.5 * s->stiffness[spring] * s->rest_length[spring] / (now.length * now.length);
     const double across = px * px + py * py;
     const double fx = k * (2.0 * along * px + across * nx), fy = k * (2.0 * along * py + across * ny);
-    statics->bend.x[a] += fx;
-    statics->bend.y[a] += fy;
-    statics->bend.x[b] -= fx;
-    statics->bend.y[b] -= fy;
+    statics->curvature.x[a] += fx;
+    statics->curvature.y[a] += fy;
+    statics->curvature.x[b] -= fx;
+    statics->curvature.y[b] -= fy;
 }
 
-void mspringi_statics_find_way(mspringi_statics *statics) {
+void mspringi_statics_find_step(mspringi_statics *statics) {
     const size_t bytes = 2 * (size_t)statics->particle_count * sizeof *statics->step.x;
     memcpy(statics->step.x, statics->force.x, bytes);
     solve(statics, statics->step);
-    memset(statics->bend.x, 0, bytes);
+    memset(statics->curvature.x, 0, bytes);
     for (uint32_t i = 0; i < statics->springs.count; ++i)
-        add_bend(statics, i);
-    solve(statics, statics->bend);
+        add_curvature(statics, i);
+    solve(statics, statics->curvature);
 }

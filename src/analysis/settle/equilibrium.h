@@ -1,6 +1,6 @@
 /// @file equilibrium.h
-/// A network as a problem of statics, in double precision: energy, forces and stiffness as functions of how far the
-/// particles have been moved, and the search for where they rest.
+/// A network as a problem of statics, in double precision: energy, forces and stiffness as functions of the
+/// displacements, and the search for an equilibrium.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_EQUILIBRIUM_H
@@ -10,44 +10,44 @@
 #include "solvers/sparse/cholesky.h"
 #include "store/network.h"
 
-/// Two numbers for each particle.
+/// Two values for each particle.
 typedef struct mspringi_vectors {
     double *x, *y;
 } mspringi_vectors;
 
-/// The springs that exert a force.
+/// The springs with stiffness.
 typedef struct mspringi_statics_springs {
-    uint32_t count, edge_count;      ///< springs; and with the pairs of angles behind them
+    uint32_t count, edge_count;      ///< springs; springs and, behind them, pairs of angles
     uint32_t *a, *b;                 ///< [edge_count] particles
     double *stiffness, *rest_length; ///< [count]
-    double *side;                    ///< [count] 1: it only pulls; -1: it only pushes; 0: it does both
-    double *x, *y;        ///< [count] from a to b at the start. Kept apart from the displacements, these and
-                          ///< their small differences are exact to more digits than positions would be.
+    double *side;                    ///< [count] 1: pulls only; -1: pushes only; 0: both
+    double *x, *y; ///< [count] from a to b at the start. Kept apart from the displacements, since small differences
+                   ///< of these have more exact digits than those of positions.
     double *xx, *xy, *yy; ///< [edge_count] blocks of the stiffness matrix
 } mspringi_statics_springs;
 
-/// The areas that have a pressure, and the angles that have a torque (settle_areas.c, settle_angles.c).
+/// Closed areas and angles (settle_areas.c, settle_angles.c).
 typedef struct mspringi_statics_areas {
-    const mspringi_areas *of; ///< NULL: there are none
-    uint32_t *sides;          ///< [corners] the spring of each side; of an angle the edges a b, b c, c a
+    const mspringi_areas *of; ///< NULL: none
+    uint32_t *sides;          ///< [corners] spring of each side; edges a b, b c, c a of an angle
 } mspringi_statics_areas;
 
 typedef struct mspringi_statics {
     uint32_t particle_count;
-    bool *fixed;              ///< [particle_count] pinned, or left alone
-    mspringi_vectors start;   ///< [particle_count] positions relative to the network's origin, m
-    mspringi_vectors moved;   ///< [particle_count] displacements, m
-    mspringi_vectors outside; ///< [particle_count] weight and forces given, N
-    mspringi_vectors force;   ///< [particle_count] all forces, N
-    mspringi_vectors step;    ///< [particle_count] where to, m, and
-    mspringi_vectors bend;    ///< [particle_count] how that way bends, m
-    mspringi_vectors spare;   ///< [particle_count] scratch
-    double *xx, *xy, *yy;     ///< [particle_count] blocks of the stiffness matrix, and
-    double *scale;            ///< [particle_count] what is stiff at a particle, N/m
-    double *block;            ///< the memory of all these numbers by particle
-    double *spring_block;     ///< and by spring
+    bool *fixed;                ///< [particle_count] pinned or left floating
+    mspringi_vectors start;     ///< [particle_count] positions relative to the network's origin, m
+    mspringi_vectors moved;     ///< [particle_count] displacements, m
+    mspringi_vectors outside;   ///< [particle_count] weight and external forces, N
+    mspringi_vectors force;     ///< [particle_count] all forces, N
+    mspringi_vectors step;      ///< [particle_count] Newton step, m
+    mspringi_vectors curvature; ///< [particle_count] its second-order correction, m
+    mspringi_vectors spare;     ///< [particle_count] scratch
+    double *xx, *xy, *yy;       ///< [particle_count] diagonal blocks of the stiffness matrix
+    double *scale;              ///< [particle_count] stiffness of the springs at a particle, N/m
+    double *block;              ///< memory of all values by particle
+    double *spring_block;       ///< memory of all values by spring
     uint32_t *end_block;
-    mspringi_watcher watcher; ///< asked before each iteration
+    mspringi_watcher watcher; ///< called before each iteration
     mspringi_statics_springs springs;
     mspringi_statics_areas areas;
     mspringi_cholesky_symbolic plan;
@@ -59,61 +59,62 @@ bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count,
                              mspringi_memory *memory);
 void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory);
 
-/// Have the network's areas, once springs are filled in. They stay the network's.
+/// Add the network's areas after the springs. They remain the network's.
 mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_network *network);
-/// What they add: to forces, returning the largest; to a change of energy and the sum of such; to the stiffness.
+/// Add the areas' part to the forces, and return the largest; to the change of energy and its absolute sum; to the
+/// stiffness.
 double mspringi_statics_area_forces(mspringi_statics *statics);
 double mspringi_statics_area_change(const mspringi_statics *statics, double t, double *size);
 void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped);
 
-/// Have an angle: its pairs are edges from now on.
+/// Add an angle: its pairs become edges.
 void mspringi_statics_add_angle(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle);
-/// What it adds, as above.
+/// Add the angle's part, as above.
 double mspringi_statics_angle_forces(mspringi_statics *statics, const mspringi_area *angle);
 double mspringi_statics_angle_change(const mspringi_statics *statics, const mspringi_area *angle, double t,
                                      double *size);
 void mspringi_statics_angle_stiffness(mspringi_statics *statics, const mspringi_area *angle, bool clamped);
 
-/// Analyse the stiffness matrix, once particles and springs are filled in.
+/// Analyse the stiffness matrix, after particles and springs are filled in.
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,
                                         mspringi_message *message);
 
-/// What is left of the forces.
+/// Unbalanced forces.
 typedef struct mspringi_residual {
-    double force;     ///< N, the largest in x or y on a particle that is free
-    double scale;     ///< N, the largest force that a spring or something outside exerts
-    mspring_id where; ///< the particle with the largest force
+    double force;     ///< N, largest in x or y on a free particle
+    double scale;     ///< N, largest spring or external force
+    mspring_id where; ///< particle with the largest unbalanced force
 } mspringi_residual;
 
-/// Compute the forces where the particles are now.
+/// Compute the forces in the present shape.
 mspringi_residual mspringi_statics_forces(mspringi_statics *statics);
 
-/// The stiffness matrix where the particles are now, with shift times its scale added on the diagonal, factored.
-/// clamped: without what compressed springs take from the stiffness across them, which leaves no negative
-/// eigenvalue. False: it is not positive definite.
+/// Factor the stiffness matrix in the present shape, with shift times its scale added to the diagonal. False if it
+/// is not positive definite. clamped: without the negative stiffness across compressed springs, so no eigenvalue is
+/// negative.
 bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shift);
 
-/// With the factor: the step that would remove all forces if they were linear, and how the way there bends because
-/// they are not (second order: Transtrum & Sethna 2012): particles go to moved + t step + t^2 bend.
-void mspringi_statics_find_way(mspringi_statics *statics);
+/// Solve for the step that removes all forces if they are linear, and for its second-order correction (Transtrum &
+/// Sethna 2012). Particles then go to moved + t step + t^2 curvature. Needs the factor.
+void mspringi_statics_find_step(mspringi_statics *statics);
 
-/// By how much the energy changes from moved to moved + t step + t^2 bend, J. error: what rounding may be worth.
+/// Change of energy from moved to moved + t step + t^2 curvature, J. error: bound on its rounding.
 double mspringi_statics_energy_change(const mspringi_statics *statics, double t, double *error);
 
-/// Forces times step: the decrease of energy for a small t is t times this.
+/// Forces times step: the energy falls by t times this for a small t.
 double mspringi_statics_slope(const mspringi_statics *statics);
 
-/// How a search ended.
-typedef struct mspringi_rest {
+/// Result of a search.
+typedef struct mspringi_equilibrium {
     uint32_t iterations;
     mspringi_residual residual;
     bool found;
     bool is_stable;
-} mspringi_rest;
+} mspringi_equilibrium;
 
-/// Search for the equilibrium: Newton's method with the way above, as far along it as the energy falls.
-/// size: extent of the network, m. tolerance: part of the scale of forces that may be left.
-mspringi_rest mspringi_statics_rest(mspringi_statics *statics, uint32_t most_iterations, double tolerance,
-                                    double size);
+/// Search for an equilibrium: Newton's method along the path above, as far as the energy falls. size: extent of the
+/// network, m. tolerance: largest unbalanced force, relative to the scale of forces.
+mspringi_equilibrium mspringi_statics_find_equilibrium(mspringi_statics *statics, uint32_t max_iterations,
+                                                       double tolerance, double size);
 
 #endif

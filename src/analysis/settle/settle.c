@@ -1,4 +1,4 @@
-/// mspring_network_settle(): from a network to a problem of statics and back.
+/// mspring_network_settle(): converts a network to a problem of statics and back.
 #include <float.h>
 #include <math.h>
 
@@ -30,7 +30,7 @@ static void fill_particles(mspringi_statics *statics, const mspring_network *net
         statics->start.y[p] = mspringi_y_of(&network->state, slot);
         if (statics->fixed[p])
             continue;
-        // Where a step leaves the velocity as it is: force * inverse_mass + gravity = 0.
+        // In equilibrium a step leaves the velocity unchanged: force * inverse_mass + gravity = 0.
         statics->outside.x[p] = (double)network->settings.gravity_x / inverse_mass;
         statics->outside.y[p] = (double)network->settings.gravity_y / inverse_mass;
         if (forces->held_any) {
@@ -60,23 +60,23 @@ static void fill_springs(mspringi_statics *statics, const mspring_network *netwo
 
 /* -------------------------------------------------------------------------------------------- floating parts */
 
-/// A set of particles that springs hold together, known by one of them.
-typedef struct part {
-    double x, y, size; ///< forces from outside: their sum, and the sum of their absolute values
-    uint32_t lowest;   ///< particle
-    bool is_held;      ///< by a pinned particle
-} part;
+/// Component of the springs, identified by its root.
+typedef struct component {
+    double x, y, size; ///< sum of the external forces, and of their absolute values
+    uint32_t lowest;   ///< lowest particle
+    bool is_held;      ///< has a pinned particle
+} component;
 
-static void join_parts(const mspringi_statics *statics, uint32_t *up) {
+static void join_components(const mspringi_statics *statics, uint32_t *up) {
     for (uint32_t p = 0; p < statics->particle_count; ++p)
         up[p] = p;
     for (uint32_t i = 0; i < statics->springs.edge_count; ++i)
         mspringi_union_find_join(up, statics->springs.a[i], statics->springs.b[i]);
 }
 
-static void sum_parts(const mspringi_statics *statics, uint32_t *up, part *parts) {
+static void sum_components(const mspringi_statics *statics, uint32_t *up, component *components) {
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
-        part *of = &parts[mspringi_union_find_root(up, p)];
+        component *of = &components[mspringi_union_find_root(up, p)];
         of->x += statics->outside.x[p];
         of->y += statics->outside.y[p];
         of->size += fabs(statics->outside.x[p]) + fabs(statics->outside.y[p]);
@@ -84,48 +84,49 @@ static void sum_parts(const mspringi_statics *statics, uint32_t *up, part *parts
     }
 }
 
-// The forces on a part that no pinned particle holds must cancel; to a millionth, which the rounding of many floats
-// does not reach.
-static bool floats_away(const part *of) {
+// True if the forces on a component without pinned particles do not cancel to a millionth. Rounding of many floats
+// stays below that.
+static bool is_unbalanced(const component *of) {
     return !of->is_held && fabs(of->x) + fabs(of->y) > 1e-6 * of->size;
 }
 
-// Leave floating parts alone, or refuse them.
-static mspring_result check_parts(mspringi_statics *statics, const mspring_settle_def *def, uint32_t *left_alone,
-                                  mspring_network *network) {
+// Fix floating components, or return an error.
+static mspring_result check_floating(mspringi_statics *statics, const mspring_settle_def *def, uint32_t *left_alone,
+                                     mspring_network *network) {
     uint32_t *up = mspringi_alloc(&network->memory, statics->particle_count, sizeof *up);
-    part *parts = mspringi_alloc(&network->memory, statics->particle_count, sizeof *parts);
+    component *components = mspringi_alloc(&network->memory, statics->particle_count, sizeof *components);
     mspring_result result = MSPRING_OK;
-    if (!up || !parts) {
-        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the parts of %u particles",
-                               (unsigned)statics->particle_count);
+    if (!up || !components) {
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                               "no memory for the components of %u particles", (unsigned)statics->particle_count);
     } else {
-        join_parts(statics, up);
-        sum_parts(statics, up, parts);
+        join_components(statics, up);
+        sum_components(statics, up, components);
         *left_alone = 0;
         for (uint32_t p = 0; p < statics->particle_count && result == MSPRING_OK; ++p) {
             const uint32_t lowest = mspringi_union_find_root(up, p);
-            if (!floats_away(&parts[lowest]))
+            if (!is_unbalanced(&components[lowest]))
                 continue;
             if (def->flags & MSPRING_SETTLE_LEAVE_FLOATING) {
                 statics->fixed[p] = true;
                 ++*left_alone;
             } else {
                 result = mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
-                                       "no spring leads from particle %u to a pinned one, directly or through "
-                                       "others: there is no equilibrium for it under (%g, %g) N",
-                                       (unsigned)p, parts[lowest].x, parts[lowest].y);
+                                       "no equilibrium: particle %u is connected to no pinned particle, and "
+                                       "(%g, %g) N act on its component. Pin one, or set "
+                                       "MSPRING_SETTLE_LEAVE_FLOATING",
+                                       (unsigned)p, components[lowest].x, components[lowest].y);
             }
         }
     }
     mspringi_free(&network->memory, up);
-    mspringi_free(&network->memory, parts);
+    mspringi_free(&network->memory, components);
     return result;
 }
 
 /* ----------------------------------------------------------------------------------------------------- settling */
 
-// How far apart things are: the larger side of the box around the network, or its longest spring.
+// Extent of the network, m: the larger side of its box, or its longest spring.
 static double extent_of(const mspringi_statics *statics, const mspring_network *network) {
     double extent = 0.0;
     mspringi_box box = mspringi_box_empty();
@@ -137,27 +138,30 @@ static double extent_of(const mspringi_statics *statics, const mspring_network *
     return fmax(extent, fmax(box.max_x - box.min_x, box.max_y - box.min_y));
 }
 
-/// Part of its yield strain that a spring which is at the border may be strained by.
+/// Largest strain that counts as elastic, relative to the yield strain: springs at the limit may round above it.
 #define TOLERATED_YIELD (1.0 + 1e-5)
 
-static mspring_result check_rest(const mspringi_statics *statics, const mspringi_rest *rest,
-                                 mspring_network *network) {
-    if (!rest->found)
-        return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
-                             "after %u iterations particle %u still feels %g N, and forces go up to %g N",
-                             (unsigned)rest->iterations, (unsigned)rest->residual.where, rest->residual.force,
-                             rest->residual.scale);
+static mspring_result check_equilibrium(const mspringi_statics *statics, const mspringi_equilibrium *equilibrium,
+                                        mspring_network *network) {
+    if (!equilibrium->found)
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_EQUILIBRIUM,
+            "no equilibrium after %u iterations: particle %u is still pulled by %g N (largest force: "
+            "%g N). Step with global_damping first",
+            (unsigned)equilibrium->iterations, (unsigned)equilibrium->residual.where, equilibrium->residual.force,
+            equilibrium->residual.scale);
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
         const double x = statics->start.x[p] + statics->moved.x[p], y = statics->start.y[p] + statics->moved.y[p];
         if (!(fabs(x) <= MSPRING_MAX_COORDINATE && fabs(y) <= MSPRING_MAX_COORDINATE))
             return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
-                                 "particle %u would come to rest at (%g, %g) m, out of bounds", (unsigned)p,
+                                 "no equilibrium within 1e12 m: particle %u would rest at (%g, %g) m", (unsigned)p,
                                  network->origin_x + x, network->origin_y + y);
     }
     return MSPRING_OK;
 }
 
-// The equilibrium is that of springs which are elastic. Where one would yield on the way there is another.
+// Check that no spring would yield: the search treats all as elastic, and plastic flow leads to another
+// equilibrium.
 static mspring_result check_yields(const mspringi_statics *statics, mspring_network *network) {
     const mspringi_plastic *p = &network->plastic;
     for (mspring_id spring = 0; p->yields && spring < network->topology.spring_count; ++spring) {
@@ -174,14 +178,14 @@ static mspring_result check_yields(const mspringi_statics *statics, mspring_netw
                      hardened = (double)p->hardening[spring_slot] * (rest - nominal) / nominal;
         if (fabs(strain - hardened) > TOLERATED_YIELD * (double)p->yield_strain[spring_slot])
             return mspringi_fail(&network->message, MSPRING_ERROR_EQUILIBRIUM,
-                                 "at rest the strain of spring %u would be %g, so it would yield first (yield "
-                                 "strain %g): let it come to rest in steps",
+                                 "no elastic equilibrium: spring %u would have strain %g, but yields at %g. Step "
+                                 "with global_damping instead",
                                  (unsigned)spring, strain, (double)p->yield_strain[spring_slot]);
     }
     return MSPRING_OK;
 }
 
-static double put_back(const mspringi_statics *statics, mspring_network *network) {
+static double store_positions(const mspringi_statics *statics, mspring_network *network) {
     double farthest = 0.0;
     for (mspring_id p = 0; p < statics->particle_count; ++p) {
         if (statics->fixed[p])
@@ -210,14 +214,14 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
     fill_springs(statics, network);
     mspring_result result = mspringi_statics_add_areas(statics, network);
     if (result == MSPRING_OK)
-        result = check_parts(statics, def, &left_alone, network);
+        result = check_floating(statics, def, &left_alone, network);
     if (result == MSPRING_OK)
         result = mspringi_statics_prepare(statics, network->kernels->level, &network->memory, &network->message);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_rest rest =
-        mspringi_statics_rest(statics, def->max_iterations, def->tolerance, extent_of(statics, network));
-    result = check_rest(statics, &rest, network);
+    const mspringi_equilibrium rest = mspringi_statics_find_equilibrium(
+        statics, def->max_iterations, def->tolerance, extent_of(statics, network));
+    result = check_equilibrium(statics, &rest, network);
     if (result == MSPRING_OK)
         result = check_yields(statics, network);
     if (result == MSPRING_OK)
@@ -226,7 +230,7 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
             .iterations = rest.iterations,
             .residual = rest.residual.force,
             .largest_force = rest.residual.scale,
-            .displacement = put_back(statics, network),
+            .displacement = store_positions(statics, network),
             .is_stable = rest.is_stable,
             .left_alone = left_alone,
         };

@@ -1,5 +1,5 @@
 /// @file settle.h
-/// Static equilibrium, for those inside the library who may want to stop the search.
+/// Static equilibrium with a search that the library itself can stop.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SETTLE_H
@@ -9,13 +9,13 @@
 
 #include <massspring/massspring_tools.h>
 
-/// Whether a search goes on. fn NULL: it does.
+/// Callback that returns false to stop a search. fn NULL: none.
 typedef struct mspringi_watcher {
     bool (*fn)(void *user);
     void *user;
 } mspringi_watcher;
 
-/// mspring_network_settle(), which ends as if there was no equilibrium when the watcher has had enough.
+/// mspring_network_settle() with a watcher. A stopped search ends as if there was no equilibrium.
 mspring_result mspringi_settle_watched(mspring_network *network, const mspring_settle_def *def,
                                        mspring_settle_result *result, mspringi_watcher watcher);
 

@@ -1,14 +1,14 @@
 /// Angle springs in a problem of statics.
 ///
-/// With g the gradient of the angle at each end, p and q the ways that both ends go beyond the middle, an angle
-/// adds
+/// With g the gradient of the angle at each end, p and q the displacements of both ends relative to the middle, an
+/// angle adds
 ///
 ///     (g_a . p + g_c . q)^2 = p' (A + S) p + q' (C + S) q - (p - q)' S (p - q),
 ///     A = g_a g_a',  C = g_c g_c',  S = (g_a g_c' + g_c g_a') / 2
 ///
-/// times its stiffness to the energy. So it is three blocks between pairs of its particles, which the matrix has
-/// apart from springs. The part of g_a g_c' that is not symmetric is left out, for which blocks have no room: it is
-/// of the square of the angle's sine. So strongly bent beams take more iterations. Forces and energies are exact.
+/// times its stiffness to the energy. So it is three blocks between pairs of its particles, which have edges of
+/// their own in the matrix. Blocks are symmetric, so the antisymmetric part of g_a g_c' is omitted. It scales with
+/// the square of the angle's sine: strongly bent beams take more iterations. Forces and energies are exact.
 #include "store/angles.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ void mspringi_statics_add_angle(mspringi_statics *statics, const mspringi_areas 
     }
 }
 
-/// An arm now, and its direction's gradient at its far end.
+/// Arm in the present shape, and the gradient of its direction at the far end.
 typedef struct arm {
     double along[2], x, y;
     uint32_t from, to;
@@ -55,31 +55,30 @@ double mspringi_statics_angle_forces(mspringi_statics *statics, const mspringi_a
     return fmax(fmax(at_a, at_b), push_particle(statics, w.to, torque * w.x, torque * w.y));
 }
 
-/* ---------------------------------------------------------------------------------------------- change of energy
- */
+/* --------------------------------------------------------------------------------------------- change of energy */
 
-// By what an arm turns on a way. False: one of both has length 0.
-static bool turn_of(const mspringi_statics *s, const arm *of, double t, mspringi_rotation *turn) {
+// Rotation of an arm along the path. False if its length is 0 before or after.
+static bool rotation_of(const mspringi_statics *s, const arm *of, double t, mspringi_rotation *rotation) {
     const uint32_t a = of->from, b = of->to;
-    const double dx = t * ((s->step.x[b] - s->step.x[a]) + t * (s->bend.x[b] - s->bend.x[a]));
-    const double dy = t * ((s->step.y[b] - s->step.y[a]) + t * (s->bend.y[b] - s->bend.y[a]));
+    const double dx = t * ((s->step.x[b] - s->step.x[a]) + t * (s->curvature.x[b] - s->curvature.x[a]));
+    const double dy = t * ((s->step.y[b] - s->step.y[a]) + t * (s->curvature.y[b] - s->curvature.y[a]));
     const double x = of->along[0], y = of->along[1], to_x = x + dx, to_y = y + dy;
     const double lengths = sqrt(x * x + y * y) * sqrt(to_x * to_x + to_y * to_y);
     if (!(lengths > 0.0))
         return false;
-    *turn = (mspringi_rotation){.cosine = (x * to_x + y * to_y) / lengths, .sine = (x * dy - y * dx) / lengths};
+    *rotation = (mspringi_rotation){.cosine = (x * to_x + y * to_y) / lengths, .sine = (x * dy - y * dx) / lengths};
     return true;
 }
 
-// With e the change of the angle: k (cos d - cos(d + e)) = k (cos d (1 - cos e) + sin d sin e), where the
-// difference of both energies would be lost in their rounding.
+// With e the change of the angle: k (cos d - cos(d + e)) = k (cos d (1 - cos e) + sin d sin e). The difference of
+// the energies would be lost in rounding.
 double mspringi_statics_angle_change(const mspringi_statics *statics, const mspringi_area *angle, double t,
                                      double *size) {
     const arm u = arm_of(statics, angle, 0), w = arm_of(statics, angle, 1);
     const double z = mspringi_angle_size_by(angle, u.along, w.along), k = (double)angle->stiffness;
     mspringi_rotation of_u, of_w;
-    if (!turn_of(statics, &u, t, &of_u) || !turn_of(statics, &w, t, &of_w))
-        return -mspringi_angle_energy(angle, z); // a way on which an arm vanishes is too far
+    if (!rotation_of(statics, &u, t, &of_u) || !rotation_of(statics, &w, t, &of_w))
+        return -mspringi_angle_energy(angle, z); // an arm would vanish: too far
     const double sine = of_w.sine * of_u.cosine - of_w.cosine * of_u.sine;
     const double cosine = of_w.cosine * of_u.cosine + of_w.sine * of_u.sine;
     const double beyond = cosine > 0.0 ? sine * sine / (1.0 + cosine) : 1.0 - cosine;
@@ -88,8 +87,7 @@ double mspringi_statics_angle_change(const mspringi_statics *statics, const mspr
     return k * (1.0 - 0.5 * z * z) * beyond + torque * sine;
 }
 
-/* ----------------------------------------------------------------------------------------------------- stiffness
- */
+/* ---------------------------------------------------------------------------------------------------- stiffness */
 
 static void add_block(mspringi_statics *statics, uint32_t edge, double xx, double xy, double yy) {
     mspringi_statics_springs *s = &statics->springs;
@@ -105,7 +103,7 @@ static void add_block(mspringi_statics *statics, uint32_t edge, double xx, doubl
     s->yy[edge] -= yy;
 }
 
-// What an arm adds: A + S or C + S, and as it turns, a part of its second derivative.
+// Add the blocks of an arm: A + S or C + S, and a part of the second derivative from its rotation.
 static void add_arm(mspringi_statics *statics, uint32_t edge, const arm *of, double k, const double s[3],
                     double part) {
     const double across = 2.0 * part * of->x * of->y;

@@ -1,8 +1,8 @@
-/// Areas in a problem of statics: those that springs are all around.
+/// Areas in a problem of statics. Each side must be a spring.
 ///
-/// The stiffness of an area is taken as more stiffness along the springs of its outline, as in implicit substeps
-/// (solvers/implicit/implicit_areas.c): no less than it is, so that Newton's way leads down, and with the pattern
-/// that the springs have. Forces and energies are the area's own.
+/// An area adds stiffness along the springs of its outline, as in implicit substeps
+/// (solvers/implicit/implicit_areas.c). That is an upper bound, so Newton's step still descends, and the matrix
+/// keeps the pattern of the springs. Forces and energies are exact.
 #include "store/areas.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "analysis/settle/equilibrium.h"
 #include "store/springs.h"
 
-// The number of each spring among those that exert a force.
+// Number the springs with stiffness.
 static void number_springs(const mspring_network *network, uint32_t *numbers) {
     uint32_t count = 0;
     for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring)
@@ -29,8 +29,8 @@ static mspring_result find_sides(mspringi_statics *statics, mspring_network *net
             statics->areas.sides[c] = spring == MSPRING_NONE ? MSPRING_NONE : numbers[spring];
             if (statics->areas.sides[c] == MSPRING_NONE)
                 return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                     "area %u has a side from particle %u on without a spring: settling takes none "
-                                     "of these",
+                                     "area %u has no spring on its side from particle %u on: an equilibrium needs "
+                                     "springs on all sides",
                                      (unsigned)a->list[i].id, (unsigned)a->corners[c].particle);
         }
     return MSPRING_OK;
@@ -56,58 +56,59 @@ mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_net
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------------- one of them */
+/* ---------------------------------------------------------------------------------------------------- one area */
 
-typedef struct place {
+typedef struct point {
     double x, y;
-} place;
+} point;
 
 static uint32_t particle_of(const mspringi_statics *statics, const mspringi_area *area, uint32_t corner) {
     return statics->areas.of->corners[area->first + corner % area->count].particle;
 }
 
-// From the first corner.
-static place place_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner) {
+// Position relative to the first corner.
+static point position_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner) {
     const uint32_t p = particle_of(s, area, corner), first = particle_of(s, area, 0);
-    return (place){(s->start.x[p] - s->start.x[first]) + (s->moved.x[p] - s->moved.x[first]),
+    return (point){(s->start.x[p] - s->start.x[first]) + (s->moved.x[p] - s->moved.x[first]),
                    (s->start.y[p] - s->start.y[first]) + (s->moved.y[p] - s->moved.y[first])};
 }
 
 static double size_of(const mspringi_statics *s, const mspringi_area *area) {
     double twice = 0.0;
-    place before = place_of(s, area, 1);
+    point before = position_of(s, area, 1);
     for (uint32_t i = 2; i < area->count; ++i) {
-        const place here = place_of(s, area, i);
+        const point here = position_of(s, area, i);
         twice += before.x * here.y - before.y * here.x;
         before = here;
     }
     return 0.5 * twice;
 }
 
-// How far a corner goes beyond the first.
-static place way_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner, double t) {
+// Displacement on the path, relative to the first corner.
+static point displacement_of(const mspringi_statics *s, const mspringi_area *area, uint32_t corner, double t) {
     const uint32_t p = particle_of(s, area, corner), first = particle_of(s, area, 0);
-    return (place){t * ((s->step.x[p] - s->step.x[first]) + t * (s->bend.x[p] - s->bend.x[first])),
-                   t * ((s->step.y[p] - s->step.y[first]) + t * (s->bend.y[p] - s->bend.y[first]))};
+    return (point){t * ((s->step.x[p] - s->step.x[first]) + t * (s->curvature.x[p] - s->curvature.x[first])),
+                   t * ((s->step.y[p] - s->step.y[first]) + t * (s->curvature.y[p] - s->curvature.y[first]))};
 }
 
-// By how much it grows on a way: not as a difference of areas, which would be lost in their rounding.
+// Growth of an area on the path. A difference of areas would be lost in rounding.
 static double growth_of(const mspringi_statics *s, const mspringi_area *area, double t) {
     double twice = 0.0;
-    place before = place_of(s, area, 1), went = way_of(s, area, 1, t);
+    point before = position_of(s, area, 1), before_moved = displacement_of(s, area, 1, t);
     for (uint32_t i = 2; i < area->count; ++i) {
-        const place here = place_of(s, area, i), goes = way_of(s, area, i, t);
-        twice += (before.x * goes.y - before.y * goes.x) + (went.x * here.y - went.y * here.x) +
-                 (went.x * goes.y - went.y * goes.x);
+        const point here = position_of(s, area, i), here_moved = displacement_of(s, area, i, t);
+        twice += (before.x * here_moved.y - before.y * here_moved.x) +
+                 (before_moved.x * here.y - before_moved.y * here.x) +
+                 (before_moved.x * here_moved.y - before_moved.y * here_moved.x);
         before = here;
-        went = goes;
+        before_moved = here_moved;
     }
     return 0.5 * twice;
 }
 
-/* ------------------------------------------------------------------------------------------------- all of them */
+/* --------------------------------------------------------------------------------------------------- all areas */
 
-// The next that is closed, from one on; NULL if there is none.
+// Next closed area from *i on; NULL if there is none.
 static const mspringi_area *next_area(const mspringi_statics *statics, size_t *i) {
     const mspringi_areas *all = statics->areas.of;
     while (all && *i < all->count && all->list[*i].is_open)
@@ -125,9 +126,9 @@ double mspringi_statics_area_forces(mspringi_statics *statics) {
         }
         const double half = 0.5 * mspringi_area_pressure(area, size_of(statics, area));
         for (uint32_t i = 0; i < area->count; ++i) {
-            const place before = place_of(statics, area, i + area->count - 1),
-                        behind = place_of(statics, area, i + 1);
-            const double x = half * (behind.y - before.y), y = half * (before.x - behind.x);
+            const point before = position_of(statics, area, i + area->count - 1),
+                        after = position_of(statics, area, i + 1);
+            const double x = half * (after.y - before.y), y = half * (before.x - after.x);
             const uint32_t p = particle_of(statics, area, i);
             statics->force.x[p] += x;
             statics->force.y[p] += y;
@@ -153,14 +154,14 @@ double mspringi_statics_area_change(const mspringi_statics *statics, double t, d
     return change;
 }
 
-// The vector from the middle of the corners to that of a side.
-static place arm_of(const mspringi_statics *s, const mspringi_area *area, uint32_t side, place middle) {
-    const place a = place_of(s, area, side), b = place_of(s, area, side + 1);
-    return (place){0.5 * (a.x + b.x) - middle.x, 0.5 * (a.y + b.y) - middle.y};
+// Vector from the centre of the corners to the midpoint of a side.
+static point arm_of(const mspringi_statics *s, const mspringi_area *area, uint32_t side, point middle) {
+    const point a = position_of(s, area, side), b = position_of(s, area, side + 1);
+    return (point){0.5 * (a.x + b.x) - middle.x, 0.5 * (a.y + b.y) - middle.y};
 }
 
 static void stiffen(mspringi_statics *statics, const mspringi_area *area, uint32_t side, double stiffness) {
-    const place from = place_of(statics, area, side), to = place_of(statics, area, side + 1);
+    const point from = position_of(statics, area, side), to = position_of(statics, area, side + 1);
     const double x = to.x - from.x, y = to.y - from.y, square = x * x + y * y;
     const uint32_t a = particle_of(statics, area, side), b = particle_of(statics, area, side + 1);
     const uint32_t spring = statics->areas.sides[area->first + side];
@@ -186,18 +187,18 @@ void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped) {
             continue;
         }
         const double c = mspringi_area_stiffness(area, size_of(statics, area));
-        place middle = {0.0, 0.0};
+        point middle = {0.0, 0.0};
         double all = 0.0;
         for (uint32_t i = 1; i < area->count; ++i) {
-            middle.x += place_of(statics, area, i).x / (double)area->count;
-            middle.y += place_of(statics, area, i).y / (double)area->count;
+            middle.x += position_of(statics, area, i).x / (double)area->count;
+            middle.y += position_of(statics, area, i).y / (double)area->count;
         }
         for (uint32_t side = 0; side < area->count; ++side) {
-            const place arm = arm_of(statics, area, side, middle);
+            const point arm = arm_of(statics, area, side, middle);
             all += sqrt(arm.x * arm.x + arm.y * arm.y);
         }
         for (uint32_t side = 0; side < area->count; ++side) {
-            const place arm = arm_of(statics, area, side, middle);
+            const point arm = arm_of(statics, area, side, middle);
             stiffen(statics, area, side, c * all * sqrt(arm.x * arm.x + arm.y * arm.y));
         }
     }

@@ -8,15 +8,24 @@
 #include "store/areas.h"
 #include "store/springs.h"
 
-/// Part of what is stable in any shape that a substep takes.
+/// Substep, relative to the longest one that is stable in any shape.
 #define PART_OF_STABLE (1.0 / 3.0)
 
 /* ---------------------------------------------------------------------------------------------------- creation */
 
 static mspring_result allocate(mspringi_reference *r, mspring_network *network, uint32_t springs) {
     const size_t particles = network->topology.particle_count;
-    double **const arrays[] = {&r->x,      &r->y,      &r->vx,      &r->vy,      &r->ax,          &r->ay,
-                               &r->held_x, &r->held_y, &r->ahead_x, &r->ahead_y, &r->inverse_mass};
+    double **const arrays[] = {&r->x,
+                               &r->y,
+                               &r->vx,
+                               &r->vy,
+                               &r->ax,
+                               &r->ay,
+                               &r->held_x,
+                               &r->held_y,
+                               &r->extrapolated_x,
+                               &r->extrapolated_y,
+                               &r->inverse_mass};
     const size_t count = sizeof arrays / sizeof arrays[0];
     double *block = mspringi_alloc(&network->memory, count * particles, sizeof *block);
     r->springs = mspringi_alloc(&network->memory, springs, sizeof *r->springs);
@@ -24,15 +33,15 @@ static mspring_result allocate(mspringi_reference *r, mspring_network *network, 
         mspringi_free(&network->memory, block);
         mspringi_free(&network->memory, r->springs);
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                             "no memory for a reference of %zu particles in double precision", particles);
+                             "no memory for a reference run of %zu particles", particles);
     }
     for (size_t i = 0; i < count; ++i)
         *arrays[i] = block + i * particles;
     return MSPRING_OK;
 }
 
-void mspringi_reference_place(mspringi_reference *r, const mspring_network *network, double shift_x,
-                              double shift_y) {
+void mspringi_reference_set_motion(mspringi_reference *r, const mspring_network *network, double shift_x,
+                                   double shift_y) {
     const mspringi_state *s = &network->state;
     for (mspring_id p = 0; p < r->particle_count; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
@@ -47,7 +56,7 @@ void mspringi_reference_place(mspringi_reference *r, const mspring_network *netw
 
 static void fill_particles(mspringi_reference *r, const mspring_network *network) {
     const mspringi_forces *forces = &network->forces;
-    mspringi_reference_place(r, network, 0.0, 0.0);
+    mspringi_reference_set_motion(r, network, 0.0, 0.0);
     for (mspring_id p = 0; p < r->particle_count; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
         r->inverse_mass[p] = (double)network->inverse_mass[slot];
@@ -58,7 +67,7 @@ static void fill_particles(mspringi_reference *r, const mspring_network *network
     }
 }
 
-static bool exerts(const mspringi_spring_values *values) {
+static bool has_force(const mspringi_spring_values *values) {
     return values->stiffness > 0.0f || values->damping > 0.0f;
 }
 
@@ -66,7 +75,7 @@ static uint32_t count_springs(const mspring_network *network) {
     uint32_t count = 0;
     for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring) {
         const mspringi_spring_values values = mspringi_spring_get(network, spring);
-        count += exerts(&values);
+        count += has_force(&values);
     }
     return count;
 }
@@ -75,7 +84,7 @@ static void fill_springs(mspringi_reference *r, const mspring_network *network) 
     const uint32_t *particle = network->topology.particle_of_slot;
     for (mspring_id spring = 0; spring < network->topology.spring_count; ++spring) {
         const mspringi_spring_values values = mspringi_spring_get(network, spring);
-        if (!exerts(&values))
+        if (!has_force(&values))
             continue;
         r->springs[r->spring_count++] = (mspringi_reference_spring){
             .a = particle[values.base],
@@ -113,16 +122,16 @@ void mspringi_reference_destroy(mspringi_reference *reference, mspring_network *
     *reference = (mspringi_reference){0};
 }
 
-void mspringi_reference_release(mspringi_reference *r) {
-    memset(r->held_x, 0, 2 * (size_t)r->particle_count * sizeof *r->held_x); // held_y lies behind it
+void mspringi_reference_clear_forces(mspringi_reference *r) {
+    memset(r->held_x, 0, 2 * (size_t)r->particle_count * sizeof *r->held_x); // held_y follows it in memory
     r->has_accelerations = false;
 }
 
-// No eigenvalue of M^-1 K is above the largest sum in a row of its symmetric form (Gershgorin), whatever the shape;
-// the same holds for the dampers. Above h^2 K + 2 h C = 4 motion would grow.
+// No eigenvalue of M^-1 K exceeds the largest row sum of its symmetric form (Gershgorin), in any shape. The same
+// holds for the dampers. The limit is h^2 K + 2 h C = 4.
 double mspringi_reference_substep(const mspringi_reference *r) {
     double *stiffness = r->ax, *damping = r->ay, longest = INFINITY;
-    memset(stiffness, 0, 2 * (size_t)r->particle_count * sizeof *stiffness); // ay lies behind ax
+    memset(stiffness, 0, 2 * (size_t)r->particle_count * sizeof *stiffness); // ay follows ax in memory
     for (uint32_t i = 0; i < r->spring_count; ++i) {
         const mspringi_reference_spring *spring = &r->springs[i];
         const double wa = r->inverse_mass[spring->a], wb = r->inverse_mass[spring->b], both = sqrt(wa * wb);
@@ -131,7 +140,7 @@ double mspringi_reference_substep(const mspringi_reference *r) {
         damping[spring->a] += (double)spring->damping * (wa + both);
         damping[spring->b] += (double)spring->damping * (wb + both);
     }
-    mspringi_reference_weigh_areas(r, stiffness, damping);
+    mspringi_reference_bound_areas(r, stiffness, damping);
     for (uint32_t p = 0; p < r->particle_count; ++p) {
         const double k = stiffness[p], c = damping[p] + r->global_damping, rate = c + sqrt(c * c + 4.0 * k);
         if (rate > 0.0)
@@ -142,7 +151,7 @@ double mspringi_reference_substep(const mspringi_reference *r) {
 
 /* ----------------------------------------------------------------------------------------------------- stepping */
 
-// Accelerations where the particles are, with these velocities.
+// Accelerations at the present positions and these velocities.
 static void find_accelerations(const mspringi_reference *r, const double *vx, const double *vy) {
     for (uint32_t p = 0; p < r->particle_count; ++p) {
         const bool moves = r->inverse_mass[p] > 0.0;
@@ -165,22 +174,22 @@ static void find_accelerations(const mspringi_reference *r, const double *vx, co
         r->ax[b] -= r->inverse_mass[b] * fx;
         r->ay[b] -= r->inverse_mass[b] * fy;
     }
-    mspringi_reference_push_areas(r, vx, vy);
+    mspringi_reference_add_areas(r, vx, vy);
 }
 
-// to = from + factor times change. The two coordinates of each lie one behind the other.
+// to = from + factor * change. count includes both coordinates, which follow each other in memory.
 static void add(double *to, const double *from, double factor, const double *change, size_t count) {
     for (size_t i = 0; i < count; ++i)
         to[i] = from[i] + factor * change[i];
 }
 
-// What depends on velocities is taken at those that the end of the substep is going to have if accelerations stay.
+// Take a substep. Damping uses velocities extrapolated to its end.
 static void take_substep(mspringi_reference *r, double h) {
     const size_t count = 2 * (size_t)r->particle_count;
     add(r->vx, r->vx, 0.5 * h, r->ax, count);
     add(r->x, r->x, h, r->vx, count);
-    add(r->ahead_x, r->vx, 0.5 * h, r->ax, count);
-    find_accelerations(r, r->ahead_x, r->ahead_y);
+    add(r->extrapolated_x, r->vx, 0.5 * h, r->ax, count);
+    find_accelerations(r, r->extrapolated_x, r->extrapolated_y);
     add(r->vx, r->vx, 0.5 * h, r->ax, count);
 }
 

@@ -1,59 +1,59 @@
-/// Areas and angle springs of the reference: their law (store/areas.h, angles.h), at its positions.
+/// Areas and angle springs of the reference: the law of store/areas.h and angles.h in double precision.
 #include <math.h>
 
 #include "analysis/tune/reference.h"
 #include "store/angles.h"
 
-typedef struct place {
+typedef struct point {
     double x, y;
-} place;
+} point;
 
 static uint32_t particle_of(const mspringi_reference *r, const mspringi_area *area, uint32_t corner) {
     return r->areas->corners[area->first + corner % area->count].particle;
 }
 
-// The way from one corner to another.
-static place way(const mspringi_reference *r, const mspringi_area *area, uint32_t from, uint32_t to) {
+// Vector from one corner to another.
+static point vector_between(const mspringi_reference *r, const mspringi_area *area, uint32_t from, uint32_t to) {
     const uint32_t a = particle_of(r, area, from), b = particle_of(r, area, to);
-    return (place){r->x[b] - r->x[a], r->y[b] - r->y[a]};
+    return (point){r->x[b] - r->x[a], r->y[b] - r->y[a]};
 }
 
-static double square_of(place p) {
+static double square_of(point p) {
     return p.x * p.x + p.y * p.y;
 }
 
 static double size_of(const mspringi_reference *r, const mspringi_area *area) {
-    place before = way(r, area, 0, 1);
+    point before = vector_between(r, area, 0, 1);
     double twice = 0.0;
     if (area->is_angle) {
-        const place next = way(r, area, 1, 2);
+        const point next = vector_between(r, area, 1, 2);
         const double u[2] = {before.x, before.y}, w[2] = {next.x, next.y};
         return mspringi_angle_size_by(area, u, w);
     }
     for (uint32_t i = 2; i < area->count; ++i) {
-        const place here = way(r, area, 0, i);
+        const point here = vector_between(r, area, 0, i);
         twice += before.x * here.y - before.y * here.x;
         before = here;
     }
     return 0.5 * twice;
 }
 
-// An arm turned to the left, over its square.
-static place turned(place arm) {
+// An arm rotated left by 90 degrees, divided by its squared length.
+static point perpendicular(point arm) {
     const double square = square_of(arm);
-    return square > 0.0 ? (place){-arm.y / square, arm.x / square} : (place){0.0, 0.0};
+    return square > 0.0 ? (point){-arm.y / square, arm.x / square} : (point){0.0, 0.0};
 }
 
-static place gradient_of(const mspringi_reference *r, const mspringi_area *area, uint32_t corner) {
+static point gradient_of(const mspringi_reference *r, const mspringi_area *area, uint32_t corner) {
     if (!area->is_angle) {
-        const place across = way(r, area, corner + area->count - 1, corner + 1);
-        return (place){0.5 * across.y, -0.5 * across.x};
+        const point across = vector_between(r, area, corner + area->count - 1, corner + 1);
+        return (point){0.5 * across.y, -0.5 * across.x};
     }
-    const place u = turned(way(r, area, 0, 1)), w = turned(way(r, area, 1, 2));
-    return corner == 0 ? u : corner == 2 ? w : (place){-u.x - w.x, -u.y - w.y};
+    const point u = perpendicular(vector_between(r, area, 0, 1)), w = perpendicular(vector_between(r, area, 1, 2));
+    return corner == 0 ? u : corner == 2 ? w : (point){-u.x - w.x, -u.y - w.y};
 }
 
-// The next that is closed, from one on; NULL if there is none.
+// Next closed area from *i on; NULL if there is none.
 static const mspringi_area *next_area(const mspringi_reference *r, size_t *i) {
     const mspringi_areas *all = r->areas;
     while (all && *i < all->count && all->list[*i].is_open)
@@ -61,27 +61,27 @@ static const mspringi_area *next_area(const mspringi_reference *r, size_t *i) {
     return all && *i < all->count ? &all->list[(*i)++] : NULL;
 }
 
-void mspringi_reference_push_areas(const mspringi_reference *r, const double *vx, const double *vy) {
+void mspringi_reference_add_areas(const mspringi_reference *r, const double *vx, const double *vy) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(r, &at)) != NULL;) {
         double rate = 0.0;
         for (uint32_t i = 0; area->damping > 0.0f && i < area->count; ++i) {
             const uint32_t p = particle_of(r, area, i);
-            const place g = gradient_of(r, area, i);
+            const point g = gradient_of(r, area, i);
             rate += g.x * vx[p] + g.y * vy[p];
         }
         const double pressure = mspringi_area_pressure(area, size_of(r, area)) - (double)area->damping * rate;
         for (uint32_t i = 0; i < area->count; ++i) {
             const uint32_t p = particle_of(r, area, i);
-            const place g = gradient_of(r, area, i);
+            const point g = gradient_of(r, area, i);
             r->ax[p] += r->inverse_mass[p] * pressure * g.x;
             r->ay[p] += r->inverse_mass[p] * pressure * g.y;
         }
     }
 }
 
-// Of c g g' the row of a corner has blocks of the size c |g| |g'|, between roots of inverse masses.
-void mspringi_reference_weigh_areas(const mspringi_reference *r, double *stiffness, double *damping) {
+// In c g g', the row of a corner has blocks of size c |g| |g'|, times the roots of both inverse masses.
+void mspringi_reference_bound_areas(const mspringi_reference *r, double *stiffness, double *damping) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(r, &at)) != NULL;) {
         const mspringi_corner *corners = r->areas->corners + area->first;

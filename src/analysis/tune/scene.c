@@ -1,8 +1,8 @@
-/// Settings in a scene of the host's: floor, hooks and breaking, by what runs from many starts have in common.
+/// Comparison of settings in a scene of the host, with floor, hooks and breaking, by statistics over many starts.
 ///
-/// A body that breaks is chaotic: where its pieces end says nothing about a setting, how many springs broke on
-/// average does. Starts are taken one after another, each by the fine run and by all settings. So whenever the
-/// budget ends all of them have been compared from the same starts, but for the last.
+/// A breaking body is chaotic: the final place of a fragment says nothing about a setting, the mean number of
+/// broken springs does. The fine run and all settings take one start before the next. So whenever the budget ends,
+/// all were compared from the same starts, except for the last one.
 #include <math.h>
 
 #include "analysis/tune/tuning.h"
@@ -11,21 +11,21 @@
 #include "store/changed.h"
 #include "store/springs.h"
 
-/// Part of the substep that is stable in any shape that the fine run takes at most; and how many times as many
-/// substeps as the explicit settings.
+/// Longest substep of the fine run, relative to the longest that is stable in any shape; and its substeps, relative
+/// to the largest number of the explicit settings.
 #define FINE_PART_OF_STABLE (1.0 / 3.0)
 #define FINE_TIMES_SETTINGS 2.0
 
-/// Least unit of distances: for what is counted, and as a part of the setting's own mean.
-#define LEAST_COUNT 1.0
-#define LEAST_PART_OF_OWN 1e-6
+/// Smallest unit of a distance: for counts, and relative to the setting's own mean.
+#define MIN_COUNT_UNIT 1.0
+#define MIN_RELATIVE_UNIT 1e-6
 
-/// How a run ended.
-typedef enum ending { WHOLE, REJECTED, CUT_SHORT } ending;
+/// Outcome of a run.
+typedef enum run_outcome { WHOLE, REJECTED, CUT_SHORT } run_outcome;
 
-/* ------------------------------------------------------------------------------------------------------ a start */
+/* ---------------------------------------------------------------------------------------------------- one start */
 
-static void kick(mspring_network *network, uint32_t start, double most) {
+static void perturb(mspring_network *network, uint32_t start, double most) {
     const size_t particles = network->topology.particle_count;
     for (uint32_t p = 0; p < particles; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
@@ -38,22 +38,22 @@ static void kick(mspring_network *network, uint32_t start, double most) {
     mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
 }
 
-// A clone that has what the scene switches on, a little away from where the network is.
+// Clone the network with the features that the scene enables, and perturb it.
 static mspring_result make_start(mspringi_tuning *tuning, uint32_t start, mspring_network **made) {
     const mspring_tune_scene *scene = &tuning->scene;
     *made = NULL;
     mspring_result result = scene->flags & MSPRING_TUNE_SCENE_HOOKS
-                                ? mspringi_tune_spawn_with_hooks(tuning, tuning->network, made)
-                                : mspringi_tune_spawn(tuning, tuning->network, made);
+                                ? mspringi_tune_clone_with_hooks(tuning, tuning->network, made)
+                                : mspringi_tune_clone(tuning, tuning->network, made);
     if (result != MSPRING_OK)
         return result;
-    mspringi_tune_expose(*made);
+    mspringi_tune_disable_fallbacks(*made);
     if (!(scene->flags & MSPRING_TUNE_SCENE_FLOOR))
         result = mspring_network_set_floor(*made, NULL);
     if (!(scene->flags & MSPRING_TUNE_SCENE_BREAKING))
         mspringi_tune_make_unbreakable(*made);
     if (start > 0)
-        kick(*made, start, scene->kick);
+        perturb(*made, start, scene->kick);
     return result;
 }
 
@@ -67,7 +67,7 @@ static double count_live(const mspring_network *network) {
     return live;
 }
 
-static void note(const mspring_network *network, double live_before, mspringi_scene_run *run) {
+static void measure_run(const mspring_network *network, double live_before, mspringi_scene_run *run) {
     double kinetic = 0.0, elastic = 0.0, left = 0.0, low = 0.0, right = 0.0, high = 0.0;
     if (mspring_network_energy(network, &kinetic, &elastic, NULL) != MSPRING_OK ||
         mspring_network_bounds(network, &left, &low, &right, &high) != MSPRING_OK)
@@ -77,12 +77,12 @@ static void note(const mspring_network *network, double live_before, mspringi_sc
     run->quantities[MSPRING_TUNE_EXTENT] = fmax(right - left, high - low);
 }
 
-static mspring_result pass_on(mspringi_tuning *tuning, const mspring_network *clone, mspring_result result) {
+static mspring_result forward_error(mspringi_tuning *tuning, const mspring_network *clone, mspring_result result) {
     tuning->network->message = clone->message;
     return result;
 }
 
-// Have the host prepare a run, and give it its solver; not set: no solver of this kind can have the network.
+// Call the host's prepare, then set the solver. set: false if this kind of solver cannot take the network.
 static mspring_result prepare(mspringi_tuning *tuning, mspring_network *clone, const mspring_solver_def *solver,
                               uint32_t start, bool *set) {
     const mspring_tune_scene *scene = &tuning->scene;
@@ -92,78 +92,79 @@ static mspring_result prepare(mspringi_tuning *tuning, mspring_network *clone, c
                              (int)result, (unsigned)start);
     result = mspring_network_set_solver(clone, solver);
     *set = result == MSPRING_OK;
-    return result == MSPRING_OK || result == MSPRING_ERROR_LIMIT ? MSPRING_OK : pass_on(tuning, clone, result);
+    return result == MSPRING_OK || result == MSPRING_ERROR_LIMIT ? MSPRING_OK
+                                                                 : forward_error(tuning, clone, result);
 }
 
 static mspring_result take_steps(mspringi_tuning *tuning, mspring_network *clone, mspringi_scene_run *run,
-                                 ending *end) {
+                                 run_outcome *end) {
     const mspring_tune_def *def = &tuning->def;
     const uint32_t steps = mspringi_tune_steps_in(tuning->scene.duration, def->dt);
     const double live_before = count_live(clone);
     double seconds = 0.0;
     for (uint32_t step = 0; step < steps; ++step) {
         *end = CUT_SHORT;
-        if (!mspringi_tuning_goes_on(tuning, (double)step / (double)steps))
+        if (!mspringi_tuning_has_time(tuning, (double)step / (double)steps))
             return MSPRING_OK;
         const double before = def->clock(def->user);
         const mspring_result result = mspring_network_step(clone, def->dt);
         seconds += fmax(def->clock(def->user) - before, 0.0);
         *end = REJECTED;
         if (result != MSPRING_OK)
-            return result == MSPRING_ERROR_UNSTABLE ? MSPRING_OK : pass_on(tuning, clone, result);
+            return result == MSPRING_ERROR_UNSTABLE ? MSPRING_OK : forward_error(tuning, clone, result);
     }
     run->cost = seconds / (double)steps;
-    note(clone, live_before, run);
+    measure_run(clone, live_before, run);
     *end = WHOLE;
     return MSPRING_OK;
 }
 
 static mspring_result run_solver(mspringi_tuning *tuning, mspring_network *from, uint32_t start,
-                                 const mspring_solver_def *solver, mspringi_scene_run *run, ending *end) {
+                                 const mspring_solver_def *solver, mspringi_scene_run *run, run_outcome *end) {
     mspring_network *clone = NULL;
     bool set = false;
     *end = REJECTED;
-    mspring_result result = mspringi_tune_spawn_with_hooks(tuning, from, &clone);
+    mspring_result result = mspringi_tune_clone_with_hooks(tuning, from, &clone);
     if (result == MSPRING_OK)
         result = prepare(tuning, clone, solver, start, &set);
     if (result == MSPRING_OK && set)
         result = take_steps(tuning, clone, run, end);
-    mspringi_tune_dismiss(clone);
+    mspringi_tune_destroy_clone(clone);
     tuning->done += 1.0;
     return result;
 }
 
-/* -------------------------------------------------------------------------------------------------- all of them */
+/* --------------------------------------------------------------------------------------------------- all starts */
 
-static bool is_in(const mspringi_trial *trial) {
+static bool can_run(const mspringi_trial *trial) {
     return trial->row.flags & MSPRING_TUNE_HAS_COST && !(trial->row.flags & MSPRING_TUNE_REJECTED);
 }
 
-// How the fine run is made; substeps 0: it cannot be.
+// Choose the solver of the fine run. substeps 0: no fine run is possible.
 static mspring_result choose_fine(mspringi_tuning *tuning, mspring_solver_def *solver) {
     double any_shape = 0.0;
     (void)mspring_solver_def_init(solver, sizeof *solver);
     const mspring_result result = mspring_network_stable_dt(tuning->base, NULL, &any_shape);
     if (result != MSPRING_OK)
-        return pass_on(tuning, tuning->base, result);
+        return forward_error(tuning, tuning->base, result);
     double substeps = floor(tuning->def.dt / (FINE_PART_OF_STABLE * any_shape)) + 1.0;
     for (uint32_t i = 0; i < tuning->trial_count; ++i)
-        if (is_in(&tuning->trials[i]) && tuning->trials[i].row.solver == MSPRING_SOLVER_EXPLICIT)
+        if (can_run(&tuning->trials[i]) && tuning->trials[i].row.solver == MSPRING_SOLVER_EXPLICIT)
             substeps = fmax(substeps, FINE_TIMES_SETTINGS * tuning->trials[i].row.substeps);
     solver->substeps = substeps <= MSPRING_MAX_SUBSTEPS ? (uint32_t)substeps : 0;
     return MSPRING_OK;
 }
 
-static bool is_any_in(const mspringi_tuning *tuning) {
+static bool can_any_run(const mspringi_tuning *tuning) {
     bool is_any = false;
     for (uint32_t i = 0; i < tuning->trial_count; ++i)
-        is_any = is_any || is_in(&tuning->trials[i]);
+        is_any = is_any || can_run(&tuning->trials[i]);
     return is_any;
 }
 
-// One start, by the fine run and all settings. Not whole: no further start is to be made.
+// Run one start with the fine run and all settings. Unless it ends WHOLE, there is no next start.
 static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_def *fine, uint32_t start,
-                                mspringi_scene_run *fine_runs, ending *end) {
+                                mspringi_scene_run *fine_runs, run_outcome *end) {
     mspring_network *from = NULL;
     mspring_result result = make_start(tuning, start, &from);
     *end = CUT_SHORT;
@@ -171,22 +172,22 @@ static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_de
         result = run_solver(tuning, from, start, fine, &fine_runs[start], end);
     for (uint32_t i = 0; result == MSPRING_OK && *end == WHOLE && i < tuning->trial_count; ++i) {
         mspringi_trial *trial = &tuning->trials[i];
-        if (!is_in(trial))
+        if (!can_run(trial))
             continue;
-        ending how = CUT_SHORT;
-        result = run_solver(tuning, from, start, &trial->setting, &trial->runs[start], &how);
-        if (how == WHOLE)
+        run_outcome outcome = CUT_SHORT;
+        result = run_solver(tuning, from, start, &trial->setting, &trial->runs[start], &outcome);
+        if (outcome == WHOLE)
             trial->row.scene_starts = start + 1;
-        else if (how == REJECTED && result == MSPRING_OK)
+        else if (outcome == REJECTED && result == MSPRING_OK)
             trial->row.flags |= MSPRING_TUNE_REJECTED;
         else
             *end = CUT_SHORT;
     }
-    mspringi_tune_dismiss(from);
+    mspringi_tune_destroy_clone(from);
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------------- what is told */
+/* ------------------------------------------------------------------------------------------------------ results */
 
 static void sum_up(const mspringi_scene_run *runs, uint32_t count, size_t quantity, double *mean, double *spread) {
     double sum = 0.0, squares = 0.0;
@@ -198,10 +199,10 @@ static void sum_up(const mspringi_scene_run *runs, uint32_t count, size_t quanti
     *spread = sqrt(squares / (count - 1));
 }
 
-static void tell(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uint32_t fine_substeps,
-                 double tolerance) {
+static void fill_row(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uint32_t fine_substeps,
+                     double tolerance) {
     mspring_tune_row *row = &trial->row;
-    double costs[MSPRINGI_TUNE_MOST_STARTS];
+    double costs[MSPRINGI_TUNE_MAX_STARTS];
     row->flags |= MSPRING_TUNE_HAS_SCENE;
     row->fine_substeps = fine_substeps;
     for (uint32_t i = 0; i < row->scene_starts; ++i)
@@ -211,7 +212,7 @@ static void tell(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uin
         sum_up(trial->runs, row->scene_starts, q, &row->scene_mean[q], &row->scene_spread[q]);
         sum_up(fine_runs, row->scene_starts, q, &row->fine_mean[q], &row->fine_spread[q]);
         double unit = fmax(row->fine_spread[q], tolerance * fabs(row->fine_mean[q]));
-        unit = fmax(unit, q == MSPRING_TUNE_BROKEN ? LEAST_COUNT : LEAST_PART_OF_OWN * fabs(row->scene_mean[q]));
+        unit = fmax(unit, q == MSPRING_TUNE_BROKEN ? MIN_COUNT_UNIT : MIN_RELATIVE_UNIT * fabs(row->scene_mean[q]));
         const double difference = fabs(row->scene_mean[q] - row->fine_mean[q]);
         row->scene_distance = fmax(row->scene_distance, difference > 0.0 ? difference / unit : 0.0);
     }
@@ -220,17 +221,17 @@ static void tell(mspringi_trial *trial, const mspringi_scene_run *fine_runs, uin
 mspring_result mspringi_tune_scenes(mspringi_tuning *tuning) {
     mspringi_scene_run *fine_runs = tuning->runs + (size_t)tuning->trial_count * tuning->scene.start_count;
     mspring_solver_def fine;
-    ending end = WHOLE;
+    run_outcome end = WHOLE;
     mspring_result result = choose_fine(tuning, &fine);
     if (result != MSPRING_OK || fine.substeps == 0)
         return result;
     const uint32_t starts = tuning->scene.start_count;
-    for (uint32_t start = 0; result == MSPRING_OK && end == WHOLE && start < starts && is_any_in(tuning); ++start)
+    for (uint32_t start = 0; result == MSPRING_OK && end == WHOLE && start < starts && can_any_run(tuning); ++start)
         result = run_start(tuning, &fine, start, fine_runs, &end);
     for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i) {
         mspringi_trial *trial = &tuning->trials[i];
-        if (is_in(trial) && trial->row.scene_starts >= MSPRINGI_TUNE_LEAST_STARTS)
-            tell(trial, fine_runs, fine.substeps, tuning->scene.tolerance);
+        if (can_run(trial) && trial->row.scene_starts >= MSPRINGI_TUNE_MIN_STARTS)
+            fill_row(trial, fine_runs, fine.substeps, tuning->scene.tolerance);
         else
             trial->row.scene_starts = 0;
     }

@@ -1,4 +1,4 @@
-/// Running settings on clones.
+/// Runs of settings on clones.
 #include <math.h>
 #include <string.h>
 
@@ -8,16 +8,16 @@
 #include "base/cpu.h"
 #include "store/springs.h"
 
-/// Fine substeps are taken in goes of about so many springs, between which the clock is looked at.
-#define SPRINGS_IN_A_GO 1000000u
+/// Springs times fine substeps between two looks at the clock.
+#define SPRINGS_IN_BATCH 1000000u
 
-/// Least scale of errors, as a part of the network's size.
-#define LEAST_SCALE 1e-6
+/// Smallest scale of errors, relative to the network's size.
+#define MIN_SCALE 1e-6
 
 /* ------------------------------------------------------------------------------------------------------- clones */
 
-static mspring_result pass_on(mspringi_tuning *tuning, const mspringi_trial *trial, const mspring_network *clone,
-                              mspring_result result) {
+static mspring_result forward_error(mspringi_tuning *tuning, const mspringi_trial *trial,
+                                    const mspring_network *clone, mspring_result result) {
     if (trial)
         return mspringi_fail(&tuning->network->message, result, "setting %u: %s", (unsigned)trial->row.setting,
                              clone->message.text);
@@ -25,8 +25,8 @@ static mspring_result pass_on(mspringi_tuning *tuning, const mspringi_trial *tri
     return result;
 }
 
-static mspring_result spawn(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
-                            mspring_network **clone) {
+static mspring_result clone_network(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
+                                    mspring_network **clone) {
     mspring_clone_def def;
     (void)mspring_clone_def_init(&def, sizeof def);
     def.flags = flags;
@@ -37,27 +37,27 @@ static mspring_result spawn(mspringi_tuning *tuning, mspring_network *from, uint
     return mspring_network_set_contact(*clone, NULL);
 }
 
-mspring_result mspringi_tune_spawn(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone) {
-    return spawn(tuning, from, 0, clone);
+mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone) {
+    return clone_network(tuning, from, 0, clone);
 }
 
-mspring_result mspringi_tune_spawn_with_hooks(mspringi_tuning *tuning, mspring_network *from,
+mspring_result mspringi_tune_clone_with_hooks(mspringi_tuning *tuning, mspring_network *from,
                                               mspring_network **clone) {
-    return spawn(tuning, from, MSPRING_CLONE_HOOKS, clone);
+    return clone_network(tuning, from, MSPRING_CLONE_HOOKS, clone);
 }
 
-void mspringi_tune_dismiss(mspring_network *clone) {
+void mspringi_tune_destroy_clone(mspring_network *clone) {
     if (clone)
         clone->tasks = NULL;
     mspring_network_destroy(clone);
 }
 
-// A clone with the trial's solver; NULL if the solver is not for this network.
-static mspring_result begin(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *from,
-                            mspring_network **clone) {
+// Make a clone with the trial's solver; NULL if the solver cannot take this network.
+static mspring_result make_clone(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *from,
+                                 mspring_network **clone) {
     *clone = NULL;
     mspring_network *made = NULL;
-    mspring_result result = mspringi_tune_spawn(tuning, from, &made);
+    mspring_result result = mspringi_tune_clone(tuning, from, &made);
     if (result != MSPRING_OK)
         return result;
     result = mspring_network_set_solver(made, &trial->setting);
@@ -69,13 +69,13 @@ static mspring_result begin(mspringi_tuning *tuning, mspringi_trial *trial, mspr
         trial->row.flags |= MSPRING_TUNE_REJECTED;
         result = MSPRING_OK;
     } else {
-        result = pass_on(tuning, trial, made, result);
+        result = forward_error(tuning, trial, made, result);
     }
-    mspringi_tune_dismiss(made);
+    mspringi_tune_destroy_clone(made);
     return result;
 }
 
-// One step of a clone, and its time. A step that is refused ends the trial.
+// Take one timed step of a clone. A rejected step ends the trial.
 static mspring_result step(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *clone) {
     const mspring_tune_def *def = &tuning->def;
     const double before = def->clock(def->user);
@@ -86,7 +86,7 @@ static mspring_result step(mspringi_tuning *tuning, mspringi_trial *trial, mspri
         return MSPRING_OK;
     }
     if (result != MSPRING_OK)
-        return pass_on(tuning, trial, clone, result);
+        return forward_error(tuning, trial, clone, result);
     double *times = tuning->is_resting ? trial->rest_times : trial->times;
     uint32_t *time_count = tuning->is_resting ? &trial->rest_count : &trial->time_count;
     if (*time_count < tuning->time_capacity)
@@ -95,23 +95,23 @@ static mspring_result step(mspringi_tuning *tuning, mspringi_trial *trial, mspri
     return MSPRING_OK;
 }
 
-static bool is_refused(const mspringi_trial *trial) {
+static bool is_rejected(const mspringi_trial *trial) {
     return trial->row.flags & MSPRING_TUNE_REJECTED;
 }
 
-/// What is done after a step; step counts from 1.
+/// Callback after a step; step counts from 1.
 typedef void (*after_step_fn)(mspringi_tuning *tuning, const mspring_network *clone, uint32_t step, void *context);
 
-// Run a trial from where a network is. Afterwards has_run says whether it came to its end.
+// Run a trial from the state of a network. has_run: true if it was completed.
 static mspring_result run(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *from, uint32_t steps,
                           after_step_fn after, void *context) {
     mspring_network *clone;
-    mspring_result result = begin(tuning, trial, from, &clone);
+    mspring_result result = make_clone(tuning, trial, from, &clone);
     uint32_t done = 0;
     while (result == MSPRING_OK && clone && done < steps &&
-           mspringi_tuning_goes_on(tuning, (double)done / (double)steps)) {
+           mspringi_tuning_has_time(tuning, (double)done / (double)steps)) {
         result = step(tuning, trial, clone);
-        if (result != MSPRING_OK || is_refused(trial))
+        if (result != MSPRING_OK || is_rejected(trial))
             break;
         ++done;
         if (after)
@@ -121,7 +121,7 @@ static mspring_result run(mspringi_tuning *tuning, mspringi_trial *trial, msprin
         trial->row.substeps = clone->substeps;
         trial->relative_h = clone->fractions.values ? clone->relative_h : 0.0f;
     }
-    mspringi_tune_dismiss(clone);
+    mspringi_tune_destroy_clone(clone);
     trial->has_run = done == steps;
     tuning->done += 1.0;
     return result;
@@ -136,26 +136,26 @@ mspring_result mspringi_tune_costs(mspringi_tuning *tuning) {
     return result;
 }
 
-mspring_result mspringi_tune_costs_again(mspringi_tuning *tuning) {
+mspring_result mspringi_tune_more_costs(mspringi_tuning *tuning) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
-        if (tuning->trials[i].row.flags & MSPRING_TUNE_HAS_COST && !is_refused(&tuning->trials[i]))
+        if (tuning->trials[i].row.flags & MSPRING_TUNE_HAS_COST && !is_rejected(&tuning->trials[i]))
             result = run(tuning, &tuning->trials[i], tuning->base, tuning->step_count, NULL, NULL);
     return result;
 }
 
 /* ------------------------------------------------------------------------------------------------- trajectories */
 
-/// A fine run, and what a trial adds up.
+/// Reference run, and sums over a trial.
 typedef struct comparison {
     mspringi_reference reference;
-    double motion;          ///< m, largest RMS distance of particles from the start, over the steps of the fine run
-    double internal, total; ///< J: largest kinetic and elastic energy, and all energy at the end
+    double motion;          ///< m, largest RMS distance from the start over the steps of the reference run
+    double internal, total; ///< J: largest kinetic plus elastic energy, and total energy at the end
     uint32_t free_count;    ///< particles that are not pinned
-    double squares;         ///< m^2, of a trial
+    double squares;         ///< m^2, sum over a trial
 } comparison;
 
-// The moment that comes with this step, or MSPRINGI_TUNE_MOMENTS.
+// Moment of comparison at this step, or MSPRINGI_TUNE_MOMENTS if none.
 static uint32_t moment_of(const mspringi_tuning *tuning, uint32_t step) {
     for (uint32_t moment = 0; moment < MSPRINGI_TUNE_MOMENTS; ++moment)
         if ((uint64_t)tuning->step_count * (moment + 1) / MSPRINGI_TUNE_MOMENTS == step)
@@ -163,12 +163,12 @@ static uint32_t moment_of(const mspringi_tuning *tuning, uint32_t step) {
     return MSPRINGI_TUNE_MOMENTS;
 }
 
-static double *places_at(const mspringi_tuning *tuning, uint32_t moment) {
-    return tuning->places + (size_t)2 * moment * tuning->base->topology.particle_count;
+static double *positions_at(const mspringi_tuning *tuning, uint32_t moment) {
+    return tuning->positions + (size_t)2 * moment * tuning->base->topology.particle_count;
 }
 
-// After each step: a body that is back where it was at all moments has moved in between.
-static void note_motion(const mspringi_tuning *tuning, comparison *c) {
+// Update the motion after each step: a body may be back at its start at all moments.
+static void measure_motion(const mspringi_tuning *tuning, comparison *c) {
     const mspringi_reference *r = &c->reference;
     const mspringi_state *start = &tuning->base->state;
     double squares = 0.0;
@@ -181,40 +181,41 @@ static void note_motion(const mspringi_tuning *tuning, comparison *c) {
     c->motion = c->free_count > 0 ? fmax(c->motion, sqrt(squares / (double)c->free_count)) : 0.0;
 }
 
-static void note_moment(const mspringi_tuning *tuning, comparison *c, uint32_t moment) {
+static void save_moment(const mspringi_tuning *tuning, comparison *c, uint32_t moment) {
     const mspringi_reference *r = &c->reference;
-    memcpy(places_at(tuning, moment), r->x, 2 * (size_t)r->particle_count * sizeof *r->x); // y lies behind x
+    memcpy(positions_at(tuning, moment), r->x,
+           2 * (size_t)r->particle_count * sizeof *r->x); // y follows x in memory
     const mspringi_reference_energy energy = mspringi_reference_measure(r);
     c->internal = fmax(c->internal, energy.internal);
     c->total = energy.internal + energy.potential;
 }
 
-// How many fine substeps a step takes, as far as there is any end to them.
+// Number of fine substeps in a step, at most 1e9.
 static double fine_substeps(const mspringi_tuning *tuning, const mspringi_reference *r) {
     const double needed = tuning->def.dt / mspringi_reference_substep(r);
     return needed < 1e9 ? floor(needed) + 1.0 : 1e9;
 }
 
-// Run the reference. False: there was not time enough.
+// Run the reference. False if the time ran out.
 static bool make_fine_run(mspringi_tuning *tuning, comparison *c) {
     const double substeps = fine_substeps(tuning, &c->reference), h = tuning->def.dt / substeps;
-    const uint32_t go = 1 + SPRINGS_IN_A_GO / (c->reference.spring_count + 1);
+    const uint32_t batch = 1 + SPRINGS_IN_BATCH / (c->reference.spring_count + 1);
     for (uint32_t p = 0; p < c->reference.particle_count; ++p)
         c->free_count += c->reference.inverse_mass[p] > 0.0;
     for (uint32_t step = 1; step <= tuning->step_count; ++step) {
         for (uint32_t left = (uint32_t)substeps; left > 0;) {
-            const uint32_t count = go < left ? go : left;
-            if (!mspringi_tuning_goes_on(tuning, 0.0))
+            const uint32_t count = batch < left ? batch : left;
+            if (!mspringi_tuning_has_time(tuning, 0.0))
                 return false;
             mspringi_reference_run(&c->reference, h, count);
             left -= count;
         }
         if (step == 1)
-            mspringi_reference_release(&c->reference);
-        note_motion(tuning, c);
+            mspringi_reference_clear_forces(&c->reference);
+        measure_motion(tuning, c);
         const uint32_t moment = moment_of(tuning, step);
         if (moment < MSPRINGI_TUNE_MOMENTS)
-            note_moment(tuning, c, moment);
+            save_moment(tuning, c, moment);
     }
     return true;
 }
@@ -227,15 +228,15 @@ static void compare(mspringi_tuning *tuning, const mspring_network *clone, uint3
     const double shift_x = clone->origin_x - tuning->base->origin_x,
                  shift_y = clone->origin_y - tuning->base->origin_y;
     mspringi_reference *r = &c->reference;
-    const double *x = places_at(tuning, moment), *y = x + r->particle_count;
-    mspringi_reference_place(r, clone, shift_x, shift_y);
+    const double *x = positions_at(tuning, moment), *y = x + r->particle_count;
+    mspringi_reference_set_motion(r, clone, shift_x, shift_y);
     for (uint32_t p = 0; p < r->particle_count; ++p)
         if (r->inverse_mass[p] > 0.0)
             c->squares += (r->x[p] - x[p]) * (r->x[p] - x[p]) + (r->y[p] - y[p]) * (r->y[p] - y[p]);
 }
 
 static double at_least(const mspringi_tuning *tuning, double scale) {
-    const double least = LEAST_SCALE * tuning->size;
+    const double least = MIN_SCALE * tuning->size;
     return scale > least ? scale : least > 0.0 ? least : 1.0;
 }
 
@@ -256,22 +257,22 @@ static mspring_result run_trajectory(mspringi_tuning *tuning, mspringi_trial *tr
 
 /* --------------------------------------------------------------------------------------------- groups of trials */
 
-// Whether a trial is still to be run, with this stiffness of relative springs.
-static bool is_waiting(const mspringi_trial *trial, float relative_h) {
-    return trial->row.flags & MSPRING_TUNE_HAS_COST && !is_refused(trial) && !trial->has_run &&
+// True if a trial with this stiffness of relative springs has yet to run.
+static bool is_pending(const mspringi_trial *trial, float relative_h) {
+    return trial->row.flags & MSPRING_TUNE_HAS_COST && !is_rejected(trial) && !trial->has_run &&
            trial->relative_h == relative_h;
 }
 
 typedef mspring_result (*group_fn)(mspringi_tuning *tuning, float relative_h);
 
-// Run trials, those that have the same stiffness of relative springs together.
+// Run the trials, grouped by the stiffness of relative springs.
 static mspring_result run_groups(mspringi_tuning *tuning, group_fn fn) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; i < tuning->trial_count; ++i)
         tuning->trials[i].has_run = false;
     for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i) {
         const float relative_h = tuning->trials[i].relative_h;
-        if (!is_waiting(&tuning->trials[i], relative_h) || tuning->is_over)
+        if (!is_pending(&tuning->trials[i], relative_h) || tuning->is_over)
             continue;
         result = fn(tuning, relative_h);
         for (uint32_t j = i; j < tuning->trial_count; ++j)
@@ -284,20 +285,20 @@ static mspring_result run_groups(mspringi_tuning *tuning, group_fn fn) {
 static mspring_result trajectories_of_group(mspringi_tuning *tuning, float relative_h) {
     mspring_network *fine = NULL;
     comparison c = {.motion = 0.0};
-    mspring_result result = mspringi_tune_spawn(tuning, tuning->base, &fine);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->base, &fine);
     if (result != MSPRING_OK)
         return result;
     if (relative_h > 0.0f)
         mspringi_derive_relative(fine, relative_h);
     result = mspringi_reference_create(&c.reference, fine);
     if (result != MSPRING_OK) {
-        result = pass_on(tuning, NULL, fine, result);
+        result = forward_error(tuning, NULL, fine, result);
     } else if (make_fine_run(tuning, &c)) {
         for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
-            if (is_waiting(&tuning->trials[i], relative_h))
+            if (is_pending(&tuning->trials[i], relative_h))
                 result = run_trajectory(tuning, &tuning->trials[i], &c);
     }
-    mspringi_tune_dismiss(fine); // with the reference's memory
+    mspringi_tune_destroy_clone(fine); // frees the reference's memory, too
     return result;
 }
 
@@ -305,7 +306,7 @@ mspring_result mspringi_tune_time_fine_step(mspringi_tuning *tuning, float relat
     const mspring_tune_def *def = &tuning->def;
     mspring_network *fine = NULL;
     mspringi_reference r;
-    mspring_result result = mspringi_tune_spawn(tuning, tuning->base, &fine);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->base, &fine);
     if (result != MSPRING_OK)
         return result;
     if (relative_h > 0.0f)
@@ -316,9 +317,9 @@ mspring_result mspringi_tune_time_fine_step(mspringi_tuning *tuning, float relat
         mspringi_reference_run(&r, def->dt / substeps, 1);
         *seconds = substeps * (def->clock(def->user) - begun);
     } else {
-        result = pass_on(tuning, NULL, fine, result);
+        result = forward_error(tuning, NULL, fine, result);
     }
-    mspringi_tune_dismiss(fine); // with the reference's memory
+    mspringi_tune_destroy_clone(fine); // frees the reference's memory, too
     return result;
 }
 
@@ -328,31 +329,31 @@ mspring_result mspringi_tune_trajectories(mspringi_tuning *tuning) {
 
 /* --------------------------------------------------------------------------------------------------------- rest */
 
-static void add_places(mspringi_tuning *tuning, const mspring_network *clone, uint32_t step, void *context) {
+static void add_positions(mspringi_tuning *tuning, const mspring_network *clone, uint32_t step, void *context) {
     const mspring_network *settled = context;
     const mspringi_state *s = &clone->state;
     const uint32_t count = clone->topology.particle_count;
     (void)step;
     for (uint32_t p = 0; p < count; ++p) {
         const uint32_t slot = clone->topology.slot_of_particle[p];
-        tuning->places[p] += clone->origin_x - settled->origin_x + mspringi_x_of(s, slot);
-        tuning->places[count + p] += clone->origin_y - settled->origin_y + mspringi_y_of(s, slot);
+        tuning->positions[p] += clone->origin_x - settled->origin_x + mspringi_x_of(s, slot);
+        tuning->positions[count + p] += clone->origin_y - settled->origin_y + mspringi_y_of(s, slot);
     }
 }
 
 static mspring_result run_rest(mspringi_tuning *tuning, mspringi_trial *trial, mspring_network *settled,
                                double bending) {
     const uint32_t count = settled->topology.particle_count;
-    memset(tuning->places, 0, 2 * (size_t)count * sizeof *tuning->places);
-    const mspring_result result = run(tuning, trial, settled, tuning->step_count, add_places, settled);
+    memset(tuning->positions, 0, 2 * (size_t)count * sizeof *tuning->positions);
+    const mspring_result result = run(tuning, trial, settled, tuning->step_count, add_positions, settled);
     if (result != MSPRING_OK || !trial->has_run)
         return result;
     double farthest = 0.0;
     for (uint32_t p = 0; p < count; ++p) {
         const uint32_t slot = settled->topology.slot_of_particle[p];
-        const double dx = tuning->places[p] / (double)tuning->step_count - mspringi_x_of(&settled->state, slot);
+        const double dx = tuning->positions[p] / (double)tuning->step_count - mspringi_x_of(&settled->state, slot);
         const double dy =
-            tuning->places[count + p] / (double)tuning->step_count - mspringi_y_of(&settled->state, slot);
+            tuning->positions[count + p] / (double)tuning->step_count - mspringi_y_of(&settled->state, slot);
         farthest = fmax(farthest, sqrt(dx * dx + dy * dy));
     }
     trial->row.flags |= MSPRING_TUNE_HAS_REST;
@@ -362,42 +363,42 @@ static mspring_result run_rest(mspringi_tuning *tuning, mspringi_trial *trial, m
     return MSPRING_OK;
 }
 
-// Let go of what only acts in the first step, and stop what the host moves.
-static void hold_still(mspring_network *network) {
+// Remove forces that act in the first step only, and stop pinned particles.
+static void stop_motion(mspring_network *network) {
     const size_t bytes = 2 * mspringi_slot_count(network) * sizeof(float);
     if (network->forces.held_any)
         memset(network->forces.held.x, 0, bytes);
     network->forces.held_any = false;
-    memset(network->state.vx, 0, bytes); // vy lies behind vx
+    memset(network->state.vx, 0, bytes); // vy follows vx in memory
 }
 
-static bool search_goes_on(void *user) {
-    return mspringi_tuning_goes_on(user, 0.0);
+static bool has_time(void *user) {
+    return mspringi_tuning_has_time(user, 0.0);
 }
 
 static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) {
     mspring_network *settled = NULL;
     mspring_settle_def def;
     mspring_settle_result rest = {.struct_size = sizeof rest};
-    mspring_result result = mspringi_tune_spawn(tuning, tuning->base, &settled);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->base, &settled);
     if (result != MSPRING_OK)
         return result;
     (void)mspring_settle_def_init(&def, sizeof def);
     def.relative_substep = (double)relative_h;
-    hold_still(settled);
-    const mspringi_watcher watcher = {search_goes_on, tuning};
+    stop_motion(settled);
+    const mspringi_watcher watcher = {has_time, tuning};
     result = mspringi_settle_watched(settled, &def, &rest, watcher);
     const bool is_unknown = result == MSPRING_ERROR_ARGUMENT && settled->areas.unringed > 0;
     if (result == MSPRING_ERROR_EQUILIBRIUM || result == MSPRING_ERROR_LIMIT || is_unknown) {
-        result = MSPRING_OK; // there is none, or it has areas that settling does not take
+        result = MSPRING_OK; // no equilibrium, or areas that settling does not support
     } else if (result != MSPRING_OK) {
-        result = pass_on(tuning, NULL, settled, result);
+        result = forward_error(tuning, NULL, settled, result);
     } else {
         for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
-            if (is_waiting(&tuning->trials[i], relative_h))
+            if (is_pending(&tuning->trials[i], relative_h))
                 result = run_rest(tuning, &tuning->trials[i], settled, rest.displacement);
     }
-    mspringi_tune_dismiss(settled);
+    mspringi_tune_destroy_clone(settled);
     return result;
 }
 

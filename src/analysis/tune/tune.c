@@ -1,4 +1,4 @@
-/// mspring_network_tune(): what is asked for, in which order it is measured, and what comes out.
+/// mspring_network_tune(): checks, order of the measurements, and results.
 #include <math.h>
 
 #include "analysis/tune/tuning.h"
@@ -7,19 +7,19 @@
 #include "step/origin.h"
 #include "step/strain.h"
 
-#define MOST_SETTINGS 1000
-#define MOST_STEPS 100000
+#define MAX_SETTINGS 1000
+#define MAX_STEPS 100000
 
 /* ------------------------------------------------------------------------------------------------------- checks */
 
 static mspring_result check_numbers(const mspring_tune_def *def, mspringi_message *message) {
     if (!(def->dt > 0.0 && def->dt < INFINITY))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "dt is %g s, it must be finite and > 0", def->dt);
-    if (!(def->duration >= 0.0 && def->duration <= def->dt * MOST_STEPS))
+    if (!(def->duration >= 0.0 && def->duration <= def->dt * MAX_STEPS))
         return mspringi_fail(
             message, MSPRING_ERROR_ARGUMENT,
             "duration is %g s, it must be at most %d steps of %g s, or 0: as long as the motion asks",
-            def->duration, MOST_STEPS, def->dt);
+            def->duration, MAX_STEPS, def->dt);
     if (!(def->budget > 0.0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "budget is %g s, it must be > 0", def->budget);
     if (!(def->max_error > 0.0 && def->max_cost > 0.0))
@@ -42,13 +42,13 @@ static mspring_result check_scene_numbers(const mspring_tune_scene *scene, doubl
     if (scene->flags & ~known)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "flags of mspring_tune_scene are 0x%x",
                              (unsigned)scene->flags);
-    if (scene->start_count < MSPRINGI_TUNE_LEAST_STARTS || scene->start_count > MSPRINGI_TUNE_MOST_STARTS)
+    if (scene->start_count < MSPRINGI_TUNE_MIN_STARTS || scene->start_count > MSPRINGI_TUNE_MAX_STARTS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the scene's start_count is %u, it must be %d to %d",
-                             (unsigned)scene->start_count, MSPRINGI_TUNE_LEAST_STARTS, MSPRINGI_TUNE_MOST_STARTS);
-    if (!(scene->duration > 0.0 && scene->duration <= dt * MOST_STEPS))
+                             (unsigned)scene->start_count, MSPRINGI_TUNE_MIN_STARTS, MSPRINGI_TUNE_MAX_STARTS);
+    if (!(scene->duration > 0.0 && scene->duration <= dt * MAX_STEPS))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the scene's duration is %g s, it must be > 0 and at most %d steps of %g s",
-                             scene->duration, MOST_STEPS, dt);
+                             scene->duration, MAX_STEPS, dt);
     if (!(scene->kick > 0.0 && scene->kick < INFINITY && scene->max_distance > 0.0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the scene's kick is %g m/s, its max_distance %g, both must be > 0, kick finite",
@@ -70,7 +70,7 @@ static mspring_result check_scene(const mspring_tune_scene *scene, double dt, ms
     if (result == MSPRING_OK && network->fractions.values)
         result = mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                "the network has relative springs, which would follow the substeps of the scene's "
-                               "fine run: give stiffness in N/m, or no scene");
+                               "fine run: set stiffness in N/m, or no scene");
     return result;
 }
 
@@ -82,14 +82,15 @@ static mspring_result check_def(const mspring_tune_def *def, mspringi_message *m
         result = check_numbers(def, message);
     if (result != MSPRING_OK)
         return result;
-    if (def->setting_count > MOST_SETTINGS || (def->settings && def->setting_count == 0))
+    if (def->setting_count > MAX_SETTINGS || (def->settings && def->setting_count == 0))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "setting_count is %u, it must be 1 to %d",
-                             (unsigned)def->setting_count, MOST_SETTINGS);
+                             (unsigned)def->setting_count, MAX_SETTINGS);
     if (!def->settings && def->setting_count > 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "settings is NULL, but setting_count %u",
                              (unsigned)def->setting_count);
     if (!def->clock && !mspringi_clock())
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "this build has no clock: give one");
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "this build has no clock: set clock in mspring_tune_def");
     return MSPRING_OK;
 }
 
@@ -118,7 +119,7 @@ static mspring_result check_rows(const mspring_tune_row *rows, uint32_t capacity
 
 /* -------------------------------------------------------------------------------------------------------- time */
 
-bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
+bool mspringi_tuning_has_time(mspringi_tuning *tuning, double part) {
     const mspring_tune_def *def = &tuning->def;
     if (tuning->is_over)
         return false;
@@ -128,10 +129,10 @@ bool mspringi_tuning_goes_on(mspringi_tuning *tuning, double part) {
     return !tuning->is_over;
 }
 
-/* -------------------------------------------------------------------------------------------------- setting up */
+/* ------------------------------------------------------------------------------------------------------- setup */
 
-// A setting is to be measured, not what would stand in for it.
-void mspringi_tune_expose(mspring_network *clone) {
+// Disable sleep and fallbacks, so that the setting itself is measured.
+void mspringi_tune_disable_fallbacks(mspring_network *clone) {
     mspringi_wake(clone);
     clone->settings.sleep_speed = 0.0f;
     if (clone->settings.guard == MSPRING_GUARD_IMPLICIT || clone->settings.guard == MSPRING_GUARD_CLAMP)
@@ -147,17 +148,16 @@ void mspringi_tune_make_unbreakable(mspring_network *clone) {
     clone->plastic.yields = false;
 }
 
-// A clone that only springs, gravity and the forces given move: ramps stand still, springs do not break, and there
-// is no floor.
+// Make a clone with springs, gravity and external forces only: without ramps, breaking or a floor.
 static mspring_result make_base(mspringi_tuning *tuning) {
-    mspring_result result = mspringi_tune_spawn(tuning, tuning->network, &tuning->base);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->network, &tuning->base);
     if (result != MSPRING_OK)
         return result;
     mspring_network *base = tuning->base;
     result = mspring_network_set_floor(base, NULL);
     if (result != MSPRING_OK)
         return result;
-    mspringi_tune_expose(base);
+    mspringi_tune_disable_fallbacks(base);
     mspringi_tune_make_unbreakable(base);
     base->ramps.count = 0;
     mspringi_box box = mspringi_box_empty();
@@ -176,10 +176,10 @@ uint32_t mspringi_tune_steps_in(double duration, double dt) {
     return (uint32_t)(whole < steps ? whole + 1.0 : whole);
 }
 
-// Steps of a trajectory; the most there can be where that is not known yet.
+// Number of steps of a trajectory; the upper limit if the duration is automatic.
 static uint32_t steps_of(const mspring_tune_def *def) {
     if (def->duration == 0.0)
-        return MSPRINGI_TUNE_MOST_STEPS;
+        return MSPRINGI_TUNE_MAX_STEPS;
     const uint32_t steps = mspringi_tune_steps_in(def->duration, def->dt);
     return steps > MSPRINGI_TUNE_MOMENTS ? steps : MSPRINGI_TUNE_MOMENTS;
 }
@@ -191,10 +191,10 @@ static mspring_result allocate(mspringi_tuning *tuning) {
     tuning->trials = mspringi_alloc(memory, tuning->trial_count, sizeof *tuning->trials);
     tuning->times =
         mspringi_alloc(memory, (size_t)2 * tuning->trial_count * tuning->time_capacity, sizeof *tuning->times);
-    tuning->places = mspringi_alloc(memory, 2 * MSPRINGI_TUNE_MOMENTS * particles, sizeof *tuning->places);
+    tuning->positions = mspringi_alloc(memory, 2 * MSPRINGI_TUNE_MOMENTS * particles, sizeof *tuning->positions);
     tuning->runs =
         mspringi_alloc(memory, ((size_t)tuning->trial_count + 1) * tuning->scene.start_count, sizeof *tuning->runs);
-    if (!tuning->trials || !tuning->times || !tuning->places || !tuning->runs)
+    if (!tuning->trials || !tuning->times || !tuning->positions || !tuning->runs)
         return mspringi_fail(&tuning->network->message, MSPRING_ERROR_MEMORY, "no memory to try %u settings",
                              (unsigned)tuning->trial_count);
     return MSPRING_OK;
@@ -223,7 +223,7 @@ static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *setti
     }
 }
 
-/* --------------------------------------------------------------------------------------------------- measuring */
+/* ------------------------------------------------------------------------------------------------ measurements */
 
 static mspring_result measure_swings(mspringi_tuning *tuning) {
     const mspring_tune_measure by = tuning->def.measure;
@@ -253,7 +253,7 @@ static mspring_result measure(mspringi_tuning *tuning) {
         result = measure_swings(tuning);
     if (result == MSPRING_OK && !by_scene && all && tuning->def.scene)
         result = mspringi_tune_scenes(tuning);
-    return result == MSPRING_OK ? mspringi_tune_costs_again(tuning) : result;
+    return result == MSPRING_OK ? mspringi_tune_more_costs(tuning) : result;
 }
 
 static mspring_result tune(mspringi_tuning *tuning, const mspring_solver_def *settings) {
@@ -265,7 +265,7 @@ static mspring_result tune(mspringi_tuning *tuning, const mspring_solver_def *se
     fill_trials(tuning, settings);
     result = measure(tuning);
     if (result == MSPRING_OK)
-        mspringi_tune_judge(tuning);
+        mspringi_tune_rank(tuning);
     return result;
 }
 
@@ -292,9 +292,9 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
             mspringi_put_struct((char *)rows + i * struct_size, &tuning.trials[i].row, sizeof *rows);
         *count = setting_count;
     }
-    mspringi_tune_dismiss(tuning.base);
+    mspringi_tune_destroy_clone(tuning.base);
     mspringi_free(&network->memory, tuning.runs);
-    mspringi_free(&network->memory, tuning.places);
+    mspringi_free(&network->memory, tuning.positions);
     mspringi_free(&network->memory, tuning.times);
     mspringi_free(&network->memory, tuning.trials);
     return result;
@@ -303,13 +303,12 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
 mspring_result mspring_network_tune(mspring_network *network, const mspring_tune_def *def, mspring_tune_row *rows,
                                     uint32_t capacity, uint32_t *count) {
     mspring_tune_def defaults;
-    mspring_solver_def usual[MSPRINGI_TUNE_USUAL_SETTINGS];
+    mspring_solver_def usual[MSPRINGI_TUNE_DEFAULT_SETTINGS];
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (!rows || !count)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the place for rows, or their count, is NULL");
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "rows or count is NULL");
     if (!def) {
         (void)mspring_tune_def_init(&defaults, sizeof defaults);
         def = &defaults;
@@ -321,9 +320,9 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
         result = check_scene(def->scene, def->dt, network);
     if (result == MSPRING_OK && !settings) {
         settings = usual;
-        for (int i = 0; i < MSPRINGI_TUNE_USUAL_SETTINGS; ++i)
+        for (int i = 0; i < MSPRINGI_TUNE_DEFAULT_SETTINGS; ++i)
             usual[i].struct_size = sizeof usual[i];
-        result = mspring_tune_settings(network, def->dt, usual, MSPRINGI_TUNE_USUAL_SETTINGS, &setting_count);
+        result = mspring_tune_settings(network, def->dt, usual, MSPRINGI_TUNE_DEFAULT_SETTINGS, &setting_count);
     }
     if (result == MSPRING_OK)
         result = check_rows(rows, capacity, setting_count, &network->message);

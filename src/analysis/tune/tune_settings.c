@@ -1,20 +1,20 @@
-/// What is worth trying where the host does not say.
+/// Default settings to try.
 #include "analysis/tune/tuning.h"
 
 #include "store/network.h"
 
-/// Part of the stable substep of now that the least number of substeps keeps to: motion stiffens a network.
+/// Safety factor on the stable substep of the present shape for the fewest substeps: motion stiffens a network.
 #define SAFETY 0.9
-#define MOST_SUBSTEPS 1000
+#define MAX_SUBSTEPS 1000
 
-/// Particles up to which a factorisation in each step may be worth its time.
-#define MOST_PARTICLES_OF_DIRECT 20000
+/// Number of particles up to which a factorisation in each step may pay off.
+#define MAX_DIRECT_PARTICLES 20000
 
-/// Iterations with which the default integrator is tried, beside the other one.
-#define USUAL_ITERATIONS 8
+/// Iterations for the default integrator, beside the other one.
+#define DEFAULT_ITERATIONS 8
 
 typedef struct settings {
-    mspring_solver_def list[MSPRINGI_TUNE_USUAL_SETTINGS];
+    mspring_solver_def list[MSPRINGI_TUNE_DEFAULT_SETTINGS];
     uint32_t count;
 } settings;
 
@@ -22,7 +22,7 @@ static void add(settings *s, mspring_solver solver, mspring_integrator integrato
                 uint32_t iterations) {
     mspring_solver_def def;
     if (!mspringi_solver_ops_of(solver))
-        return; // this build leaves it out
+        return; // not in this build
     (void)mspring_solver_def_init(&def, sizeof def);
     def.solver = solver;
     def.integrator = integrator;
@@ -31,9 +31,9 @@ static void add(settings *s, mspring_solver solver, mspring_integrator integrato
     s->list[s->count++] = def;
 }
 
-// Explicit substeps, in rising order.
+// Add explicit settings, in increasing order of substeps.
 static void add_explicit(settings *s, uint32_t substeps) {
-    if (substeps <= MOST_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
+    if (substeps <= MAX_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
         add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, substeps, 0);
 }
 
@@ -52,9 +52,9 @@ static void list_settings(settings *s, const mspring_network *network, uint32_t 
     for (uint32_t substeps = 1; substeps <= 4; substeps *= 2) {
         for (size_t i = 0; i < sizeof iterations / sizeof iterations[0]; ++i)
             add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, substeps, iterations[i]);
-        add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, USUAL_ITERATIONS);
+        add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, DEFAULT_ITERATIONS);
     }
-    for (uint32_t substeps = 1; network->topology.particle_count <= MOST_PARTICLES_OF_DIRECT && substeps <= 2;
+    for (uint32_t substeps = 1; network->topology.particle_count <= MAX_DIRECT_PARTICLES && substeps <= 2;
          ++substeps) {
         add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, substeps, 0);
         add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, substeps, 0);
@@ -69,8 +69,7 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
     if (result != MSPRING_OK)
         return result;
     if (!count || (capacity > 0 && !list))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the place for settings, or their count, is NULL");
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "settings or count is NULL");
     result = mspring_network_suggest_substeps(network, dt, SAFETY, &least);
     if (result != MSPRING_OK && result != MSPRING_ERROR_UNSTABLE)
         return result;
@@ -80,7 +79,7 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
         return MSPRING_OK;
     if (capacity < s.count)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "there is room for %u settings, but %u of them", (unsigned)capacity,
+                             "there is room for %u settings, but there are %u", (unsigned)capacity,
                              (unsigned)s.count);
     const size_t struct_size = mspringi_struct_size(list);
     result = mspringi_check_outputs(list, s.count, "mspring_solver_def", sizeof *list, &network->message);

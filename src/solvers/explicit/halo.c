@@ -172,7 +172,7 @@ static void sweep_copy(const mspring_network *network, const mspringi_substep *s
 void mspringi_halo_keep(const mspring_network *network, const mspringi_halo *halo, const mspringi_substep *substep,
                         const mspringi_strip *strip) {
     const mspringi_row *above = &network->topology.rows[strip->first_row], *below = above - 1;
-    const mspringi_share share = mspringi_sleep_state_of_strip(network, strip - 1);
+    const mspringi_strip_sleep share = mspringi_sleep_state_of_strip(network, strip - 1);
     if (below->kind != MSPRINGI_ROW_LATTICE || share == MSPRINGI_ASLEEP)
         return;
     const mspringi_state kept = state_of(network, halo->border, ABOVE + halo->substep);
@@ -181,7 +181,7 @@ void mspringi_halo_keep(const mspring_network *network, const mspringi_halo *hal
     const copied copy = copy_below(network, halo, below, BELOW_FOR_UPPER);
     mspringi_sweep sweep = substep->sweep;
     sweep.watch = NULL;
-    sweep_copy(network, substep, &copy, &sweep, below, share == MSPRINGI_PARTLY);
+    sweep_copy(network, substep, &copy, &sweep, below, share == MSPRINGI_PARTLY_ASLEEP);
 }
 
 void mspringi_halo_sweep(const mspring_network *network, const mspringi_halo *halo, const mspringi_substep *substep,
@@ -200,7 +200,7 @@ void mspringi_halo_sweep(const mspring_network *network, const mspringi_halo *ha
         sweep.before = before.x;
     }
     sweep_copy(network, substep, &copy, &sweep, below,
-               mspringi_sleep_state_of_strip(network, strip) == MSPRINGI_PARTLY);
+               mspringi_sleep_state_of_strip(network, strip) == MSPRINGI_PARTLY_ASLEEP);
     copy_slots(&copy.state, 0, &network->state, copy.below.first, copy.below.count);
     // The worker above has what the row hands on.
     const size_t carried = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH;

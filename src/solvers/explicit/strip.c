@@ -222,7 +222,7 @@ static bool begin_test(const mspring_network *network, const mspringi_substep *s
 static void sweep_strip(const mspring_network *network, const mspringi_substep *substep,
                         const mspringi_strip *strip, const mspringi_halo *halo) {
     const mspringi_row *rows = &network->topology.rows[strip->first_row], *last = rows + strip->row_count - 1;
-    const bool is_partly = mspringi_sleep_state_of_strip(network, strip) == MSPRINGI_PARTLY;
+    const bool is_partly = mspringi_sleep_state_of_strip(network, strip) == MSPRINGI_PARTLY_ASLEEP;
     const bool has_halo = halo && last->kind == MSPRINGI_ROW_LATTICE;
     const uint32_t row_count = strip->row_count - has_halo;
     const mspringi_span *spans = &network->topology.spans[rows->first_span];

@@ -1,4 +1,4 @@
-/// Which rows are worth having.
+/// Pareto front and recommendation.
 #include <math.h>
 
 #include "analysis/tune/tuning.h"
@@ -49,7 +49,7 @@ static bool is_measured(const mspring_tune_row *row, mspring_tune_measure measur
     return (row->flags & needed) == needed && !(row->flags & MSPRING_TUNE_REJECTED);
 }
 
-static bool is_beaten(const mspringi_tuning *tuning, const mspring_tune_row *row) {
+static bool is_dominated(const mspringi_tuning *tuning, const mspring_tune_row *row) {
     const mspring_tune_measure measure = tuning->def.measure;
     for (uint32_t i = 0; i < tuning->trial_count; ++i) {
         const mspring_tune_row *other = &tuning->trials[i].row;
@@ -63,7 +63,7 @@ static bool is_beaten(const mspringi_tuning *tuning, const mspring_tune_row *row
     return false;
 }
 
-void mspringi_tune_judge(const mspringi_tuning *tuning) {
+void mspringi_tune_rank(const mspringi_tuning *tuning) {
     const mspring_tune_def *def = &tuning->def;
     const double most = def->measure == MSPRING_TUNE_BY_SCENE ? tuning->scene.max_distance : def->max_error;
     mspring_tune_row *best = NULL;
@@ -73,11 +73,11 @@ void mspringi_tune_judge(const mspringi_tuning *tuning) {
         mspring_tune_row *row = &tuning->trials[i].row;
         if (!is_measured(row, def->measure))
             continue;
-        if (!is_beaten(tuning, row))
+        if (!is_dominated(tuning, row))
             row->flags |= MSPRING_TUNE_PARETO;
         const double error = error_of(row, def->measure), cost = cost_of(row, def->measure);
-        const bool gains = row->flags & MSPRING_TUNE_HAS_TRAJECTORY && row->energy_drift > def->max_drift;
-        if (error > most || cost > def->max_cost || gains)
+        const bool gains_energy = row->flags & MSPRING_TUNE_HAS_TRAJECTORY && row->energy_drift > def->max_drift;
+        if (error > most || cost > def->max_cost || gains_energy)
             continue;
         if (!best || (most < INFINITY ? cost < cost_of(best, def->measure) : error < error_of(best, def->measure)))
             best = row;
