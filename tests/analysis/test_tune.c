@@ -340,7 +340,7 @@ static void judge(const example_row *examples, uint32_t count, double max_error,
         trials[i].row.trajectory_share = examples[i].error;
         trials[i].row.energy_drift = examples[i].drift;
     }
-    mspringi_tune_judge(&tuning);
+    mspringi_tune_rank(&tuning);
     for (uint32_t i = 0; i < count; i++) {
         const mspring_tune_row *row = &trials[i].row;
         check_near(row->min_cost, 0.5 * examples[i].cost, 0);

@@ -374,7 +374,7 @@ static void judged_by_the_scene(void **state) {
         trials[i].row.scene_cost = rows[i].cost;
         trials[i].row.scene_distance = rows[i].distance;
     }
-    mspringi_tune_judge(&tuning);
+    mspringi_tune_rank(&tuning);
     for (uint32_t i = 0; i < COUNT_OF(rows); i++) {
         assert_int_equal(trials[i].row.flags & (MSPRING_TUNE_PARETO | MSPRING_TUNE_RECOMMENDED), rows[i].expected);
     }
