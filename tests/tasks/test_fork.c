@@ -159,7 +159,7 @@ static uint64_t get_no_threads(mspring_network *network) {
     for (threads_left = 0; threads_left < 2; threads_left++) {
         const uint32_t left = threads_left;
         right = right && mspring_network_step(network, 0.02) == MSPRING_ERROR_THREAD;
-        right = right && strstr(mspring_network_error(network), "refuses the thread of worker");
+        right = right && strstr(mspring_network_error(network), "has no thread for worker");
         right = right && support_hash(network) == before;
         threads_left = left;
     }

@@ -308,7 +308,7 @@ static void threads_that_cannot_be_had_are_an_error(void **state) {
     const mspring_result result = mspring_network_create(builder, &def, &network);
     assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
     check_error(result, MSPRING_ERROR_THREAD);
-    check_contains(mspring_builder_error(builder), "refuses the thread of worker");
+    check_contains(mspring_builder_error(builder), "has no thread for worker");
     assert_ptr_equal(network, untouched);
     check_watched_clean(&watched);
     // With fewer it works.
