@@ -143,7 +143,8 @@ void mspringi_irregular_list_order_windows(mspringi_irregular_list *list, const 
 void mspringi_irregular_list_append_bundles(mspringi_irregular_list *list, const mspringi_bundles *bundles) {
     const uint32_t count = bundles->slice_count * MSPRINGI_WIDTH;
     list->first_in_bundles = list->count;
-    memcpy(list->particles + list->count, bundles->particles, count * sizeof *list->particles);
+    if (count > 0)
+        memcpy(list->particles + list->count, bundles->particles, count * sizeof *list->particles);
     list->count += count;
 }
 
