@@ -36,6 +36,27 @@ awk '
 ' "$source"/include/massspring/*.h
 checked=$((checked + 1))
 
+# Each of them is in src/base/structs.def with its first size, as one that has an init function or as one that has none;
+# and in tests/abi/sizes.c with its size of today. One that is a member of another would move what follows when it grows.
+for header in "$source"/include/massspring/*.h; do
+  awk '
+    /^typedef struct mspring_[a-z_]* \{$/ { name = $3 }
+    /^    uint32_t struct_size;/ { print name }
+  ' "$header"
+done | sort >in_headers
+sed -n 's/^[A-Z]*_STRUCT(\([a-z_]*\),.*/mspring_\1/p' "$source/src/base/structs.def" | sort >in_table
+diff in_headers in_table
+sed -n 's/^INPUT_STRUCT(\([a-z_]*\),.*/mspring_\1/p' "$source/src/base/structs.def" | sort >with_defaults
+sed -n 's/.*MSPRING_CALL \(mspring_[a-z_]*\)_init(.*/\1/p' "$source"/include/massspring/*.h | sort | diff - with_defaults
+sed -n 's/^SIZE(\(mspring_[a-z_]*\),.*/\1/p' "$source/tests/abi/sizes.c" | grep -vx mspring_event | sort | diff - in_table
+while read -r name; do
+  ! grep -nE "^    $name [a-z_, ]*(\[[A-Z_]*\])?;" "$source"/include/massspring/*.h || {
+    echo "$name is a member of another struct: the table has no way to let both grow"
+    exit 1
+  }
+done <in_headers
+checked=$((checked + 1))
+
 for compiler in "${CC:-cc}" clang; do
   command -v "$compiler" >/dev/null || continue
   more=

@@ -93,9 +93,10 @@
 /// **ABI.** Handles are opaque, and no struct is passed by value. Ids, counts, capacities and strides are uint32_t,
 /// sizes in bytes size_t, enums signed integers of 32 bits. All public structs but mspring_event begin with
 /// struct_size. If you fill a struct, call its init function first, which sets the defaults. If the library fills it,
-/// set struct_size. Reserved fields must be 0. Structs may grow at the end. Older programs keep working. So do newer
-/// ones, if they leave what this version does not know at 0. Ignore flags, results and kinds of event that you do not
-/// know: a result below 0 is an error.
+/// set struct_size. Reserved fields must be 0. Structs may grow at the end. Older programs keep working: a field that
+/// yours lacks has its default, and reports end where your struct does. So do newer ones, if they leave what this
+/// version does not know at 0; reports have 0 there. Ignore flags, results and kinds of event that you do not know: a
+/// result below 0 is an error.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MASSSPRING_MASSSPRING_H

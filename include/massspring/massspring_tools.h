@@ -196,6 +196,7 @@ typedef enum mspring_phase {
 
 /// Arguments of a hook: arrays by slot. It handles first_slot ... first_slot + slot_count - 1. Slots without particle
 /// have MSPRING_NONE in particle_of_slot. A hook may write there: values within the bounds of a step have no effect.
+/// struct_size is that of the library: read a field of a later version only if the struct reaches that far.
 typedef struct mspring_hook_args {
     uint32_t struct_size;
     mspring_phase phase;

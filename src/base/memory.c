@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/assert.h"
+#include "base/structs.h"
 
 #if !defined(MSPRINGI_FREESTANDING)
 #include <stdlib.h>
@@ -57,23 +58,20 @@ mspring_result mspringi_memory_init(mspringi_memory *memory, const mspring_alloc
 #if defined(MSPRINGI_FREESTANDING)
     if (!allocator)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "this build has no malloc: give an allocator");
-    const mspring_allocator defaults = {.struct_size = sizeof defaults};
+    mspring_allocator used = {0};
 #else
-    const mspring_allocator defaults = {
-        .struct_size = sizeof defaults, .alloc = default_alloc, .free = default_free};
+    mspring_allocator used = {.alloc = default_alloc, .free = default_free};
 #endif
     if (allocator) {
-        mspring_result result = mspringi_check_struct(message, "mspring_allocator", allocator, sizeof *allocator);
-        if (result != MSPRING_OK)
-            return result;
-        result = mspringi_check_reserved(message, "mspring_allocator", allocator->reserved);
+        mspring_result result = mspringi_take_allocator(message, &allocator, &used);
+        if (result == MSPRING_OK)
+            result = mspringi_check_reserved(message, "mspring_allocator", allocator->reserved);
         if (result != MSPRING_OK)
             return result;
         if (!allocator->alloc || !allocator->free)
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "alloc or free of mspring_allocator is NULL");
     }
-    *memory = (mspringi_memory){.allocator = allocator ? *allocator : defaults};
-    memory->allocator.struct_size = sizeof memory->allocator;
+    *memory = (mspringi_memory){.allocator = used};
     return MSPRING_OK;
 }
 

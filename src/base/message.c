@@ -57,90 +57,11 @@ mspring_result mspringi_shared_set(mspringi_shared_message *shared, mspring_resu
     return result;
 }
 
-/// Larger than any struct: a larger size is uninitialised memory.
-#define MAX_STRUCT_SIZE 4000
-
-static bool is_possible(size_t size, size_t known) {
-    return size >= known && size % sizeof(uint32_t) == 0 && size <= MAX_STRUCT_SIZE;
-}
-
-static mspring_result reject_size(mspringi_message *message, const char *name, size_t size, size_t known) {
-    if (!message)
-        return MSPRING_ERROR_STRUCT;
-    return mspringi_fail(
-        message, MSPRING_ERROR_STRUCT,
-        "%s.struct_size is %zu, this library knows %zu: fill the struct with its init function, or "
-        "set struct_size to its size",
-        name, size, known);
-}
-
-mspring_result mspringi_check_struct(mspringi_message *message, const char *name, const void *given, size_t known) {
-    const size_t size = mspringi_struct_size(given);
-    const unsigned char *bytes = given;
-    if (!is_possible(size, known))
-        return reject_size(message, name, size, known);
-    for (size_t i = known; i < size; ++i)
-        if (bytes[i] != 0)
-            return !message ? MSPRING_ERROR_STRUCT
-                            : mspringi_fail(message, MSPRING_ERROR_STRUCT,
-                                            "%s has %zu bytes, of which this library knows %zu, and byte %zu is "
-                                            "not 0: it uses a feature of a later version",
-                                            name, size, known, i);
-    return MSPRING_OK;
-}
-
-mspring_result mspringi_check_output(mspringi_message *message, const char *name, const void *out, size_t known) {
-    if (!out)
-        return !message ? MSPRING_ERROR_ARGUMENT
-                        : mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s is NULL", name);
-    const size_t size = mspringi_struct_size(out);
-    return is_possible(size, known) ? MSPRING_OK : reject_size(message, name, size, known);
-}
-
-mspring_result mspringi_check_same_size(mspringi_message *message, const void *element, size_t struct_size) {
-    const size_t size = mspringi_struct_size(element);
-    if (size == struct_size)
-        return MSPRING_OK;
-    return !message
-               ? MSPRING_ERROR_STRUCT
-               : mspringi_fail(message, MSPRING_ERROR_STRUCT,
-                               "struct_size is %zu, but that of the first in the array is %zu", size, struct_size);
-}
-
-mspring_result mspringi_check_outputs(const void *array, uint32_t count, const char *name, size_t known,
-                                      mspringi_message *message) {
-    mspring_result result = MSPRING_OK;
-    const size_t struct_size = count > 0 ? mspringi_struct_size(array) : 0;
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const void *element = mspringi_element(array, struct_size, i);
-        result = mspringi_check_output(message, name, element, known);
-        if (result == MSPRING_OK)
-            result = mspringi_check_same_size(message, element, struct_size);
-        if (result != MSPRING_OK && count > 1) {
-            const mspringi_message reason = *message;
-            return mspringi_fail(message, result, "index %u: %s", (unsigned)i, reason.text);
-        }
-    }
-    return result;
-}
-
-void mspringi_put_struct(void *out, const void *made, size_t known) {
-    const size_t size = mspringi_struct_size(out);
-    const uint32_t struct_size = (uint32_t)size;
-    memcpy(out, made, known);
-    memset((char *)out + known, 0, size - known);
-    memcpy(out, &struct_size, sizeof struct_size);
-}
-
-mspring_result mspringi_init_struct(void *out, size_t size, const void *defaults, size_t known) {
-    const uint32_t struct_size = (uint32_t)size;
-    if (!out)
-        return MSPRING_ERROR_ARGUMENT;
-    if (!is_possible(size, known))
-        return MSPRING_ERROR_STRUCT;
-    memcpy(out, &struct_size, sizeof struct_size);
-    mspringi_put_struct(out, defaults, known);
-    return MSPRING_OK;
+mspring_result mspringi_prefix(mspringi_message *message, mspring_result result, const char *what, size_t index) {
+    if (result == MSPRING_OK)
+        return result;
+    const mspringi_message reason = *message;
+    return mspringi_fail(message, result, "%s %zu: %s", what, index, reason.text);
 }
 
 mspring_result mspringi_check_reserved(mspringi_message *message, const char *name, uint32_t reserved) {

@@ -107,22 +107,6 @@ void mspringi_builder_append_area(mspring_builder *builder, mspringi_area area, 
 // Comparisons are written to reject NaN. Values for the network are computed in the floating-point environment of a
 // step.
 
-mspring_result mspringi_check_struct_of(mspringi_message *message, const char *what, size_t index, const char *name,
-                                        const void *given, size_t known, size_t struct_size) {
-    mspringi_message reason;
-    mspring_result result = mspringi_check_struct(&reason, name, given, known);
-    if (result == MSPRING_OK)
-        result = mspringi_check_same_size(&reason, given, struct_size);
-    return result == MSPRING_OK ? MSPRING_OK
-                                : mspringi_fail(message, result, "%s %zu: %s", what, index, reason.text);
-}
-
-// Prefix the message with the index in the caller's array.
-static mspring_result prefix_index(mspring_builder *builder, mspring_result result, size_t index) {
-    const mspringi_message reason = builder->message;
-    return mspringi_fail(&builder->message, result, "definition %zu: %s", index, reason.text);
-}
-
 mspring_result mspringi_check_mass(mspringi_message *message, const char *what, size_t index, float mass) {
     if (mspringi_in_range(mass, MIN_MASS, MAX_VALUE))
         return MSPRING_OK;
@@ -158,12 +142,11 @@ float mspringi_find_damping(float stiffness, float damping, uint32_t flags, floa
     return found < (double)MAX_VALUE ? (float)found : MAX_VALUE;
 }
 
-mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index, const mspring_particle_def *def,
-                                           size_t struct_size) {
-    mspring_result result =
-        mspringi_check_struct_of(message, "particle", index, "mspring_particle_def", def, sizeof *def, struct_size);
+mspring_result mspringi_take_particle(mspringi_message *message, size_t index, const mspring_particle_def *defs,
+                                      size_t i, mspring_particle_def *def) {
+    mspring_result result = mspringi_take_particle_def_at(message, defs, i, def);
     if (result != MSPRING_OK)
-        return result;
+        return mspringi_prefix(message, result, "particle", index);
     if (def->reserved != 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "particle %zu: mspring_particle_def.reserved is %u, it must be 0", index,
@@ -181,9 +164,9 @@ mspring_result mspringi_check_particle_def(mspringi_message *message, size_t ind
     return mspringi_check_mass(message, "particle", index, def->mass);
 }
 
-mspring_result mspringi_check_spring_def(mspringi_message *message, size_t index, const mspring_spring_def *def,
-                                         size_t struct_size) {
-    return mspringi_check_struct_of(message, "spring", index, "mspring_spring_def", def, sizeof *def, struct_size);
+mspring_result mspringi_take_spring(mspringi_message *message, size_t index, const mspring_spring_def *defs,
+                                    size_t i, mspring_spring_def *def) {
+    return mspringi_prefix(message, mspringi_take_spring_def_at(message, defs, i, def), "spring", index);
 }
 
 mspring_result mspringi_check_spring_values(mspringi_message *message, size_t index,
@@ -216,11 +199,8 @@ mspring_result mspringi_find_rest_length(mspringi_message *message, size_t index
 
 // Check a spring and find its rest length.
 static mspring_result check_spring(mspring_builder *builder, size_t index, const mspring_spring_def *def,
-                                   size_t struct_size, float *rest_length) {
+                                   float *rest_length) {
     mspringi_message *message = &builder->message;
-    mspring_result result = mspringi_check_spring_def(message, index, def, struct_size);
-    if (result != MSPRING_OK)
-        return result;
     if (def->a == MSPRING_NONE || def->b == MSPRING_NONE)
         return mspringi_fail(message, MSPRING_ERROR_ID, "spring %zu: its particle %s is not set (MSPRING_NONE)",
                              index, def->a == MSPRING_NONE ? "a" : "b");
@@ -228,7 +208,7 @@ static mspring_result check_spring(mspring_builder *builder, size_t index, const
         return mspringi_fail(message, MSPRING_ERROR_ID,
                              "spring %zu joins particles %u and %u, but there are only %zu particles", index,
                              (unsigned)def->a, (unsigned)def->b, builder->particle_count);
-    result = mspringi_check_spring_values(message, index, def);
+    const mspring_result result = mspringi_check_spring_values(message, index, def);
     if (result != MSPRING_OK)
         return result;
     const mspringi_particle *a = &builder->particles[def->a], *b = &builder->particles[def->b];
@@ -262,15 +242,14 @@ mspring_result mspring_builder_add_particles(mspring_builder *builder, const msp
     if (!defs && count > 0)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "particle definitions are NULL");
     const size_t before = builder->particle_count;
-    const size_t struct_size = count > 0 ? mspringi_struct_size(defs) : 0;
     mspring_result result = mspringi_builder_reserve_particles(builder, count);
     for (size_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const mspring_particle_def *def = mspringi_element(defs, struct_size, i);
-        result = mspringi_check_particle_def(&builder->message, before + i, def, struct_size);
+        mspring_particle_def def;
+        result = mspringi_take_particle(&builder->message, before + i, defs, i, &def);
         if (result == MSPRING_OK)
-            append_particle(builder, def);
+            append_particle(builder, &def);
         else if (count > 1)
-            result = prefix_index(builder, result, i);
+            result = mspringi_prefix(&builder->message, result, "definition", i);
     }
     if (result != MSPRING_OK)
         builder->particle_count = before;
@@ -289,18 +268,19 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_builder *builder, co
     if (!defs && count > 0)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "spring definitions are NULL");
     const size_t before = builder->spring_count;
-    const size_t struct_size = count > 0 ? mspringi_struct_size(defs) : 0;
     mspring_result result = mspringi_builder_reserve_springs(builder, count);
     for (size_t i = 0; result == MSPRING_OK && i < count; ++i) {
         float rest_length = 0.0f;
-        const mspring_spring_def *def = mspringi_element(defs, struct_size, i);
-        result = check_spring(builder, before + i, def, struct_size, &rest_length);
+        mspring_spring_def def;
+        result = mspringi_take_spring(&builder->message, before + i, defs, i, &def);
         if (result == MSPRING_OK)
-            result = mspringi_builder_reserve_limits(builder, count - i, MSPRINGI_LIMITS_OF(def));
+            result = check_spring(builder, before + i, &def, &rest_length);
         if (result == MSPRING_OK)
-            append_spring(builder, def, rest_length);
+            result = mspringi_builder_reserve_limits(builder, count - i, MSPRINGI_LIMITS_OF(&def));
+        if (result == MSPRING_OK)
+            append_spring(builder, &def, rest_length);
         else if (count > 1)
-            result = prefix_index(builder, result, i);
+            result = mspringi_prefix(&builder->message, result, "definition", i);
     }
     if (result != MSPRING_OK)
         mspringi_builder_cut_springs(builder, before);

@@ -6,11 +6,10 @@
 #define MSPRINGI_BUILDER_H
 
 #include "base/memory.h"
+#include "base/structs.h"
 #include "builder/builder_areas.h"
 
 #include <massspring/massspring_batch.h>
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
 
 typedef struct mspringi_particle {
     double x, y;
@@ -138,19 +137,15 @@ mspring_result mspringi_check_coefficients(mspringi_message *message, const char
 /// Damping of a spring between these masses, from a coefficient or a ratio: N s/m, or a fraction if the spring is
 /// relative.
 float mspringi_find_damping(float stiffness, float damping, uint32_t flags, float mass_a, float mass_b);
-/// Reject an invalid struct_size of a definition in an array whose first element has this one.
-mspring_result mspringi_check_struct_of(mspringi_message *message, const char *what, size_t index, const char *name,
-                                        const void *given, size_t known, size_t struct_size);
 
 /// Add a whole mesh or, on error, nothing.
 mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def);
 
-/// Reject definitions that are invalid in any builder. `index` is for the message; struct_size is that of the
-/// array's first element.
-mspring_result mspringi_check_particle_def(mspringi_message *message, size_t index, const mspring_particle_def *def,
-                                           size_t struct_size);
-mspring_result mspringi_check_spring_def(mspringi_message *message, size_t index, const mspring_spring_def *def,
-                                         size_t struct_size);
+/// Copy definition i of the host's array; reject one that is invalid in any builder. `index` is for the message.
+mspring_result mspringi_take_particle(mspringi_message *message, size_t index, const mspring_particle_def *defs,
+                                      size_t i, mspring_particle_def *def);
+mspring_result mspringi_take_spring(mspringi_message *message, size_t index, const mspring_spring_def *defs,
+                                    size_t i, mspring_spring_def *def);
 /// Reject invalid values in a spring's definition, after its particles were checked.
 mspring_result mspringi_check_spring_values(mspringi_message *message, size_t index, const mspring_spring_def *def);
 /// Find the rest length of a spring whose ends are (dx, dy) apart.

@@ -91,8 +91,7 @@ static mspring_result fill_disc(mspring_builder *builder, const mspring_disc_def
                              (unsigned)def->ring_count);
     place_vertices(def, places, places + vertices);
     join_vertices(def->ring_count, corners);
-    const mspring_mesh_def mesh = {.struct_size = sizeof mesh,
-                                   .spring_flags = def->spring_flags,
+    const mspring_mesh_def mesh = {.spring_flags = def->spring_flags,
                                    .vertex_count = vertices,
                                    .triangle_count = SECTORS * def->ring_count * def->ring_count,
                                    .x = places,
@@ -118,9 +117,8 @@ static mspring_result fill_disc(mspring_builder *builder, const mspring_disc_def
 }
 
 static MSPRINGI_NOINLINE mspring_result add_disc(mspring_builder *builder, const mspring_disc_def *def) {
-    if (!def)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "disc definition is NULL");
-    mspring_result result = mspringi_check_struct(&builder->message, "mspring_disc_def", def, sizeof *def);
+    mspring_disc_def taken;
+    mspring_result result = mspringi_take_disc_def(&builder->message, &def, &taken);
     if (result == MSPRING_OK)
         result = check_disc(&builder->message, def);
     if (result != MSPRING_OK)

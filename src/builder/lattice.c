@@ -3,22 +3,23 @@
 
 #include "base/cpu.h"
 
-// Material of an array of structs of any size.
-static const mspring_material *material_at(const mspring_lattice_def *def, uint32_t i) {
-    return mspringi_element(def->materials, mspringi_struct_size(def->materials), i);
-}
-
-static mspring_result check_materials(mspring_builder *builder, const mspring_lattice_def *def) {
+// Copy the materials at this library's size, and check them. The definition then points to the copies.
+static mspring_result take_materials(mspring_builder *builder, mspring_lattice_def *def,
+                                     mspring_material **materials) {
     mspringi_message *message = &builder->message;
     if (!def->materials && def->material_count > 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice materials are NULL");
     if (def->material_count > MSPRING_CELL_EMPTY)
         return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u materials are over the limit of %u",
                              (unsigned)def->material_count, (unsigned)MSPRING_CELL_EMPTY);
+    *materials = mspringi_alloc(&builder->memory, def->material_count, sizeof **materials);
+    if (!*materials)
+        return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u materials",
+                             (unsigned)def->material_count);
     for (uint32_t i = 0; i < def->material_count; ++i) {
-        const mspring_material *material = material_at(def, i);
-        mspring_result result = mspringi_check_struct_of(message, "material", i, "mspring_material", material,
-                                                         sizeof *material, mspringi_struct_size(def->materials));
+        mspring_material *material = &(*materials)[i];
+        mspring_result result = mspringi_take_material_at(message, def->materials, i, material);
+        result = mspringi_prefix(message, result, "material", i);
         if (result == MSPRING_OK)
             result = mspringi_check_mass(&builder->message, "material", i, material->mass);
         if (result == MSPRING_OK)
@@ -31,10 +32,11 @@ static mspring_result check_materials(mspring_builder *builder, const mspring_la
         if (material->particle_flags & ~(uint32_t)MSPRING_PARTICLE_PINNED)
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "material %u: unknown particle flags 0x%x",
                                  (unsigned)i, (unsigned)material->particle_flags);
-        if (material->spring_flags != def->materials[0].spring_flags)
+        if (material->spring_flags != (*materials)->spring_flags)
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                  "material %u: some materials are relative and some are not", (unsigned)i);
     }
+    def->materials = *materials;
     return MSPRING_OK;
 }
 
@@ -57,12 +59,9 @@ static bool has_bend_below(const mspring_lattice_def *def, size_t row, size_t co
 }
 
 // Check a lattice's cells and count its particles and springs.
-static mspring_result check_lattice(mspring_builder *builder, const mspring_lattice_def *def, size_t *particles,
-                                    size_t *springs) {
+static mspring_result check_lattice(mspring_builder *builder, mspring_lattice_def *def,
+                                    mspring_material **materials, size_t *particles, size_t *springs) {
     mspringi_message *message = &builder->message;
-    mspring_result result = mspringi_check_struct(message, "mspring_lattice_def", def, sizeof *def);
-    if (result != MSPRING_OK)
-        return result;
     const size_t width = def->width, height = def->height;
     if (width == 0 || height == 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice has %u x %u cells, it needs at least one",
@@ -85,7 +84,7 @@ static mspring_result check_lattice(mspring_builder *builder, const mspring_latt
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "lattice spacing %g m is lost in coordinates from (%g, %g) to (%g, %g) m",
                              def->spacing, def->x, def->y, right, top);
-    result = check_materials(builder, def);
+    const mspring_result result = take_materials(builder, def, materials);
     if (result != MSPRING_OK)
         return result;
 
@@ -135,7 +134,7 @@ static mspringi_limits join_limits(const mspring_material *a, const mspring_mate
 static mspring_result reserve_limits(mspring_builder *builder, const mspring_lattice_def *def, size_t springs) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; result == MSPRING_OK && i < def->material_count; ++i)
-        result = mspringi_builder_reserve_limits(builder, springs, MSPRINGI_LIMITS_OF(material_at(def, i)));
+        result = mspringi_builder_reserve_limits(builder, springs, MSPRINGI_LIMITS_OF(&def->materials[i]));
     return result;
 }
 
@@ -146,7 +145,7 @@ static void join_cells(mspring_builder *builder, const mspring_lattice_def *def,
                        mspring_id b, uint16_t material_b, join kind) {
     static const double cells[] = {[STRUCTURAL] = 1.0, [SHEAR] = 1.4142135623730951, [BEND] = 2.0};
     const float shares[] = {[STRUCTURAL] = 1.0f, [SHEAR] = def->shear_share, [BEND] = def->bend_share};
-    const mspring_material *ma = material_at(def, material_a), *mb = material_at(def, material_b);
+    const mspring_material *ma = &def->materials[material_a], *mb = &def->materials[material_b];
     const uint32_t flags = ma->spring_flags;
     const float stiffness = shares[kind] * (0.5f * ma->stiffness + 0.5f * mb->stiffness);
     const float given = 0.5f * ma->damping + 0.5f * mb->damping;
@@ -179,7 +178,7 @@ static void append_lattice(mspring_builder *builder, const mspring_lattice_def *
             if (cell_ids)
                 cell_ids[row * width + column] = MSPRING_NONE;
             if (cells[column] != MSPRING_CELL_EMPTY) {
-                const mspring_material *material = material_at(def, cells[column]);
+                const mspring_material *material = &def->materials[cells[column]];
                 builder->particles[builder->particle_count++] =
                     (mspringi_particle){.x = def->x + (double)column * def->spacing,
                                         .y = def->y + (double)(height - 1 - row) * def->spacing,
@@ -231,23 +230,26 @@ static void append_bend_springs(mspring_builder *builder, const mspring_lattice_
 
 static MSPRINGI_NOINLINE mspring_result add_lattice(mspring_builder *builder, const mspring_lattice_def *def,
                                                     mspring_id *cell_ids) {
+    mspring_lattice_def taken;
+    mspring_material *materials = NULL;
     size_t particles = 0, springs = 0;
-    if (!def)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "lattice definition is NULL");
-    mspring_result result = check_lattice(builder, def, &particles, &springs);
+    mspring_result result = mspringi_take_lattice_def(&builder->message, &def, &taken);
+    if (result == MSPRING_OK)
+        result = check_lattice(builder, &taken, &materials, &particles, &springs);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_particles(builder, particles);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_springs(builder, springs);
     if (result == MSPRING_OK)
         result = reserve_limits(builder, def, springs);
-    if (result != MSPRING_OK)
-        return result;
-    const mspring_id first_id = (mspring_id)builder->particle_count;
-    append_lattice(builder, def, cell_ids);
-    if (def->bend_share > 0.0f)
-        append_bend_springs(builder, def, first_id);
-    return MSPRING_OK;
+    if (result == MSPRING_OK) {
+        const mspring_id first_id = (mspring_id)builder->particle_count;
+        append_lattice(builder, def, cell_ids);
+        if (def->bend_share > 0.0f)
+            append_bend_springs(builder, def, first_id);
+    }
+    mspringi_free(&builder->memory, materials);
+    return result;
 }
 
 mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspring_lattice_def *def,

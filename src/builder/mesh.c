@@ -255,9 +255,8 @@ mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring
 }
 
 static MSPRINGI_NOINLINE mspring_result add_mesh(mspring_builder *builder, const mspring_mesh_def *def) {
-    if (!def)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "mesh definition is NULL");
-    mspring_result result = mspringi_check_struct(&builder->message, "mspring_mesh_def", def, sizeof *def);
+    mspring_mesh_def taken;
+    mspring_result result = mspringi_take_mesh_def(&builder->message, &def, &taken);
     return result == MSPRING_OK ? mspringi_builder_add_mesh(builder, def) : result;
 }
 

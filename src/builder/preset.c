@@ -4,9 +4,7 @@
 /// along its rows. With k = s m / (2 h^2) and m / spacing^2 = density times thickness, the squared speed of sound
 /// is (3 s / 4) (spacing / h)^2. A relative lattice of equal masses is stable in any shape if 2 s + 4 d is at most
 /// 1. Its relative damping d is 2 zeta sqrt(s) for the damping ratio zeta.
-#include <massspring/massspring_tools.h>
-
-#include "base/message.h"
+#include "base/structs.h"
 
 typedef struct preset {
     double density;       // kg/m^3
@@ -39,5 +37,8 @@ mspring_result mspring_material_preset(mspring_material *material, size_t size, 
     filled.stiffness = (float)(share < of->largest_share ? share : of->largest_share);
     filled.damping = (float)of->damping_ratio;
     filled.spring_flags = MSPRING_SPRING_RELATIVE | MSPRING_SPRING_DAMPING_RATIO;
-    return mspringi_init_struct(material, size, &filled, sizeof filled);
+    const mspring_result result = mspring_material_init(material, size);
+    if (result == MSPRING_OK)
+        mspringi_put_material(material, &filled);
+    return result;
 }

@@ -5,9 +5,10 @@
 
 #include "base/cpu.h"
 
-static mspring_result check_rope(mspring_builder *builder, const mspring_rope_def *def, float *segment_length) {
+static mspring_result check_rope(mspring_builder *builder, const mspring_rope_def **given, mspring_rope_def *def,
+                                 float *segment_length) {
     mspringi_message *message = &builder->message;
-    mspring_result result = mspringi_check_struct(message, "mspring_rope_def", def, sizeof *def);
+    mspring_result result = mspringi_take_rope_def(message, given, def);
     if (result != MSPRING_OK)
         return result;
     if (def->from == MSPRING_NONE || def->to == MSPRING_NONE)
@@ -48,13 +49,12 @@ static mspring_result check_rope(mspring_builder *builder, const mspring_rope_de
 static MSPRINGI_NOINLINE mspring_result add_rope(mspring_builder *builder, const mspring_rope_def *def,
                                                  mspring_id *particles, uint32_t capacity,
                                                  mspring_id *first_spring) {
+    mspring_rope_def taken;
     float segment_length = 0.0f;
-    if (!def)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "rope definition is NULL");
     if (!particles && capacity > 0)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "the array of %u particles is NULL",
                              (unsigned)capacity);
-    mspring_result result = check_rope(builder, def, &segment_length);
+    mspring_result result = check_rope(builder, &def, &taken, &segment_length);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_particles(builder, def->segment_count - 1);
     if (result == MSPRING_OK)

@@ -177,7 +177,6 @@ static void append(mspring_network *network, const mspring_collider_def *def) {
                              .sides = is_open ? count - 1 : count,
                              .radius = def->radius,
                              .target = {def->x, def->y, def->angle}};
-    c->def.struct_size = sizeof c->def;
     write_shape(def, all->shape + 2 * (size_t)all->point_count);
     all->point_count += count;
     renew(network);
@@ -185,15 +184,13 @@ static void append(mspring_network *network, const mspring_collider_def *def) {
 
 mspring_result mspring_network_add_collider(mspring_network *network, const mspring_collider_def *def,
                                             mspring_id *collider) {
+    mspring_collider_def taken;
     mspring_result result = mspringi_check_call(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (!network->contacts)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "colliders need contact: call mspring_network_set_contact() first");
-    if (!def)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the collider's definition is NULL");
-    result = mspringi_check_struct(&network->message, "mspring_collider_def", def, sizeof *def);
+    if (result == MSPRING_OK && !network->contacts)
+        result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "colliders need contact: call mspring_network_set_contact() first");
+    if (result == MSPRING_OK)
+        result = mspringi_take_collider_def(&network->message, &def, &taken);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(&network->message, "mspring_collider_def", def->reserved_pointer != NULL);
     if (result == MSPRING_OK)
@@ -299,7 +296,7 @@ mspring_result mspring_network_place_collider(mspring_network *network, mspring_
 
 mspring_result mspring_network_get_collider(const mspring_network *network, mspring_id collider,
                                             mspring_collider_def *def) {
-    const mspring_result result = mspringi_check_report(network, "mspring_collider_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_collider_def, def);
     if (result != MSPRING_OK)
         return result;
     const mspringi_collider *c = find(network->contacts, collider);
@@ -308,7 +305,7 @@ mspring_result mspring_network_get_collider(const mspring_network *network, mspr
     mspring_collider_def had = c->def;
     had.points =
         had.kind == MSPRING_COLLIDER_CHAIN ? network->contacts->colliders.shape + 2 * (size_t)c->first : NULL;
-    mspringi_put_struct(def, &had, sizeof had);
+    mspringi_put_collider_def(def, &had);
     return MSPRING_OK;
 }
 

@@ -178,8 +178,7 @@ static void queue_event(mspringi_contact_events *all, mspring_contact_event_kind
     }
     const uint32_t until_end = all->capacity - all->first;
     all->ring[all->waiting < until_end ? all->first + all->waiting : all->waiting - until_end] =
-        (mspring_contact_event){.struct_size = sizeof(mspring_contact_event),
-                                .kind = kind,
+        (mspring_contact_event){.kind = kind,
                                 .point = m->point,
                                 .a = m->last.a,
                                 .b = m->last.b,
@@ -297,15 +296,13 @@ mspring_result mspring_network_read_contact_events(mspring_network *network, msp
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                "the place for contact events, or their count, is NULL");
     if (result == MSPRING_OK)
-        result =
-            mspringi_check_outputs(events, capacity, "mspring_contact_event", sizeof *events, &network->message);
+        result = mspringi_check_outputs(&network->message, &mspringi_struct_contact_event, events, capacity);
     if (result != MSPRING_OK)
         return result;
     mspringi_contact_events *all = &network->contacts->events;
     const uint32_t read = capacity < all->waiting ? capacity : all->waiting;
-    const size_t stride = capacity > 0 ? events->struct_size : 0;
     for (uint32_t i = 0; i < read; ++i) {
-        mspringi_put_struct((char *)events + i * stride, &all->ring[all->first], sizeof *events);
+        mspringi_put_contact_event_at(events, i, &all->ring[all->first]);
         all->first = all->first + 1 < all->capacity ? all->first + 1 : 0;
     }
     all->waiting -= read;

@@ -373,11 +373,11 @@ static mspring_contact_def def_of(const mspring_network *network) {
 }
 
 mspring_result mspring_network_get_contact(const mspring_network *network, mspring_contact_def *def) {
-    const mspring_result result = mspringi_check_report(network, "mspring_contact_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_contact_def, def);
     if (result != MSPRING_OK)
         return result;
     const mspring_contact_def had = def_of(network);
-    mspringi_put_struct(def, &had, sizeof had);
+    mspringi_put_contact_def(def, &had);
     return MSPRING_OK;
 }
 
@@ -416,14 +416,11 @@ mspring_result mspring_network_set_contact(mspring_network *network, const mspri
         return result;
     if (!def)
         return remove_contact(network);
-    result = mspringi_check_struct(&network->message, "mspring_contact_def", def, sizeof *def);
+    result = mspringi_take_contact_def(&network->message, &def, &used);
     if (result == MSPRING_OK)
-        result = mspringi_check_reserved(&network->message, "mspring_contact_def", def->reserved);
-    if (result != MSPRING_OK)
-        return result;
-    used = *def;
-    used.struct_size = sizeof used;
-    result = check_def(network, &used, &network->message);
+        result = mspringi_check_reserved(&network->message, "mspring_contact_def", used.reserved);
+    if (result == MSPRING_OK)
+        result = check_def(network, &used, &network->message);
     return result == MSPRING_OK ? use(network, &used) : result;
 }
 
@@ -448,10 +445,10 @@ mspring_result mspring_network_set_contact_groups(mspring_network *network, mspr
 }
 
 mspring_result mspring_network_get_contact_info(const mspring_network *network, mspring_contact_info *info) {
-    const mspring_result result = mspringi_check_report(network, "mspring_contact_info", info, sizeof *info);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_contact_info, info);
     if (result != MSPRING_OK)
         return result;
-    mspring_contact_info found = {.struct_size = sizeof found};
+    mspring_contact_info found = {0};
     const mspringi_contacts *contacts = network->contacts;
     if (contacts) {
         found.edges = contacts->outline.edge_count - contacts->colliders.listed_sides;
@@ -460,6 +457,6 @@ mspring_result mspring_network_get_contact_info(const mspring_network *network, 
         found.touching = contacts->touching;
         found.deepest = contacts->deepest;
     }
-    mspringi_put_struct(info, &found, sizeof found);
+    mspringi_put_contact_info(info, &found);
     return MSPRING_OK;
 }

@@ -111,8 +111,9 @@ static mspring_result check_surface(const mspring_floor_def *def, mspringi_messa
     return result;
 }
 
-static mspring_result check_floor(const mspring_floor_def *def, mspringi_message *message) {
-    mspring_result result = mspringi_check_struct(message, "mspring_floor_def", def, sizeof *def);
+static mspring_result check_floor(const mspring_floor_def **given, mspring_floor_def *def,
+                                  mspringi_message *message) {
+    mspring_result result = mspringi_take_floor_def(message, given, def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_floor_def", def->reserved);
     if (result != MSPRING_OK)
@@ -321,11 +322,11 @@ static mspring_floor_def def_of(const mspringi_floor *floor) {
 }
 
 mspring_result mspring_network_get_floor(const mspring_network *network, mspring_floor_def *def) {
-    const mspring_result result = mspringi_check_report(network, "mspring_floor_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_floor_def, def);
     if (result != MSPRING_OK)
         return result;
     const mspring_floor_def had = def_of(network->floor);
-    mspringi_put_struct(def, &had, sizeof had);
+    mspringi_put_floor_def(def, &had);
     return MSPRING_OK;
 }
 
@@ -352,9 +353,10 @@ static bool is_same(const mspringi_floor *floor, const mspring_floor_def *b) {
 }
 
 mspring_result mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def) {
+    mspring_floor_def taken;
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK && def)
-        result = check_floor(def, &network->message);
+        result = check_floor(&def, &taken, &network->message);
     if (result != MSPRING_OK || is_same(network->floor, def))
         return result;
     mspringi_floor *made = NULL;

@@ -98,11 +98,9 @@ static mspring_result check_target(mspring_network *network, double x, double y)
                                "the target (%g, %g) m of the grip is not within 1e12", x, y);
 }
 
-static mspring_result check_grip(mspring_network *network, const mspring_grip_def *def) {
+static mspring_result check_grip(mspring_network *network, const mspring_grip_def **given, mspring_grip_def *def) {
     mspringi_message *message = &network->message;
-    if (!def)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the grip's definition is NULL");
-    mspring_result result = mspringi_check_struct(message, "mspring_grip_def", def, sizeof *def);
+    mspring_result result = mspringi_take_grip_def(message, given, def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_grip_def", def->reserved);
     if (result == MSPRING_OK)
@@ -145,9 +143,10 @@ static mspringi_grip made_of(const mspring_grip_def *def, mspring_id id) {
 }
 
 mspring_result mspring_network_add_grip(mspring_network *network, const mspring_grip_def *def, mspring_id *grip) {
+    mspring_grip_def taken;
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
-        result = check_grip(network, def);
+        result = check_grip(network, &def, &taken);
     if (result != MSPRING_OK)
         return result;
     mspringi_grips *grips = &network->grips;
@@ -179,10 +178,11 @@ mspring_result mspring_network_remove_grip(mspring_network *network, mspring_id 
 }
 
 mspring_result mspring_network_set_grip(mspring_network *network, mspring_id grip, const mspring_grip_def *def) {
+    mspring_grip_def taken;
     mspringi_grip *found;
     mspring_result result = find_or_fail(network, grip, &found);
     if (result == MSPRING_OK)
-        result = check_grip(network, def);
+        result = check_grip(network, &def, &taken);
     if (result != MSPRING_OK)
         return result;
     const mspringi_grip had = *found;
@@ -221,7 +221,7 @@ static const mspringi_grip *look_up(const mspring_network *network, mspring_id i
 }
 
 mspring_result mspring_network_get_grip(const mspring_network *network, mspring_id grip, mspring_grip_def *def) {
-    const mspring_result result = mspringi_check_report(network, "mspring_grip_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_grip_def, def);
     if (result != MSPRING_OK)
         return result;
     const mspringi_grip *found = look_up(network, grip);
@@ -233,7 +233,7 @@ mspring_result mspring_network_get_grip(const mspring_network *network, mspring_
                                   .stiffness = found->stiffness,
                                   .damping = found->damping,
                                   .max_force = found->max_force};
-    mspringi_put_struct(def, &had, sizeof had);
+    mspringi_put_grip_def(def, &had);
     return MSPRING_OK;
 }
 

@@ -16,12 +16,6 @@
 #include "store/id_pool.h"
 #include "store/springs.h"
 
-// Put the index in the caller's array in front of the reason.
-static mspring_result name_definition(mspring_network *network, mspring_result result, uint32_t index) {
-    const mspringi_message reason = network->message;
-    return mspringi_fail(&network->message, result, "definition %u: %s", (unsigned)index, reason.text);
-}
-
 static mspring_result check_arrays(mspring_network *network, const void *defs, uint32_t count, const void *ids) {
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK && count > 0 && (!defs || !ids))
@@ -56,9 +50,10 @@ static mspring_result check_room(mspring_network *network, const char *what, con
 
 /* --------------------------------------------------------------------------------------------------- particles */
 
-static mspring_result check_particle(mspring_network *network, mspring_id id, const mspring_particle_def *def,
-                                     size_t struct_size) {
-    mspring_result result = mspringi_check_particle_def(&network->message, id, def, struct_size);
+static mspring_result check_particle(mspring_network *network, mspring_id id, const mspring_particle_def *defs,
+                                     uint32_t i) {
+    mspring_particle_def taken, *def = &taken;
+    mspring_result result = mspringi_take_particle(&network->message, id, defs, i, def);
     const double largest = MSPRING_MAX_COORDINATE;
     if (result == MSPRING_OK &&
         !(fabs(def->x - network->origin_x) <= largest && fabs(def->y - network->origin_y) <= largest))
@@ -68,7 +63,9 @@ static mspring_result check_particle(mspring_network *network, mspring_id id, co
     return result;
 }
 
-static void put_particle(mspring_network *network, mspring_id p, const mspring_particle_def *def) {
+static void put_particle(mspring_network *network, mspring_id p, const mspring_particle_def *defs, uint32_t i) {
+    mspring_particle_def taken, *def = &taken;
+    (void)mspringi_take_particle_def_at(NULL, defs, i, def);
     const bool is_pinned = def->flags & MSPRING_PARTICLE_PINNED;
     mspringi_spare_add_particle(&network->topology, p);
     if (network->is_compact)
@@ -94,15 +91,14 @@ static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, 
                                                       uint32_t count, mspring_id *ids) {
     const mspringi_reserve *reserve = &network->topology.reserve;
     mspringi_id_pool *g = &network->growth;
-    const size_t struct_size = mspringi_struct_size(defs);
     mspring_result result = check_room(network, "particle", g->particles, g->lowest_particle,
                                        reserve->first_particle, reserve->particle_end, count);
     mspring_id id = g->lowest_particle;
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i, ++id) {
         id = find_spare(g->particles, id, reserve->particle_end);
-        result = check_particle(network, id, mspringi_element(defs, struct_size, i), struct_size);
+        result = check_particle(network, id, defs, i);
         if (result != MSPRING_OK && count > 1)
-            result = name_definition(network, result, i);
+            result = mspringi_prefix(&network->message, result, "definition", i);
     }
     if (result != MSPRING_OK)
         return result;
@@ -110,7 +106,7 @@ static MSPRINGI_NOINLINE mspring_result add_particles(mspring_network *network, 
     id = g->lowest_particle;
     for (uint32_t i = 0; i < count; ++i) {
         id = find_spare(g->particles, id, reserve->particle_end);
-        put_particle(network, id, mspringi_element(defs, struct_size, i));
+        put_particle(network, id, defs, i);
         end = id >= end ? id + 1 : end;
         ids[i] = id;
     }
@@ -192,10 +188,11 @@ static mspring_result find_rest_length(mspring_network *network, mspring_id id, 
 }
 
 // Check a spring and link its ends, so that later checks see it.
-static mspring_result link_spring(mspring_network *network, mspring_id id, const mspring_spring_def *def,
-                                  size_t struct_size) {
+static mspring_result link_spring(mspring_network *network, mspring_id id, const mspring_spring_def *defs,
+                                  uint32_t i) {
+    mspring_spring_def taken, *def = &taken;
     float rest_length;
-    mspring_result result = mspringi_check_spring_def(&network->message, id, def, struct_size);
+    mspring_result result = mspringi_take_spring(&network->message, id, defs, i, def);
     if (result == MSPRING_OK)
         result = check_ends(network, id, def);
     if (result == MSPRING_OK)
@@ -211,8 +208,10 @@ static mspring_result link_spring(mspring_network *network, mspring_id id, const
     return result;
 }
 
-static void put_spring(mspring_network *network, mspring_id s, const mspring_spring_def *def) {
+static void put_spring(mspring_network *network, mspring_id s, const mspring_spring_def *defs, uint32_t i) {
+    mspring_spring_def taken, *def = &taken;
     float rest_length = 0.0f;
+    (void)mspringi_take_spring_def_at(NULL, defs, i, def);
     (void)find_rest_length(network, s, def, &rest_length);
     mspringi_solvers_clear_spring(network, mspringi_slot_of_spring(&network->topology, s));
     mspringi_spare_add_spring(&network->topology, s, def->a, def->b);
@@ -245,7 +244,6 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
                                                     uint32_t count, mspring_id *ids) {
     const mspringi_reserve *reserve = &network->topology.reserve;
     mspringi_id_pool *g = &network->growth;
-    const size_t struct_size = mspringi_struct_size(defs);
     mspring_result result = check_room(network, "spring", g->springs, g->lowest_spring, reserve->first_spring,
                                        reserve->spring_end, count);
     if (result != MSPRING_OK)
@@ -254,17 +252,18 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
     uint32_t linked = 0;
     for (; linked < count; ++linked, ++id) {
         id = find_spare(g->springs, id, reserve->spring_end);
-        result = link_spring(network, id, mspringi_element(defs, struct_size, linked), struct_size);
+        result = link_spring(network, id, defs, linked);
         if (result != MSPRING_OK)
             break;
     }
     if (result != MSPRING_OK && count > 1)
-        result = name_definition(network, result, linked);
+        result = mspringi_prefix(&network->message, result, "definition", linked);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        const mspring_spring_def *def = mspringi_element(defs, struct_size, i);
-        result = mspringi_strain_reserve_limits(network, MSPRINGI_LIMITS_OF(def));
+        mspring_spring_def def;
+        (void)mspringi_take_spring_def_at(NULL, defs, i, &def);
+        result = mspringi_strain_reserve_limits(network, MSPRINGI_LIMITS_OF(&def));
         if (result == MSPRING_OK)
-            result = mspringi_plastic_reserve_limits(network, MSPRINGI_LIMITS_OF(def));
+            result = mspringi_plastic_reserve_limits(network, MSPRINGI_LIMITS_OF(&def));
     }
     if (result != MSPRING_OK) {
         for (id = g->lowest_spring; linked > 0; --linked, ++id) {
@@ -277,7 +276,7 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
     id = g->lowest_spring;
     for (uint32_t i = 0; i < count; ++i) {
         id = find_spare(g->springs, id, reserve->spring_end);
-        put_spring(network, id, mspringi_element(defs, struct_size, i));
+        put_spring(network, id, defs, i);
         end = id >= end ? id + 1 : end;
         ids[i] = id;
     }

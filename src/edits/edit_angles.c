@@ -19,11 +19,9 @@ static mspring_result check_rest_angle(mspring_network *network, double rest_ang
                                "the rest angle is %g rad, it must be at most 1e6 in size", rest_angle);
 }
 
-static mspring_result check_def(mspring_network *network, const mspring_angle_def *def) {
+static mspring_result check_def(mspring_network *network, const mspring_angle_def **given, mspring_angle_def *def) {
     mspringi_message *message = &network->message;
-    if (!def)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the angle's definition is NULL");
-    const mspring_result result = mspringi_check_struct(message, "mspring_angle_def", def, sizeof *def);
+    const mspring_result result = mspringi_take_angle_def(message, given, def);
     if (result != MSPRING_OK)
         return result;
     if (def->flags & ~(uint32_t)MSPRING_ANGLE_REST_GIVEN)
@@ -62,9 +60,10 @@ static double rest_of(const mspring_network *network, const mspring_angle_def *d
 
 mspring_result mspring_network_add_angles(mspring_network *network, const mspring_angle_def *def,
                                           const mspring_id *particles, uint32_t count, mspring_id *first_angle) {
+    mspring_angle_def taken;
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
-        result = check_def(network, def);
+        result = check_def(network, &def, &taken);
     if (result == MSPRING_OK && !particles && count > 0)
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the list of particles is NULL");
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
@@ -93,12 +92,13 @@ mspring_result mspring_network_remove_angle(mspring_network *network, mspring_id
 /* ---------------------------------------------------------------------------------------------------- changing */
 
 mspring_result mspring_network_set_angle(mspring_network *network, mspring_id angle, const mspring_angle_def *def) {
+    mspring_angle_def taken;
     mspringi_area *found = NULL;
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = mspringi_area_find(network, angle, true, &found);
     if (result == MSPRING_OK)
-        result = check_def(network, def);
+        result = check_def(network, &def, &taken);
     if (result != MSPRING_OK)
         return result;
     mspring_id three[3];
@@ -138,7 +138,7 @@ mspring_result mspring_network_set_rest_angles(mspring_network *network, mspring
 /* ----------------------------------------------------------------------------------------------------- reading */
 
 mspring_result mspring_network_get_angle(const mspring_network *network, mspring_id angle, mspring_angle_def *def) {
-    const mspring_result result = mspringi_check_report(network, "mspring_angle_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_angle_def, def);
     if (result != MSPRING_OK)
         return result;
     const mspringi_area *found = mspringi_area_look_up(network, angle, true);
@@ -148,13 +148,13 @@ mspring_result mspring_network_get_angle(const mspring_network *network, mspring
                                    .damping = found->damping,
                                    .flags = MSPRING_ANGLE_REST_GIVEN,
                                    .rest_angle = found->rest_angle};
-    mspringi_put_struct(def, &had, sizeof had);
+    mspringi_put_angle_def(def, &had);
     return MSPRING_OK;
 }
 
 mspring_result mspring_network_get_angle_info(const mspring_network *network, mspring_id angle,
                                               mspring_angle_info *info) {
-    const mspring_result result = mspringi_check_report(network, "mspring_angle_info", info, sizeof *info);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_angle_info, info);
     if (result != MSPRING_OK)
         return result;
     const mspringi_area *found = mspringi_area_look_up(network, angle, true);
@@ -172,7 +172,7 @@ mspring_result mspring_network_get_angle_info(const mspring_network *network, ms
         .torque = is_open ? 0.0 : mspringi_angle_torque(found, size),
         .energy = is_open ? 0.0 : mspringi_angle_energy(found, size),
     };
-    mspringi_put_struct(info, &made, sizeof made);
+    mspringi_put_angle_info(info, &made);
     return MSPRING_OK;
 }
 

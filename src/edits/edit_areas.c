@@ -37,11 +37,9 @@ static mspring_result check_numbers(const mspring_area_def *def, mspringi_messag
     return MSPRING_OK;
 }
 
-static mspring_result check_def(mspring_network *network, const mspring_area_def *def) {
+static mspring_result check_def(mspring_network *network, const mspring_area_def **given, mspring_area_def *def) {
     mspringi_message *message = &network->message;
-    if (!def)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the area's definition is NULL");
-    mspring_result result = mspringi_check_struct(message, "mspring_area_def", def, sizeof *def);
+    mspring_result result = mspringi_take_area_def(message, given, def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_area_def", def->reserved);
     if (result != MSPRING_OK)
@@ -162,11 +160,12 @@ double mspringi_area_within(const mspring_network *network, const mspring_id *pa
 
 mspring_result mspring_network_add_area(mspring_network *network, const mspring_area_def *def,
                                         const mspring_id *particles, uint32_t count, mspring_id *area) {
+    mspring_area_def taken;
     mspring_id ordered[MSPRING_MAX_AREA_PARTICLES];
     double rest_area;
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
-        result = check_def(network, def);
+        result = check_def(network, &def, &taken);
     if (result == MSPRING_OK)
         result = check_list(network, particles, count);
     if (result != MSPRING_OK)
@@ -210,10 +209,11 @@ static mspring_result add_to_cell(mspring_network *network, const mspring_id cor
 
 mspring_result mspring_network_add_cell_areas(mspring_network *network, const mspring_area_def *def,
                                               mspring_id *first_area, uint32_t *count) {
-    cell_areas cells = {.def = def};
+    mspring_area_def taken;
+    cell_areas cells = {.def = &taken};
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
-        result = check_def(network, def);
+        result = check_def(network, &def, &taken);
     if (result == MSPRING_OK && def->rest_area != 0.0)
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                "the cells' rest area is %g m^2, it must be 0", def->rest_area);
@@ -282,12 +282,13 @@ mspring_result mspring_network_remove_area(mspring_network *network, mspring_id 
 }
 
 mspring_result mspring_network_set_area(mspring_network *network, mspring_id area, const mspring_area_def *def) {
+    mspring_area_def taken;
     mspringi_area *found;
     mspring_id particles[MSPRING_MAX_AREA_PARTICLES];
     double rest_area = 0.0;
     mspring_result result = enter_and_find(network, area, &found);
     if (result == MSPRING_OK)
-        result = check_def(network, def);
+        result = check_def(network, &def, &taken);
     if (result != MSPRING_OK)
         return result;
     for (uint32_t i = 0; i < found->count; ++i)
@@ -311,7 +312,7 @@ const mspringi_area *mspringi_area_look_up(const mspring_network *network, mspri
 }
 
 mspring_result mspring_network_get_area(const mspring_network *network, mspring_id area, mspring_area_def *def) {
-    const mspring_result result = mspringi_check_report(network, "mspring_area_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_area_def, def);
     if (result != MSPRING_OK)
         return result;
     const mspringi_area *found = mspringi_area_look_up(network, area, false);
@@ -322,13 +323,13 @@ mspring_result mspring_network_get_area(const mspring_network *network, mspring_
                                   .pressure = found->pressure,
                                   .fill = found->fill,
                                   .rest_area = found->rest_area};
-    mspringi_put_struct(def, &had, sizeof had);
+    mspringi_put_area_def(def, &had);
     return MSPRING_OK;
 }
 
 mspring_result mspring_network_get_area_info(const mspring_network *network, mspring_id area,
                                              mspring_area_info *info) {
-    const mspring_result result = mspringi_check_report(network, "mspring_area_info", info, sizeof *info);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_area_info, info);
     if (result != MSPRING_OK)
         return result;
     const mspringi_area *found = mspringi_area_look_up(network, area, false);
@@ -341,7 +342,7 @@ mspring_result mspring_network_get_area_info(const mspring_network *network, msp
                                     .area = size,
                                     .pressure = is_open ? 0.0 : mspringi_area_pressure(found, size),
                                     .energy = is_open ? 0.0 : mspringi_area_energy(found, size)};
-    mspringi_put_struct(info, &made, sizeof made);
+    mspringi_put_area_info(info, &made);
     return MSPRING_OK;
 }
 

@@ -117,13 +117,14 @@ static mspring_result copy(const mspring_network *network, const mspring_clone_d
     return result;
 }
 
-static mspring_result check_clone(const mspring_network *network, const mspring_clone_def *def,
-                                  mspring_network *const *clone, mspringi_message *message) {
+static mspring_result check_clone(const mspring_network *network, const mspring_clone_def **given,
+                                  mspring_clone_def *def, mspring_network *const *clone,
+                                  mspringi_message *message) {
     if (!clone)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "clone is NULL");
     if (network->in_hook != MSPRINGI_IN_NO_HOOK)
         return mspringi_fail(message, MSPRING_ERROR_BUSY, "no clone is made inside a hook");
-    mspring_result result = mspringi_check_struct(message, "mspring_clone_def", def, sizeof *def);
+    mspring_result result = mspringi_take_clone_def_or_defaults(message, given, def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_clone_def", def->reserved);
     if (result != MSPRING_OK)
@@ -141,16 +142,12 @@ static mspring_result check_clone(const mspring_network *network, const mspring_
 
 mspring_result mspring_network_clone(const mspring_network *network, const mspring_clone_def *def,
                                      mspring_network **clone) {
-    mspring_clone_def defaults;
+    mspring_clone_def taken;
     mspringi_message message;
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    if (!def) {
-        (void)mspring_clone_def_init(&defaults, sizeof defaults);
-        def = &defaults;
-    }
     mspringi_message_clear(&message);
-    mspring_result result = check_clone(network, def, clone, &message);
+    mspring_result result = check_clone(network, &def, &taken, clone, &message);
     mspringi_memory memory = network->memory;
     if (result == MSPRING_OK && def->allocator)
         result = mspringi_memory_init(&memory, def->allocator, &message);

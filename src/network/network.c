@@ -49,12 +49,11 @@ mspring_result mspringi_shared_reserve(mspring_network *network) {
     return MSPRING_OK;
 }
 
-mspring_result mspringi_check_report(const mspring_network *network, const char *name, const void *out,
-                                     size_t known) {
+mspring_result mspringi_check_report(const mspring_network *network, const mspringi_struct *of, const void *out) {
     mspringi_message message;
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = mspringi_check_output(&message, name, out, known);
+    const mspring_result result = mspringi_check_output(&message, of, out);
     return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_set(network->shared, result, &message);
 }
 
@@ -66,8 +65,9 @@ mspring_result mspringi_check_range(mspring_network *network, const char *what, 
                          (unsigned)count, what, count == 1 ? "" : "s", MSPRINGI_ID(first), (unsigned)total);
 }
 
-static mspring_result check_def(const mspring_network_def *def, mspringi_message *message) {
-    mspring_result result = mspringi_check_struct(message, "mspring_network_def", def, sizeof *def);
+static mspring_result check_def(const mspring_network_def **given, mspring_network_def *def,
+                                mspringi_message *message) {
+    mspring_result result = mspringi_take_network_def_or_defaults(message, given, def);
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_WASM)
@@ -321,7 +321,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
 
 mspring_result mspring_network_create(mspring_builder *builder, const mspring_network_def *def,
                                       mspring_network **network) {
-    mspring_network_def defaults;
+    mspring_network_def taken;
     mspringi_memory memory;
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
@@ -329,11 +329,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     mspringi_message_clear(message);
     if (!network)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network is NULL");
-    if (!def) {
-        (void)mspring_network_def_init(&defaults, sizeof defaults);
-        def = &defaults;
-    }
-    mspring_result result = check_def(def, message);
+    mspring_result result = check_def(&def, &taken, message);
     if (result != MSPRING_OK)
         return result;
     if (builder->particle_count == 0)

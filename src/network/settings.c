@@ -32,12 +32,7 @@ static mspring_result check_implicit(const mspring_solver_def *def, mspringi_mes
 }
 
 mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message) {
-    if (!def)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver definition is NULL");
-    mspring_result result = mspringi_check_struct(message, "mspring_solver_def", def, sizeof *def);
-    if (result != MSPRING_OK)
-        return result;
-    result = mspringi_solver_check_name(def->solver, message);
+    mspring_result result = mspringi_solver_check_name(def->solver, message);
     if (result != MSPRING_OK)
         return result;
     const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
@@ -62,11 +57,11 @@ static mspring_solver_def def_of(const mspring_network *network) {
 }
 
 mspring_result mspring_network_get_solver(const mspring_network *network, mspring_solver_def *def) {
-    const mspring_result result = mspringi_check_report(network, "mspring_solver_def", def, sizeof *def);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_solver_def, def);
     if (result != MSPRING_OK)
         return result;
     const mspring_solver_def had = def_of(network);
-    mspringi_put_struct(def, &had, sizeof had);
+    mspringi_put_solver_def(def, &had);
     return MSPRING_OK;
 }
 
@@ -89,7 +84,10 @@ static mspring_result change_solver(mspring_network *network, const mspring_solv
 }
 
 mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
+    mspring_solver_def taken;
     mspring_result result = mspringi_check_call(network);
+    if (result == MSPRING_OK)
+        result = mspringi_take_solver_def(&network->message, &def, &taken);
     if (result == MSPRING_OK)
         result = mspringi_check_solver(def, &network->message);
     if (result == MSPRING_OK)
@@ -143,9 +141,9 @@ mspring_result mspringi_check_settings(const mspring_settings *settings, mspring
 }
 
 mspring_result mspring_network_get_settings(const mspring_network *network, mspring_settings *settings) {
-    const mspring_result result = mspringi_check_report(network, "mspring_settings", settings, sizeof *settings);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_settings, settings);
     if (result == MSPRING_OK)
-        mspringi_put_struct(settings, &network->settings, sizeof network->settings);
+        mspringi_put_settings(settings, &network->settings);
     return result;
 }
 
@@ -162,12 +160,10 @@ static mspring_result reserve_for(mspring_network *network, const mspring_settin
 }
 
 mspring_result mspring_network_set_settings(mspring_network *network, const mspring_settings *settings) {
+    mspring_settings taken;
     mspring_result result = mspringi_check_call(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (!settings)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the settings are NULL");
-    result = mspringi_check_struct(&network->message, "mspring_settings", settings, sizeof *settings);
+    if (result == MSPRING_OK)
+        result = mspringi_take_settings(&network->message, &settings, &taken);
     if (result == MSPRING_OK)
         result = mspringi_check_settings(settings, &network->message);
     if (result == MSPRING_OK)
@@ -178,7 +174,6 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
         return result;
     const mspring_settings old = network->settings;
     network->settings = *settings;
-    network->settings.struct_size = sizeof network->settings;
     if (settings->guard != old.guard) {
         network->guard.h = network->guard.peak = 0.0f;
         network->guard.fallback_steps = 0;

@@ -65,7 +65,7 @@ static double hardening_energy(const mspring_network *network, mspring_id spring
 }
 
 mspring_result mspring_network_get_plasticity(const mspring_network *network, mspring_plasticity *report) {
-    const mspring_result result = mspringi_check_report(network, "mspring_plasticity", report, sizeof *report);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_plasticity, report);
     if (result != MSPRING_OK)
         return result;
     const mspringi_plastic *p = &network->plastic;
@@ -75,7 +75,7 @@ mspring_result mspring_network_get_plasticity(const mspring_network *network, ms
         made.bent_springs += mspringi_spring_exists(network, s) &&
                              mspringi_spring_slot_own_length(network, spring_slot) != p->nominal[spring_slot];
     }
-    mspringi_put_struct(report, &made, sizeof made);
+    mspringi_put_plasticity(report, &made);
     return MSPRING_OK;
 }
 
@@ -175,7 +175,7 @@ mspring_result mspring_network_bounds(const mspring_network *network, double *mi
 
 mspring_result mspring_network_get_spring(const mspring_network *network, mspring_id spring,
                                           mspring_spring_info *info) {
-    const mspring_result result = mspringi_check_report(network, "mspring_spring_info", info, sizeof *info);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_spring_info, info);
     if (result != MSPRING_OK)
         return result;
     const mspringi_topology *t = &network->topology;
@@ -199,6 +199,6 @@ mspring_result mspring_network_get_spring(const mspring_network *network, msprin
         .nominal_stiffness = nominal.stiffness,
         .nominal_damping = nominal.damping,
     };
-    mspringi_put_struct(info, &made, sizeof made);
+    mspringi_put_spring_info(info, &made);
     return MSPRING_OK;
 }

@@ -43,7 +43,7 @@ static double largest_speed(const mspring_network *network) {
 }
 
 mspring_result mspring_network_get_step_info(const mspring_network *network, mspring_step_info *info) {
-    const mspring_result result = mspringi_check_report(network, "mspring_step_info", info, sizeof *info);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_step_info, info);
     if (result != MSPRING_OK)
         return result;
     const mspringi_steps *steps = &network->steps;
@@ -58,12 +58,12 @@ mspring_result mspring_network_get_step_info(const mspring_network *network, msp
         .time = steps->time,
         .largest_speed = largest_speed(network),
     };
-    mspringi_put_struct(info, &made, sizeof made);
+    mspringi_put_step_info(info, &made);
     return MSPRING_OK;
 }
 
 mspring_result mspring_network_get_plan(const mspring_network *network, mspring_plan *plan) {
-    const mspring_result result = mspringi_check_report(network, "mspring_plan", plan, sizeof *plan);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_plan, plan);
     if (result != MSPRING_OK)
         return result;
     const mspringi_topology *t = &network->topology;
@@ -94,6 +94,6 @@ mspring_result mspring_network_get_plan(const mspring_network *network, mspring_
     };
     if (network->solver.ops->describe)
         network->solver.ops->describe(network->solver.object, &made);
-    mspringi_put_struct(plan, &made, sizeof made);
+    mspringi_put_plan(plan, &made);
     return MSPRING_OK;
 }

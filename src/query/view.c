@@ -15,9 +15,9 @@
     }
 
 mspring_result mspring_network_view(const mspring_network *network, mspring_view *view) {
-    const mspring_result result = mspringi_check_report(network, "mspring_view", view, sizeof *view);
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_view, view);
     if (result == MSPRING_OK)
-        mspringi_put_struct(view, &(mspring_view)VIEW_OF(network), sizeof *view);
+        mspringi_put_view(view, &(mspring_view)VIEW_OF(network));
     return result;
 }
 
@@ -25,10 +25,10 @@ mspring_result mspring_network_view_mutable(mspring_network *network, mspring_mu
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
-    result = mspringi_check_output(&network->message, "mspring_mutable_view", view, sizeof *view);
+    result = mspringi_check_output(&network->message, &mspringi_struct_mutable_view, view);
     if (result != MSPRING_OK)
         return result;
     network->is_open = network->has_host_view = true;
-    mspringi_put_struct(view, &(mspring_mutable_view)VIEW_OF(network), sizeof *view);
+    mspringi_put_mutable_view(view, &(mspring_mutable_view)VIEW_OF(network));
     return MSPRING_OK;
 }

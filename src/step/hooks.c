@@ -10,11 +10,9 @@
 
 /* ------------------------------------------------------------------------------------------- adding, removing */
 
-static mspring_result check_hook(mspring_network *network, const mspring_hook_def *def) {
+static mspring_result check_hook(mspring_network *network, const mspring_hook_def **given, mspring_hook_def *def) {
     mspringi_message *message = &network->message;
-    if (!def)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the hook's definition is NULL");
-    mspring_result result = mspringi_check_struct(message, "mspring_hook_def", def, sizeof *def);
+    mspring_result result = mspringi_take_hook_def(message, given, def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_hook_def", def->reserved);
     if (result != MSPRING_OK)
@@ -50,9 +48,10 @@ static mspring_result reserve_fields(mspring_network *network, const mspring_hoo
 }
 
 mspring_result mspring_network_add_hook(mspring_network *network, const mspring_hook_def *def, mspring_id *hook) {
+    mspring_hook_def taken;
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
-        result = check_hook(network, def);
+        result = check_hook(network, &def, &taken);
     if (result != MSPRING_OK)
         return result;
     void *hooks = network->hooks;

@@ -133,7 +133,8 @@ mspring_result mspring_network_get_component_numbers(const mspring_network *netw
     return MSPRING_OK;
 }
 
-// Add a particle to its component: mass, centre times mass, momentum.
+// Add a particle to its component: mass, centre times mass, momentum. All of these fields are of the first version,
+// so that the host's struct has them, however short it is.
 static void add_particle(const mspring_network *network, mspring_id particle, mspring_component *to) {
     const mspringi_state *s = &network->state;
     const uint32_t slot = network->topology.slot_of_particle[particle];
@@ -147,23 +148,17 @@ static void add_particle(const mspring_network *network, mspring_id particle, ms
     }
 }
 
-static mspring_component *component_at(mspring_component *components, size_t struct_size, uint32_t i) {
-    return (mspring_component *)(void *)((char *)components + i * struct_size);
-}
-
 static MSPRINGI_NOINLINE void measure(const mspring_network *network, uint32_t first, uint32_t count,
                                       mspring_component *components) {
     const mspringi_components *c = &network->components;
-    const size_t struct_size = count > 0 ? mspringi_struct_size(components) : 0;
     for (uint32_t i = 0; i < count; ++i)
-        mspringi_put_struct(component_at(components, struct_size, i),
-                            &(mspring_component){.head = c->head[first + i], .particle_count = c->size[first + i]},
-                            sizeof *components);
+        mspringi_put_component_at(
+            components, i, &(mspring_component){.head = c->head[first + i], .particle_count = c->size[first + i]});
     for (mspring_id p = 0; p < network->topology.particle_count; ++p)
         if (c->number[p] - first < count && mspringi_particle_exists(network, p)) // unsigned: below first are not
-            add_particle(network, p, component_at(components, struct_size, c->number[p] - first));
+            add_particle(network, p, mspringi_element(components, c->number[p] - first));
     for (uint32_t i = 0; i < count; ++i) {
-        mspring_component *component = component_at(components, struct_size, i);
+        mspring_component *component = mspringi_element(components, i);
         component->x = network->origin_x + component->x / component->mass;
         component->y = network->origin_y + component->y / component->mass;
     }
@@ -184,8 +179,7 @@ mspring_result mspring_network_get_components(const mspring_network *network, ui
                                     "%u components from number %s on: numbers are below %u", (unsigned)count,
                                     MSPRINGI_ID(first), (unsigned)network->components.count);
     mspringi_message message;
-    const mspring_result result =
-        mspringi_check_outputs(components, count, "mspring_component", sizeof *components, &message);
+    const mspring_result result = mspringi_check_outputs(&message, &mspringi_struct_component, components, count);
     if (result != MSPRING_OK)
         return mspringi_shared_set(shared, result, &message);
     const mspringi_fp_state before = mspringi_fp_enter();

@@ -5,12 +5,10 @@
 #ifndef MSPRINGI_NETWORK_H
 #define MSPRINGI_NETWORK_H
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
-
 #include <math.h>
 
 #include "base/assert.h"
+#include "base/structs.h"
 #include "builder/builder_areas.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"
@@ -557,8 +555,7 @@ static inline bool mspringi_spring_exists(const mspring_network *network, msprin
 mspring_result mspringi_shared_reserve(mspring_network *network);
 
 /// Check the struct that a call which only reads is to fill. A network NULL is MSPRING_ERROR_ARGUMENT.
-mspring_result mspringi_check_report(const mspring_network *network, const char *name, const void *out,
-                                     size_t known);
+mspring_result mspringi_check_report(const mspring_network *network, const mspringi_struct *of, const void *out);
 
 /// Refuse NULL, and calls from inside a hook.
 mspring_result mspringi_check_call(mspring_network *network);

@@ -1,6 +1,7 @@
 #include "tasks/tasks.h"
 
 #include "base/cpu.h"
+#include "base/structs.h"
 #include "tasks/pool.h"
 
 struct mspringi_tasks {
@@ -13,8 +14,8 @@ struct mspringi_tasks {
 
 /* ------------------------------------------------------------------------------------------------ lifecycle */
 
-static mspring_result check_host(const mspring_tasks *host, mspringi_message *message) {
-    mspring_result result = mspringi_check_struct(message, "mspring_tasks", host, sizeof *host);
+static mspring_result check_host(const mspring_tasks **given, mspring_tasks *host, mspringi_message *message) {
+    mspring_result result = mspringi_take_tasks(message, given, host);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_tasks", host->reserved);
     if (result != MSPRING_OK)
@@ -42,8 +43,9 @@ static mspring_result make_counters(mspringi_tasks *tasks, mspringi_memory *memo
 
 mspring_result mspringi_tasks_create(uint32_t worker_count, const mspring_tasks *host, mspringi_memory *memory,
                                      mspringi_message *message, mspringi_tasks **tasks) {
+    mspring_tasks taken;
     if (host) {
-        mspring_result result = check_host(host, message);
+        mspring_result result = check_host(&host, &taken, message);
         if (result != MSPRING_OK)
             return result;
         worker_count = host->worker_count;
@@ -62,7 +64,7 @@ mspring_result mspringi_tasks_create(uint32_t worker_count, const mspring_tasks 
     if (!created)
         return mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for %u workers", (unsigned)worker_count);
     if (host)
-        created->host = *host; // fields of a later version are dropped
+        created->host = *host;
     created->worker_count = worker_count;
     created->concurrency = host ? host->concurrent_count : worker_count;
     mspring_result result = make_counters(created, memory, message);

@@ -1,315 +1,154 @@
 /// @file test_structs.c
-/// Structs of a later header, which are larger than this library knows; reserved fields; elements of arrays.
+/// Structs of another version's header, which are longer or shorter than this library's.
+///
+/// tests/abi/other_structs compiles this program once more, with a header whose structs are longer, and against a
+/// library whose structs are. LIBRARY_GROWTH is by how many bytes the structs of the library are longer than those
+/// of this program's header.
 ///
 /// SPDX-License-Identifier: MIT
-#include <stdint.h>
+#if !defined(_WIN32)
+#define _DEFAULT_SOURCE // memory without access
+#define _DARWIN_C_SOURCE
+#endif
+
+#include "structs.h"
+
+#include <stdio.h>
 #include <string.h>
+#if defined(__unix__) && !defined(__EMSCRIPTEN__)
+#include <sys/mman.h>
+#include <unistd.h>
+#endif
 
-#include "support.h"
+#if !defined(LIBRARY_GROWTH)
+#define LIBRARY_GROWTH 0
+#endif
 
-#define MORE 24
+/// A struct's size in the library, and in the version that introduced it, by its size here.
+#define KNOWN(size) ((size) + LIBRARY_GROWTH)
+#define FIRST(size) (LIBRARY_GROWTH < 0 ? KNOWN(size) : (size))
 
-/// A struct with room behind it, and its size as a later header would give it.
-#define LARGER(type)                                                                                               \
-    union {                                                                                                        \
-        type is;                                                                                                   \
-        unsigned char bytes[sizeof(type) + MORE];                                                                  \
+/// Bytes that the struct of a program may be longer than this header says. The last: longer than any library.
+static const uint32_t longer[] = {0, 8, 24};
+#define LONGEST 24
+
+/// Bytes in front of a struct that nobody may write. Behind it nobody may even read.
+#define FENCE 64
+
+/// Memory of this size that ends where the readable memory does, so that one byte too many ends the program.
+static unsigned char *fenced(size_t size) {
+    static unsigned char *end;
+#if defined(__unix__) && !defined(__EMSCRIPTEN__)
+    const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+    if (!end) {
+        void *pages = mmap(NULL, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        assert_true(pages != MAP_FAILED);
+        assert_int_equal(mprotect((char *)pages + page, page, PROT_NONE), 0);
+        end = (unsigned char *)pages + page;
     }
-
-/// All functions that take or fill one struct, with the network and builder of a test.
-typedef struct subject {
-    mspring_builder *builder;
-    mspring_network *network;
-} subject;
-
-static void *no_alloc(size_t size, size_t alignment, void *user) {
-    (void)size, (void)alignment, (void)user;
-    return NULL;
+#else
+    static _Alignas(16) unsigned char bytes[4096];
+    end = bytes + sizeof bytes;
+#endif
+    assert_true(size <= 4096 - FENCE);
+    memset(end - size - FENCE, 0xaa, size + FENCE);
+    return end - size;
 }
 
-static void no_free(void *memory, size_t size, void *user) {
-    (void)memory, (void)size, (void)user;
-}
-
-static void no_run(uint32_t count, mspring_task_fn fn, void *argument, void *user) {
-    (void)count, (void)fn, (void)argument, (void)user;
-}
-
-static void no_hook(const mspring_hook_args *args, void *user) {
-    (void)args, (void)user;
-}
-
-static mspring_result give_allocator(subject *s, void *given) {
-    mspring_builder *made = NULL;
-    mspring_allocator *allocator = given;
-    (void)s;
-    allocator->alloc = no_alloc;
-    allocator->free = no_free;
-    const mspring_result result = mspring_builder_create(given, &made);
-    return result == MSPRING_ERROR_MEMORY ? MSPRING_OK : result;
-}
-
-static mspring_result give_tasks(subject *s, void *given) {
-    mspring_tasks *tasks = given;
-    mspring_network_def def = support_def(0, 1);
-    mspring_network *made = NULL;
-    tasks->run = no_run;
-    def.tasks = tasks;
-    const mspring_result result = mspring_network_create(s->builder, &def, &made);
-    mspring_network_destroy(made);
-    return result;
-}
-
-static mspring_result give_particle(subject *s, void *given) {
-    return mspring_builder_add_particle(s->builder, given, NULL);
-}
-
-static mspring_result give_spring(subject *s, void *given) {
-    mspring_spring_def *spring = given;
-    spring->a = mspring_builder_particle_count(s->builder);
-    spring->b = 0;
-    support_particle(s->builder, 3, 4, 1);
-    return mspring_builder_add_spring(s->builder, given, NULL);
-}
-
-static mspring_result give_lattice(subject *s, void *given) {
-    static const uint16_t cell = MSPRING_CELL_EMPTY;
-    mspring_lattice_def *lattice = given;
-    lattice->width = lattice->height = 1;
-    lattice->cells = &cell;
-    return mspring_builder_add_lattice(s->builder, given, NULL);
-}
-
-static mspring_result give_material(subject *s, void *given) {
-    mspring_lattice_def lattice;
-    check_ok(mspring_lattice_def_init(&lattice, sizeof lattice));
-    lattice.materials = given;
-    lattice.material_count = 1;
-    return give_lattice(s, &lattice);
-}
-
-static mspring_result give_rope(subject *s, void *given) {
-    mspring_rope_def *rope = given;
-    rope->from = 0;
-    rope->to = support_particle(s->builder, 5, 6, 1);
-    return mspring_builder_add_rope(s->builder, given, NULL, 0, NULL);
-}
-
-static mspring_result give_mesh(subject *s, void *given) {
-    return mspring_builder_add_mesh(s->builder, given, NULL, NULL);
-}
-
-static mspring_result give_disc(subject *s, void *given) {
-    return mspring_builder_add_disc(s->builder, given, NULL, NULL);
-}
-
-static mspring_result give_network_def(subject *s, void *given) {
-    mspring_network *made = NULL;
-    const mspring_result result = mspring_network_create(s->builder, given, &made);
-    mspring_network_destroy(made);
-    return result;
-}
-
-static mspring_result give_clone_def(subject *s, void *given) {
-    mspring_network *made = NULL;
-    const mspring_result result = mspring_network_clone(s->network, given, &made);
-    mspring_network_destroy(made);
-    return result;
-}
-
-static mspring_result give_solver(subject *s, void *given) {
-    return mspring_network_set_solver(s->network, given);
-}
-
-static mspring_result give_settings(subject *s, void *given) {
-    return mspring_network_set_settings(s->network, given);
-}
-
-static mspring_result give_hook(subject *s, void *given) {
-    mspring_hook_def *hook = given;
-    hook->fn = no_hook;
-    return mspring_network_add_hook(s->network, given, NULL);
-}
-
-static mspring_result give_floor(subject *s, void *given) {
-    static const double plane[] = {0, -5, 0, 1};
-    mspring_floor_def *floor = given;
-    floor->planes = plane;
-    floor->plane_count = 1;
-    return mspring_network_set_floor(s->network, given);
-}
-
-static mspring_result give_contact(subject *s, void *given) {
-    return mspring_network_set_contact(s->network, given);
-}
-
-static mspring_result give_grip(subject *s, void *given) {
-    mspring_grip_def *grip = given;
-    grip->particle = 1;
-    return mspring_network_add_grip(s->network, given, NULL);
-}
-
-static mspring_result give_area(subject *s, void *given) {
-    return mspring_network_add_cell_areas(s->network, given, NULL, NULL);
-}
-
-static mspring_result give_angle(subject *s, void *given) {
-    static const mspring_id three[3] = {0, 1, 2};
-    return mspring_network_add_angles(s->network, given, three, 1, NULL);
-}
-
-static mspring_result give_collider(subject *s, void *given) {
-    mspring_collider_def *collider = given;
-    mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
-    check_ok(mspring_network_set_contact(s->network, &contact));
-    collider->kind = MSPRING_COLLIDER_BOX;
-    return mspring_network_add_collider(s->network, given, NULL);
-}
-
-static mspring_result give_settle(subject *s, void *given) {
-    const mspring_result result = mspring_network_settle(s->network, given, NULL);
-    return result == MSPRING_ERROR_EQUILIBRIUM ? MSPRING_OK : result;
-}
-
-static mspring_result give_tune(subject *s, void *given) {
-    mspring_tune_row row = {.struct_size = sizeof row};
-    mspring_tune_def *tune = given;
-    mspring_solver_def solver;
-    uint32_t count;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
-    tune->settings = &solver;
-    tune->setting_count = 1;
-    tune->duration = tune->dt * 4;
-    return mspring_network_tune(s->network, given, &row, 1, &count);
-}
-
-static mspring_result give_scene(subject *s, void *given) {
-    mspring_tune_def tune;
-    mspring_tune_scene *scene = given;
-    check_ok(mspring_tune_def_init(&tune, sizeof tune));
-    scene->duration = tune.dt;
-    scene->start_count = 4;
-    tune.scene = scene;
-    return give_tune(s, &tune);
-}
-
-#define INIT(name)                                                                                                 \
-    static mspring_result init_##name(void *out, size_t size) {                                                    \
-        return mspring_##name##_init(out, size);                                                                   \
+static void check_untouched(const unsigned char *bytes, size_t size) {
+    for (size_t i = 0; i < size; i++) {
+        assert_int_equal(bytes[i], 0xaa);
     }
-INIT(allocator)
-INIT(tasks)
-INIT(particle_def)
-INIT(spring_def)
-INIT(lattice_def)
-INIT(material)
-INIT(rope_def)
-INIT(mesh_def)
-INIT(disc_def)
-INIT(network_def)
-INIT(clone_def)
-INIT(solver_def)
-INIT(settings)
-INIT(hook_def)
-INIT(floor_def)
-INIT(contact_def)
-INIT(grip_def)
-INIT(area_def)
-INIT(angle_def)
-INIT(collider_def)
-INIT(settle_def)
-INIT(tune_def)
-INIT(tune_scene)
-
-#define NO_FIELD 0
-#define INPUT(type, name, give)                                                                                    \
-    { #type, sizeof(mspring_##type), init_##type, give, name }
-static const struct input {
-    const char *name;
-    size_t size;
-    mspring_result (*init)(void *out, size_t size);
-    mspring_result (*give)(subject *s, void *given);
-    size_t reserved; ///< where a reserved field is; 0: there is none
-} inputs[] = {
-    INPUT(allocator, offsetof(mspring_allocator, reserved), give_allocator),
-    INPUT(tasks, offsetof(mspring_tasks, reserved), give_tasks),
-    INPUT(particle_def, offsetof(mspring_particle_def, reserved), give_particle),
-    INPUT(spring_def, NO_FIELD, give_spring),
-    INPUT(lattice_def, NO_FIELD, give_lattice),
-    INPUT(material, NO_FIELD, give_material),
-    INPUT(rope_def, NO_FIELD, give_rope),
-    INPUT(mesh_def, NO_FIELD, give_mesh),
-    INPUT(disc_def, NO_FIELD, give_disc),
-    INPUT(network_def, NO_FIELD, give_network_def),
-    INPUT(clone_def, offsetof(mspring_clone_def, reserved), give_clone_def),
-    INPUT(solver_def, NO_FIELD, give_solver),
-    INPUT(settings, NO_FIELD, give_settings),
-    INPUT(hook_def, offsetof(mspring_hook_def, reserved), give_hook),
-    INPUT(floor_def, offsetof(mspring_floor_def, reserved), give_floor),
-    INPUT(contact_def, offsetof(mspring_contact_def, reserved), give_contact),
-    INPUT(grip_def, offsetof(mspring_grip_def, reserved), give_grip),
-    INPUT(area_def, offsetof(mspring_area_def, reserved), give_area),
-    INPUT(angle_def, NO_FIELD, give_angle),
-    INPUT(collider_def, offsetof(mspring_collider_def, reserved_pointer), give_collider),
-    INPUT(settle_def, offsetof(mspring_settle_def, reserved), give_settle),
-    INPUT(tune_def, offsetof(mspring_tune_def, reserved_pointer), give_tune),
-    INPUT(tune_scene, offsetof(mspring_tune_scene, reserved), give_scene),
-    INPUT(tune_scene, offsetof(mspring_tune_scene, reserved_pointer), give_scene),
-};
-
-static subject make_subject(void) {
-    subject made = {.builder = support_builder()};
-    support_spring(made.builder, support_pinned(made.builder, 0, 0, 1), support_particle(made.builder, 1, 0, 1), 10,
-                   0);
-    (void)support_pinned(made.builder, 0, 1, 1);
-    check_ok(mspring_network_create(made.builder, NULL, &made.network));
-    return made;
 }
 
-static void free_subject(subject *s) {
-    mspring_builder_destroy(s->builder);
-    mspring_network_destroy(s->network);
+static void check_fence(const unsigned char *bytes) {
+    check_untouched(bytes - FENCE, FENCE);
 }
 
-static void later_structs_are_taken_if_what_is_new_is_0(void **state) {
-    (void)state;
-    for (const struct input *input = inputs; input < inputs + COUNT_OF(inputs); input++) {
-        subject s = make_subject();
-        _Alignas(16) unsigned char bytes[512];
-        uint32_t size = (uint32_t)input->size + MORE;
-        memset(bytes, 0xaa, sizeof bytes);
-        check_ok(input->init(bytes, size));
-        assert_memory_equal(bytes, &size, sizeof size);
-        for (size_t i = input->size; i < size; i++) {
-            assert_int_equal(bytes[i], 0);
-        }
-        assert_int_equal(bytes[size], 0xaa);
-        if (input->give(&s, bytes) != MSPRING_OK) {
-            print_error("%s: %s%s\n", input->name, mspring_builder_error(s.builder),
-                        mspring_network_error(s.network));
-            fail();
-        }
-        check_ok(input->init(bytes, size));
-        for (size_t at = input->size; at < size; at += MORE - 1) {
-            bytes[at] = 1;
-            check_error(input->give(&s, bytes), MSPRING_ERROR_STRUCT);
-            bytes[at] = 0;
-        }
-        size = (uint32_t)input->size - 4;
-        memcpy(bytes, &size, sizeof size);
+static void set_size(unsigned char *bytes, uint32_t size) {
+    memcpy(bytes, &size, sizeof size);
+}
+
+/// Sizes that no version of a struct has.
+#define IMPOSSIBLE_COUNT 8
+static void list_impossible(uint32_t sizes[IMPOSSIBLE_COUNT], size_t size) {
+    const uint32_t first = (uint32_t)FIRST(size);
+    const uint32_t all[IMPOSSIBLE_COUNT] = {0, 4, first - 4, first + 2, first + 1, 4004, 1u << 20, UINT32_MAX - 3};
+    memcpy(sizes, all, sizeof all);
+}
+
+/// The message of a refusal names the struct and both sizes.
+static void check_message(const subject *s, const char *name, uint32_t size) {
+    char expected[80];
+    snprintf(expected, sizeof expected, "mspring_%s.struct_size is %u, it must be", name, (unsigned)size);
+    if (!strstr(mspring_builder_error(s->builder), expected)) {
+        check_contains(mspring_network_error(s->network), expected);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- inputs
+ */
+
+static void check_given(const struct input *input, uint32_t more) {
+    subject s = make_subject();
+    const uint32_t size = (uint32_t)input->size + more, known = (uint32_t)KNOWN(input->size);
+    unsigned char *bytes = fenced(size);
+    check_ok(input->init(bytes, size));
+    assert_memory_equal(bytes, &size, sizeof size);
+    for (uint32_t i = known; i < size; i++) {
+        assert_int_equal(bytes[i], 0);
+    }
+    if (input->give(&s, bytes) != MSPRING_OK) {
+        print_error("%s: %s%s\n", input->name, mspring_builder_error(s.builder), mspring_network_error(s.network));
+        fail();
+    }
+    assert_memory_equal(bytes, &size, sizeof size);
+    check_ok(input->init(bytes, size));
+    for (uint32_t i = known; i<size; i += size - known - 1> 0 ? size - known - 1 : 1) {
+        bytes[i] = 1;
         check_error(input->give(&s, bytes), MSPRING_ERROR_STRUCT);
-        free_subject(&s);
+        bytes[i] = 0;
+    }
+    check_fence(bytes);
+    free_subject(&s);
+}
+
+static void structs_are_taken_as_far_as_they_go(void **state) {
+    (void)state;
+    for (const struct input *input = inputs; input < inputs + input_count; input++) {
+        for (size_t k = 0; k < COUNT_OF(longer); k++) {
+            check_given(input, longer[k]);
+        }
+    }
+}
+
+static void impossible_sizes_are_refused(void **state) {
+    (void)state;
+    for (const struct input *input = inputs; input < inputs + input_count; input++) {
+        uint32_t sizes[IMPOSSIBLE_COUNT];
+        list_impossible(sizes, input->size);
+        for (size_t i = 0; i < IMPOSSIBLE_COUNT; i++) {
+            subject s = make_subject();
+            unsigned char *bytes = fenced(input->size);
+            check_error(input->init(bytes, sizes[i]), MSPRING_ERROR_STRUCT);
+            check_untouched(bytes, input->size);
+            check_ok(input->init(bytes, input->size));
+            set_size(bytes, sizes[i]);
+            check_error(input->give(&s, bytes), MSPRING_ERROR_STRUCT);
+            check_message(&s, input->name, sizes[i]);
+            check_fence(bytes);
+            free_subject(&s);
+        }
     }
 }
 
 static void reserved_fields_must_be_0(void **state) {
     (void)state;
-    for (const struct input *input = inputs; input < inputs + COUNT_OF(inputs); input++) {
+    for (const struct input *input = inputs; input < inputs + input_count; input++) {
         subject s = make_subject();
-        _Alignas(16) unsigned char bytes[512];
+        unsigned char *bytes = fenced(input->size);
         check_ok(input->init(bytes, input->size));
-        if (input->reserved != NO_FIELD) {
+        if (input->reserved != 0) {
             bytes[input->reserved] = 1;
             check_error(input->give(&s, bytes), MSPRING_ERROR_ARGUMENT);
         }
@@ -320,255 +159,293 @@ static void reserved_fields_must_be_0(void **state) {
 /* ------------------------------------------------------------------------------------------------------- outputs
  */
 
-static mspring_result fill_view(subject *s, void *out) {
-    return mspring_network_view(s->network, out);
-}
-static mspring_result fill_mutable_view(subject *s, void *out) {
-    return mspring_network_view_mutable(s->network, out);
-}
-static mspring_result fill_solver(subject *s, void *out) {
-    return mspring_network_get_solver(s->network, out);
-}
-static mspring_result fill_settings(subject *s, void *out) {
-    return mspring_network_get_settings(s->network, out);
-}
-static mspring_result fill_floor(subject *s, void *out) {
-    return mspring_network_get_floor(s->network, out);
-}
-static mspring_result fill_contact(subject *s, void *out) {
-    return mspring_network_get_contact(s->network, out);
-}
-static mspring_result fill_contact_info(subject *s, void *out) {
-    return mspring_network_get_contact_info(s->network, out);
-}
-static mspring_result fill_grip(subject *s, void *out) {
-    mspring_grip_def def;
-    mspring_id id;
-    check_ok(mspring_grip_def_init(&def, sizeof def));
-    def.particle = 1;
-    check_ok(mspring_network_add_grip(s->network, &def, &id));
-    const mspring_result result = mspring_network_get_grip(s->network, id, out);
-    check_ok(mspring_network_remove_grip(s->network, id));
-    return result;
-}
-static mspring_result fill_area(subject *s, void *out, bool is_info) {
-    static const mspring_id corners[3] = {0, 1, 2};
-    mspring_area_def def;
-    mspring_id id;
-    check_ok(mspring_area_def_init(&def, sizeof def));
-    check_ok(mspring_network_add_area(s->network, &def, corners, 3, &id));
-    const mspring_result result = is_info ? mspring_network_get_area_info(s->network, id, out)
-                                          : mspring_network_get_area(s->network, id, out);
-    check_ok(mspring_network_remove_area(s->network, id));
-    return result;
-}
-static mspring_result fill_angle(subject *s, void *out, bool is_info) {
-    static const mspring_id three[3] = {0, 1, 2};
-    mspring_angle_def def;
-    mspring_id id;
-    check_ok(mspring_angle_def_init(&def, sizeof def));
-    check_ok(mspring_network_add_angles(s->network, &def, three, 1, &id));
-    const mspring_result result = is_info ? mspring_network_get_angle_info(s->network, id, out)
-                                          : mspring_network_get_angle(s->network, id, out);
-    check_ok(mspring_network_remove_angle(s->network, id));
-    return result;
-}
-static mspring_result fill_angle_def(subject *s, void *out) {
-    return fill_angle(s, out, false);
-}
-static mspring_result fill_angle_info(subject *s, void *out) {
-    return fill_angle(s, out, true);
-}
-static mspring_result fill_area_def(subject *s, void *out) {
-    return fill_area(s, out, false);
-}
-static mspring_result fill_area_info(subject *s, void *out) {
-    return fill_area(s, out, true);
-}
-static mspring_result fill_collider(subject *s, void *out) {
-    mspring_collider_def def;
-    mspring_id id;
-    check_ok(mspring_collider_def_init(&def, sizeof def));
-    check_ok(give_collider(s, &def));
-    check_ok(mspring_network_add_collider(s->network, &def, &id));
-    return mspring_network_get_collider(s->network, id, out);
-}
-static mspring_result fill_plasticity(subject *s, void *out) {
-    return mspring_network_get_plasticity(s->network, out);
+static void check_filled(const struct output *output, uint32_t more) {
+    subject s = make_subject();
+    const uint32_t size = (uint32_t)output->size + more, known = (uint32_t)KNOWN(output->size);
+    unsigned char *bytes = fenced(size);
+    _Alignas(16) unsigned char whole[768];
+    set_size(bytes, size);
+    check_ok(output->fill(&s, bytes));
+    assert_memory_equal(bytes, &size, sizeof size);
+    for (uint32_t i = known; i < size; i++) {
+        assert_int_equal(bytes[i], 0);
+    }
+    check_fence(bytes);
+    // What was cut is the begin of what is given whole.
+    if (output->repeats) {
+        set_size(whole, (uint32_t)output->size + LONGEST);
+        check_ok(output->fill(&s, whole));
+        assert_memory_equal(bytes + sizeof size, whole + sizeof size, (size < known ? size : known) - sizeof size);
+    }
+    free_subject(&s);
 }
 
-static mspring_result fill_step_info(subject *s, void *out) {
-    return mspring_network_get_step_info(s->network, out);
-}
-static mspring_result fill_spring_info(subject *s, void *out) {
-    return mspring_network_get_spring(s->network, 0, out);
-}
-static mspring_result fill_plan(subject *s, void *out) {
-    return mspring_network_get_plan(s->network, out);
-}
-static mspring_result fill_settled(subject *s, void *out) {
-    return mspring_network_settle(s->network, NULL, out);
-}
-static mspring_result fill_component(subject *s, void *out) {
-    check_ok(mspring_network_update_components(s->network, NULL, NULL));
-    return mspring_network_get_components(s->network, 0, 1, out);
-}
-static mspring_result fill_row(subject *s, void *out) {
-    mspring_tune_def tune;
-    mspring_solver_def solver;
-    uint32_t count;
-    check_ok(mspring_tune_def_init(&tune, sizeof tune));
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
-    tune.settings = &solver;
-    tune.setting_count = 1;
-    tune.duration = tune.dt * 4;
-    return mspring_network_tune(s->network, &tune, out, 1, &count);
-}
-static mspring_result fill_row_solver(subject *s, void *out) {
-    mspring_tune_row row = {.struct_size = sizeof row, .substeps = 1};
-    (void)s;
-    return mspring_tune_row_solver(&row, out);
-}
-
-#define OUTPUT(type, fill)                                                                                         \
-    { #type, sizeof(type), fill }
-static const struct output {
-    const char *name;
-    size_t size;
-    mspring_result (*fill)(subject *s, void *out);
-} outputs[] = {
-    OUTPUT(mspring_view, fill_view),
-    OUTPUT(mspring_mutable_view, fill_mutable_view),
-    OUTPUT(mspring_solver_def, fill_solver),
-    OUTPUT(mspring_settings, fill_settings),
-    OUTPUT(mspring_floor_def, fill_floor),
-    OUTPUT(mspring_contact_def, fill_contact),
-    OUTPUT(mspring_contact_info, fill_contact_info),
-    OUTPUT(mspring_grip_def, fill_grip),
-    OUTPUT(mspring_angle_def, fill_angle_def),
-    OUTPUT(mspring_angle_info, fill_angle_info),
-    OUTPUT(mspring_area_def, fill_area_def),
-    OUTPUT(mspring_area_info, fill_area_info),
-    OUTPUT(mspring_collider_def, fill_collider),
-    OUTPUT(mspring_step_info, fill_step_info),
-    OUTPUT(mspring_plasticity, fill_plasticity),
-    OUTPUT(mspring_spring_info, fill_spring_info),
-    OUTPUT(mspring_plan, fill_plan),
-    OUTPUT(mspring_settle_result, fill_settled),
-    OUTPUT(mspring_component, fill_component),
-    OUTPUT(mspring_tune_row, fill_row),
-    OUTPUT(mspring_solver_def, fill_row_solver),
-};
-
-static void later_structs_are_filled_with_0_behind_what_is_known(void **state) {
+static void structs_are_filled_as_far_as_they_go(void **state) {
     (void)state;
-    for (const struct output *output = outputs; output < outputs + COUNT_OF(outputs); output++) {
-        subject s = make_subject();
-        _Alignas(16) unsigned char bytes[768];
-        uint32_t size = (uint32_t)output->size + MORE;
-        memset(bytes, 0xaa, sizeof bytes);
-        memcpy(bytes, &size, sizeof size);
-        check_ok(output->fill(&s, bytes));
-        assert_memory_equal(bytes, &size, sizeof size);
-        for (size_t i = output->size; i < size; i++) {
-            assert_int_equal(bytes[i], 0);
+    for (const struct output *output = outputs; output < outputs + output_count; output++) {
+        for (size_t k = 0; k < COUNT_OF(longer); k++) {
+            check_filled(output, longer[k]);
         }
-        assert_int_equal(bytes[size], 0xaa);
-        const uint32_t bad[] = {0, 4, (uint32_t)output->size - 4, (uint32_t)output->size + 2, 1u << 20};
-        for (size_t i = 0; i < COUNT_OF(bad); i++) {
-            memcpy(bytes, &bad[i], sizeof bad[i]);
+        subject s = make_subject();
+        uint32_t sizes[IMPOSSIBLE_COUNT];
+        unsigned char *bytes = fenced(output->size);
+        list_impossible(sizes, output->size);
+        for (size_t i = 0; i < IMPOSSIBLE_COUNT; i++) {
+            set_size(bytes, sizes[i]);
             check_error(output->fill(&s, bytes), MSPRING_ERROR_STRUCT);
+            check_untouched(bytes + sizeof sizes[i], output->size - sizeof sizes[i]);
         }
         free_subject(&s);
     }
 }
 
+static void look_at_arguments(const mspring_hook_args *args, void *user) {
+    assert_int_equal(args->struct_size, KNOWN(sizeof *args));
+    *(int *)user += 1;
+}
+
+static void hooks_see_how_long_their_arguments_are(void **state) {
+    (void)state;
+    subject s = make_subject();
+    int calls = 0;
+    check_ok(support_add_hook(s.network, MSPRING_PHASE_BEFORE_STEP, look_at_arguments, &calls, NULL));
+    support_steps(s.network, 3, 0.01);
+    assert_int_equal(calls, 3);
+    free_subject(&s);
+}
+
 /* -------------------------------------------------------------------------------------------------------- arrays
  */
 
-static void arrays_go_by_the_size_of_their_structs(void **state) {
-    (void)state;
-    LARGER(mspring_particle_def) particles[4];
-    LARGER(mspring_spring_def) springs[3];
+#define AT(type, array, size, i) ((type *)(void *)((array) + (size_t)(size) * (i)))
+
+static unsigned char *make_particles(uint32_t size, uint32_t count) {
+    unsigned char *array = fenced((size_t)size * count);
+    for (uint32_t i = 0; i < count; i++) {
+        mspring_particle_def *particle = AT(mspring_particle_def, array, size, i);
+        check_ok(mspring_particle_def_init(particle, size));
+        particle->x = i * i;
+        particle->mass = 1 + (float)i;
+    }
+    return array;
+}
+
+static unsigned char *make_springs(uint32_t size, uint32_t count) {
+    unsigned char *array = fenced((size_t)size * count);
+    for (uint32_t i = 0; i < count; i++) {
+        mspring_spring_def *spring = AT(mspring_spring_def, array, size, i);
+        check_ok(mspring_spring_def_init(spring, size));
+        spring->a = i;
+        spring->b = i + 1;
+        spring->stiffness = 1 + (float)i;
+        spring->break_strain = 2 + (float)i;
+    }
+    return array;
+}
+
+/// Another element than the first says of itself that it is longer, or shorter.
+static void spoil(unsigned char *array, uint32_t size, uint32_t i) {
+    set_size(array + (size_t)size * i, i % 2 ? size + 8 : (uint32_t)FIRST(size) - 4);
+}
+
+static mspring_network *build(uint32_t more) {
+    const uint32_t particle = sizeof(mspring_particle_def) + more, spring = sizeof(mspring_spring_def) + more;
     mspring_builder *builder = support_builder();
-    for (uint32_t i = 0; i < 4; i++) {
-        check_ok(mspring_particle_def_init(&particles[i].is, sizeof particles[i]));
-        particles[i].is.x = i * i;
-        particles[i].is.mass = 1 + (float)i;
-    }
-    for (uint32_t i = 0; i < 3; i++) {
-        check_ok(mspring_spring_def_init(&springs[i].is, sizeof springs[i]));
-        springs[i].is.a = i;
-        springs[i].is.b = i + 1;
-    }
-    check_ok(mspring_builder_add_particles(builder, &particles[0].is, 4, NULL));
-    check_ok(mspring_builder_add_springs(builder, &springs[0].is, 3, NULL));
-    // One that is not as large as the first.
-    springs[1].is.struct_size = sizeof springs[1].is;
-    particles[2].is.struct_size = sizeof particles[2].is;
-    check_error(mspring_builder_add_particles(builder, &particles[0].is, 4, NULL), MSPRING_ERROR_STRUCT);
+    unsigned char *array = make_particles(particle, 4);
+    check_ok(mspring_builder_add_particles(builder, AT(mspring_particle_def, array, 0, 0), 4, NULL));
+    spoil(array, particle, 2);
+    check_error(mspring_builder_add_particles(builder, AT(mspring_particle_def, array, 0, 0), 4, NULL),
+                MSPRING_ERROR_STRUCT);
     check_contains(mspring_builder_error(builder), "definition 2");
-    check_error(mspring_builder_add_springs(builder, &springs[0].is, 3, NULL), MSPRING_ERROR_STRUCT);
-    check_contains(mspring_builder_error(builder), "definition 1");
     assert_int_equal(mspring_builder_particle_count(builder), 4);
+    array = make_springs(spring, 3);
+    check_ok(mspring_builder_add_springs(builder, AT(mspring_spring_def, array, 0, 0), 3, NULL));
+    spoil(array, spring, 1);
+    check_error(mspring_builder_add_springs(builder, AT(mspring_spring_def, array, 0, 0), 3, NULL),
+                MSPRING_ERROR_STRUCT);
+    check_contains(mspring_builder_error(builder), "definition 1");
     mspring_network_def def = support_def(0, 1);
     def.spare_particles = def.spare_springs = 8;
-    mspring_network *network = support_network(builder, &def);
-    float read[4];
-    check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, 0, 3, read, 1));
-    assert_true(read[0] == 1 && read[1] == 3 && read[2] == 5);
-    // Added to a network, and read from it.
-    mspring_id ids[4];
-    LARGER(mspring_component) parts[2];
-    particles[2].is.struct_size = sizeof particles[2];
-    check_ok(mspring_network_add_particles(network, &particles[0].is, 4, ids));
-    check_ok(mspring_network_get(network, MSPRING_MASS, ids[0], 4, read, 1));
-    assert_true(read[0] == 1 && read[1] == 2 && read[2] == 3 && read[3] == 4);
+    return support_network(builder, &def);
+}
+
+static void check_components(mspring_network *network, uint32_t more, mspring_id head) {
+    const uint32_t size = sizeof(mspring_component) + more;
+    unsigned char *array = fenced((size_t)size * 2);
     check_ok(mspring_network_update_components(network, NULL, NULL));
-    for (int i = 0; i < 2; i++) {
-        memset(&parts[i], 0xaa, sizeof parts[i]);
-        parts[i].is.struct_size = sizeof parts[i];
+    set_size(array, size);
+    set_size(array + size, size);
+    check_ok(mspring_network_get_components(network, 0, 2, AT(mspring_component, array, 0, 0)));
+    assert_int_equal(AT(mspring_component, array, size, 0)->particle_count, 4);
+    assert_int_equal(AT(mspring_component, array, size, 1)->head, head);
+    assert_int_equal(AT(mspring_component, array, size, 1)->struct_size, size);
+    check_near(AT(mspring_component, array, size, 0)->mass, 10, 0); // small whole numbers
+    check_near(AT(mspring_component, array, size, 1)->mass, 3, 0);
+    check_fence(array);
+    spoil(array, size, 1);
+    check_error(mspring_network_get_components(network, 0, 2, AT(mspring_component, array, 0, 0)),
+                MSPRING_ERROR_STRUCT);
+}
+
+static void arrays_go_by_the_size_of_their_structs(void **state) {
+    (void)state;
+    for (size_t k = 0; k < COUNT_OF(longer); k++) {
+        mspring_network *network = build(longer[k]);
+        const uint32_t size = sizeof(mspring_particle_def) + longer[k];
+        mspring_id ids[4], spring_id[2];
+        float read[4];
+        check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, 0, 3, read, 1));
+        assert_true(read[0] == 1 && read[1] == 3 && read[2] == 5);
+        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, 0, 3, read, 1));
+        assert_true(read[0] == 2 && read[1] == 3 && read[2] == 4);
+        // Added to a network, and read from it.
+        unsigned char *array = make_particles(size, 4);
+        check_ok(mspring_network_add_particles(network, AT(mspring_particle_def, array, 0, 0), 4, ids));
+        spoil(array, size, 2);
+        check_error(mspring_network_add_particles(network, AT(mspring_particle_def, array, 0, 0), 4, ids),
+                    MSPRING_ERROR_STRUCT);
+        check_contains(mspring_network_error(network), "definition 2");
+        check_ok(mspring_network_get(network, MSPRING_MASS, ids[0], 4, read, 1));
+        assert_true(read[0] == 1 && read[1] == 2 && read[2] == 3 && read[3] == 4);
+        const uint32_t spring = sizeof(mspring_spring_def) + longer[k];
+        array = make_springs(spring, 2);
+        for (uint32_t i = 0; i < 2; i++) {
+            AT(mspring_spring_def, array, spring, i)->a = ids[0];
+            AT(mspring_spring_def, array, spring, i)->b = ids[1 + i];
+        }
+        check_ok(mspring_network_add_springs(network, AT(mspring_spring_def, array, 0, 0), 2, spring_id));
+        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, spring_id[0], 2, read, 1));
+        assert_true(read[0] == 2 && read[1] == 3);
+        check_ok(mspring_network_remove_particles(network, ids + 3, 1));
+        check_ok(mspring_network_remove_particles(network, ids + 2, 1));
+        check_components(network, longer[k], ids[0]);
+        mspring_network_destroy(network);
     }
-    check_ok(mspring_network_get_components(network, 0, 2, &parts[0].is));
-    assert_int_equal(parts[0].is.particle_count, 4);
-    assert_int_equal(parts[1].is.head, ids[0]);
-    assert_int_equal(parts[1].bytes[sizeof parts[1] - 1], 0);
-    parts[1].is.struct_size = sizeof parts[1].is;
-    check_error(mspring_network_get_components(network, 0, 2, &parts[0].is), MSPRING_ERROR_STRUCT);
-    mspring_network_destroy(network);
 }
 
 static void lattices_go_by_the_size_of_their_materials(void **state) {
     (void)state;
-    LARGER(mspring_material) materials[2];
-    const uint16_t cells[] = {0, 1};
-    mspring_lattice_def lattice;
-    check_ok(mspring_lattice_def_init(&lattice, sizeof lattice));
-    for (int i = 0; i < 2; i++) {
-        check_ok(mspring_material_init(&materials[i].is, sizeof materials[i]));
-        materials[i].is.mass = 2 + (float)i;
+    for (size_t k = 0; k < COUNT_OF(longer); k++) {
+        const uint32_t size = sizeof(mspring_material) + longer[k];
+        const uint16_t cells[] = {0, 1};
+        unsigned char *array = fenced((size_t)size * 2);
+        mspring_lattice_def lattice;
+        check_ok(mspring_lattice_def_init(&lattice, sizeof lattice));
+        for (uint32_t i = 0; i < 2; i++) {
+            mspring_material *material = AT(mspring_material, array, size, i);
+            check_ok(mspring_material_preset(material, size, MSPRING_PRESET_WOOD, 1, 0.01));
+            material->mass = 2 + (float)i;
+            material->break_strain = 3 - (float)i;
+        }
+        check_fence(array);
+        lattice.width = 2;
+        lattice.height = 1;
+        lattice.cells = cells;
+        lattice.materials = AT(mspring_material, array, 0, 0);
+        lattice.material_count = 2;
+        mspring_builder *builder = support_builder();
+        check_ok(mspring_builder_add_lattice(builder, &lattice, NULL));
+        spoil(array, size, 1);
+        check_error(mspring_builder_add_lattice(builder, &lattice, NULL), MSPRING_ERROR_STRUCT);
+        check_contains(mspring_builder_error(builder), "material 1");
+        mspring_network *network = support_network(builder, NULL);
+        float mass[2], strain;
+        check_ok(mspring_network_get(network, MSPRING_MASS, 0, 2, mass, 1));
+        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, 0, 1, &strain, 1));
+        assert_true(mass[0] == 2 && mass[1] == 3 && strain == 2);
+        mspring_network_destroy(network);
     }
-    lattice.width = 2;
-    lattice.height = 1;
-    lattice.cells = cells;
-    lattice.materials = &materials[0].is;
-    lattice.material_count = 2;
-    mspring_builder *builder = support_builder();
-    check_ok(mspring_builder_add_lattice(builder, &lattice, NULL));
-    mspring_network *network = support_network(builder, NULL);
-    float mass[2];
-    check_ok(mspring_network_get(network, MSPRING_MASS, 0, 2, mass, 1));
-    assert_true(mass[0] == 2 && mass[1] == 3);
-    mspring_network_destroy(network);
+}
+
+static void tuning_goes_by_the_size_of_its_structs(void **state) {
+    (void)state;
+    for (size_t k = 0; k < COUNT_OF(longer); k++) {
+        enum { MOST = 24 };
+        subject s = make_subject();
+        const uint32_t size = sizeof(mspring_solver_def) + longer[k], row = sizeof(mspring_tune_row) + longer[k];
+        mspring_tune_def tune;
+        uint32_t count = 0, all;
+        check_ok(mspring_tune_settings(s.network, 0.01, NULL, 0, &count));
+        unsigned char *array = fenced((size_t)size * count);
+        for (uint32_t i = 0; i < count; i++) {
+            set_size(array + (size_t)size * i, size);
+        }
+        assert_true(count > 2 && count <= MOST);
+        check_ok(mspring_tune_settings(s.network, 0.01, AT(mspring_solver_def, array, 0, 0), count, &all));
+        assert_int_equal(AT(mspring_solver_def, array, size, 1)->struct_size, size);
+        assert_int_equal(AT(mspring_solver_def, array, size, 0)->solver, MSPRING_SOLVER_EXPLICIT);
+        assert_int_equal(AT(mspring_solver_def, array, size, count - 1)->solver, MSPRING_SOLVER_DIRECT);
+        check_fence(array);
+        // Two of them are tried.
+        _Alignas(8) unsigned char tried[2 * (sizeof(mspring_solver_def) + LONGEST)];
+        memcpy(tried, array + (size_t)size * (count - 2), 2 * (size_t)size);
+        check_ok(mspring_tune_def_init(&tune, sizeof tune));
+        tune.settings = AT(mspring_solver_def, tried, 0, 0);
+        tune.setting_count = 2;
+        tune.duration = tune.dt * 4;
+        array = fenced((size_t)row * 2);
+        set_size(array, row);
+        set_size(array + row, row);
+        check_ok(mspring_network_tune(s.network, &tune, AT(mspring_tune_row, array, 0, 0), 2, &all));
+        check_fence(array);
+        assert_int_equal(AT(mspring_tune_row, array, row, 1)->setting, 1);
+        assert_int_equal(AT(mspring_tune_row, array, row, 1)->integrator,
+                         AT(mspring_solver_def, tried, size, 1)->integrator);
+        // A row is given back to get its setting.
+        mspring_solver_def of_row = {.struct_size = sizeof of_row};
+        check_ok(mspring_tune_row_solver(AT(mspring_tune_row, array, row, 1), &of_row));
+        assert_int_equal(of_row.solver, MSPRING_SOLVER_DIRECT);
+        spoil(array, row, 1);
+        check_error(mspring_network_tune(s.network, &tune, AT(mspring_tune_row, array, 0, 0), 2, &all),
+                    MSPRING_ERROR_STRUCT);
+        spoil(tried, size, 1);
+        set_size(array + row, row);
+        check_error(mspring_network_tune(s.network, &tune, AT(mspring_tune_row, array, 0, 0), 2, &all),
+                    MSPRING_ERROR_STRUCT);
+        check_contains(mspring_network_error(s.network), "setting 1");
+        free_subject(&s);
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------- the table
+ */
+
+static bool is_tried(const char *name) {
+    for (size_t i = 0; i < input_count; i++) {
+        if (strcmp(inputs[i].name, name) == 0) {
+            return true;
+        }
+    }
+    for (size_t i = 0; i < output_count; i++) {
+        if (strcmp(outputs[i].name, name) == 0) {
+            return true;
+        }
+    }
+    return strcmp(name, "hook_args") == 0; // above
+}
+
+// headers.sh checks that the table has each struct of the headers.
+static void every_struct_of_the_table_is_tried(void **state) {
+    (void)state;
+#define INPUT_STRUCT(name, on_64_bits, on_32_bits)                                                                 \
+    if (!is_tried(#name)) {                                                                                        \
+        fail_msg("mspring_%s is not tried", #name);                                                                \
+    }
+#define OUTPUT_STRUCT INPUT_STRUCT
+#include "../../src/base/structs.def"
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(later_structs_are_taken_if_what_is_new_is_0),
+        cmocka_unit_test(structs_are_taken_as_far_as_they_go),
+        cmocka_unit_test(impossible_sizes_are_refused),
         cmocka_unit_test(reserved_fields_must_be_0),
-        cmocka_unit_test(later_structs_are_filled_with_0_behind_what_is_known),
+        cmocka_unit_test(structs_are_filled_as_far_as_they_go),
+        cmocka_unit_test(hooks_see_how_long_their_arguments_are),
         cmocka_unit_test(arrays_go_by_the_size_of_their_structs),
         cmocka_unit_test(lattices_go_by_the_size_of_their_materials),
+        cmocka_unit_test(tuning_goes_by_the_size_of_its_structs),
+        cmocka_unit_test(every_struct_of_the_table_is_tried),
     };
     return cmocka_run_group_tests_name("structs", tests, NULL, NULL);
 }

@@ -226,7 +226,6 @@ static mspring_result solve(mspringi_statics *statics, mspring_network *network,
         result = check_yields(statics, network);
     if (result == MSPRING_OK)
         *out = (mspring_settle_result){
-            .struct_size = sizeof *out,
             .iterations = rest.iterations,
             .residual = rest.residual.force,
             .largest_force = rest.residual.scale,
@@ -250,8 +249,9 @@ static MSPRINGI_NOINLINE mspring_result settle(mspring_network *network, const m
     return result;
 }
 
-static mspring_result check_def(const mspring_settle_def *def, mspringi_message *message) {
-    mspring_result result = mspringi_check_struct(message, "mspring_settle_def", def, sizeof *def);
+static mspring_result check_def(const mspring_settle_def **given, mspring_settle_def *def,
+                                mspringi_message *message) {
+    mspring_result result = mspringi_take_settle_def_or_defaults(message, given, def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_settle_def", def->reserved);
     if (result != MSPRING_OK)
@@ -280,24 +280,19 @@ mspring_result mspring_network_settle(mspring_network *network, const mspring_se
 
 mspring_result mspringi_settle_watched(mspring_network *network, const mspring_settle_def *def,
                                        mspring_settle_result *result, mspringi_watcher watcher) {
-    mspring_settle_def defaults;
+    mspring_settle_def taken;
     mspring_settle_result out;
     mspring_result outcome = mspringi_check_call(network);
-    if (outcome != MSPRING_OK)
-        return outcome;
-    if (!def) {
-        (void)mspring_settle_def_init(&defaults, sizeof defaults);
-        def = &defaults;
-    }
-    outcome = check_def(def, &network->message);
+    if (outcome == MSPRING_OK)
+        outcome = check_def(&def, &taken, &network->message);
     if (outcome == MSPRING_OK && result)
-        outcome = mspringi_check_output(&network->message, "mspring_settle_result", result, sizeof *result);
+        outcome = mspringi_check_output(&network->message, &mspringi_struct_settle_result, result);
     if (outcome != MSPRING_OK)
         return outcome;
     const mspringi_fp_state before = mspringi_fp_enter();
     outcome = settle(network, def, &out, watcher);
     mspringi_fp_leave(before);
     if (outcome == MSPRING_OK && result)
-        mspringi_put_struct(result, &out, sizeof out);
+        mspringi_put_settle_result(result, &out);
     return outcome;
 }

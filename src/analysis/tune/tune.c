@@ -59,9 +59,10 @@ static mspring_result check_scene_numbers(const mspring_tune_scene *scene, doubl
     return MSPRING_OK;
 }
 
-static mspring_result check_scene(const mspring_tune_scene *scene, double dt, mspring_network *network) {
+static mspring_result check_scene(const mspring_tune_scene **given, mspring_tune_scene *scene, double dt,
+                                  mspring_network *network) {
     mspringi_message *message = &network->message;
-    mspring_result result = mspringi_check_struct(message, "mspring_tune_scene", scene, sizeof *scene);
+    mspring_result result = mspringi_take_tune_scene(message, given, scene);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_tune_scene",
                                          scene->reserved | (scene->reserved_pointer != NULL));
@@ -74,8 +75,8 @@ static mspring_result check_scene(const mspring_tune_scene *scene, double dt, ms
     return result;
 }
 
-static mspring_result check_def(const mspring_tune_def *def, mspringi_message *message) {
-    mspring_result result = mspringi_check_struct(message, "mspring_tune_def", def, sizeof *def);
+static mspring_result check_def(const mspring_tune_def **given, mspring_tune_def *def, mspringi_message *message) {
+    mspring_result result = mspringi_take_tune_def_or_defaults(message, given, def);
     if (result == MSPRING_OK)
         result = mspringi_check_reserved(message, "mspring_tune_def", def->reserved_pointer != NULL);
     if (result == MSPRING_OK)
@@ -96,17 +97,15 @@ static mspring_result check_def(const mspring_tune_def *def, mspringi_message *m
 
 static mspring_result check_settings(const mspring_solver_def *settings, uint32_t count,
                                      mspringi_message *message) {
-    const size_t struct_size = count > 0 ? mspringi_struct_size(settings) : 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        mspringi_message what = {.text = ""};
-        const mspring_solver_def *setting = mspringi_element(settings, struct_size, i);
-        mspring_result result = mspringi_check_solver(setting, &what);
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
+        mspring_solver_def setting;
+        result = mspringi_take_solver_def_at(message, settings, i, &setting);
         if (result == MSPRING_OK)
-            result = mspringi_check_same_size(&what, setting, struct_size);
-        if (result != MSPRING_OK)
-            return mspringi_fail(message, result, "setting %u: %s", (unsigned)i, what.text);
+            result = mspringi_check_solver(&setting, message);
+        result = mspringi_prefix(message, result, "setting", i);
     }
-    return MSPRING_OK;
+    return result;
 }
 
 static mspring_result check_rows(const mspring_tune_row *rows, uint32_t capacity, uint32_t needed,
@@ -114,7 +113,7 @@ static mspring_result check_rows(const mspring_tune_row *rows, uint32_t capacity
     if (capacity < needed)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "there is room for %u rows, but %u settings",
                              (unsigned)capacity, (unsigned)needed);
-    return mspringi_check_outputs(rows, needed, "mspring_tune_row", sizeof *rows, message);
+    return mspringi_check_outputs(message, &mspringi_struct_tune_row, rows, needed);
 }
 
 /* -------------------------------------------------------------------------------------------------------- time */
@@ -201,17 +200,14 @@ static mspring_result allocate(mspringi_tuning *tuning) {
 }
 
 static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *settings) {
-    const size_t struct_size = mspringi_struct_size(settings);
     for (uint32_t i = 0; i < tuning->trial_count; ++i) {
-        const mspring_solver_def *setting = mspringi_element(settings, struct_size, i);
         mspringi_trial *trial = &tuning->trials[i];
-        trial->setting = *setting;
-        trial->setting.struct_size = sizeof trial->setting;
+        const mspring_solver_def *setting = &trial->setting;
+        (void)mspringi_take_solver_def_at(NULL, settings, i, &trial->setting);
         trial->times = tuning->times + (size_t)2 * i * tuning->time_capacity;
         trial->rest_times = trial->times + tuning->time_capacity;
         trial->runs = tuning->runs + (size_t)i * tuning->scene.start_count;
         trial->row = (mspring_tune_row){
-            .struct_size = sizeof trial->row,
             .setting = i,
             .solver = setting->solver,
             .integrator = setting->integrator,
@@ -287,9 +283,8 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
     tuning.begun = tuning.def.clock(def->user);
     const mspring_result result = tune(&tuning, settings);
     if (result == MSPRING_OK) {
-        const size_t struct_size = mspringi_struct_size(rows);
         for (uint32_t i = 0; i < setting_count; ++i)
-            mspringi_put_struct((char *)rows + i * struct_size, &tuning.trials[i].row, sizeof *rows);
+            mspringi_put_tune_row_at(rows, i, &tuning.trials[i].row);
         *count = setting_count;
     }
     mspringi_tune_destroy_clone(tuning.base);
@@ -302,23 +297,22 @@ static mspring_result run(mspring_network *network, const mspring_tune_def *def,
 
 mspring_result mspring_network_tune(mspring_network *network, const mspring_tune_def *def, mspring_tune_row *rows,
                                     uint32_t capacity, uint32_t *count) {
-    mspring_tune_def defaults;
+    mspring_tune_def taken;
+    mspring_tune_scene scene;
     mspring_solver_def usual[MSPRINGI_TUNE_DEFAULT_SETTINGS];
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
     if (!rows || !count)
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "rows or count is NULL");
-    if (!def) {
-        (void)mspring_tune_def_init(&defaults, sizeof defaults);
-        def = &defaults;
-    }
+    result = check_def(&def, &taken, &network->message);
+    if (result == MSPRING_OK && taken.scene)
+        result = check_scene(&taken.scene, &scene, taken.dt, network);
+    if (result != MSPRING_OK)
+        return result;
     const mspring_solver_def *settings = def->settings;
     uint32_t setting_count = def->setting_count;
-    result = check_def(def, &network->message);
-    if (result == MSPRING_OK && def->scene)
-        result = check_scene(def->scene, def->dt, network);
-    if (result == MSPRING_OK && !settings) {
+    if (!settings) {
         settings = usual;
         for (int i = 0; i < MSPRINGI_TUNE_DEFAULT_SETTINGS; ++i)
             usual[i].struct_size = sizeof usual[i];

@@ -81,20 +81,18 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "there is room for %u settings, but there are %u", (unsigned)capacity,
                              (unsigned)s.count);
-    const size_t struct_size = mspringi_struct_size(list);
-    result = mspringi_check_outputs(list, s.count, "mspring_solver_def", sizeof *list, &network->message);
+    result = mspringi_check_outputs(&network->message, &mspringi_struct_solver_def, list, s.count);
     for (uint32_t i = 0; result == MSPRING_OK && i < s.count; ++i)
-        mspringi_put_struct((char *)list + struct_size * i, &s.list[i], sizeof s.list[i]);
+        mspringi_put_solver_def_at(list, i, &s.list[i]);
     return result;
 }
 
 mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solver_def *solver) {
     mspring_solver_def made;
-    if (!row)
-        return MSPRING_ERROR_ARGUMENT;
-    mspring_result result = mspringi_check_output(NULL, "mspring_tune_row", row, sizeof *row);
+    mspring_tune_row taken;
+    mspring_result result = mspringi_take_tune_row(NULL, &row, &taken);
     if (result == MSPRING_OK)
-        result = mspringi_check_output(NULL, "mspring_solver_def", solver, sizeof *solver);
+        result = mspringi_check_output(NULL, &mspringi_struct_solver_def, solver);
     if (result != MSPRING_OK)
         return result;
     (void)mspring_solver_def_init(&made, sizeof made);
@@ -104,6 +102,6 @@ mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solv
     made.iterations = row->iterations;
     made.tile_size = row->tile_size;
     made.coarse_period = row->coarse_period;
-    mspringi_put_struct(solver, &made, sizeof made);
+    mspringi_put_solver_def(solver, &made);
     return MSPRING_OK;
 }
