@@ -94,7 +94,7 @@ static uint32_t put_cells(FILE *to, const canvas *cells) {
 static void put_attributes(FILE *to) {
     enum { HEAD = 8, SIZE = 8 };
     put_section(to, "ATT1", HEAD + SIZE + HEAD);
-    put_section(to, "SIX1", SIZE);
+    put_section(to, "SSZ1", SIZE);
     put_number(to, BOAT_WIDTH);
     put_number(to, BOAT_HEIGHT);
     put_section(to, NULL, 0);

@@ -67,7 +67,8 @@ static bool is_tag(uint32_t tag, const char *letters) {
     return tag == tag_of(letters) || tag == tag_of(turned);
 }
 
-// The next section, as a reader of its own. Returns false if there is not all of it.
+// The next section, as a reader of its own. Returns false if there is not all of it. A list in a section ends with
+// a tail, or with the section.
 static bool take_section(reader *from, uint32_t *tag, reader *section) {
     uint32_t size = 0;
     if (!take_number(from, tag) || !take_number(from, &size) || from->left < size)
@@ -94,19 +95,19 @@ static bool read_size(reader *from, ship_layers *made, scene_error *error) {
 static bool read_attributes(reader *from, ship_layers *made, scene_error *error) {
     reader entry;
     uint32_t tag = 0;
-    while (tag != tail) {
+    while (tag != tail && from->left > 0) {
         if (!take_section(from, &tag, &entry))
             return fail_cut_off(from, "section of attributes", error);
-        if (is_tag(tag, "SIX1") && !read_size(&entry, made, error))
+        if (is_tag(tag, "SSZ1") && !read_size(&entry, made, error))
             return false;
     }
-    return true;
+    return made->width > 0 || scene_fail(error, "%.200s: its attributes have no size (SSZ1)", from->name);
 }
 
 static bool read_metadata(reader *from, ship_layers *made, scene_error *error) {
     reader entry;
     uint32_t tag = 0;
-    while (tag != tail) {
+    while (tag != tail && from->left > 0) {
         float cells = 0, metres = 0;
         if (!take_section(from, &tag, &entry))
             return fail_cut_off(from, "section about the ship", error);
@@ -124,7 +125,7 @@ static bool read_metadata(reader *from, ship_layers *made, scene_error *error) {
 
 /* ------------------------------------------------------------------------------------------------------- layers */
 
-// How often a colour follows: seven bits, or fourteen in two bytes, the lower ones first.
+// How often a colour follows: seven bits, or fifteen in two bytes, the lower ones first.
 static bool take_run(reader *from, uint32_t *count) {
     uint8_t low = 0, high = 0;
     if (!take(from, &low, 1) || (low > 0x7f && !take(from, &high, 1)))
@@ -162,7 +163,7 @@ static bool read_structure(reader *from, ship_layers *made, scene_error *error) 
     if (!made->cells)
         return scene_fail_memory(error, "cannot read the ship");
     bool is_filled = false;
-    while (tag != tail) {
+    while (tag != tail && from->left > 0) {
         if (!take_section(from, &tag, &entry))
             return fail_cut_off(from, "structure", error);
         if (!is_tag(tag, "BUF1"))
@@ -204,7 +205,7 @@ static bool read_ropes(reader *from, ship_layers *made, scene_error *error) {
     uint32_t tag = 0;
     if (made->width == 0)
         return scene_fail(error, "%.200s: its ropes come before its size", from->name);
-    while (tag != tail) {
+    while (tag != tail && from->left > 0) {
         if (!take_section(from, &tag, &entry))
             return fail_cut_off(from, "section of ropes", error);
         if (is_tag(tag, "BUF1") && !read_rope_list(&entry, made, error))

@@ -192,7 +192,7 @@ static void a_ship_may_stand_on_its_lowest_row(void **state) {
 /* ---------------------------------------------------------------------------------------------------- sections */
 
 typedef struct file {
-    uint8_t bytes[512];
+    uint8_t bytes[2048];
     size_t size;
 } file;
 
@@ -208,44 +208,125 @@ static void put_number(file *to, uint32_t number) {
     put(to, bytes, 4);
 }
 
-static void put_section(file *to, const char *tag, uint32_t size) {
+/// Returns what end_section needs to put in the section's size.
+static size_t begin_section(file *to, const char *tag) {
     put(to, tag, 4);
-    put_number(to, size);
+    put_number(to, 0);
+    return to->size;
 }
 
-#define TAIL "\xff\xff\xff\xff"
+static void end_section(file *to, size_t begin) {
+    file size = {.size = 0};
+    put_number(&size, (uint32_t)(to->size - begin));
+    memcpy(to->bytes + begin - 4, size.bytes, 4);
+}
 
-/// Four plates and soft ones in two rows of three, and a rope from the bottom left to the top right.
-static file sections(uint32_t width, uint32_t height, uint32_t rope_x) {
-    static const uint8_t cells[] = {2, 0x10, 0x20, 0x30, 0x81, 0, 0xff, 0, 0, 3, 0x40, 0x50, 0x60};
+static void put_section(file *to, const char *tag, const void *bytes, size_t count) {
+    const size_t begin = begin_section(to, tag);
+    put(to, bytes, count);
+    end_section(to, begin);
+}
+
+static void put_text(file *to, const char *tag, const char *text) {
+    const size_t begin = begin_section(to, tag);
+    put_number(to, (uint32_t)strlen(text));
+    put(to, text, strlen(text));
+    end_section(to, begin);
+}
+
+static void put_tail(file *to) {
+    put_section(to, "\xff\xff\xff\xff", "", 0);
+}
+
+static file header(void) {
     file made = {.size = 0};
     put(&made, "FLOATING SANDBOX SHIP\x1a\0\0\0\1\0\0\0\0\0", 32);
-    put_section(&made, "ATT1", 24);
-    put_section(&made, "SIX1", 8);
-    put_number(&made, width);
-    put_number(&made, height);
-    put_section(&made, TAIL, 0);
-    put_section(&made, "MET1", 24);
-    put_section(&made, "SCL1", 8);
-    put_number(&made, 0x3f800000); // 1 cell
-    put_number(&made, 0x3f000000); // 0.5 m
-    put_section(&made, TAIL, 0);
-    put_section(&made, "PVP1", 3);
-    put(&made, "png", 3);
-    put_section(&made, "STR1", 8 + sizeof cells + 8);
-    put_section(&made, "BUF1", sizeof cells);
-    put(&made, cells, sizeof cells);
-    put_section(&made, TAIL, 0);
-    put_section(&made, "RPS1", 8 + 4 + 23 + 8);
-    put_section(&made, "BUF1", 4 + 23);
-    put_number(&made, 1);
-    put_number(&made, 0);
-    put_number(&made, 0);
-    put_number(&made, rope_x);
-    put_number(&made, 1);
-    put(&made, "\0\0\0\1\2\3\xff", 7);
-    put_section(&made, TAIL, 0);
-    put_section(&made, TAIL, 0);
+    return made;
+}
+
+static void put_size(file *to, uint32_t width, uint32_t height) {
+    const size_t begin = begin_section(to, "SSZ1");
+    put_number(to, width);
+    put_number(to, height);
+    end_section(to, begin);
+}
+
+// The attributes of a file that the game wrote from its version 1.17.3 on.
+static void put_attributes(file *to, uint32_t width, uint32_t height) {
+    const size_t begin = begin_section(to, "ATT1");
+    put_section(to, "FSV2", "\0\1\0\x13\0\0\0\2", 8);
+    put_size(to, width, height);
+    put_section(to, "HTX1", "", 1);
+    put_section(to, "HEL1", "\1", 1);
+    put_section(to, "WRT1", "\0\0\0\0\x65\1\2\3", 8);
+    put_tail(to);
+    assert_int_equal(to->size - begin, 74); // as in a real file
+    end_section(to, begin);
+}
+
+static void put_metadata(file *to) {
+    const size_t begin = begin_section(to, "MET1");
+    put_text(to, "NAM1", "Skiff");
+    put_text(to, "AUT1", "Some One Els");
+    put_text(to, "YRB1", "1912");
+    put_section(to, "CTG1", "\0\0\0\0\0\0\0\7", 8);
+    put_section(to, "SCL1", "\x3f\x80\0\0\x3f\0\0\0", 8); // 1 cell, 0.5 m
+    put_section(to, "PPP1", "\1\2\3\4\5\6\7\x8", 8);
+    put_section(to, "HEP1", "", 1);
+    put_section(to, "HHP1", "\1", 1);
+    put_tail(to);
+    assert_int_equal(to->size - begin, 115 + 16); // a real file without a password has 115
+    end_section(to, begin);
+}
+
+/// Four plates and soft ones in two rows of three.
+static const uint8_t plates[] = {2, 0x10, 0x20, 0x30, 0x81, 0, 0xff, 0, 0, 3, 0x40, 0x50, 0x60};
+
+static void put_cells(file *to, const void *runs, size_t count) {
+    const size_t begin = begin_section(to, "STR1");
+    put_section(to, "BUF1", runs, count);
+    put_tail(to);
+    end_section(to, begin);
+}
+
+static void put_rope(file *to, uint32_t rope_x) {
+    const size_t begin = begin_section(to, "RPS1"), list = begin_section(to, "BUF1");
+    put_number(to, 1);
+    put_number(to, 0);
+    put_number(to, 0);
+    put_number(to, rope_x);
+    put_number(to, 1);
+    put(to, "\0\0\0\1\2\3\xff", 7);
+    end_section(to, list);
+    put_tail(to);
+    end_section(to, begin);
+}
+
+static void put_rest(file *to) {
+    size_t begin = begin_section(to, "ELC1");
+    put_section(to, "BUF1", "\5\xff\xff\xff\1\x10\x20\x30\7", 9);
+    put_section(to, "PNL1", "\0\1\0\0\0\7\0\0\0", 9);
+    put_tail(to);
+    end_section(to, begin);
+    begin = begin_section(to, "PHS1");
+    put_section(to, "OFX1", "\0\0\0", 4);
+    put_section(to, "OFY1", "\0\0\0", 4);
+    put_section(to, "IPR1", "\x3f\x80\0", 4);
+    put_tail(to);
+    assert_int_equal(to->size - begin, 44); // as in a real file
+    end_section(to, begin);
+}
+
+/// All sections of a real file. A rope goes from the bottom left to the top right.
+static file sections(uint32_t width, uint32_t height, uint32_t rope_x) {
+    file made = header();
+    put_attributes(&made, width, height);
+    put_metadata(&made);
+    put_section(&made, "PVP1", "png", 3);
+    put_cells(&made, plates, sizeof plates);
+    put_rope(&made, rope_x);
+    put_rest(&made);
+    put_tail(&made);
     return made;
 }
 
@@ -275,6 +356,50 @@ static void sections_of_one_file_are_read(void **state) {
     check_near(ship.particles[6].x, 0.5, 1e-12);
     check_near(ship.particles[6].y, 0.25, 1e-12);
     assert_int_equal(tally_of(&ship.report.ignored, "preview"), 1);
+    assert_int_equal(tally_of(&ship.report.ignored, "electrics"), 1);
+    structure_free(&ship);
+}
+
+static structure ship_of_sections(const file *given) {
+    structure made;
+    scene_error error = {""};
+    if (!parse_sections(given, &made, &error))
+        fail_msg("refused: %s", error.text);
+    return made;
+}
+
+/// What older and newer versions of the game write otherwise, and what none of them writes yet.
+static void sections_of_other_versions_are_skipped(void **state) {
+    (void)state;
+    file made = header();
+    made.bytes[25] = 0; // an older format
+    size_t begin = begin_section(&made, "NEW1");
+    put_text(&made, "NEW2", "whatever");
+    end_section(&made, begin);
+    begin = begin_section(&made, "ATT1");
+    put_section(&made, "FSV1", "\0\1\0\x10", 4); // until 1.17.2
+    put_section(&made, "NEW3", "", 0);
+    put_size(&made, 300, 1);
+    put_section(&made, "HTX1", "", 1); // the list ends with its section
+    end_section(&made, begin);
+    // No metadata: cells are 1 m apart. Runs of 128, 171 and 1, and what is not cells beside them.
+    static const uint8_t runs[] = {0x80, 1, 0x10, 0x20, 0x30, 0xab, 1, 0xff, 0, 0, 1, 0x40, 0x50, 0x60};
+    begin = begin_section(&made, "STR1");
+    put_section(&made, "NEW4", "\7", 1);
+    put_section(&made, "BUF1", runs, sizeof runs);
+    end_section(&made, begin);
+    put_section(&made, "RPS1", "", 0);
+    put_section(&made, "TXP1", "png", 3);
+    put_tail(&made);
+    structure ship = ship_of_sections(&made);
+    assert_int_equal(ship.particle_count, 300);
+    assert_int_equal(ship.spring_count, 299);
+    check_near(ship.particles[127].mass, 395, 1e-3);
+    check_near(ship.particles[128].mass, 600, 1e-3);
+    check_near(ship.particles[298].mass, 600, 1e-3);
+    check_near(ship.particles[299].mass, 395, 1e-3);
+    check_near(ship.particles[299].x, 299, 0);
+    assert_int_equal(tally_of(&ship.report.ignored, "unknown sections"), 1);
     structure_free(&ship);
 }
 
@@ -296,6 +421,31 @@ static void broken_sections_are_refused(void **state) {
     check_sections(sections(4, 2, 2), "its structure has 6 of 8 cells");
     check_sections(sections(2, 2, 1), "its structure has more than the 2 x 2 cells of its size");
     check_sections(sections(3, 2, 3), "rope 0 has an end outside of the ship");
+    file made = header();
+    size_t begin = begin_section(&made, "ATT1");
+    put_section(&made, "FSV2", "\0\1\0\x13\0\0\0\2", 8);
+    put_tail(&made);
+    end_section(&made, begin);
+    check_sections(made, "boat.shp2: its attributes have no size (SSZ1)");
+    made = header();
+    put_cells(&made, plates, sizeof plates);
+    put_attributes(&made, 3, 2);
+    put_tail(&made);
+    check_sections(made, "boat.shp2: its structure comes before its size");
+    made = header();
+    put_attributes(&made, 3, 2);
+    put_tail(&made);
+    check_sections(made, "boat.shp2: it has no structure");
+    begin = begin_section(&made, "STR1"); // behind the tail, which is the end
+    end_section(&made, begin);
+    check_sections(made, "boat.shp2: it has no structure");
+    made = header();
+    put_attributes(&made, 3, 2);
+    begin = begin_section(&made, "STR1");
+    put_section(&made, "NEW1", plates, sizeof plates);
+    end_section(&made, begin);
+    put_tail(&made);
+    check_sections(made, "boat.shp2: its structure has no cells");
 }
 
 /// Cut off after any byte, it is refused; with any bit turned, it is refused or still a structure.
@@ -413,6 +563,7 @@ int main(void) {
         cmocka_unit_test_setup(a_rope_passes_cells_without_touching_them, start),
         cmocka_unit_test_setup(a_ship_may_stand_on_its_lowest_row, start),
         cmocka_unit_test_setup(sections_of_one_file_are_read, start),
+        cmocka_unit_test_setup(sections_of_other_versions_are_skipped, start),
         cmocka_unit_test_setup(broken_sections_are_refused, start),
         cmocka_unit_test_setup(damage_is_found, start),
         cmocka_unit_test_setup(a_shp_file_names_images_of_its_own_folder, start),
