@@ -78,6 +78,15 @@ for compiler in "${CXX:-c++}" clang++; do
   done
 done
 
+# What a program may define itself.
+for own in -DMSPRING_NODISCARD= -DMSPRING_API=extern '-DMSPRING_NODISCARD=__attribute__((unused))'; do
+  # shellcheck disable=SC2086
+  "${CC:-cc}" -std=c11 $strict "$own" headers.c
+  # shellcheck disable=SC2086
+  "${CXX:-c++}" -std=c++17 $strict "$own" headers.cpp
+  checked=$((checked + 1))
+done
+
 if command -v tcc >/dev/null; then
   tcc -Wall -Werror -I"$source/include" -c headers.c -o headers.o
   checked=$((checked + 1))

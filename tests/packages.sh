@@ -17,17 +17,17 @@ skip() {
   echo "skipped: $1"
   exit 77
 }
-# Build a program against what is in $work/root, and run it.
+# Build a program against what is in $work/root, and run it. The options are folders that its .pc does not name.
 use_package() {
   command -v pkg-config >/dev/null || skip "no pkg-config here"
   PKG_CONFIG_PATH=$(dirname "$(find "$work/root" -name massspring.pc)")
   export PKG_CONFIG_PATH
   libdir=$(dirname "$PKG_CONFIG_PATH")
   # shellcheck disable=SC2046 # options are meant to be split
-  "$CC" "$source/tests/consumer/main.c" -o "$work/shared" $(pkg-config --cflags --libs massspring)
+  "$CC" "$source/tests/consumer/main.c" -o "$work/shared" "$@" $(pkg-config --cflags --libs massspring)
   LD_LIBRARY_PATH=$libdir "$work/shared"
   # shellcheck disable=SC2046
-  "$CC" -static "$source/tests/consumer/main.c" -o "$work/static" $(pkg-config --static --cflags --libs massspring)
+  "$CC" -static "$source/tests/consumer/main.c" -o "$work/static" "$@" $(pkg-config --static --cflags --libs massspring)
   "$work/static"
 }
 
@@ -98,7 +98,13 @@ deb)
     grep -q "/usr/share/doc/$name/copyright" "$work/$name.files"
     grep -q "/usr/share/doc/$name/changelog.gz" "$work/$name.files"
   done
-  use_package
+  # The headers and the library lie where every compiler looks: the .pc names neither folder.
+  pc=$(find "$work/root" -name massspring.pc)
+  if grep -E '^(Libs|Cflags):.*[$/]' "$pc"; then
+    echo "folders of the system"
+    exit 1
+  fi
+  use_package "-I$work/root/usr/include" "-L$(dirname "$(dirname "$pc")")"
   package_a_program
   if command -v lintian >/dev/null; then
     lintian --allow-root --fail-on error "$work"/built/*.changes
