@@ -2,6 +2,8 @@
 
 SPDX-License-Identifier: MIT
 """
+import subprocess
+import sys
 import unittest
 
 import numpy as np
@@ -210,6 +212,10 @@ class Calls(unittest.TestCase):
             self.assertRaises(ImportError, table.frame)
         else:
             self.assertEqual(list(table.frame()["substeps"]), [30, 2])
+
+    def test_modules_that_the_guide_names(self):
+        program = "import massspring; massspring.plotting.draw_tuning; massspring.Batch"
+        subprocess.run([sys.executable, "-c", program], check=True)
 
     def test_plot(self):
         try:

@@ -8,7 +8,7 @@ import threading
 import unittest
 
 import numpy as np
-from bar import bar, pair
+from bar import bar, bar_builder, pair
 
 import massspring
 from massspring import ClosedError, StaleViewError
@@ -37,6 +37,49 @@ class Lifetime(unittest.TestCase):
                      lambda: network.load(b""), lambda: network.tune(), lambda: network.memory_used):
             self.assertRaises(ClosedError, read)
         self.assertEqual((repr(network), repr(builder)), ("Network(closed)", "Builder(closed)"))
+
+    def test_numbers_that_close_what_they_are_for(self):
+        class Closing:
+            def __init__(self, closes):
+                self.closes = closes
+
+            def __float__(self):
+                self.closes.close()
+                return 1 / 64
+
+        class ClosingIndex(Closing):
+            def __index__(self):
+                self.closes.close()
+                return 1
+
+        calls = [
+            lambda network, bad: network.step(bad),
+            lambda network, bad: network.step(bad, 0),
+            lambda network, bad: network.step(1 / 64, bad),
+            lambda network, bad: network.nearest_particle(bad, 0),
+            lambda network, bad: network.nearest_particle(0, bad),
+            lambda network, bad: network.restore_springs(0, bad),
+            lambda network, bad: network.set_settings(gravity_x=bad),
+            lambda network, bad: network.move_grip(0, bad, 0),
+            lambda network, bad: network.set_floor([[0, 0, 0, 1]], friction=bad),
+            lambda network, bad: network.reserve_events(bad),
+            lambda network, bad: network.get_spring(bad),
+            lambda network, bad: network.remove_collider(bad),
+        ]
+        for number, call in enumerate(calls):
+            for kind in (Closing, ClosingIndex):
+                network = pair()
+                with self.subTest(call=number, kind=kind.__name__), self.assertRaises((ClosedError, TypeError)):
+                    call(network, kind(network))
+                network.close()
+        network = pair()
+        with self.assertRaises(ClosedError):
+            network.step(Closing(network))
+        for call in (lambda builder, bad: builder.add_particle(bad, 0), lambda builder, bad: builder.add_spring(0, bad),
+                     lambda builder, bad: builder.add_disc(0, 0, bad), lambda builder, bad: builder.network(substeps=bad)):
+            builder = bar_builder()
+            with self.assertRaises((ClosedError, TypeError)):
+                call(builder, ClosingIndex(builder))
 
     def test_views_are_stale_after_a_step(self):
         network = bar()

@@ -67,6 +67,28 @@ class Sweeps(unittest.TestCase):
         with self.assertRaises(TypeError):
             massspring.sweep(object, {}, 1)
 
+    def test_engines_and_functions(self):
+        for engine in ("dask", 2.0, True, object()):
+            with self.assertRaisesRegex(TypeError, "engine is"):
+                massspring.sweep(drop, GRID, engine)
+        for engine in (0, -1):
+            with self.assertRaises(ValueError):
+                massspring.sweep(drop, GRID, engine)
+        for engine in (None, 2, 5):
+            with self.assertRaisesRegex(TypeError, "other processes cannot import it"):
+                massspring.sweep(lambda stiffness, rows: 1, GRID, engine)
+        self.assertEqual(len(massspring.sweep(lambda stiffness, rows: 1, GRID, np.int64(1))), 6)
+
+    def test_frame(self):
+        try:
+            frame = self.alone.frame()
+        except ImportError:
+            self.skipTest("no pandas here")
+        self.assertEqual(list(frame.columns)[:2], ["stiffness", "rows"])
+        self.assertEqual(list(frame["drop"]), [result["drop"] for result in self.alone.results])
+        plain = massspring.sweep(lambda stiffness, rows: rows, GRID, 1).frame()
+        self.assertEqual(list(plain["result"]), list(plain["rows"]))
+
     def test_killed_and_resumed(self):
         program = f"import massspring, test_sweeps as t; massspring.sweep(t.slow, t.GRID, 1, {self.folder.name!r})"
         process = subprocess.Popen([sys.executable, "-c", program], cwd=Path(__file__).parent)

@@ -1,9 +1,10 @@
 """Writes the module of massspring that is made of the headers: constants, enums, errors, records, keyword arguments.
 
-    python3 modules.py INCLUDE OUT    writes OUT/_bindings.py and OUT/_header.py
+    python3 modules.py INCLUDE OUT    writes OUT/_bindings.py and OUT/_header.py, and stubs of modules in OUT
 
 SPDX-License-Identifier: MIT
 """
+import ast
 import keyword
 import re
 import sys
@@ -20,7 +21,7 @@ SPDX-License-Identifier: MIT
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, Dict, Optional, Tuple, TypedDict, Union
+from typing import Any, Dict, Literal, Optional, Tuple, TypedDict, Union
 
 from ._types import Error, Record
 
@@ -102,6 +103,9 @@ class Writer:
         of_particles = [value for value, about in self.header.enums["mspring_property"][1].values()
                         if about.startswith("Of a particle")]
         yield f"\nPARTICLE_PROPERTIES = {tuple(of_particles)}\n"
+        members = list(self.header.enums["mspring_property"][1])
+        names = ", ".join(repr(member[len(common_prefix(members)):].lower()) for member in members)
+        yield f"\n# A member of Property as text.\nPropertyName = Literal[{names}]\n"
 
     def errors(self):
         yield "\n\nERRORS: Dict[int, type] = {}\n"
@@ -130,24 +134,34 @@ class Writer:
                                for field in shown)
             yield f"    _fields = {{{inside}}}\n"
 
+    def keyword_types(self, name):
+        """The keyword arguments that fill a struct, and their types."""
+        types = {}
+        for field, (kind, _) in self.header.structs[name][1].items():
+            if not is_hidden(field, kind) and not keyword.iskeyword(field):
+                kind = self.annotation(kind)
+                kind = f"Union[{kind}, str, int]" if kind[0].isupper() and kind != "Optional[int]" else kind
+                types[field] = kind.replace("Optional[int]", "int")
+        for field in [field[:-2] for field in types if field.endswith("_x") and field[:-2] + "_y" in types]:
+            types[field] = "Tuple[float, float]"
+        if "particle_flags" in types or name == "mspring_particle_def":
+            types["pinned"] = "bool"
+        return types
+
+    def keyword_class(self, name):
+        return re.sub("Def$", "", python_name(name)) + "Keywords"
+
     def keywords(self):
         yield "\n\nABOUT: Dict[str, Dict[str, str]] = {}\n"
         for name, (_, fields) in self.header.structs.items():
             if not re.search(rf"\b{re.sub('_def$', '', name)}(_def)?_init\(", self.header.text):
                 continue
-            yield f"\n\nclass {re.sub('Def$', '', python_name(name))}Keywords(TypedDict, total=False):\n"
+            yield f"\n\nclass {self.keyword_class(name)}(TypedDict, total=False):\n"
             yield f'    """Keyword arguments that fill a {name}."""\n\n'
-            shown = [(field, kind) for field, (kind, _) in fields.items() if not is_hidden(field, kind)]
-            for field, kind in shown:
-                if keyword.iskeyword(field):
-                    continue
-                kind = self.annotation(kind)
-                kind = f"Union[{kind}, str, int]" if kind[0].isupper() and kind != "Optional[int]" else kind
-                yield f"    {field}: {kind.replace('Optional[int]', 'int')}\n"
-            names = [field for field, _ in shown]
-            for pair in [field[:-2] for field in names if field.endswith("_x") and field[:-2] + "_y" in names]:
-                yield f"    {pair}: Tuple[float, float]\n"
-            inside = "".join(f"    {field!r}: {in_python(self.about(name, field))!r},\n" for field, _ in shown)
+            types = self.keyword_types(name)
+            yield "".join(f"    {field}: {kind}\n" for field, kind in types.items()) or "    pass\n"
+            names = [field for field, (kind, _) in fields.items() if not is_hidden(field, kind)]
+            inside = "".join(f"    {field!r}: {in_python(self.about(name, field))!r},\n" for field in names)
             yield f"\n\nABOUT[{name!r}] = {{\n{inside}}}\n"
 
     def public(self):
@@ -166,6 +180,43 @@ class Writer:
         return "".join(parts)
 
 
+class Stub(ast.NodeTransformer):
+    """A module for type checkers: signatures alone. Keyword arguments that are Unpack[...Keywords], which not all type
+    checkers know, are there one by one."""
+
+    def __init__(self, writer):
+        self.types = {writer.keyword_class(name): writer.keyword_types(name) for name in writer.header.structs}
+
+    def visit_FunctionDef(self, function):
+        arguments = function.args
+        kind = getattr(arguments.kwarg, "annotation", None)
+        if isinstance(kind, ast.Subscript) and getattr(kind.value, "id", "") == "Unpack":
+            taken = {argument.arg for argument in arguments.args + arguments.kwonlyargs}
+            for name, annotation in self.types[kind.slice.id].items():
+                if name not in taken:
+                    arguments.kwonlyargs.append(ast.arg(name, ast.parse(annotation, mode="eval").body))
+                    arguments.kw_defaults.append(ast.Constant(...))
+            arguments.kwarg = None
+        documented = ast.get_docstring(function) is not None
+        function.body = function.body[:documented] + [ast.Expr(ast.Constant(...))]
+        function.decorator_list = [one for one in function.decorator_list if not isinstance(one, ast.Call)]
+        return function
+
+    def text_of(self, module):
+        tree = self.visit(ast.parse(module.read_text(encoding="utf-8")))
+        of_header = ast.parse("from typing import Optional, Tuple, Union\nfrom ._header import *").body
+        last = max(index for index, node in enumerate(tree.body) if isinstance(node, (ast.Import, ast.ImportFrom)))
+        tree.body[last + 1:last + 1] = of_header
+        return ast.unparse(ast.fix_missing_locations(tree)) + "\n"
+
+
+def write_stubs(writer, package):
+    """Stubs of the modules that need them. Python 3.8 cannot write them."""
+    for module in sorted(Path(package).glob("*.py")) if hasattr(ast, "unparse") else ():
+        if "Unpack[" in module.read_text(encoding="utf-8"):
+            module.with_suffix(".pyi").write_text(Stub(writer).text_of(module), encoding="utf-8")
+
+
 def main(include, out):
     import cffi
 
@@ -174,7 +225,9 @@ def main(include, out):
     ffi.set_source("massspring._bindings", None)
     ffi.cdef(header.declarations())
     ffi.emit_python_code(str(Path(out) / "_bindings.py"))
-    (Path(out) / "_header.py").write_text(Writer(header).module(), encoding="utf-8")
+    writer = Writer(header)
+    (Path(out) / "_header.py").write_text(writer.module(), encoding="utf-8")
+    write_stubs(writer, out)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ its subclasses, one for each mspring_result. massspring.lib and massspring.ffi (
 
 SPDX-License-Identifier: MIT
 """
-from . import _header
+from . import _header, plotting
 from ._core import ffi, lib, text_of
 from ._header import *  # noqa: F401,F403
 from ._header import VERSION as __version__
@@ -44,5 +44,5 @@ def simd_supported() -> str:
 
 __all__ = ["Batch", "Bounds", "Builder", "ClosedError", "Energy", "Error", "Momentum", "Network", "Record",
            "StaleViewError", "StateView", "SweepResult", "TuneTable", "__version__", "features", "ffi", "lib", "material",
-           "simd_supported", "sweep", "version"]
+           "plotting", "simd_supported", "sweep", "version"]
 __all__ += _header.__all__

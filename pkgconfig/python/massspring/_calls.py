@@ -11,7 +11,7 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
-from ._core import Handle, Ids, bad_argument, changed, empty, fail, ffi, id_array, lib, one_id, pointer, text_of
+from ._core import Handle, Ids, as_numbers, bad_argument, changed, empty, fail, ffi, id_array, lib, one_id, pointer, text_of
 
 
 class Span:
@@ -82,6 +82,7 @@ class NetworkCalls(Handle):
 
     def _value(self, function: Any, *arguments: Any) -> Any:
         """A shared call that cannot fail."""
+        arguments = as_numbers(arguments)
         with self._lock:
             return function(self._live(), *arguments)
 
@@ -94,12 +95,14 @@ class NetworkCalls(Handle):
 
     def _read(self, function: Any, *arguments: Any) -> None:
         """A shared call."""
+        arguments = as_numbers(arguments)
         with self._lock:
             live = self._live()
             self._check(self._result(function, live, arguments), live)
 
     def _change(self, function: Any, *arguments: Any) -> None:
         """An exclusive call."""
+        arguments = as_numbers(arguments)
         with self._lock:
             live = self._live()
             self._changes += 1

@@ -2,11 +2,12 @@
 
 SPDX-License-Identifier: MIT
 """
+import operator
 import re
 import sys
 import textwrap
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterable, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, Optional, Tuple, TypeVar, Union
 
 import numpy as np
 
@@ -183,6 +184,20 @@ def numbers(name: str, value: Any, dtype: str, shape: Tuple[Optional[int], ...])
         return np.ascontiguousarray(array, dtype)
 
 
+def as_number(value: Any) -> Any:
+    """A number, or what the library takes for one, that runs no code of its own later: __float__ may close a network."""
+    if isinstance(value, (int, float, ffi.CData)):
+        return value
+    try:
+        return operator.index(value)
+    except TypeError:
+        return float(value) if hasattr(value, "__float__") else value
+
+
+def as_numbers(values: Tuple[Any, ...]) -> Tuple[Any, ...]:
+    return tuple(as_number(value) for value in values)
+
+
 def one_id(name: str, value: Any) -> int:
     """An id as the library takes it."""
     number = int(value)
@@ -221,9 +236,12 @@ def optional_ids(array: np.ndarray) -> np.ndarray:
 
 # -------------------------------------------------------------------------------------------------- docstrings
 
-def with_keywords(*kinds: str) -> Callable[[Any], Any]:
-    """Append to a docstring which keyword arguments the structs give."""
-    def add(function: Any) -> Any:
+Documented = TypeVar("Documented")
+
+
+def with_keywords(*kinds: str) -> Callable[[Documented], Documented]:
+    """Append to a docstring which keyword arguments the structs give. For type checkers, what has it stays what it is."""
+    def add(function: Documented) -> Documented:
         lines = []
         for kind in kinds:
             for name, about in _header.ABOUT.get(kind, {}).items():

@@ -14,7 +14,7 @@ from ._core import Ids, bad_argument, empty, enum_value, ffi, lib, numbers, poin
 from ._types import StaleViewError
 
 if TYPE_CHECKING:
-    from ._header import Property
+    from ._header import Property, PropertyName
 
 
 class StateView:
@@ -149,7 +149,7 @@ class StateCalls(NetworkCalls):
         of_particles = number in _header.PARTICLE_PROPERTIES
         return number, Span(ids, self.particle_count if of_particles else self.spring_count)
 
-    def get(self, property: Union[Property, str], ids: Ids = None, out: Optional[np.ndarray] = None) -> Any:
+    def get(self, property: Union[Property, PropertyName], ids: Ids = None, out: Optional[np.ndarray] = None) -> Any:
         """Read a property of particles or springs: float32 (n,), or one number for one id.
 
         property  such as "mass" (kg), "stiffness" (N/m), "rest_length" (m), "strain" or "force" (N): see Property
@@ -164,7 +164,7 @@ class StateCalls(NetworkCalls):
             self._read(lib.mspring_network_get_at, number, pointer("mspring_id", span.ids), span.count, values, 1)
         return float(out[0]) if span.is_one else out
 
-    def set(self, property: Union[Property, str], values: Any, ids: Ids = None) -> None:
+    def set(self, property: Union[Property, PropertyName], values: Any, ids: Ids = None) -> None:
         """Set a property of particles or springs: all values or, on error, none. values is (n,), or one for all."""
         number, span = self._property(property, ids)
         array = np.atleast_1d(numbers("values", values, "f4", (None,) * np.ndim(values)))

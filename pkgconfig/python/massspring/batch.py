@@ -46,6 +46,13 @@ class Batch:
     same bits as if it were not there. network is the Network: give it floor and contact. Steps release the GIL.
     """
 
+    count: int
+    particles: int
+    springs: int
+    network: Network
+    actuators: np.ndarray
+    probes: np.ndarray
+
     def __init__(self, builder: Builder, count: int, *, actuators: Any = (), changes: int = 1, probes: Any = (),
                  offsets: Any = None, **settings: Unpack[NetworkKeywords]):
         self.count = count_of("count", count)

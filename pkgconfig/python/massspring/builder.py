@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Optional, Tuple, Union
 
 import numpy as np
 
-from ._core import (Handle, bad_argument, enum_value, fail, ffi, filled, id_array, lib, numbers, optional_ids, pointer,
-                    table, text_of, with_keywords)
+from ._core import (Handle, as_numbers, bad_argument, enum_value, fail, ffi, filled, id_array, lib, numbers,
+                    optional_ids, pointer, table, text_of, with_keywords)
 from ._header import CELL_EMPTY, MAX_SPRINGS
 
 if TYPE_CHECKING:
@@ -97,6 +97,7 @@ class Builder(Handle):
         self.close()
 
     def _call(self, function: Any, *arguments: Any) -> None:
+        arguments = as_numbers(arguments)
         with self._lock:
             live = self._live()
             result = function(live, *arguments)

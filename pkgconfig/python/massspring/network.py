@@ -11,7 +11,7 @@ import numpy as np
 from . import _header
 from ._bodies import BodyCalls
 from ._calls import count_of
-from ._core import bad_argument, enum_value, fail, ffi, filled, lib, pointer, text_of, with_keywords
+from ._core import as_number, bad_argument, enum_value, fail, ffi, filled, lib, pointer, text_of, with_keywords
 from ._edits import EditCalls
 from ._laws import LawCalls
 from ._measure import MeasureCalls
@@ -90,6 +90,7 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
         before it count.
         """
         count, step = count_of("count", count), lib.mspring_network_step
+        dt = as_number(dt)
         with self._lock:
             live = self._live()
             self._changes += 1
@@ -173,5 +174,6 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     def plot(self, ax: Any = None, color: Any = "strain", **options: Any) -> Any:
         """Draw the springs with matplotlib, coloured by a property. See massspring.plotting.draw()."""
         from .plotting import draw
+        self._live()
         return draw(self, ax, color, **options)
 

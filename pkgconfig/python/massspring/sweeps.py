@@ -7,6 +7,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import pickle
 from itertools import product
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, Union
@@ -59,6 +60,12 @@ class SweepResult:
     def __iter__(self) -> Iterator[Tuple[Case, Any]]:
         return iter(zip(self.cases, self.results))
 
+    def frame(self) -> Any:
+        """A row for each case, as a pandas.DataFrame: its parameters, and its result or, of dicts, its entries. It needs pandas."""
+        import pandas
+        return pandas.DataFrame([{**case, **(result if isinstance(result, dict) else {"result": result})}
+                                 for case, result in self])
+
     def array(self, name: Optional[str] = None) -> np.ndarray:
         """Results, or one entry of results that are dicts, as an array with an axis for each name of the grid."""
         values = self.results if name is None else [result[name] for result in self.results]
@@ -89,10 +96,24 @@ def _run(function: Callable[..., Any], case: Case, path: Optional[str]) -> Any:
     return result
 
 
+def _check_engine(engine: Any, function: Any) -> None:
+    is_number = isinstance(engine, (int, np.integer)) and not isinstance(engine, bool)
+    if not is_number and engine is not None and not (hasattr(engine, "submit") and hasattr(engine, "gather")):
+        raise TypeError(f"engine is {engine!r}: it must be a number of processes, None or a client of Dask")
+    if is_number and engine < 1:
+        raise ValueError(f"engine is {engine}: it must be at least 1")
+    if engine is None or (is_number and engine > 1):
+        try:
+            pickle.dumps(function)
+        except (pickle.PicklingError, AttributeError, TypeError):
+            raise TypeError(f"function is {function!r}: other processes cannot import it. It must be one of a module, or "
+                            "engine=1") from None
+
+
 def _submit(engine: Any, calls: List[Tuple[Any, ...]]) -> List[Any]:
-    if engine == 1:
+    if isinstance(engine, (int, np.integer)) and engine == 1:
         return [_run(*call) for call in calls]
-    if not isinstance(engine, int) and engine is not None:  # a client of Dask
+    if not isinstance(engine, (int, np.integer)) and engine is not None:  # a client of Dask
         return engine.gather([engine.submit(_run, *call, pure=False) for call in calls])
     from concurrent.futures import ProcessPoolExecutor  # a third of what all of massspring's own import takes
 
@@ -113,6 +134,7 @@ def sweep(function: Callable[..., Any], grid: Dict[str, Iterable[Any]], engine: 
     shard     (i, n): only cases i, i + n, i + 2n ... For arrays of jobs, such as Slurm's: each job takes a shard, with
               the same folder. Returns None, unless all cases are there by then.
     """
+    _check_engine(engine, function)
     every = cases(grid)
     index, count = shard
     if not 0 <= index < count:
