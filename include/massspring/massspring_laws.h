@@ -199,7 +199,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_ar
 /// small lattices, it is four particles that whole springs join each to each, two of which cross. The rest area in def
 /// must be 0. Each cell must have an area, as above. Ids are consecutive: by rising id of the corner that begins a cell
 /// in the layout's rows, elsewhere of the lowest corner. mspring_network_get_area_particles() reads which corners an
-/// area has. Without cells nothing is added. A second call adds all of them again.
+/// area has. Without cells nothing is added. A second call adds all of them again. Where cells lie above each other, as
+/// in a clique, there may be at most 16384, or as many as springs.
 /// @param first_area  receives the first id; may be NULL
 /// @param count       receives the number of areas added; may be NULL
 /// @threads exclusive access to network   @allocates yes   @errors ARGUMENT, STRUCT, LIMIT, MEMORY, BUSY

@@ -75,67 +75,153 @@ static bool order_corners(const mspring_network *network, mspring_id corners[4])
     return false;
 }
 
-/// Iterator over the particles of higher id that are connected to a particle by live springs.
-typedef struct neighbours {
-    mspringi_incident_springs around;
-    mspring_id of;
-} neighbours;
+/// Neighbours of a higher id that whole springs join a particle to: those of p from first[p] to first[p + 1].
+typedef struct cell_search {
+    mspring_network *network;
+    uint32_t *first;
+    mspring_id *neighbours;
+    uint8_t *marks; ///< of the neighbours of the lowest corner, and of those of the second
+    uint64_t work, most_work;
+    uint64_t cells_left;
+    mspringi_cell_fn fn;
+    void *user;
+} cell_search;
 
-static neighbours begin(const mspring_network *network, mspring_id of) {
-    return (neighbours){mspringi_incident_springs_begin(network, of), of};
+enum { OF_LOWEST = 1, OF_SECOND = 2 };
+
+/// Particles that may be tried for a corner (50 ms), and for each spring besides: a lattice takes 20. To look at
+/// four that are joined takes as long as so many tries.
+#define MOST_WORK ((uint64_t)1 << 24)
+#define WORK_OF_SPRING 64
+#define WORK_OF_FOUR 32
+
+/// Cells that there may be, or as many as springs. Those of a lattice share springs with four others each; where
+/// more are than springs, they lie above each other, as in a clique.
+#define MOST_CELLS 16384
+
+static void end_search(cell_search *s) {
+    mspringi_memory *memory = &s->network->memory;
+    mspringi_free(memory, s->first);
+    mspringi_free(memory, s->neighbours);
+    mspringi_free(memory, s->marks);
 }
 
-static mspring_id next(const mspring_network *network, neighbours *n) {
-    for (mspring_id s; (s = mspringi_incident_springs_next(network, &n->around)) != MSPRING_NONE;) {
-        const mspringi_ends ends = mspringi_spring_ends(network, s);
-        const mspring_id a = network->topology.particle_of_slot[ends.a],
-                         b = network->topology.particle_of_slot[ends.b];
-        const mspring_id other = a == n->of ? b : a;
-        if (mspringi_spring_is_live(network, s) && other > n->of)
-            return other;
+static mspring_id other_end(const mspring_network *network, mspring_id spring, mspring_id of) {
+    const mspringi_ends ends = mspringi_spring_ends(network, spring);
+    const mspring_id a = network->topology.particle_of_slot[ends.a], b = network->topology.particle_of_slot[ends.b];
+    return a == of ? b : a;
+}
+
+static mspring_result begin_search(cell_search *s) {
+    mspring_network *network = s->network;
+    const uint32_t particles = network->topology.particle_count, springs = network->topology.spring_count;
+    s->first = mspringi_alloc_unset(&network->memory, (size_t)particles + 1, sizeof *s->first);
+    s->neighbours = mspringi_alloc_unset(&network->memory, springs, sizeof *s->neighbours);
+    s->marks = mspringi_alloc(&network->memory, particles, sizeof *s->marks);
+    if (!s->first || !s->neighbours || !s->marks) {
+        end_search(s);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to search %u springs for cells",
+                             (unsigned)springs);
     }
-    return MSPRING_NONE;
-}
-
-static bool are_connected(const mspring_network *network, mspring_id low, mspring_id high) {
-    neighbours n = begin(network, low);
-    for (mspring_id other; (other = next(network, &n)) != MSPRING_NONE;)
-        if (other == high)
-            return true;
-    return false;
-}
-
-// Visit cells outside of rows by their lowest two corners, which a spring connects. The third is connected to both,
-// the fourth to all.
-static mspring_result visit_pair(mspring_network *network, mspring_id lowest, mspring_id second,
-                                 mspringi_cell_fn fn, void *user) {
-    mspring_result result = MSPRING_OK;
-    neighbours thirds = begin(network, second);
-    for (mspring_id third; result == MSPRING_OK && (third = next(network, &thirds)) != MSPRING_NONE;) {
-        neighbours fourths = begin(network, third);
-        if (!are_connected(network, lowest, third))
+    uint32_t end = 0;
+    for (mspring_id p = 0; p < particles; ++p) {
+        s->first[p] = end;
+        if (!mspringi_particle_exists(network, p))
             continue;
-        for (mspring_id fourth; result == MSPRING_OK && (fourth = next(network, &fourths)) != MSPRING_NONE;) {
-            mspring_id corners[4] = {lowest, second, third, fourth};
-            if (are_connected(network, lowest, fourth) && are_connected(network, second, fourth) &&
-                !is_in_rows(network, corners) && order_corners(network, corners))
-                result = fn(network, corners, user);
+        mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
+        for (mspring_id spring; (spring = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;) {
+            const mspring_id other = other_end(network, spring, p);
+            if (mspringi_spring_is_live(network, spring) && other > p)
+                s->neighbours[end++] = other;
         }
+    }
+    s->first[particles] = end;
+    s->most_work = MOST_WORK + WORK_OF_SPRING * (uint64_t)springs;
+    s->cells_left = springs > MOST_CELLS ? springs : MOST_CELLS;
+    return MSPRING_OK;
+}
+
+static void mark(const cell_search *s, mspring_id of, uint8_t bit) {
+    for (uint32_t i = s->first[of]; i < s->first[of + 1]; ++i)
+        s->marks[s->neighbours[i]] |= bit;
+}
+
+static void unmark(const cell_search *s, mspring_id of, uint8_t bit) {
+    for (uint32_t i = s->first[of]; i < s->first[of + 1]; ++i)
+        s->marks[s->neighbours[i]] &= (uint8_t)~bit;
+}
+
+static mspring_result too_many(const cell_search *s, mspring_id at) {
+    return mspringi_fail(
+        &s->network->message, MSPRING_ERROR_LIMIT,
+        "springs join so many particles each to each, as around particle %u, that %s: add areas one "
+        "by one with mspring_network_add_area()",
+        (unsigned)at,
+        s->cells_left == 0 ? "over 16384 cells, and more than there are springs, lie above each other"
+                           : "to search them for cells takes too long");
+}
+
+static mspring_result found_cell(cell_search *s, const mspring_id corners[4]) {
+    if (s->cells_left == 0)
+        return too_many(s, corners[0]);
+    s->cells_left--;
+    return s->fn(s->network, corners, s->user);
+}
+
+// Those elsewhere whose lowest corners are three that springs join: the fourth is joined to all.
+static mspring_result each_of_three(cell_search *s, const mspring_id three[3]) {
+    mspring_result result = MSPRING_OK;
+    for (uint32_t i = s->first[three[2]]; result == MSPRING_OK && i < s->first[three[2] + 1]; ++i) {
+        mspring_id corners[4] = {three[0], three[1], three[2], s->neighbours[i]};
+        if (s->marks[corners[3]] != (OF_LOWEST | OF_SECOND))
+            continue;
+        s->work += WORK_OF_FOUR;
+        if (!is_in_rows(s->network, corners) && order_corners(s->network, corners))
+            result = found_cell(s, corners);
     }
     return result;
 }
 
-mspring_result mspringi_each_cell(mspring_network *network, mspringi_cell_fn fn, void *user) {
-    mspring_result result = mspringi_incidence_reserve(network);
-    for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.particle_count; ++p) {
-        mspring_id corners[4];
-        if (!mspringi_particle_exists(network, p))
-            continue;
-        if (find_in_rows(network, p, corners))
-            result = fn(network, corners, user);
-        neighbours seconds = begin(network, p);
-        for (mspring_id second; result == MSPRING_OK && (second = next(network, &seconds)) != MSPRING_NONE;)
-            result = visit_pair(network, p, second, fn, user);
+// Those whose lowest corners are a pair that a spring joins: the third is joined to both. The neighbours of the
+// lowest are marked.
+static mspring_result each_of_pair(cell_search *s, mspring_id lowest, mspring_id second) {
+    mspring_result result = MSPRING_OK;
+    mark(s, second, OF_SECOND);
+    for (uint32_t i = s->first[second]; result == MSPRING_OK && i < s->first[second + 1]; ++i) {
+        const mspring_id third = s->neighbours[i];
+        const bool is_joined = s->marks[third] & OF_LOWEST;
+        s->work += 1 + (is_joined ? s->first[third + 1] - s->first[third] : 0);
+        if (s->work > s->most_work)
+            result = too_many(s, lowest);
+        else if (is_joined)
+            result = each_of_three(s, (const mspring_id[]){lowest, second, third});
     }
+    unmark(s, second, OF_SECOND);
+    return result;
+}
+
+static mspring_result each_of_lowest(cell_search *s, mspring_id lowest) {
+    mspring_result result = MSPRING_OK;
+    mspring_id corners[4];
+    if (find_in_rows(s->network, lowest, corners))
+        result = found_cell(s, corners);
+    mark(s, lowest, OF_LOWEST);
+    for (uint32_t i = s->first[lowest]; result == MSPRING_OK && i < s->first[lowest + 1]; ++i)
+        result = each_of_pair(s, lowest, s->neighbours[i]);
+    unmark(s, lowest, OF_LOWEST);
+    return result;
+}
+
+mspring_result mspringi_each_cell(mspring_network *network, mspringi_cell_fn fn, void *user) {
+    cell_search s = {.network = network, .fn = fn, .user = user};
+    mspring_result result = mspringi_incidence_reserve(network);
+    if (result == MSPRING_OK)
+        result = begin_search(&s);
+    if (result != MSPRING_OK)
+        return result;
+    for (mspring_id p = 0; result == MSPRING_OK && p < network->topology.particle_count; ++p)
+        if (mspringi_particle_exists(network, p))
+            result = each_of_lowest(&s, p);
+    end_search(&s);
     return result;
 }

@@ -2,6 +2,7 @@
 #include "edits/edit_areas.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/cpu.h"
 #include "store/angles.h"
@@ -187,24 +188,25 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
     return MSPRING_OK;
 }
 
-/// Definition for each cell, and the number of cells.
+/// Definition for each cell, and the corners of all.
 typedef struct cell_areas {
     const mspring_area_def *def;
-    uint32_t count;
+    mspring_id (*corners)[4];
+    size_t count, capacity;
 } cell_areas;
 
-static mspring_result check_cell(mspring_network *network, const mspring_id corners[4], void *user) {
+// Check a cell, and keep its corners.
+static mspring_result take_cell(mspring_network *network, const mspring_id corners[4], void *user) {
     cell_areas *all = user;
     double rest_area;
     const polygon of = {corners, 4, mspringi_area_within(network, corners, 4)};
-    all->count++;
+    void *list = all->corners;
+    if (!mspringi_grow(&network->memory, &list, &all->capacity, all->count + 1, sizeof *all->corners))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the corners of %zu cells",
+                             all->count + 1);
+    all->corners = list;
+    memcpy(all->corners[all->count++], corners, sizeof *all->corners);
     return choose_rest_area(network, all->def, &of, &rest_area);
-}
-
-static mspring_result add_to_cell(mspring_network *network, const mspring_id corners[4], void *user) {
-    const cell_areas *all = user;
-    add(network, all->def, mspringi_area_within(network, corners, 4), corners, 4);
-    return MSPRING_OK;
 }
 
 mspring_result mspring_network_add_cell_areas(mspring_network *network, const mspring_area_def *def,
@@ -218,16 +220,17 @@ mspring_result mspring_network_add_cell_areas(mspring_network *network, const ms
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                "the cells' rest area is %g m^2, it must be 0", def->rest_area);
     if (result == MSPRING_OK)
-        result = mspringi_each_cell(network, check_cell, &cells);
+        result = mspringi_each_cell(network, take_cell, &cells);
     if (result == MSPRING_OK && cells.count > 0)
-        result = mspringi_areas_check_room(network, cells.count, (size_t)4 * cells.count, 0);
-    if (result != MSPRING_OK)
-        return result;
-    if (first_area)
+        result = mspringi_areas_check_room(network, cells.count, 4 * cells.count, 0);
+    if (result == MSPRING_OK && first_area)
         *first_area = network->areas.next_id;
-    if (count)
-        *count = cells.count;
-    return mspringi_each_cell(network, add_to_cell, &cells);
+    if (result == MSPRING_OK && count)
+        *count = (uint32_t)cells.count;
+    for (size_t i = 0; result == MSPRING_OK && i < cells.count; ++i)
+        add(network, def, mspringi_area_within(network, cells.corners[i], 4), cells.corners[i], 4);
+    mspringi_free(&network->memory, cells.corners);
+    return result;
 }
 
 /* ------------------------------------------------------------------------------------------- changing, reading */

@@ -96,8 +96,8 @@ static void flat_areas_are_refused(void **state) {
     mspring_network_destroy(network);
 }
 
-// A = height / 2 of a triangle with a side of 1 and a perimeter of 2: the limit is a height of 8e-6. Its side lies on
-// an axis, so rounding leaves its height.
+// A = height / 2 of a triangle with a side of 1 and a perimeter of 2: the limit is a height of 8e-6. Its side lies
+// on an axis, so rounding leaves its height.
 static void least_areas_are_by_the_perimeter(void **state) {
     (void)state;
     static const mspring_id corners[] = {0, 1, 2};
@@ -175,12 +175,59 @@ static void damaged_snapshots_are_refused(void **state) {
     mspring_network_destroy(network);
 }
 
+// All joined to all, on a circle or in a row.
+static mspring_network *clique(uint32_t count, bool is_round) {
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < count; i++) {
+        const double angle = 2 * 3.14159265358979 * i / count;
+        (void)support_particle(builder, is_round ? cos(angle) : i, is_round ? sin(angle) : 0, 1);
+        for (uint32_t j = 0; j < i; j++)
+            (void)support_spring(builder, i, j, 100, 0);
+    }
+    const mspring_network_def def = support_def(0, 12);
+    return support_network(builder, &def);
+}
+
+// A clique of 10 has 210 cells, of 27 it has 17550, which is more than springs and more than there may be. In a row
+// no two springs cross: 60 have no cell, and of 300 it takes too long to find out.
+static void cells_above_each_other_are_counted(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t count, cells;
+        bool is_round;
+        const char *why;
+    } cases[] = {{10, 210, true, NULL},
+                 {27, 0, true, "over 16384 cells"},
+                 {100, 0, true, "over 16384 cells"},
+                 {60, 0, false, NULL},
+                 {300, 0, false, "takes too long"}};
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        mspring_network *network = clique(cases[i].count, cases[i].is_round);
+        const mspring_area_def def = elastic(1);
+        const uint64_t hash = support_hash(network);
+        mspring_id first = 77;
+        uint32_t count = 77;
+        if (cases[i].why) {
+            check_error(mspring_network_add_cell_areas(network, &def, &first, &count), MSPRING_ERROR_LIMIT);
+            check_contains(mspring_network_error(network), cases[i].why);
+            check_contains(mspring_network_error(network), "mspring_network_add_area");
+            assert_true(first == 77 && count == 77 && support_hash(network) == hash);
+        } else {
+            check_ok(mspring_network_add_cell_areas(network, &def, &first, &count));
+            assert_int_equal(count, cases[i].cells);
+        }
+        check_ok(mspring_network_step(network, 0.001));
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bad_areas_are_refused),
         cmocka_unit_test(flat_areas_are_refused),
         cmocka_unit_test(least_areas_are_by_the_perimeter),
         cmocka_unit_test(flat_cells_are_refused),
+        cmocka_unit_test(cells_above_each_other_are_counted),
         cmocka_unit_test(damaged_snapshots_are_refused),
     };
     return cmocka_run_group_tests_name("area_calls", tests, NULL, NULL);
