@@ -611,7 +611,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_se
 /// message and mspring_step_info name a particle or a spring. Use a shorter dt, more substeps or lower stiffness.
 /// @param dt  s, > 0; as a float, dt / substeps must be finite and at least 1.2e-38
 /// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork();
-///          LIMIT if contact finds more pairs than its capacity (mspring_contact_def)
+///          LIMIT if contact finds more pairs than its capacity, or compares too many (mspring_contact_def)
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(mspring_network *network, double dt);
 
 /// Flags of mspring_step_info: how a step was made.

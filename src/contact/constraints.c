@@ -86,7 +86,7 @@ static bool is_excluded(const mspring_network *network, mspringi_contacts *conta
         return false;
     if (number < REMEMBERED && pair->tested_bits & bit)
         return pair->excluded_bits & bit;
-    const bool apart = mspringi_outline_are_neighbours(network, pair->point, other);
+    const bool apart = mspringi_outline_are_neighbours(network, contacts, pair->point, other);
     if (number < REMEMBERED) {
         pair->tested_bits |= (uint16_t)bit;
         pair->excluded_bits |= (uint16_t)(apart ? bit : 0);

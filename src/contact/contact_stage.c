@@ -13,6 +13,9 @@
 /// Points this near rest on each other, as a share of the thickness.
 #define RESTING_SHARE 0.05
 
+/// Comparisons of points and edges that a step may take beside those that each list is given (pair_list.c): 50 ms.
+#define MOST_WORK ((uint64_t)1 << 22)
+
 static bool is_used(const mspring_network *network) {
     return network->contacts != NULL;
 }
@@ -139,6 +142,8 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     contacts->h = attempt->h;
     contacts->dt = attempt->dt;
     contacts->is_second_try = false;
+    contacts->work = 0;
+    contacts->most_work = MOST_WORK;
     contacts->has_sleepers = network->sleep.sleeping > 0;
     if (begin_substeps(network, attempt->substeps))
         wake_touched(network, contacts);
@@ -219,6 +224,13 @@ static mspring_result verify(mspring_network *network) {
     const mspringi_contacts *contacts = network->contacts;
     if (!contacts->is_pair_list_full && !contacts->is_out_of_room)
         return MSPRING_OK;
+    if (contacts->work > contacts->most_work)
+        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                             "over %.3g comparisons of outline points and edges in a step, as many of %u edges are "
+                             "within %g m of many points: set contact with less thickness, take a shorter dt, or "
+                             "divide long springs",
+                             (double)contacts->most_work, (unsigned)contacts->outline.edge_count,
+                             contacts->cells.reach);
     return mspringi_fail(
         &network->message, MSPRING_ERROR_LIMIT,
         "more than %u pairs of an outline point and an outline edge %s each other: set "

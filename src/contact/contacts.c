@@ -23,6 +23,10 @@
 /// For each point of a collider.
 #define PAIRS_OF_POINT 8
 
+/// Comparisons that the outline may take (50 ms), and for each spring besides: others have 10 at most.
+#define MOST_TRIES ((uint64_t)1 << 24)
+#define TRIES_OF_SPRING 32
+
 /// Rows that there is room for, as a part of the pairs, and besides.
 #define PAIRS_OF_ROW 8
 #define ROWS_BESIDES 1024
@@ -196,6 +200,7 @@ static bool reserve_edges(mspringi_contacts *made, mspringi_memory *memory, size
     mspringi_edge_grid *c = &made->cells;
     double **const middle[] = {&c->middle_x, &c->middle_y};
     const size_t edges = nodes + springs;
+    made->edge_capacity = edges;
     c->bucket_capacity = 1;
     while (c->bucket_capacity < edges && c->bucket_capacity < (uint32_t)1 << 30)
         c->bucket_capacity *= 2;
@@ -307,15 +312,43 @@ static void hand_over(mspringi_contacts *contacts) {
     contacts->events.ring = NULL;
 }
 
-// With room for so many points of colliders; had: what is to go on, or NULL. NULL if there is no memory.
-static mspringi_contacts *make(mspring_network *network, const mspring_contact_def *def, uint32_t points,
-                               const mspringi_contacts *had) {
+// The particle with most springs.
+static mspring_id find_hub(const mspring_network *network) {
+    const uint32_t *first = network->incidence.first;
+    mspring_id hub = 0;
+    for (mspring_id p = 1; p < network->topology.particle_count; ++p)
+        if (first[p + 1] - first[p] > first[hub + 1] - first[hub])
+            hub = p;
+    return hub;
+}
+
+// Find the outline. A network that contact comes to anew may have too many springs at too many particles.
+static mspring_result find_outline(mspring_network *network, mspringi_contacts *made, bool is_anew) {
+    mspringi_outline *o = &made->outline;
+    const uint32_t springs = network->topology.spring_count;
+    const uint64_t most = MOST_TRIES + TRIES_OF_SPRING * (uint64_t)springs;
+    o->most_tries = is_anew ? most : UINT64_MAX;
+    mspringi_outline_update(network, made);
+    o->most_tries = UINT64_MAX;
+    if (!is_anew || o->tries <= most)
+        return MSPRING_OK;
+    const mspring_id hub = find_hub(network);
+    return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                         "to find the outline of %u springs takes over %.3g comparisons, as particle %u has %u "
+                         "springs and others are like it: contact needs particles with fewer springs",
+                         (unsigned)springs, (double)most, (unsigned)hub,
+                         (unsigned)(network->incidence.first[hub + 1] - network->incidence.first[hub]));
+}
+
+// With room for so many points of colliders; had: what is to go on, or NULL. MEMORY has no message.
+static mspring_result make(mspring_network *network, const mspring_contact_def *def, uint32_t points,
+                           const mspringi_contacts *had, mspringi_contacts **contacts) {
     const size_t particles = network->topology.reserve.particle_end, springs = network->topology.reserve.spring_end,
                  nodes = particles + points;
     mspringi_memory *memory = &network->memory;
     mspringi_contacts *made = mspringi_alloc(memory, 1, sizeof *made);
     if (!made)
-        return NULL;
+        return MSPRING_ERROR_MEMORY;
     set_def(made, def);
     made->particles = (uint32_t)particles;
     bool ok = reserve_nodes(made, memory, particles, nodes) && reserve_edges(made, memory, nodes, springs) &&
@@ -329,33 +362,37 @@ static mspringi_contacts *make(mspring_network *network, const mspring_contact_d
     made->outline.origin_y = network->origin_y;
     if (ok && had)
         take_over(made, had, springs);
-    if (ok)
-        mspringi_outline_update(network, made);
-    ok = ok && reserve_pairs(made, memory, particles) && (!needs_holds(network) || reserve_holds(made, memory));
-    if (ok)
-        return made;
+    mspring_result result = ok ? find_outline(network, made, !had) : MSPRING_ERROR_MEMORY;
+    if (result == MSPRING_OK &&
+        (!reserve_pairs(made, memory, particles) || (needs_holds(network) && !reserve_holds(made, memory))))
+        result = MSPRING_ERROR_MEMORY;
+    if (result == MSPRING_OK) {
+        *contacts = made;
+        return MSPRING_OK;
+    }
     if (had)
         hand_over(made); // they are still those of the other
     destroy(made, memory);
-    return NULL;
+    return result;
 }
 
-// What is there goes on with another definition, or with room for more points of colliders. False: there is no
-// memory, and nothing has changed.
-static bool replace(mspring_network *network, const mspring_contact_def *def, uint32_t points) {
+// What is there goes on with another definition, or with room for more points of colliders. On error nothing has
+// changed.
+static mspring_result replace(mspring_network *network, const mspring_contact_def *def, uint32_t points) {
     mspringi_contacts *had = network->contacts;
-    mspringi_contacts *made = make(network, def, points, had);
-    if (!made)
-        return false;
+    mspringi_contacts *made;
+    const mspring_result result = make(network, def, points, had, &made);
+    if (result != MSPRING_OK)
+        return result;
     if (had)
         hand_over(had);
     destroy(had, &network->memory);
     network->contacts = made;
-    return true;
+    return MSPRING_OK;
 }
 
 bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points) {
-    return replace(network, &network->contacts->def, points);
+    return replace(network, &network->contacts->def, points) == MSPRING_OK;
 }
 
 mspring_result mspringi_contacts_reserve_implicit(mspring_network *network) {
@@ -399,7 +436,9 @@ static mspring_result use(mspring_network *network, const mspring_contact_def *d
     const uint32_t points = network->contacts ? network->contacts->colliders.point_capacity : 0;
     const mspringi_fp_state before = mspringi_fp_enter();
     mspring_result result = mspringi_incidence_reserve(network);
-    if (result == MSPRING_OK && !replace(network, def, points))
+    if (result == MSPRING_OK)
+        result = replace(network, def, points);
+    if (result == MSPRING_ERROR_MEMORY)
         result = mspringi_fail(
             &network->message, MSPRING_ERROR_MEMORY, "no memory for contact of %u particles and %u springs",
             (unsigned)network->topology.particle_count, (unsigned)network->topology.spring_count);

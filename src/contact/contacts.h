@@ -42,8 +42,9 @@ typedef struct mspringi_outline {
     uint32_t *body;            ///< [nodes] the lowest of the same body, unless bodies touch themselves
     uint32_t edge_count, point_count;
     bool is_found;
-    bool are_bodies_found;  ///< body is right
-    uint64_t links, growth; ///< edits that it has seen
+    bool are_bodies_found;      ///< body is right
+    uint64_t links, growth;     ///< edits that it has seen
+    uint64_t tries, most_tries; ///< particles that were tried for a triangle when springs were judged last; at most
 } mspringi_outline;
 
 /// An outline point that may come near an outline edge.
@@ -236,6 +237,7 @@ struct mspringi_contacts {
     double thickness, push;
     bool touches_itself;
     uint32_t particles;                   ///< that there is room for
+    size_t edge_capacity;                 ///< springs and nodes
     uint32_t *groups, *masks;             ///< [nodes]
     mspringi_contact_material *materials; ///< [particles] NULL: none has values of its own
     mspringi_outline outline;
@@ -249,10 +251,12 @@ struct mspringi_contacts {
     mspringi_candidate *candidates; ///< [capacity] those of the list that may touch before it is looked at again
     uint32_t candidate_count;
     bool is_listed, is_pair_list_full;
-    double reach;            ///< all pairs nearer than this were in the list when it was made, m
-    double *seen_x, *seen_y; ///< [nodes] where points were then
-    uint32_t *stamp;         ///< [particles] what is joined by one or two springs to the point of stamp_of
+    uint64_t work, most_work; ///< comparisons of points and edges in this step, and how many these may be
+    double reach;             ///< all pairs nearer than this were in the list when it was made, m
+    double *seen_x, *seen_y;  ///< [nodes] where points were then
+    uint32_t *stamp;          ///< [particles] how many springs join it to the point of stamp_of; see outline.c
     uint32_t stamp_of;
+    bool are_all_stamped;     ///< else those that two springs join to it are stamped when they are asked for
     uint32_t *excluded_edges; ///< [particles][MSPRINGI_EXCLUDED_EDGES] edges that each was found never to touch;
                               ///< MSPRING_NONE
 
@@ -311,10 +315,10 @@ void mspringi_outline_clear_slot(const mspring_network *network, uint32_t slot);
 void mspringi_outline_update(const mspring_network *network, mspringi_contacts *contacts);
 /// The particles that a spring joins.
 void mspringi_outline_ends(const mspring_network *network, mspring_id spring, mspring_id ends[2]);
-/// Whether two particles are the same, or joined by one live spring, or by two.
-bool mspringi_outline_are_neighbours(const mspring_network *network, mspring_id p, mspring_id q);
-/// Stamp what is joined so to a particle.
-void mspringi_outline_mark_neighbours(const mspring_network *network, mspringi_contacts *contacts, mspring_id p);
+/// True if two particles are the same, or joined by one live spring, or by two. Asking for one p after the other is
+/// cheapest.
+bool mspringi_outline_are_neighbours(const mspring_network *network, mspringi_contacts *contacts, mspring_id p,
+                                     mspring_id q);
 
 /* edge_grid.c */
 

@@ -17,6 +17,9 @@
 /// What rounding may do to the reach.
 #define ROUNDING 1e-6
 
+/// Edges that a search passes in the time that a comparison takes.
+#define PASSED_OF_WORK 8
+
 /// Beyond this many cells all lies in one.
 #define MOST_CELLS 1e9
 
@@ -132,12 +135,14 @@ void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *
 typedef struct search {
     double x, y, square;
     uint32_t point;
-    bool is_wide; ///< all rows count
+    bool is_wide;     ///< all rows count
+    uint64_t *passed; ///< edges that were looked at
 } search;
 
 // Take what is near of edges that lie one behind the other: branch-free, for many are not.
 static uint32_t sieve(const mspringi_edge_grid *cells, const search *s, int32_t row, uint32_t from, uint32_t to,
                       uint32_t count) {
+    *s->passed += to - from;
     for (uint32_t k = from; k < to; ++k) {
         const double dx = cells->middle_x[k] - s->x, dy = cells->middle_y[k] - s->y;
         cells->found[count] = cells->sorted[k];
@@ -165,16 +170,19 @@ uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_cont
     const double x = contacts->x[p], y = contacts->y[p], reach = cells->reach + radius, size = cells->size;
     const int32_t row = cell_of(y - reach, size), last_row = cell_of(y + reach, size);
     const uint32_t columns = (uint32_t)cell_of(x + reach, size) - (uint32_t)cell_of(x - reach, size) + 1;
+    uint64_t passed = 0;
     const search s = {.x = x,
                       .y = y,
                       .square = reach * reach,
                       .point = o->a[own] == o->b[own] ? p : ANY_POINT,
-                      .is_wide = !(((double)last_row - row + 1.0) * columns < (double)o->edge_count)};
-    if (s.is_wide)
-        return sieve(cells, &s, row, 0, cells->first[cells->bucket_count], 0);
+                      .is_wide = !(((double)last_row - row + 1.0) * columns < (double)o->edge_count),
+                      .passed = &passed};
     const uint32_t column = column_of(network, contacts, p, x - reach);
     uint32_t count = 0;
-    for (int32_t j = row; j <= last_row; ++j)
+    if (s.is_wide)
+        count = sieve(cells, &s, row, 0, cells->first[cells->bucket_count], 0);
+    for (int32_t j = row; j <= last_row && !s.is_wide; ++j)
         count = sieve_row(cells, &s, j, column, columns, count);
+    contacts->work += passed / PASSED_OF_WORK;
     return count;
 }

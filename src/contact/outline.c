@@ -41,97 +41,230 @@ static uint32_t springs_laid_at(const mspring_network *network, mspring_id p) {
     return network->incidence.first[p + 1] - network->incidence.first[p];
 }
 
-static bool is_linked(const mspring_network *network, mspring_id p, mspring_id q) {
-    const bool is_fewer = springs_laid_at(network, p) <= springs_laid_at(network, q);
-    const mspring_id from = is_fewer ? p : q, to = is_fewer ? q : p;
-    mspringi_incident_springs around = mspringi_incident_springs_begin(network, from);
-    mspring_id other;
-    while (next_live(network, &around, from, &other) != MSPRING_NONE)
-        if (other == to)
-            return true;
-    return false;
+/// Springs at the neighbours of a particle up to which all particles that two springs join to it are stamped.
+#define FEW_BEYOND 256u
+
+/// Stamps of particles, for the particle that they are compared with.
+enum { ONE_SPRING = 1, TWO_SPRINGS = 2, FARTHER = 3, STAMPS = 3 };
+
+static uint32_t stamp_for(mspring_id p, uint32_t kind) {
+    return STAMPS * p + kind;
 }
 
-bool mspringi_outline_are_neighbours(const mspring_network *network, mspring_id p, mspring_id q) {
+// Stamp the neighbours of a particle. Returns how many springs are at these.
+static uint64_t stamp_neighbours(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
     mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
-    mspring_id other;
-    if (p == q)
-        return true;
-    while (next_live(network, &around, p, &other) != MSPRING_NONE)
-        if (other == q || is_linked(network, other, q))
-            return true;
-    return false;
+    mspring_id next;
+    uint64_t beyond = 0;
+    contacts->stamp_of = p;
+    while (next_live(network, &around, p, &next) != MSPRING_NONE) {
+        contacts->stamp[next] = stamp_for(p, ONE_SPRING);
+        beyond += springs_laid_at(network, next);
+    }
+    contacts->stamp[p] = stamp_for(p, ONE_SPRING);
+    return beyond;
 }
 
-void mspringi_outline_mark_neighbours(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+static void stamp(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+    contacts->are_all_stamped = stamp_neighbours(network, contacts, p) <= FEW_BEYOND;
+    if (!contacts->are_all_stamped)
+        return;
     mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
     mspring_id next, after;
-    const uint32_t stamp = p + 1;
-    contacts->stamp[p] = stamp;
     while (next_live(network, &around, p, &next) != MSPRING_NONE) {
         mspringi_incident_springs beyond = mspringi_incident_springs_begin(network, next);
-        contacts->stamp[next] = stamp;
         while (next_live(network, &beyond, next, &after) != MSPRING_NONE)
-            contacts->stamp[after] = stamp;
+            if (contacts->stamp[after] != stamp_for(p, ONE_SPRING))
+                contacts->stamp[after] = stamp_for(p, TWO_SPRINGS);
     }
+}
+
+bool mspringi_outline_are_neighbours(const mspring_network *network, mspringi_contacts *contacts, mspring_id p,
+                                     mspring_id q) {
+    if (contacts->stamp_of != p)
+        stamp(network, contacts, p);
+    const uint32_t found = contacts->stamp[q];
+    if (found == stamp_for(p, ONE_SPRING) || found == stamp_for(p, TWO_SPRINGS))
+        return true;
+    if (contacts->are_all_stamped || found == stamp_for(p, FARTHER))
+        return false;
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, q);
+    mspring_id other;
+    contacts->stamp[q] = stamp_for(p, FARTHER);
+    while (next_live(network, &around, q, &other) != MSPRING_NONE)
+        if (contacts->stamp[other] == stamp_for(p, ONE_SPRING)) {
+            contacts->stamp[q] = stamp_for(p, TWO_SPRINGS);
+            return true;
+        }
+    return false;
 }
 
 /* ------------------------------------------------------------------------------------------------------- edges */
 
-// Whether triangles lie on both sides of a live spring.
-static bool is_inside(const mspring_network *network, const mspringi_outline *o, mspring_id spring) {
-    mspring_id ends[2], other;
-    mspringi_outline_ends(network, spring, ends);
-    const bool is_fewer = springs_laid_at(network, ends[0]) <= springs_laid_at(network, ends[1]);
-    const mspring_id a = is_fewer ? ends[0] : ends[1], b = is_fewer ? ends[1] : ends[0];
+/// Live springs at a particle, and their other ends.
+typedef struct star {
+    mspring_id *ends, *springs;
+    uint32_t count;
+} star;
+
+/// Edges that are being judged: all, or those at particles whose springs have changed. Lists are made in arrays
+/// that the cells and the lists of edges are written to afterwards.
+typedef struct judging {
+    const mspring_network *network;
+    mspringi_contacts *contacts;
+    uint32_t *first;                  ///< [particles + 1] of each one's star in lists; flags, unless all are judged
+    mspring_id *ends[2], *springs[2]; ///< lists; unless all are judged, for two stars
+    bool is_whole;
+} judging;
+
+enum { CHANGED = 1, BESIDE = 2 };
+
+/// Of long lists, tries go on by this share of their length: neighbours of all directions then come early, whatever
+/// the order of ids is. In a clique on a circle of n particles they take n^2 log n tries, one after the other n^3.
+#define STRIDE 0.618
+#define LONG_STAR 16u
+
+static star list_star(const mspring_network *network, mspring_id p, mspring_id *ends, mspring_id *springs) {
+    star found = {ends, springs, 0};
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
+    mspring_id spring, other;
+    while ((spring = next_live(network, &around, p, &other)) != MSPRING_NONE) {
+        ends[found.count] = other;
+        springs[found.count++] = spring;
+    }
+    return found;
+}
+
+static star star_of(const judging *j, mspring_id p, int list) {
+    const uint32_t first = j->first[p];
+    return j->is_whole ? (star){j->ends[0] + first, j->springs[0] + first, j->first[p + 1] - first}
+                       : list_star(j->network, p, j->ends[list], j->springs[list]);
+}
+
+// The next number from a step on that has no divisor in common with a count.
+static uint32_t stride_through(uint32_t count) {
+    if (count <= LONG_STAR)
+        return 1;
+    for (uint32_t stride = (uint32_t)(STRIDE * count);; ++stride) {
+        uint32_t a = count, b = stride;
+        while (b > 0) {
+            const uint32_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1)
+            return stride;
+    }
+}
+
+// True if triangles lie on both sides of a spring from a to b. Those that one of them is joined to are stamped by
+// it, the star is the other's.
+static bool is_inside(const judging *j, mspring_id a, mspring_id b, mspring_id stamped, const star *others) {
+    mspringi_outline *o = &j->contacts->outline;
     const double ex = o->shape_x[b] - o->shape_x[a], ey = o->shape_y[b] - o->shape_y[a];
     const double thin = THIN * (ex * ex + ey * ey);
+    const uint32_t *stamps = j->contacts->stamp, stamp = stamp_for(stamped, ONE_SPRING);
+    const uint32_t count = others->count, stride = stride_through(count);
     bool left = false, right = false;
-    mspringi_incident_springs around = mspringi_incident_springs_begin(network, a);
-    while (!(left && right) && next_live(network, &around, a, &other) != MSPRING_NONE) {
-        if (other == b || !is_linked(network, other, b))
+    uint32_t tries = 0;
+    for (uint32_t i = 0; tries < count && !(left && right); ++tries) {
+        const mspring_id other = others->ends[i];
+        i += i < count - stride ? stride : stride - count;
+        if (other == b || stamps[other] != stamp)
             continue;
         const double side = ex * (o->shape_y[other] - o->shape_y[a]) - ey * (o->shape_x[other] - o->shape_x[a]);
         left |= side > thin;
         right |= side < -thin;
     }
+    o->tries += tries;
     return left && right;
 }
 
-// Whether another live spring that joins the same particles stands for both.
-static bool lies_beside(const mspring_network *network, mspring_id spring) {
-    mspring_id ends[2], beside, other;
-    if (network->topology.parallel_count == 0)
-        return false;
-    mspringi_outline_ends(network, spring, ends);
-    mspringi_incident_springs around = mspringi_incident_springs_begin(network, ends[0]);
-    while ((beside = next_live(network, &around, ends[0], &other)) != MSPRING_NONE)
-        if (other == ends[1] && beside < spring)
+// True if another live spring that joins the same particles stands for both.
+static bool lies_beside(const star *of, mspring_id end, mspring_id spring) {
+    for (uint32_t i = 0; i < of->count; ++i)
+        if (of->ends[i] == end && of->springs[i] < spring)
             return true;
     return false;
 }
 
-static void judge(const mspring_network *network, mspringi_outline *o, mspring_id spring) {
-    o->is_edge[spring] = mspringi_spring_exists(network, spring) && mspringi_spring_is_live(network, spring) &&
-                         !lies_beside(network, spring) && !is_inside(network, o, spring);
-}
-
-static void judge_all(const mspring_network *network, mspringi_outline *o) {
-    for (mspring_id s = 0; s < network->topology.spring_count; ++s)
-        judge(network, o, s);
-}
-
-// Those that may have been in a triangle with a spring that broke, or was restored.
-static void judge_around(const mspring_network *network, mspringi_outline *o, mspring_id spring) {
-    mspring_id ends[2], other;
-    mspringi_outline_ends(network, spring, ends);
-    judge(network, o, spring);
-    for (int i = 0; i < 2; ++i) {
-        mspringi_incident_springs around = mspringi_incident_springs_begin(network, ends[i]);
-        mspring_id beside;
-        while ((beside = next_live(network, &around, ends[i], &other)) != MSPRING_NONE)
-            judge(network, o, beside);
+// Judge the springs at a particle that are to be judged and go to one with as few or fewer.
+static void judge_at(const judging *j, mspring_id p) {
+    mspringi_outline *o = &j->contacts->outline;
+    const star own = star_of(j, p, 0);
+    for (uint32_t i = 0; i < own.count; ++i)
+        j->contacts->stamp[own.ends[i]] = stamp_for(p, ONE_SPRING);
+    for (uint32_t i = 0; i < own.count; ++i) {
+        const mspring_id spring = own.springs[i], other = own.ends[i];
+        mspring_id ends[2];
+        mspringi_outline_ends(j->network, spring, ends);
+        const bool is_fewer = springs_laid_at(j->network, ends[0]) <= springs_laid_at(j->network, ends[1]);
+        const mspring_id a = is_fewer ? ends[0] : ends[1], b = is_fewer ? ends[1] : ends[0];
+        if (b != p || (!j->is_whole && !((j->first[p] | j->first[other]) & CHANGED)))
+            continue;
+        const star others = star_of(j, other, 1);
+        const bool is_second = j->network->topology.parallel_count > 0 && lies_beside(&others, p, spring);
+        o->is_edge[spring] = !is_second && !is_inside(j, a, b, p, &others);
     }
+}
+
+static judging begin_judging(const mspring_network *network, mspringi_contacts *contacts, bool is_whole) {
+    const size_t edges = contacts->edge_capacity;
+    mspring_id *lists = contacts->cells.sorted;
+    return (judging){.network = network,
+                     .contacts = contacts,
+                     .first = contacts->outline.first,
+                     .ends = {lists, lists + 2 * edges},
+                     .springs = {lists + (is_whole ? 2 * edges : edges), lists + 3 * edges},
+                     .is_whole = is_whole};
+}
+
+static void judge_all(const mspring_network *network, mspringi_contacts *contacts) {
+    const judging j = begin_judging(network, contacts, true);
+    const uint32_t particles = network->topology.particle_count;
+    mspringi_outline *o = &contacts->outline;
+    uint32_t end = 0;
+    for (mspring_id p = 0; p < particles; ++p) {
+        j.first[p] = end;
+        if (mspringi_particle_exists(network, p))
+            end += list_star(network, p, j.ends[0] + end, j.springs[0] + end).count;
+    }
+    j.first[particles] = end;
+    memset(o->is_edge, 0, network->topology.spring_count * sizeof *o->is_edge);
+    for (mspring_id p = 0; p < particles && o->tries <= o->most_tries; ++p)
+        judge_at(&j, p);
+}
+
+// Take up a particle, if it is not yet.
+static uint32_t take_up(const judging *j, mspring_id p, uint32_t why, uint32_t count) {
+    if (j->first[p] == 0)
+        j->contacts->outline.points[count++] = p;
+    j->first[p] |= why;
+    return count;
+}
+
+// Judge the springs that may have been in a triangle with one that broke, or was restored.
+static void judge_changed(const mspring_network *network, mspringi_contacts *contacts) {
+    const judging j = begin_judging(network, contacts, false);
+    mspringi_outline *o = &contacts->outline;
+    mspring_id ends[2];
+    uint32_t count = 0;
+    memset(o->first, 0, network->topology.particle_count * sizeof *o->first);
+    for (uint64_t n = o->links; n < network->edits.links; ++n) {
+        const mspring_id spring = mspringi_edits_link(&network->edits, n);
+        o->is_edge[spring] = 0;
+        mspringi_outline_ends(network, spring, ends);
+        for (int i = 0; i < 2; ++i)
+            count = take_up(&j, ends[i], CHANGED, count);
+    }
+    const uint32_t changed = count;
+    for (uint32_t i = 0; i < changed; ++i) {
+        const star beside = star_of(&j, o->points[i], 0);
+        for (uint32_t k = 0; k < beside.count; ++k)
+            count = take_up(&j, beside.ends[k], BESIDE, count);
+    }
+    for (uint32_t i = 0; i < count; ++i)
+        judge_at(&j, o->points[i]);
 }
 
 /* ------------------------------------------------------------------------------------------------------- shape */
@@ -238,16 +371,17 @@ static void find_bodies(const mspring_network *network, uint32_t *body) {
 }
 
 // What edits have changed of the springs that are edges.
-static void judge_anew(const mspring_network *network, mspringi_outline *o) {
+static void judge_anew(const mspring_network *network, mspringi_contacts *contacts) {
+    mspringi_outline *o = &contacts->outline;
     const mspringi_edits *edits = &network->edits;
     const bool is_local = o->is_found && o->growth == edits->growth && mspringi_edits_have_link(edits, o->links);
-    if (!is_local) {
-        know_all(network, o);
-        judge_all(network, o);
+    o->tries = 0;
+    if (is_local) {
+        judge_changed(network, contacts);
         return;
     }
-    for (uint64_t n = o->links; n < edits->links; ++n)
-        judge_around(network, o, mspringi_edits_link(edits, n));
+    know_all(network, o);
+    judge_all(network, contacts);
 }
 
 // Who asks which body a particle is of: contact that leaves bodies alone with themselves, and events.
@@ -266,12 +400,13 @@ void mspringi_outline_update(const mspring_network *network, mspringi_contacts *
         follow_bodies(network, contacts);
         return;
     }
-    judge_anew(network, o);
+    judge_anew(network, contacts);
     list_edges(network, o, nodes);
     list_sides(contacts);
     list_points(o, nodes);
     o->are_bodies_found = false;
     memset(contacts->stamp, 0, contacts->particles * sizeof *contacts->stamp);
+    contacts->stamp_of = MSPRING_NONE;
     o->is_found = true;
     o->links = edits->links;
     o->growth = edits->growth;

@@ -28,6 +28,11 @@
 #define SPARSE_REACH 6.0
 #define SPARSE 4u
 
+/// Comparisons of a point and an edge that a step may take for each list: for each point, and for each pair that
+/// there is room for. (The bodies of tests/contact take 20 for a point; a crowd has no other than its pairs.)
+#define WORK_OF_POINT 256
+#define WORK_OF_PAIR 2
+
 /* ----------------------------------------------------------------------------------------------------- distance */
 
 // Of the point from the edge, or from the surface of a collider.
@@ -155,44 +160,81 @@ static bool is_excluded(const mspring_network *network, mspringi_contacts *conta
     for (uint32_t k = 0; k < MSPRINGI_EXCLUDED_EDGES; ++k)
         if (known[k] == edge)
             return true;
-    if (contacts->stamp_of != p)
-        mspringi_outline_mark_neighbours(network, contacts, p);
-    contacts->stamp_of = p;
-    if (contacts->stamp[a] != p + 1 && contacts->stamp[b] != p + 1)
+    if (!mspringi_outline_are_neighbours(network, contacts, p, a) &&
+        !mspringi_outline_are_neighbours(network, contacts, p, b))
         return false;
     memmove(known + 1, known, (MSPRINGI_EXCLUDED_EDGES - 1) * sizeof *known);
     known[0] = edge;
     return true;
 }
 
-// False: there is no room.
-static bool try_pair(const mspring_network *network, mspringi_contacts *contacts, uint32_t first, mspring_id p,
-                     uint32_t edge) {
+// True if a point and an edge are a pair.
+static bool are_near(const mspring_network *network, mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
     const mspringi_outline *o = &contacts->outline;
     const mspring_id a = o->a[edge], b = o->b[edge];
-    if (p == a || p == b || !(distance_of(contacts, p, edge) < contacts->reach) || !may_touch(network, p, a) ||
-        !may_touch(network, p, b) || is_excluded(network, contacts, p, edge))
-        return true;
-    if (contacts->count == contacts->capacity)
-        return false;
-    uint32_t at = contacts->count++;
-    for (; at > first && contacts->list[at - 1].edge > edge; --at)
-        contacts->list[at] = contacts->list[at - 1];
-    contacts->list[at] = (mspringi_pair){.point = p, .edge = edge};
-    return true;
+    return p != a && p != b && distance_of(contacts, p, edge) < contacts->reach && may_touch(network, p, a) &&
+           may_touch(network, p, b) && !is_excluded(network, contacts, p, edge);
 }
 
+// Move a number down a heap to where none below it is larger.
+static void sift(uint32_t *heap, uint32_t at, uint32_t count) {
+    const uint32_t moved = heap[at];
+    for (uint32_t below; (below = 2 * at + 1) < count; at = below) {
+        below += below + 1 < count && heap[below + 1] > heap[below];
+        if (heap[below] <= moved)
+            break;
+        heap[at] = heap[below];
+    }
+    heap[at] = moved;
+}
+
+// Sort by insertion what is in order but for this many moves a number: it is as a rule.
+#define FEW_MOVES 8u
+
+static void sort(uint32_t *numbers, uint32_t count) {
+    uint32_t sorted = 1;
+    for (int64_t moves = FEW_MOVES * (int64_t)count; sorted < count && moves >= 0; ++sorted) {
+        const uint32_t moved = numbers[sorted];
+        uint32_t at = sorted;
+        for (; at > 0 && numbers[at - 1] > moved; --at)
+            numbers[at] = numbers[at - 1];
+        numbers[at] = moved;
+        moves -= sorted - at;
+    }
+    if (sorted >= count)
+        return;
+    for (uint32_t i = count / 2; i-- > 0;)
+        sift(numbers, i, count);
+    for (uint32_t end = count; end-- > 1;) {
+        const uint32_t largest = numbers[0];
+        numbers[0] = numbers[end];
+        numbers[end] = largest;
+        sift(numbers, 0, end);
+    }
+}
+
+// Add the pairs of a point. False: there is no room for them, or they take too long to find.
 static bool list_pairs_of_point(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
-    const mspringi_edge_grid *cells = &contacts->cells;
-    const uint32_t first = contacts->count, found = mspringi_edge_grid_search(network, contacts, p);
-    for (uint32_t k = 0; k < found; ++k)
-        if (!try_pair(network, contacts, first, p, cells->found[k]))
-            return false;
-    for (uint32_t k = 0; k < cells->long_count; ++k)
-        if (!mspringi_is_duplicate_pair(&contacts->outline, p, cells->long_edges[k]) &&
-            !try_pair(network, contacts, first, p, cells->long_edges[k]))
-            return false;
-    return true;
+    mspringi_edge_grid *cells = &contacts->cells;
+    const uint32_t found = mspringi_edge_grid_search(network, contacts, p),
+                   room = contacts->capacity - contacts->count;
+    uint32_t near = 0;
+    contacts->work += found + cells->long_count;
+    for (uint32_t k = 0; k < found && near <= room; ++k) {
+        cells->found[near] = cells->found[k];
+        near += are_near(network, contacts, p, cells->found[k]);
+    }
+    for (uint32_t k = 0; k < cells->long_count && near <= room; ++k) {
+        cells->found[near] = cells->long_edges[k];
+        near += !mspringi_is_duplicate_pair(&contacts->outline, p, cells->long_edges[k]) &&
+                are_near(network, contacts, p, cells->long_edges[k]);
+    }
+    const bool has_room = near <= room, is_done = contacts->work <= contacts->most_work;
+    near = has_room ? near : room;
+    sort(cells->found, near);
+    for (uint32_t k = 0; k < near; ++k)
+        contacts->list[contacts->count++] = (mspringi_pair){.point = p, .edge = cells->found[k]};
+    return has_room && is_done;
 }
 
 static void activate(mspringi_contact_nodes *active, mspring_id p) {
@@ -260,6 +302,7 @@ static bool make_list(const mspring_network *network, mspringi_contacts *contact
     contacts->stamp_of = MSPRING_NONE;
     contacts->reach = reach;
     contacts->moved = 0.0;
+    contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count + WORK_OF_PAIR * (uint64_t)contacts->capacity;
     if (o->edge_count > 0) {
         mspringi_edge_grid_fill(network, contacts, reach);
         for (uint32_t i = 0; i < o->point_count; ++i) {
