@@ -101,15 +101,17 @@ static void turn(const mspringi_contacts *contacts, double beta) {
 }
 
 void mspringi_direct_hold_bodies(mspring_network *network, mspringi_solve_fn solve) {
-    const mspringi_implicit *n = mspringi_implicit_of(network);
+    mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_contacts *contacts = network->contacts;
     if (!mspringi_implicit_contact_is_active(network))
         return;
     double product = begin(network, contacts);
     const double least = LEAST_PRODUCT * product;
-    for (uint32_t iteration = 0; iteration < MOST_ITERATIONS && product > least; ++iteration) {
+    for (uint32_t iteration = 0; iteration < MOST_ITERATIONS && product > least && mspringi_may_iterate(n);
+         ++iteration) {
         spread_search(network, contacts);
         solve(network, n->scaled);
+        n->solves++;
         const double curvature = gather_answer(network, contacts);
         if (!(curvature > 0.0))
             break;

@@ -178,6 +178,7 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
     turn(substep, member, MSPRINGI_SEARCH_RESTART, 0.0f);
     for (;;) {
         const double curvature = mspringi_multiply(substep, member);
+        n->solves += member->index == 0;
         if (!(curvature < INFINITY && product < INFINITY))
             return NAN;
         // Nothing is left to do, or to be done in this precision.

@@ -82,7 +82,7 @@ static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_
         *alpha = solve(substep, member);
         mspringi_team_barrier(member);
         if (member->index == 0)
-            n->must_solve_again = review_terms(network, *alpha, pass);
+            n->must_solve_again = review_terms(network, *alpha, pass) && mspringi_may_iterate(n);
         mspringi_team_barrier(member);
         if (n->restarts_with_euler)
             return false;
@@ -176,9 +176,9 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const bool are_near = mspringi_implicit_contact_is_near(network), watches = substep->watches || are_near;
     const bool may_halve = tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS) &&
-                           n->retry_count < MOST_RETAKEN;
+                           n->retry_count < MOST_RETAKEN && mspringi_may_iterate(n);
     if (tries == 0)
-        n->contact_mode = MSPRINGI_CONTACT_WITH_FRICTION;
+        n->contact_mode = mspringi_may_iterate(n) ? MSPRINGI_CONTACT_WITH_FRICTION : MSPRINGI_CONTACT_BY_IMPULSES;
     if (watches)
         mspringi_budget_begin(network);
     else
@@ -250,7 +250,7 @@ void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_
     mspringi_implicit_substep substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_guard_checks_limit(network->settings.guard)};
     for (uint32_t i = 0; i < count; ++i) {
-        mspringi_implicit_of(network)->retry_count = 0;
+        mspringi_implicit_of(network)->retry_count = mspringi_implicit_of(network)->solves = 0;
         if (network->floor || mspringi_implicit_contact_is_near(network))
             take_pieces(&substep);
         else
