@@ -333,7 +333,8 @@ typedef enum mspring_integrator {
 
 /// substeps for "as few as are stable in any shape that the network can reach", chosen before each step (see
 /// mspring_network_stable_dt()). For the implicit and the direct solver 1. mspring_step_info reports the number. If
-/// all springs are relative, it is 1: set a number to have them firmer.
+/// all springs are relative, it is 1: set a number to have them firmer. Stable is meant of equal steps and small
+/// motion; mspring_network_step() says what else makes energy.
 #define MSPRING_SUBSTEPS_AUTO 0xffffffffu
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. A solver ignores what it does not use.
@@ -379,7 +380,7 @@ enum {
 /// by no more than the work of gravity, forces and moving pins. The guide examples/guides/solvers.md has the details.
 typedef enum mspring_guard {
     /// Reject a step whose substeps exceed the stability limit (mspring_network_stable_dt()), or make motion grow.
-    /// Steps within the limit are never rejected.
+    /// Steps within the limit are never rejected, not even where uneven dt or violent motion adds energy step by step.
     MSPRING_GUARD_GROWTH = 0,
     /// Repeat a step that would be rejected, with twice as many substeps, up to max_substeps. Later steps keep that
     /// number until mspring_network_set_solver(). Hooks are called again. Relative springs gain nothing by it.
@@ -609,6 +610,12 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_se
 /// If a coordinate or speed would end out of bounds, or motion grow by instability (mspring_guard), the step is
 /// rolled back. The state is then that before the step, bit for bit, and forces given for it are still there. The
 /// message and mspring_step_info name a particle or a spring. Use a shorter dt, more substeps or lower stiffness.
+///
+/// Pass equal dt. The explicit solver keeps another energy at each length of substep. A dt that differs from step to
+/// step, as a frame's time does, therefore adds energy without bound where nothing damps, by stable substeps and with
+/// MSPRING_SUBSTEPS_AUTO, too; no guard sees it. If dt must vary, damp (springs, or global_damping), or set substeps
+/// that keep h = dt / substeps below 0.7 of any_shape (mspring_network_stable_dt()): then it grows slowly. Motion so
+/// violent that neighbours pass over a third of a spring's length in a substep adds energy, too: take more substeps.
 /// @param dt  s, > 0; as a float, dt / substeps must be finite and at least 1.2e-38
 /// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork();
 ///          LIMIT if contact finds more pairs than its capacity, or compares too many (mspring_contact_def)

@@ -98,7 +98,10 @@ export interface Network {
   /** Frees it now. Otherwise the garbage collector does so some time. */
   free(): void;
 
-  /** Takes count steps of dt seconds. If one fails, the error says how many were made before it. */
+  /**
+   * Takes count steps of dt seconds. If one fails, the error says how many were made before it. Pass equal dt: if it
+   * differs from step to step and little damps, explicit steps add energy.
+   */
   step(dt: number, count?: number): void;
   stepInfo(): StepInfo;
   getSettings(): Full<Settings>;

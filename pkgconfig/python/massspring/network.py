@@ -86,6 +86,8 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     def step(self, dt: float, count: int = 1) -> None:
         """Evolve the network by count steps of dt, s. The GIL is released in each.
 
+        Pass equal dt: if it differs from step to step and little damps, explicit steps add energy.
+
         A step that fails is rolled back. Its error has the particle or the spring that was the cause; the steps
         before it count.
         """
