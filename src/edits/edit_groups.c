@@ -85,7 +85,7 @@ static mspring_result allocate(mspring_network *network, mspringi_groups *g) {
     mspringi_memory *memory = &network->memory;
     const mspringi_topology *t = &network->topology;
     g->first = mspringi_alloc(memory, (size_t)g->count + 1, sizeof *g->first);
-    g->first_spring = mspringi_alloc(memory, (size_t)g->count + 1, sizeof *g->first_spring);
+    g->first_spring = mspringi_alloc(memory, (size_t)g->count + 2, sizeof *g->first_spring);
     g->springs = mspringi_alloc(memory, t->spring_count, sizeof *g->springs);
     g->changing = mspringi_alloc(memory, t->spring_count, sizeof *g->changing);
     g->of_particle = mspringi_alloc(memory, t->reserve.particle_end, sizeof *g->of_particle);
@@ -118,7 +118,8 @@ static uint32_t group_of_spring(const mspring_network *network, const mspringi_g
     return a == b ? a : MSPRING_NONE;
 }
 
-// List the springs of each group in order of their ids.
+// List the springs of each group in order of their ids. Counters are stored two entries after their group, so that
+// their sums, one entry after, are the beginnings; listing moves each on to its group's end.
 static mspring_result list_springs(mspring_network *network, mspringi_groups *g) {
     const uint32_t springs = network->topology.spring_count;
     for (mspring_id s = 0; s < springs; ++s) {
@@ -127,18 +128,15 @@ static mspring_result list_springs(mspring_network *network, mspringi_groups *g)
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                  "spring %u leads from one group to another, or out of a group", (unsigned)s);
         if (group < g->count)
-            g->first_spring[group + 1]++;
+            g->first_spring[group + 2]++;
     }
     for (uint32_t group = 0; group < g->count; ++group)
-        g->first_spring[group + 1] += g->first_spring[group];
-    for (mspring_id s = springs; s-- > 0;) {
+        g->first_spring[group + 2] += g->first_spring[group + 1];
+    for (mspring_id s = 0; s < springs; ++s) {
         const uint32_t group = mspringi_spring_exists(network, s) ? group_of_spring(network, g, s) : g->count;
         if (group < g->count)
-            g->springs[--g->first_spring[group + 1]] = s;
+            g->springs[g->first_spring[group + 1]++] = s;
     }
-    // Each entry is now the beginning of the group before: shift them.
-    for (uint32_t group = 0; group + 1 < g->count; ++group)
-        g->first_spring[group] = g->first_spring[group + 1];
     return MSPRING_OK;
 }
 

@@ -33,7 +33,7 @@ typedef struct mspringi_groups {
     uint32_t count;             ///< 0: there are none
     uint32_t held;              ///< of these held
     mspring_id *first;          ///< [count + 1] particles
-    uint32_t *first_spring;     ///< [count + 1] of springs
+    uint32_t *first_spring;     ///< [count + 2] of springs; the last is room for counting
     mspring_id *springs;        ///< [springs] of each group
     mspring_id *changing;       ///< [springs] room for those that a reset breaks or restores
     uint32_t *of_particle;      ///< [particles] the group, or count
