@@ -289,12 +289,14 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
     float *restrict impulse_x = g->impulse_x + slot, *restrict impulse_y = g->impulse_y + slot;
     const float *restrict inverse_mass = g->inverse_mass + slot;
     float to_x[MSPRINGI_WIDTH], to_y[MSPRINGI_WIDTH], to_vx[MSPRINGI_WIDTH], to_vy[MSPRINGI_WIDTH];
-    float has_x[MSPRINGI_WIDTH], has_y[MSPRINGI_WIDTH];
+    float has_x[MSPRINGI_WIDTH], has_y[MSPRINGI_WIDTH], low_x[MSPRINGI_WIDTH], low_y[MSPRINGI_WIDTH];
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i) {
         const float mass = 1.0f / inverse_mass[i];
         to_x[i] = (float)b->x[i];
         to_y[i] = (float)b->y[i];
+        low_x[i] = mspringi_low_of(to_x[i], (float)(b->x[i] - (double)to_x[i]));
+        low_y[i] = mspringi_low_of(to_y[i], (float)(b->y[i] - (double)to_y[i]));
         to_vx[i] = (float)b->vx[i];
         to_vy[i] = (float)b->vy[i];
         has_x[i] = impulse_x[i] + mass * (to_vx[i] - vx[i]);
@@ -302,6 +304,8 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
     }
     choose(b->is_moved, has_x, lanes, impulse_x);
     choose(b->is_moved, has_y, lanes, impulse_y);
+    choose(b->is_moved, low_x, lanes, g->low_x + slot);
+    choose(b->is_moved, low_y, lanes, g->low_y + slot);
     choose(b->is_moved, to_x, lanes, x);
     choose(b->is_moved, to_y, lanes, y);
     choose(b->is_moved, to_vx, lanes, vx);

@@ -95,6 +95,14 @@ static inline void mspringi_yield_save(const mspringi_yield_test *test, size_t w
             test->before[word * MSPRINGI_WIDTH + lane] = rests[lane];
 }
 
+/// Largest low word relative to its coordinate. A larger one belongs to a coordinate that was overwritten through a
+/// view, and counts as 0.
+#define MSPRINGI_LARGEST_LOW 0x1p-21f
+
+static inline float mspringi_low_of(float coordinate, float low) {
+    return fabsf(low) <= fabsf(coordinate) * MSPRINGI_LARGEST_LOW ? low : 0.0f;
+}
+
 /// Arguments of a sweep: arrays by slot, and constants.
 typedef struct mspringi_sweep {
     float *x, *y, *vx, *vy;

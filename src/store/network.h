@@ -26,14 +26,6 @@ typedef struct mspringi_state {
 } mspringi_state;
 enum { MSPRINGI_STATE_ARRAYS = 6 };
 
-/// Largest low word relative to its coordinate. A larger one belongs to a coordinate that was overwritten through a
-/// view, and counts as 0.
-#define MSPRINGI_LARGEST_LOW 0x1p-21f
-
-static inline float mspringi_low_of(float coordinate, float low) {
-    return fabsf(low) <= fabsf(coordinate) * MSPRINGI_LARGEST_LOW ? low : 0.0f;
-}
-
 /// Local coordinates in full.
 static inline double mspringi_x_of(const mspringi_state *s, size_t slot) {
     return (double)s->x[slot] + (double)mspringi_low_of(s->x[slot], s->low_x[slot]);

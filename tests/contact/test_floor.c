@@ -70,7 +70,17 @@ static double height_of(const mspring_floor_def *def, double x) {
     return def->heights_y + (1 - share) * (double)def->heights[i] + share * (double)def->heights[i + 1];
 }
 
-/// Smallest of the distances from the planes and of the height above the field.
+/// How much a field rises in a metre at x.
+static double slope_of(const mspring_floor_def *def, double x) {
+    const double place = (x - def->heights_x) / def->spacing;
+    if (!(place > 0 && place < def->height_count - 1))
+        return 0;
+    const uint32_t i = (uint32_t)place;
+    return ((double)def->heights[i + 1] - (double)def->heights[i]) / def->spacing;
+}
+
+/// Smallest of the distances from the planes and from the stretch of the field below: rounding that is along x is
+/// sixteen times as much in height at a cliff.
 static double above(const mspring_floor_def *def, double x, double y) {
     double least = INFINITY;
     for (uint32_t i = 0; i < def->plane_count; i++) {
@@ -79,7 +89,7 @@ static double above(const mspring_floor_def *def, double x, double y) {
         least = fmin(least, ((x - plane[0]) * plane[2] + (y - plane[1]) * plane[3]) / length);
     }
     if (def->height_count > 0)
-        least = fmin(least, y - height_of(def, x));
+        least = fmin(least, (y - height_of(def, x)) / hypot(1, slope_of(def, x)));
     return least;
 }
 

@@ -1,6 +1,7 @@
 /// @file test_contact_kernels.c
 /// What a level's kernels do to blocks of particles on a floor, against mspringi_floor_bounce() and
-/// mspringi_floor_move_free_particle() of each: byte for byte, and nothing to those that they leave. Silt likewise.
+/// mspringi_floor_move_free_particle() of each: byte for byte, low words included, and nothing to those that they
+/// leave. Silt likewise.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -107,6 +108,8 @@ static block make_block(const mspringi_floor *floor, double h) {
         made.y[i] = (float)(y + h * (double)made.vy[i]);
         made.from_vx[i] = i % 3 == 0 ? made.vx[i] : (float)(made.vx[i] + between(-speed, speed));
         made.from_vy[i] = i % 4 == 0 ? 0.0f : (float)(made.vy[i] * between(0.9, 1.01));
+        made.low_x[i] = made.x[i] * (float)between(-0x1p-24, 0x1p-24);
+        made.low_y[i] = made.y[i] * (float)between(-0x1p-24, 0x1p-24);
         made.impulse_x[i] = (float)between(-1, 1);
         made.impulse_y[i] = (float)between(0, 1);
         made.inverse_mass[i] = i % 11 == 10 ? 0.0f : (float)between(0.1, 10);
@@ -160,6 +163,8 @@ static void put(block *b, uint32_t i, double x, double y, double vx, double vy) 
     b->impulse_y[i] += mass * ((float)vy - b->vy[i]);
     b->x[i] = (float)x;
     b->y[i] = (float)y;
+    b->low_x[i] = mspringi_low_of(b->x[i], (float)(x - (double)b->x[i]));
+    b->low_y[i] = mspringi_low_of(b->y[i], (float)(y - (double)b->y[i]));
     b->vx[i] = (float)vx;
     b->vy[i] = (float)vy;
 }
@@ -219,6 +224,8 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
             moved_count += expected.y[i] != before.y[i];
             check_lane(found.x, expected.x, i);
             check_lane(found.y, expected.y, i);
+            check_lane(found.low_x, expected.low_x, i);
+            check_lane(found.low_y, expected.low_y, i);
             check_lane(found.vx, expected.vx, i);
             check_lane(found.vy, expected.vy, i);
             check_lane(found.impulse_x, expected.impulse_x, i);
