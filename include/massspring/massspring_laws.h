@@ -88,7 +88,8 @@ typedef struct mspring_plasticity {
     uint32_t struct_size;
     uint32_t bent_springs; ///< springs whose plastic strain is not 0 now
     uint64_t yield_count;  ///< springs that yielded in a step, summed over all steps
-    double dissipated;     ///< energy that yielding has turned into heat, J; no step lowers it
+    double dissipated;     ///< energy that yielding has turned into heat, J; no step lowers it. What a substep
+                           ///< stretches beyond the yield strain takes no work, and makes none
 } mspring_plasticity;
 
 /// Read the report of what has yielded. Takes a pass over all springs.

@@ -153,7 +153,7 @@ static inline mspringi_yield_values yield_values(const mspringi_yield_test *t, s
 }
 
 // Test a warm spring, and update it if it flows. A broken one has no stiffness.
-static void yield_spring(const mspringi_yield_test *t, size_t spring_slot, float square, float *rest,
+static void yield_spring(const mspringi_yield_test *t, size_t spring_slot, float square, float start, float *rest,
                          float stiffness) {
     const mspringi_yield_bounds bounds = {t->low[spring_slot], t->high[spring_slot], t->flow_low[spring_slot],
                                           t->flow_high[spring_slot]};
@@ -168,7 +168,7 @@ static void yield_spring(const mspringi_yield_test *t, size_t spring_slot, float
     if (!(to > *rest || *rest > to))
         return;
     mspringi_yield_save(t, spring_slot / MSPRINGI_WIDTH, bit, rest - lane);
-    t->heat[spring_slot] = t->heat[spring_slot] + mspringi_yield_heat(values, stiffness, length, *rest, to);
+    t->heat[spring_slot] = t->heat[spring_slot] + mspringi_yield_heat(values, stiffness, start, length, *rest, to);
     *rest = to;
     const mspringi_yield_bounds renewed = mspringi_yield_bounds_of(values, to);
     t->low[spring_slot] = renewed.low;
@@ -178,23 +178,27 @@ static void yield_spring(const mspringi_yield_test *t, size_t spring_slot, float
 }
 
 // Test a spring before its rest length enters the force.
-static inline void test_spring(const mspringi_yield_test *t, size_t spring_slot, motion base, motion tip,
-                               float *rest, float stiffness, mspringi_variant of) {
+static inline void test_spring(const mspringi_sweep *s, size_t spring_slot, motion base, motion tip, float *rest,
+                               float stiffness, mspringi_variant of) {
+    const mspringi_yield_test *t = s->test;
     float dx = base.x - tip.x, dy = base.y - tip.y;
     if (of & MSPRINGI_PRECISE) {
         dx = dx + (base.low_x - tip.low_x);
         dy = dy + (base.low_y - tip.low_y);
     }
     const float square = dx * dx + dy * dy;
-    if (square > t->test_high[spring_slot] || t->test_low[spring_slot] > square)
-        yield_spring(t, spring_slot, square, rest, stiffness);
+    if (!(square > t->test_high[spring_slot] || t->test_low[spring_slot] > square))
+        return;
+    const float way_x = s->h * (base.vx - tip.vx), way_y = s->h * (base.vy - tip.vy);
+    yield_spring(t, spring_slot, square, mspringi_yield_start(square, base.x - tip.x, base.y - tip.y, way_x, way_y),
+                 rest, stiffness);
 }
 
 static inline void test_in_lattice(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
                                    mspringi_direction direction, motion base, motion tip, mspringi_variant of) {
     const size_t spring_slot = lattice_slot(span, slot) + (size_t)direction * MSPRINGI_WIDTH;
     const float *records = springs_of(s, span, slot).records;
-    test_spring(s->test, spring_slot, base, tip, s->test->lattice_rests + spring_slot,
+    test_spring(s, spring_slot, base, tip, s->test->lattice_rests + spring_slot,
                 records[direction * (s->parts - 1) * MSPRINGI_WIDTH], of);
 }
 
@@ -267,7 +271,7 @@ static inline vector chain_force(const mspringi_sweep *s, const mspringi_span *s
     const size_t at_record = block * s->parts * MSPRINGI_WIDTH + lane;
     const float *record = s->chain_springs + at_record;
     if (of & MSPRINGI_TESTED)
-        test_spring(s->test, s->test->first_chain_slot + block * MSPRINGI_WIDTH + lane, here, next,
+        test_spring(s, s->test->first_chain_slot + block * MSPRINGI_WIDTH + lane, here, next,
                     s->test->chain_springs + at_record, record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH], of);
     return spring_force(here, next, record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
                         record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH, of);

@@ -230,7 +230,7 @@ MSPRINGI_INLINE void lattice(const mspringi_sweep *sweep, const mspringi_span *s
                     const vec squares[] = {to_east.square, to_north.square, to_north_east.square,
                                            to_south_east.square};
                     const size_t spring_slot = block * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
-                    yield_springs(s->test, spring_slot, MSPRINGI_DIRECTIONS, squares,
+                    yield_springs(sweep, spring_slot, MSPRINGI_DIRECTIONS, slot, up, squares,
                                   s->test->lattice_rests + spring_slot, springs, part);
                     rests = s->rest_lengths +
                             (size_t)s->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH +
@@ -328,7 +328,7 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
                     is_chain ? t->chain_springs + (rests - s->chain_springs) : t->lattice_rests + spring_slot;
                 const vec square = to_east.square;
                 if (bits_outside(square, t->test_low + spring_slot, t->test_high + spring_slot)) {
-                    yield_springs(t, spring_slot, 1, &square, own, record, 0);
+                    yield_springs(sweep, spring_slot, 1, slot, slot, &square, own, record, 0);
                     rests = own;
                 }
             }

@@ -42,11 +42,21 @@ static inline float mspringi_yield_rest(mspringi_yield_values v, mspringi_yield_
     return square - bounds.flow_high > 0.0f && up - rest > 0.0f ? up : rest;
 }
 
-/// Heat from a change of the rest length, J.
-static inline float mspringi_yield_heat(mspringi_yield_values v, float stiffness, float length, float rest,
-                                        float to) {
+/// Length of a spring at the start of a substep that moved its ends by (way_x, way_y) relative to each other, to
+/// (dx, dy). `square` is the squared length at the end; it may be more precise than these.
+static inline float mspringi_yield_start(float square, float dx, float dy, float way_x, float way_y) {
+    const float before = square - (way_x * ((dx + dx) - way_x) + way_y * ((dy + dy) - way_y));
+    return sqrtf(before > 0.0f ? before : 0.0f);
+}
+
+/// Heat from a change of the rest length, J: the flow times the mean force before and after it, without back
+/// stress. The force before belongs to `start`, the length at which the spring last acted on its particles: the
+/// part of the substep beyond the yield surface has not acted yet. Solvers in which it has acted pass the present
+/// length.
+static inline float mspringi_yield_heat(mspringi_yield_values v, float stiffness, float start, float length,
+                                        float rest, float to) {
     const float moved = to - rest, whole = 1.0f + v.hardening;
-    const float excess = (length + v.hardening * v.nominal) - whole * rest;
+    const float excess = (0.5f * (start + length) + v.hardening * v.nominal) - whole * rest;
     return stiffness * (moved * (excess - (0.5f * whole) * moved));
 }
 

@@ -36,9 +36,22 @@ static inline void update_bounds(const mspringi_yield_test *t, size_t spring_slo
     }
 }
 
+// mspringi_yield_start() for LANES springs.
+static inline vec start_of(const mspringi_sweep *s, size_t base, size_t tip, vec square) {
+    const vec dx = sub(load_unaligned(s->x + base), load_unaligned(s->x + tip));
+    const vec dy = sub(load_unaligned(s->y + base), load_unaligned(s->y + tip));
+    const vec dvx = sub(load_unaligned(s->vx + base), load_unaligned(s->vx + tip));
+    const vec dvy = sub(load_unaligned(s->vy + base), load_unaligned(s->vy + tip));
+    const vec h = set(s->h), way_x = mul(h, dvx), way_y = mul(h, dvy);
+    const vec back = add(mul(way_x, sub(add(dx, dx), way_x)), mul(way_y, sub(add(dy, dy), way_y)));
+    const vec before = sub(square, back);
+    return square_root(choose_positive(before, before, zero()));
+}
+
 // mspringi_yield_rest() and mspringi_yield_heat() for LANES springs. A broken one has no stiffness.
-static inline void flow(const mspringi_yield_test *t, size_t spring_slot, vec square, float *rests,
-                        const float *stiffnesses) {
+static inline void flow(const mspringi_sweep *s, size_t spring_slot, size_t base, size_t tip, vec square,
+                        float *rests, const float *stiffnesses) {
+    const mspringi_yield_test *t = s->test;
     const vec nominal = load(t->nominal + spring_slot), yield = load(t->yield_strain + spring_slot);
     const vec hardening = load(t->hardening + spring_slot), limit = load(t->plastic_limit + spring_slot);
     const vec gain = load(t->gain + spring_slot), one = set(1.0f), stiffness = load(stiffnesses),
@@ -60,25 +73,28 @@ static inline void flow(const mspringi_yield_test *t, size_t spring_slot, vec sq
     if (!bits)
         return;
     mspringi_yield_save(t, spring_slot / MSPRINGI_WIDTH, bits << lane, rests - lane);
-    const vec excess = sub(add(length, mul(hardening, nominal)), mul(whole, rest));
-    const vec heat = mul(stiffness, mul(moved, sub(excess, mul(mul(set(0.5f), whole), moved))));
+    const vec half = set(0.5f), mean = mul(half, add(start_of(s, base, tip, square), length));
+    const vec excess = sub(add(mean, mul(hardening, nominal)), mul(whole, rest));
+    const vec heat = mul(stiffness, mul(moved, sub(excess, mul(mul(half, whole), moved))));
     const vec sum = load(t->heat + spring_slot), more = add(sum, heat), back = sub(zeros, moved);
     store(t->heat + spring_slot, choose_positive(moved, more, choose_positive(back, more, sum)));
     store(rests, to);
     update_bounds(t, spring_slot, moved, to);
 }
 
-// Handle LANES springs of which some are warm or flow: rare. It changes rest lengths, not positions.
-static MSPRINGI_NOINLINE void yield_springs(const mspringi_yield_test *t, size_t spring_slot, uint32_t directions,
-                                            const vec *squares, float *rests, const float *stiffnesses,
-                                            size_t part) {
+// Handle LANES springs from slot on, of which some are warm or flow: rare. It changes rest lengths, not positions.
+static MSPRINGI_NOINLINE void yield_springs(const mspringi_sweep *s, size_t spring_slot, uint32_t directions,
+                                            size_t slot, size_t up, const vec *squares, float *rests,
+                                            const float *stiffnesses, size_t part) {
+    const mspringi_yield_test *t = s->test;
+    const size_t bases[] = {slot, slot, slot, slot + 1}, tips[] = {slot + 1, up, up + 1, up};
     for (uint32_t d = 0; d < directions; ++d, spring_slot += MSPRINGI_WIDTH) {
         if (t->looks) {
             const uint32_t warm = bits_outside(squares[d], t->low + spring_slot, t->high + spring_slot);
             mspringi_yield_mark_warm(t, spring_slot / MSPRINGI_WIDTH, warm << spring_slot % MSPRINGI_WIDTH);
         }
         if (t->maps && bits_outside(squares[d], t->flow_low + spring_slot, t->flow_high + spring_slot))
-            flow(t, spring_slot, squares[d], rests + d * MSPRINGI_WIDTH, stiffnesses + d * part);
+            flow(s, spring_slot, bases[d], tips[d], squares[d], rests + d * MSPRINGI_WIDTH, stiffnesses + d * part);
     }
 }
 

@@ -6,7 +6,7 @@
 ///     e = (L - r) / r0,  p = r / r0 - 1,  t = e - H p,  over = |t| - y
 ///     over > 0:  dp = over / (1 + H);  r += sign(t) r0 dp, with p in -P to P
 ///     energy      k (L - r)^2 / 2 + k H (r - r0)^2 / 2
-///     dissipated  k r0^2 (|t| dp - (1 + H) dp^2 / 2): never negative
+///     dissipated  k r0^2 (|t| + |t'|) dp / 2, with t' of the length at which particles last felt the spring
 ///
 /// So the rest length in force is all of the state. What lies by place here follows from it, or is a parameter.
 ///

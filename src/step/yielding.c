@@ -132,8 +132,18 @@ static bool is_slack(const mspring_network *network, mspringi_spring_slot spring
     return mspringi_is_slack(mspringi_side_of(network, id), (double)length - (double)spring->rest_length);
 }
 
+// Length at which the particles last felt a spring. Symplectic Euler moves them by forces of the substep's start.
+static float start_of(const mspring_network *network, const mspringi_attempt *attempt,
+                      const mspringi_spring_values *spring, double dx, double dy) {
+    const mspringi_state *s = &network->state;
+    const float h = attempt->solver->ops->is_staggered ? attempt->h : 0.0f;
+    const float way_x = h * (s->vx[spring->tip] - s->vx[spring->base]);
+    const float way_y = h * (s->vy[spring->tip] - s->vy[spring->base]);
+    return mspringi_yield_start((float)(dx * dx + dy * dy), (float)dx, (float)dy, way_x, way_y);
+}
+
 // Map one spring back onto its yield surface, as the sweeps of rows do.
-static void map(mspring_network *network, mspringi_spring_slot spring_slot) {
+static void map(mspring_network *network, const mspringi_attempt *attempt, mspringi_spring_slot spring_slot) {
     const mspringi_plastic *p = &network->plastic;
     const mspringi_state *s = &network->state;
     const mspringi_spring_values spring = mspringi_spring_slot_get(network, spring_slot);
@@ -150,18 +160,19 @@ static void map(mspring_network *network, mspringi_spring_slot spring_slot) {
     if (to == spring.rest_length)
         return;
     keep(&network->plastic, spring_slot, spring.rest_length);
-    p->heat[spring_slot] += mspringi_yield_heat(values, spring.stiffness, length, spring.rest_length, to);
+    const float start = start_of(network, attempt, &spring, dx, dy);
+    p->heat[spring_slot] += mspringi_yield_heat(values, spring.stiffness, start, length, spring.rest_length, to);
     network->plastic.flows_seen++;
     mspringi_spring_slot_set_rest_length(network, spring_slot, to);
     mspringi_plastic_renew(network, spring_slot);
 }
 
-static void map_warm(mspring_network *network) {
+static void map_warm(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_plastic *p = &network->plastic;
     for (const mspringi_strain_hit *hit = p->hits; hit < p->hits + p->hit_count; ++hit)
         for (uint32_t bits = hit->bits, lane = 0; bits; bits >>= 1, ++lane)
             if (bits & 1)
-                map(network, hit->word * MSPRINGI_WIDTH + lane);
+                map(network, attempt, hit->word * MSPRINGI_WIDTH + lane);
 }
 
 /* ------------------------------------------------------------------------------------------------------- pieces */
@@ -198,7 +209,7 @@ static uint32_t max_parts(mspring_network *network, const mspringi_attempt *atte
         return left;
     if (left < MSPRINGI_SUBSTEP_PARTS) {
         look(network);
-        map_warm(network);
+        map_warm(network, attempt);
     }
     const float now = fastest_stretch(network, attempt->h);
     look_ahead(network, attempt->h);
@@ -268,8 +279,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
         return base;
     if (substep == 0)
         look(network);
-    (void)attempt;
-    map_warm(network);
+    map_warm(network, attempt);
     return base;
 }
 
@@ -335,8 +345,11 @@ static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
 
 static void after_step(mspring_network *network, double dt) {
     (void)dt;
-    network->plastic.was_warm = warmth_of_all(network) & MSPRINGI_WAS_WARM;
+    mspringi_plastic *p = &network->plastic;
+    const double dissipated = p->dissipated;
+    p->was_warm = warmth_of_all(network) & MSPRINGI_WAS_WARM;
     end_flow(network, book);
+    p->dissipated = fmax(p->dissipated, dissipated);
 }
 
 const mspringi_stage mspringi_stage_yielding = {.is_used = is_used,
