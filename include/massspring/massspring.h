@@ -815,8 +815,9 @@ typedef enum mspring_property {
     /// Nominal damping of a spring, N s/m, 0 to 1e30; of a relative spring its fraction. Values above 0 need a spring
     /// that was made with damping, or MSPRING_NETWORK_RESERVE_DAMPING. Allocates as MSPRING_STIFFNESS.
     MSPRING_DAMPING = 3,
-    /// Rest length of a spring, m, 0 to 4e12, for muscles and winches; 0 is a weld: its ends rest in the same place.
-    /// Writing it ends a ramp. Allocates for a spring of a lattice.
+    /// Rest length of a spring as given, m, 0 to 4e12, for muscles and winches; 0 is a weld: its ends rest in the same
+    /// place. What the spring has yielded comes on top: MSPRING_ACTIVE_REST_LENGTH. Writing it ends a ramp. Allocates
+    /// for a spring of a lattice.
     MSPRING_REST_LENGTH = 4,
     /// Break strain of a spring, > 0; default MSPRING_NEVER. If the size of a spring's strain exceeds it at the end
     /// of a step, the spring breaks. If substeps are too long to follow a blow, the strains are wrong. Allocates.
@@ -838,6 +839,7 @@ typedef enum mspring_property {
     MSPRING_HARDENING = 14,
     MSPRING_PLASTIC_LIMIT = 15,
     MSPRING_PLASTIC_STRAIN = 16,
+    MSPRING_ACTIVE_REST_LENGTH = 17, ///< in force, m: with its ramp and plastic strain; read only
     MSPRING_PROPERTY_INT = MSPRING_ENUM_INT ///< no value
 } mspring_property;
 

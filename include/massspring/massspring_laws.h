@@ -29,8 +29,9 @@
 ///                             back yields again, unless it may not yield until it rests. Writing it ends a ramp.
 ///                             Frames (MSPRING_SNAPSHOT_FRAME) hold it: it is no edit to them.
 ///
-/// To set any of them allocates, the first time. A spring that was broken and is restored keeps its plastic strain. If
-/// you write MSPRING_REST_LENGTH, the plastic strain stays: r0 changes by the same factor. A spring breaks by its total
+/// To set any of them allocates, the first time. A spring that was broken and is restored keeps its plastic strain.
+/// MSPRING_REST_LENGTH is r0, MSPRING_ACTIVE_REST_LENGTH is r. If you write r0, or a signal does (massspring_batch.h),
+/// p stays: rest lengths may be sent in each frame, and dents remain. A spring breaks by its total
 /// strain, (L - r0) / r0, but is stressed and relaxes by the strain in force. A weld never yields, nor does a spring on
 /// a ramp.
 ///

@@ -6,6 +6,7 @@
 #include "sleep/sleep.h"
 #include "store/changed.h"
 #include "store/id_pool.h"
+#include "store/properties.h"
 #include "store/rest_lengths.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -31,7 +32,7 @@ static mspring_result check(mspring_network *network, const mspring_id *springs,
         if (springs[i] >= all || !mspringi_spring_exists(network, springs[i]))
             return mspringi_fail(&network->message, MSPRING_ERROR_ID, "actuator %u: there is no spring %s",
                                  (unsigned)i, MSPRINGI_ID(springs[i]));
-        const float length = mspringi_spring_get(network, springs[i]).rest_length;
+        const float length = mspringi_spring_property(network, MSPRING_REST_LENGTH, springs[i]);
         if (!(length >= SHORTEST))
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                  "actuator %u: spring %u has rest length %g m, it must be at least 1e-12",
@@ -47,7 +48,7 @@ static void free_all(mspring_network *network, mspringi_actuators *a) {
     mspringi_free(memory, a->nominal);
     mspringi_free(memory, a->to);
     mspringi_free(memory, a->from);
-    mspringi_free(memory, a->unbent_from);
+    mspringi_free(memory, a->bent_from);
 }
 
 static mspring_result allocate(mspring_network *network, mspringi_actuators *a) {
@@ -61,8 +62,8 @@ static mspring_result allocate(mspring_network *network, mspringi_actuators *a) 
     a->nominal = mspringi_alloc(memory, a->count, sizeof *a->nominal);
     a->to = mspringi_alloc(memory, a->count, sizeof *a->to);
     a->from = mspringi_alloc(memory, a->count, sizeof *a->from);
-    a->unbent_from = mspringi_alloc(memory, a->count, sizeof *a->unbent_from);
-    if (a->spring && a->of_spring && a->nominal && a->to && a->from && a->unbent_from)
+    a->bent_from = mspringi_alloc(memory, a->count, sizeof *a->bent_from);
+    if (a->spring && a->of_spring && a->nominal && a->to && a->from && a->bent_from)
         return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u actuators", (unsigned)a->count);
 }
@@ -77,7 +78,7 @@ static mspring_result fill(mspring_network *network, mspringi_actuators *a, cons
                                  (unsigned)i, (unsigned)springs[i]);
         a->of_spring[springs[i]] = i;
         a->spring[i] = springs[i];
-        a->nominal[i] = a->to[i] = mspringi_spring_get(network, springs[i]).rest_length;
+        a->nominal[i] = a->to[i] = mspringi_spring_property(network, MSPRING_REST_LENGTH, springs[i]);
     }
     return MSPRING_OK;
 }

@@ -137,7 +137,7 @@ static void put_length_back(mspring_network *network, mspring_id spring, const f
     const bool is_plain =
         mspringi_actuators_are_plain(network) && spring_slot < network->topology.lattice_spring_slots;
     if (actuator && actuator[spring] != MSPRING_NONE)
-        network->actuators.to[actuator[spring]] = lengths[0];
+        network->actuators.to[actuator[spring]] = lengths[1];
     if (network->ramps.count > 0)
         mspringi_ramp_drop(network, spring);
     if (is_plain)

@@ -2,6 +2,8 @@
 ///
 /// Most springs lie in lattices: their values are compared and set in place. An unchanged spring costs only that
 /// comparison.
+#include "store/springs.h"
+
 #include "base/cpu.h"
 #include "base/hash.h"
 #include "edits/edit_values.h"
@@ -11,7 +13,6 @@
 #include "store/changed.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
-#include "store/springs.h"
 
 /* --------------------------------------------------------------------------------------------------- comparing */
 
@@ -50,12 +51,14 @@ static float *thresholds_of(const mspring_network *network, mspring_property pro
                                                : NULL;
 }
 
-// Array of a property. All thresholds have one; so have rest lengths of lattices unless shared, and stiffness and
-// damping of lattices.
+// Array of a property. All thresholds have one; so have the given rest lengths of yielding springs, rest lengths of
+// lattices unless shared, and stiffness and damping of lattices.
 static plane plane_of(const mspring_network *network, mspring_property property) {
     const mspringi_topology *t = &network->topology;
     const uint32_t planes = network->parts - 1;
     float *thresholds = thresholds_of(network, property);
+    if (property == MSPRING_REST_LENGTH && network->ramps.count == 0 && network->plastic.nominal)
+        thresholds = network->plastic.nominal;
     if (thresholds)
         return (plane){thresholds, 1, (mspringi_spring_slot)(mspringi_spring_slot_words(t) * MSPRINGI_WIDTH)};
     if (property == MSPRING_STIFFNESS)
@@ -205,12 +208,6 @@ static void store_limit(mspring_network *network, mspringi_spring_slot spring_sl
         mspringi_strain_store(network, spring_slot, property, value);
 }
 
-// Update plastic bounds after a change of a rest length.
-static void update_plastic_bounds(mspring_network *network, mspringi_spring_slot spring_slot, float had) {
-    if (network->plastic.nominal)
-        mspringi_plastic_follow(network, spring_slot, had);
-}
-
 static mspring_result check_room_for_damping(mspring_network *network, const mspringi_selection *at,
                                              const mspringi_values *values) {
     for (uint32_t i = 0; network->parts <= MSPRINGI_DAMPING && i < at->count; ++i)
@@ -251,7 +248,6 @@ static mspring_result reserve(mspring_network *network, const mspringi_selection
 static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property property, mspring_id spring,
                                       mspringi_spring_slot spring_slot, float value) {
     mspringi_relative nominal;
-    float had;
     switch (property) {
     case MSPRING_STIFFNESS:
     case MSPRING_DAMPING:
@@ -261,9 +257,7 @@ static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property
         break;
     case MSPRING_REST_LENGTH:
         mspringi_ramp_drop(network, spring);
-        had = mspringi_spring_slot_get(network, spring_slot).rest_length;
-        mspringi_spring_slot_set_rest_length(network, spring_slot, value);
-        update_plastic_bounds(network, spring_slot, had);
+        mspringi_spring_slot_give_length(network, spring_slot, value);
         break;
     default:
         if (property == MSPRING_PLASTIC_STRAIN)
@@ -342,16 +336,18 @@ static inline bool set_in_lattice(mspring_network *network, lattice_setter *with
 static inline bool set_in_plane(mspring_network *network, const plane *known, mspring_property property,
                                 mspringi_spring_slot spring_slot, float value) {
     float *at = in_plane(known, spring_slot);
-    const float had = *at;
-    if (had == value)
+    if (*at == value)
         return false;
     if (property != MSPRING_REST_LENGTH) {
         store_limit(network, spring_slot, property, value);
         return true;
     }
+    if (network->plastic.nominal) {
+        mspringi_spring_slot_give_length(network, spring_slot, value);
+        return true;
+    }
     *at = value;
     network->has_welds |= value == MSPRINGI_WELD;
-    update_plastic_bounds(network, spring_slot, had);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
     return true;
 }

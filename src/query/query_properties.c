@@ -93,6 +93,8 @@ static float value_of(const mspring_network *network, mspring_property property,
         return mspringi_spring_slot_get(network, mspringi_slot_of_spring(&network->topology, id)).stiffness;
     case MSPRING_ACTIVE_DAMPING:
         return mspringi_spring_slot_get(network, mspringi_slot_of_spring(&network->topology, id)).damping;
+    case MSPRING_ACTIVE_REST_LENGTH:
+        return mspringi_read_length(mspringi_spring_get(network, id).rest_length);
     case MSPRING_REST_LENGTH:
         return mspringi_read_length(mspringi_spring_property(network, property, id));
     default:

@@ -48,8 +48,8 @@ static void actuators_save(const mspring_network *network, mspringi_writer *to) 
     mspringi_put(to, head, 2, sizeof head[0]);
     for (uint32_t i = 0; i < a->count; ++i) {
         const float *nominal = network->plastic.nominal;
-        const float now = mspringi_actuator_length(network, i);
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, a->spring[i]);
+        const float now = mspringi_spring_slot_get(network, spring_slot).rest_length;
         const float values[VALUES] = {now, a->to[i], nominal ? nominal[spring_slot] : now};
         mspringi_put(to, values, VALUES, sizeof values[0]);
     }

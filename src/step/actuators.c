@@ -9,18 +9,14 @@
 #include "store/stages.h"
 
 float mspringi_actuator_length(const mspring_network *network, uint32_t actuator) {
-    return mspringi_spring_get(network, network->actuators.spring[actuator]).rest_length;
+    return mspringi_spring_slot_given_length(
+        network, mspringi_slot_of_spring(&network->topology, network->actuators.spring[actuator]));
 }
 
 void mspringi_actuator_set_length(mspring_network *network, uint32_t actuator, float length) {
-    const mspringi_spring_slot spring_slot =
-        mspringi_slot_of_spring(&network->topology, network->actuators.spring[actuator]);
-    const float had = mspringi_spring_slot_get(network, spring_slot).rest_length;
-    if (had == length)
-        return;
-    mspringi_spring_slot_set_rest_length(network, spring_slot, length);
-    if (network->plastic.nominal)
-        mspringi_plastic_follow(network, spring_slot, had);
+    const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, network->actuators.spring[actuator]);
+    if (mspringi_spring_slot_given_length(network, spring_slot) != length)
+        mspringi_spring_slot_give_length(network, spring_slot, length);
 }
 
 /* ----------------------------------------------------------------------------------------------- all at once */
@@ -35,10 +31,9 @@ static void keep_lengths(mspring_network *network) {
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring, end = plain_end(network);
     const float *lengths = network->rest_lengths.lengths;
     for (uint32_t i = 0; i < a.count; ++i)
-        a.from[i] = spring_slots[a.spring[i]] < end ? lengths[spring_slots[a.spring[i]]]
-                                                    : mspringi_actuator_length(network, i);
+        a.from[i] = spring_slots[a.spring[i]] < end ? lengths[spring_slots[a.spring[i]]] : mspringi_actuator_length(network, i);
     for (uint32_t i = 0; network->plastic.nominal && i < a.count; ++i)
-        a.unbent_from[i] = network->plastic.nominal[spring_slots[a.spring[i]]];
+        a.bent_from[i] = mspringi_spring_slot_get(network, spring_slots[a.spring[i]]).rest_length;
 }
 
 static void set_lengths(mspring_network *network, const float *to) {
@@ -67,16 +62,16 @@ static void set_between(mspring_network *network, float share) {
     }
 }
 
-// Back to what the step began with. What has flowed in it is straight again, as yielding comes later in a step.
+// Back to what the step began with, whatever has flowed in it.
 static void go_back(mspring_network *network) {
     const mspringi_actuators a = network->actuators;
     float *nominal = network->plastic.nominal;
     set_lengths(network, a.from);
     for (uint32_t i = 0; nominal && i < a.count; ++i) {
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, a.spring[i]);
-        if (nominal[spring_slot] == a.unbent_from[i])
+        if (mspringi_spring_slot_get(network, spring_slot).rest_length == a.bent_from[i])
             continue;
-        nominal[spring_slot] = a.unbent_from[i];
+        mspringi_spring_slot_set_rest_length(network, spring_slot, a.bent_from[i]);
         mspringi_plastic_renew(network, spring_slot);
     }
 }

@@ -7,7 +7,7 @@
 
 #include "store/network.h"
 
-/// The rest length of an actuator now.
+/// The rest length of an actuator now, before any flow.
 float mspringi_actuator_length(const mspring_network *network, uint32_t actuator);
 /// Set it; after mspringi_rest_lengths_unshare().
 void mspringi_actuator_set_length(mspring_network *network, uint32_t actuator, float length);

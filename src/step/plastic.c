@@ -118,11 +118,17 @@ void mspringi_plastic_store(mspring_network *network, mspringi_spring_slot sprin
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 
-void mspringi_plastic_follow(mspring_network *network, mspringi_spring_slot spring_slot, float had) {
-    float *nominal = &network->plastic.nominal[spring_slot];
-    const float rest = mspringi_spring_slot_get(network, spring_slot).rest_length;
-    const bool is_whole = *nominal == had || rest == MSPRINGI_WELD || had == MSPRINGI_WELD;
-    *nominal = is_whole ? rest : (float)((double)rest * ((double)*nominal / (double)had));
+void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_slot spring_slot, float length) {
+    if (!network->plastic.nominal) {
+        mspringi_spring_slot_set_rest_length(network, spring_slot, length);
+        return;
+    }
+    const float own = mspringi_spring_slot_own_length(network, spring_slot),
+                had = network->plastic.nominal[spring_slot];
+    const bool is_straight = own == had || had == MSPRINGI_WELD || length == MSPRINGI_WELD;
+    network->plastic.nominal[spring_slot] = length;
+    mspringi_spring_slot_set_rest_length(
+        network, spring_slot, is_straight ? length : (float)((double)length * ((double)own / (double)had)));
     mspringi_plastic_renew(network, spring_slot);
 }
 

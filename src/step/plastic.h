@@ -27,8 +27,8 @@ mspring_result mspringi_plastic_match_layout(mspring_network *to, const mspring_
 void mspringi_plastic_store(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
                             float value);
 
-/// Follow a rest length that was set: the plastic strain that the spring has, had being its rest length, stays.
-void mspringi_plastic_follow(mspring_network *network, mspringi_spring_slot spring_slot, float had);
+/// Set the rest length that the host gives. In force is that times 1 + the plastic strain, which stays.
+void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_slot spring_slot, float length);
 
 /// What a spring yields at.
 mspringi_yield_values mspringi_yield_values_of(const mspring_network *network, mspringi_spring_slot spring_slot);

@@ -53,7 +53,7 @@ typedef struct mspringi_actuators {
     float *nominal;      ///< [count] rest length at signal 1, m
     float *to;           ///< [count] at the end of the next step
     float *from;         ///< [count] at the beginning of the step that is being made, if signals came before it
-    float *unbent_from;  ///< [count] and before it had ever yielded; where springs yield
+    float *bent_from;    ///< [count] and what was in force then; where springs yield
 } mspringi_actuators;
 
 #endif

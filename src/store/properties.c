@@ -22,6 +22,7 @@ static const mspringi_property list[] = {
     [MSPRING_HARDENING] = {"hardening", "", "0 to 10", MSPRINGI_SPRINGS, true},
     [MSPRING_PLASTIC_LIMIT] = {"plastic limit", "", "0 to 0.9", MSPRINGI_SPRINGS, true},
     [MSPRING_PLASTIC_STRAIN] = {"plastic strain", "", "-0.9 to 0.9", MSPRINGI_SPRINGS, true},
+    [MSPRING_ACTIVE_REST_LENGTH] = {"rest length in force", " m", "", MSPRINGI_SPRINGS, false},
 };
 
 const mspringi_property *mspringi_property_of(mspring_property property) {
@@ -106,7 +107,7 @@ float mspringi_spring_property(const mspring_network *network, mspring_property 
     case MSPRING_DAMPING:
         return mspringi_spring_get_nominal(network, spring, spring_slot).damping;
     case MSPRING_REST_LENGTH:
-        return mspringi_spring_slot_get(network, spring_slot).rest_length;
+        return mspringi_spring_slot_given_length(network, spring_slot);
     case MSPRING_BREAK_STRAIN:
         return strain->break_strain ? strain->break_strain[spring_slot] : INFINITY;
     case MSPRING_STRESS_STRAIN:

@@ -22,9 +22,10 @@ static inline bool mspringi_is_inverse_mass_scale(float scale) {
     return (scale == 0.0f) | ((scale >= MSPRINGI_SMALLEST_SCALE) & (scale <= 1.0f));
 }
 
-/// Whether a network may keep this stiffness, damping or rest length.
+/// Whether a network may keep this stiffness, damping or rest length in force, which flow may take to 1.9 times the
+/// longest that may be given.
 static inline bool mspringi_is_spring_value(mspringi_part part, float value) {
-    return part == MSPRINGI_REST_LENGTH ? (value > 0.0f) & (value <= 4e12f) : (value >= 0.0f) & (value <= 1e30f);
+    return part == MSPRINGI_REST_LENGTH ? (value > 0.0f) & (value <= 8e12f) : (value >= 0.0f) & (value <= 1e30f);
 }
 
 /// A threshold as networks keep it, and as the host reads it. Times a rest length, INFINITY alone is above all

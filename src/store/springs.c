@@ -73,6 +73,11 @@ float mspringi_spring_slot_own_length(const mspring_network *network, mspringi_s
     return ramp ? ramp->to : *find_records(network, spring_slot).ends[0].rest_length;
 }
 
+float mspringi_spring_slot_given_length(const mspring_network *network, mspringi_spring_slot spring_slot) {
+    return network->plastic.nominal ? network->plastic.nominal[spring_slot]
+                                    : mspringi_spring_slot_own_length(network, spring_slot);
+}
+
 // Whether a spring was given with the higher id first.
 static bool is_turned(const mspring_network *network, mspring_id spring) {
     const uint32_t first_spare = network->topology.reserve.first_spring;

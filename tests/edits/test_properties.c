@@ -235,13 +235,13 @@ static void a_ramp_ends_even_at_the_length_that_it_has(void **state) {
     check_ok(mspring_network_break_springs(network, &spring, 1));
     check_ok(mspring_network_restore_springs(network, &spring, 1, 10.0));
     support_steps(network, 1, DT);
-    check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, spring, 1, &before, 1));
+    check_ok(mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, spring, 1, &before, 1));
     support_steps(network, 1, DT);
-    check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, spring, 1, &during, 1));
+    check_ok(mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, spring, 1, &during, 1));
     assert_true(during != before);
     check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, spring, 1, &during, 1));
     support_steps(network, 5, DT);
-    check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, spring, 1, &after, 1));
+    check_ok(mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, spring, 1, &after, 1));
     assert_true(after == during);
     mspring_network_destroy(network);
     recipe_free(&made);
@@ -317,9 +317,9 @@ static void refused_ones_are_named(void **state) {
         check_error(mspring_network_set(network, p, 0, 1, kept, 1), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "can only be read");
     }
-    check_error(mspring_network_set(network, (mspring_property)(MSPRING_PLASTIC_STRAIN + 1), 0, 1, kept, 1),
+    check_error(mspring_network_set(network, (mspring_property)(MSPRING_ACTIVE_REST_LENGTH + 1), 0, 1, kept, 1),
                 MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_network_error(network), "no property 17");
+    check_contains(mspring_network_error(network), "no property 18");
     assert_true(support_hash(network) == hash);
     mspring_network_destroy(network);
     recipe_free(&made);
