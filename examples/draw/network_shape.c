@@ -66,7 +66,7 @@ static mspring_result read_network(network_shape *made, const mspring_network *n
     if (result == MSPRING_OK)
         result = mspring_network_get_ends(network, 0, springs, MSPRING_ENDS_IDS, made->a, made->b, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_REST_LENGTH, 0, springs, made->rest_length, 1);
+        result = mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, 0, springs, made->rest_length, 1);
     if (result == MSPRING_OK)
         result = mspring_network_get_spring_flags(network, 0, springs, made->flags, 1);
     return result == MSPRING_OK
