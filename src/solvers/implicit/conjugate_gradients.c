@@ -11,6 +11,7 @@
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -21,7 +22,12 @@ typedef mspringi_implicit_substep substep_of;
 /// iteration.
 #define LEAST_PRODUCT 1e-30
 
-/// The same where rows join bodies, and so many times the usual iterations at most.
+/// Product of residuals, or of a direction, that is none: below it single precision keeps fewer and fewer digits,
+/// so quotients of such products are noise, or infinite. Masses are scaled to be near 1, so it moves nothing by
+/// more than 1e-19 m.
+#define NO_PRODUCT ((double)FLT_MIN)
+
+/// LEAST_PRODUCT where rows join bodies, and so many times the usual iterations at most.
 #define LEAST_PRODUCT_WITH_ROWS 1e-9
 #define TIMES_WITH_ROWS 16
 
@@ -141,7 +147,8 @@ static double solve_tiles(const substep_of *substep, mspringi_team_member *membe
     const double product = correct(substep, member, true);
     turn(substep, member, MSPRINGI_SEARCH_COARSE_ONLY, 0.0f);
     const double curvature = mspringi_multiply(substep, member);
-    const bool is_sound = curvature > 0.0 && curvature < INFINITY && product < INFINITY;
+    const bool is_sound =
+        product >= NO_PRODUCT && product < INFINITY && curvature >= NO_PRODUCT && curvature < INFINITY;
     return advance(substep, member, is_sound ? (float)(product / curvature) : 0.0f, true);
 }
 
@@ -182,7 +189,7 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
         if (!(curvature < INFINITY && product < INFINITY))
             return NAN;
         // Nothing is left to do, or to be done in this precision.
-        if (curvature <= 0.0 || product <= least)
+        if (curvature < NO_PRODUCT || product < NO_PRODUCT || product <= least)
             return 0.0f;
         const float alpha = (float)(product / curvature);
         if (--left == 0)
