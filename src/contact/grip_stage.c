@@ -9,8 +9,9 @@
 /// t and u being place and velocity of the target at the end of the substep. Of several that hold one particle k, c
 /// and forces add up. It is the soft constraint of Box2D
 /// (Catto, "Soft Constraints", 2011), with softness and bias written out. The particle is as if its mass were m + h
-/// c + h^2 k, so what is stable without the grip is stable with it. A force that is bounded is a smaller one,
-/// towards the same place: no particle overshoots by it that would not without.
+/// c + h^2 k, so what is stable without the grip is stable with it. The force of one that is bounded is a smaller
+/// one, towards the same place: no particle overshoots by it that would not without. Of several, each acts with the
+/// part of k and c that keeps its force within its bound at the end of the substep.
 #include <math.h>
 
 #include "contact/floor.h"
@@ -83,16 +84,23 @@ typedef struct mspringi_grips_of_particle {
     mspringi_grip *grips[MSPRING_MAX_GRIPS];
     mspringi_grip_target targets[MSPRING_MAX_GRIPS];
     mspringi_force forces[MSPRING_MAX_GRIPS];
-    bool is_bounded[MSPRING_MAX_GRIPS]; // its force is the most that it can exert
+    double part[MSPRING_MAX_GRIPS]; // of stiffness and damping that act, for the force to be within its bound
     uint32_t count;
     double x, y, vx, vy, by, h;
 } mspringi_grips_of_particle;
 
-// What a grip resists velocity with, over a substep.
+// Resistance of a grip to velocity over a substep, as a part of the particle's own.
 static double resistance(const mspringi_grips_of_particle *hold, uint32_t i) {
     const mspringi_grip *grip = hold->grips[i];
-    return hold->is_bounded[i] ? 0.0
-                               : hold->h * ((double)grip->damping + hold->h * (double)grip->stiffness) * hold->by;
+    return hold->h * ((double)grip->damping + hold->h * (double)grip->stiffness) * hold->by * hold->part[i];
+}
+
+// The force of one grip, unbounded, if the particle does not feel it.
+static mspringi_force force_at_start(const mspringi_grips_of_particle *hold, uint32_t i) {
+    const double k = (double)hold->grips[i]->stiffness, c = (double)hold->grips[i]->damping;
+    const mspringi_grip_target *to = &hold->targets[i];
+    return (mspringi_force){k * (to->x - hold->x) + c * (to->vx - hold->vx),
+                            k * (to->y - hold->y) + c * (to->vy - hold->vy)};
 }
 
 // The force of one grip at the end of the substep, out of what all would exert now: by others, so that none cancels
@@ -118,35 +126,76 @@ static mspringi_force solve(mspringi_grips_of_particle *hold) {
     mspringi_force now[MSPRING_MAX_GRIPS], sum = {0.0, 0.0};
     double firmness = 0.0;
     for (uint32_t i = 0; i < hold->count; ++i) {
-        const double k = (double)hold->grips[i]->stiffness, c = (double)hold->grips[i]->damping;
-        const mspringi_grip_target *to = &hold->targets[i];
-        now[i] = hold->forces[i];
-        if (!hold->is_bounded[i])
-            now[i] = (mspringi_force){k * (to->x - hold->x) + c * (to->vx - hold->vx),
-                                      k * (to->y - hold->y) + c * (to->vy - hold->vy)};
+        const mspringi_force whole = force_at_start(hold, i);
+        now[i] = (mspringi_force){hold->part[i] * whole.x, hold->part[i] * whole.y};
         sum.x += now[i].x;
         sum.y += now[i].y;
         firmness += resistance(hold, i);
     }
     const double share = 1.0 / (1.0 + firmness);
     for (uint32_t i = 0; i < hold->count; ++i)
-        if (!hold->is_bounded[i])
-            hold->forces[i] = force_of(hold, i, now, share);
+        hold->forces[i] = force_of(hold, i, now, share);
     return (mspringi_force){share * sum.x, share * sum.y};
 }
 
-// Forces within their bounds: each pass finds more that are at theirs, so there is an end.
-static mspringi_force solve_bounded(mspringi_grips_of_particle *hold) {
-    for (;;) {
-        const mspringi_force sum = solve(hold);
-        bool any = false;
-        for (uint32_t i = 0; i < hold->count; ++i)
-            if (!hold->is_bounded[i])
-                any |= hold->is_bounded[i] =
-                    mspringi_grip_bound(hold->grips[i], &hold->forces[i].x, &hold->forces[i].y);
-        if (!any)
-            return sum;
+/// Times at most that parts are found anew, and a change of a part that is none. Of 200,000 holds of 2 to 5 random
+/// grips 2 % need more than 32, and 64 bring all within 6 % of their bounds.
+#define MOST_PASSES 64
+#define SAME_PART 1e-7
+
+/// The least part: a stiffness that is next to nothing, but no division by 0.
+#define LEAST_PART 1e-30
+
+// The force of one grip within its bound.
+static mspringi_force solve_one(mspringi_grips_of_particle *hold) {
+    const mspringi_force sum = solve(hold);
+    return mspringi_grip_bound(hold->grips[0], &hold->forces[0].x, &hold->forces[0].y) ? hold->forces[0] : sum;
+}
+
+// The part of its stiffness and damping that keeps a grip within its bound, if all of them give this force.
+static double part_of(const mspringi_grip *grip, mspringi_force force) {
+    const double size = sqrt(force.x * force.x + force.y * force.y), most = (double)grip->max_force;
+    const double part = size > most ? most / size : 1.0;
+    return part > LEAST_PART ? part : LEAST_PART;
+}
+
+// Find the parts anew by the forces that they led to. Returns whether any is another.
+static bool find_parts(mspringi_grips_of_particle *hold) {
+    bool any = false;
+    for (uint32_t i = 0; i < hold->count; ++i) {
+        const double had = hold->part[i];
+        const mspringi_force whole = {hold->forces[i].x / had, hold->forces[i].y / had};
+        hold->part[i] = part_of(hold->grips[i], whole);
+        any |= fabs(hold->part[i] - had) > SAME_PART * had;
     }
+    return any;
+}
+
+// Shrink all forces alike until each is within its bound: less of a change that takes energy takes energy, too.
+static mspringi_force shrink(mspringi_grips_of_particle *hold, mspringi_force sum) {
+    double least = 1.0;
+    for (uint32_t i = 0; i < hold->count; ++i) {
+        const double part = part_of(hold->grips[i], hold->forces[i]);
+        least = part < least ? part : least;
+    }
+    for (uint32_t i = 0; i < hold->count; ++i) {
+        hold->forces[i].x *= least;
+        hold->forces[i].y *= least;
+    }
+    return (mspringi_force){least * sum.x, least * sum.y};
+}
+
+// Forces of several within their bounds: iteratively reweighted least squares (Huber 1981). The parts begin as if
+// the particle stayed where it is, so the energy of all, with that of the bounds, falls from there in each pass.
+static mspringi_force solve_bounded(mspringi_grips_of_particle *hold) {
+    if (hold->count == 1)
+        return solve_one(hold);
+    for (uint32_t i = 0; i < hold->count; ++i)
+        hold->part[i] = part_of(hold->grips[i], force_at_start(hold, i));
+    mspringi_force sum = solve(hold);
+    for (int pass = 0; pass < MOST_PASSES && find_parts(hold); ++pass)
+        sum = solve(hold);
+    return shrink(hold, sum);
 }
 
 static void apply_grips(mspring_network *network, mspringi_grips_of_particle *hold, uint32_t slot) {
@@ -187,7 +236,7 @@ static void collect_grips(mspring_network *network, uint32_t first, mspringi_gri
             return;
         hold->grips[hold->count] = grip;
         hold->targets[hold->count] = mspringi_grip_target_at(network, grip, grips->begin + grips->share);
-        hold->is_bounded[hold->count++] = false;
+        hold->part[hold->count++] = 1.0;
     }
 }
 
