@@ -243,7 +243,7 @@ static void check_free(const mspring_network *network, component *a, const centr
     // What another body gave it acts from the beginning of the substep on.
     const double before = a->is_touched ? 0.0 : 0.5, after = 1.0 - before;
     move_centre(a, c, o->h * (before * (a->origin[2] + a->vx) + after * vx),
-                o->h * (before * (a->origin[3] + a->vy) + after * vy));
+        o->h * (before * (a->origin[3] + a->vy) + after * vy));
 }
 
 static void check_held(const mspring_network *network, component *a, const centre *c, double h) {
@@ -287,8 +287,8 @@ static void stop_at_floor(component *a, size_t slot) {
     a->stop_slot = (uint32_t)slot;
 }
 
-// Components that would be shifted into the floor stay where the substep has led them: the floor holds them, too.
-static void find_obstacle(const mspring_network *network) {
+// Components that would be shifted into the floor or a collider stay where the substep has led them.
+static void find_obstacle(const mspring_network *network, double h) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_motion m = motion_of(network);
     for (size_t slot = 0; network->floor && slot < mspringi_slot_count(network); ++slot) {
@@ -300,6 +300,7 @@ static void find_obstacle(const mspring_network *network) {
                            (double)m.y[slot] + (double)m.low_y[slot] + a->shift_y))
             stop_at_floor(a, slot);
     }
+    mspringi_walls_stop_shifted(network, h);
 }
 
 static void check_component(const mspring_network *network, component *a, const outside *o) {
@@ -324,7 +325,7 @@ static bool check_all(const mspring_network *network, const outside *o, bool *ex
     *exceeds = false;
     for (component *a = budget->components; a < end; ++a)
         check_component(network, a, o);
-    find_obstacle(network);
+    find_obstacle(network, o->h);
     for (component *a = budget->components; a < end; ++a) {
         if (a->is_free && a->is_stopped)
             check_component(network, a, o);
@@ -423,7 +424,7 @@ static void hold_place(const component *a, const centre *c, double h, double *x,
 
 // Where a slot is after its component's share of the way. Returns false if it has no part in going back.
 static bool restore_positions(const mspring_network *network, const mspringi_motion *before, double h, size_t slot,
-                              double *x, double *y) {
+                       double *x, double *y) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const budget_of *budget = &n->budget;
     if (budget->of_slot[slot] == MSPRINGI_NO_COMPONENT || !(network->inverse_mass[slot] > 0.0f))
@@ -440,10 +441,10 @@ static bool restore_positions(const mspring_network *network, const mspringi_mot
     return true;
 }
 
-// Let all components that have too much go back half of their way, or all of it. One that the floor is in the way
-// of stops where it was. What the floor holds then rests, and forces of before would push it on: the next substep
-// is of implicit Euler. (A body that spins keeps its history, as do all others in the network: a fragment of two
-// particles that spun had the vibration of a bar far away damped.)
+// Let all components that have too much go back half of their way, or all of it. One that floor or collider are in
+// the way of stops where it was. What the floor holds then rests: the next substep is of implicit Euler. (A body
+// that spins keeps its history, as do all others in the network: a fragment of two particles that spun had the
+// vibration of a bar far away damped.)
 static void step_back(mspring_network *network, const mspringi_motion *before, double h, bool is_last) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     budget_of *budget = &n->budget;
@@ -463,12 +464,14 @@ static void step_back(mspring_network *network, const mspringi_motion *before, d
         stop_at_floor(a, slot);
         a->share = 0.0;
     }
-    for (size_t slot = 0; slot < slots; ++slot) {
-        if (!restore_positions(network, before, h, slot, &x, &y))
-            continue;
-        mspringi_set_x(&network->state, slot, x);
-        mspringi_set_y(&network->state, slot, y);
-    }
+    do {
+        for (size_t slot = 0; slot < slots; ++slot) {
+            if (!restore_positions(network, before, h, slot, &x, &y))
+                continue;
+            mspringi_set_x(&network->state, slot, x);
+            mspringi_set_y(&network->state, slot, y);
+        }
+    } while (mspringi_walls_stop_back(network, h));
 }
 
 // What the floor has given a component in a substep, from what its momentum has changed by.
@@ -556,11 +559,11 @@ static void remember_elastic(const mspring_network *network) {
 
 bool mspringi_budget_end(mspring_network *network, float h, mspringi_field base, bool may_halve) {
     mspringi_budget_sums all = {.network = network,
-                                .motion = motion_of(network),
-                                .before = motion_before(network),
-                                .base = base,
-                                .h = h,
-                                .is_after = true};
+                              .motion = motion_of(network),
+                              .before = motion_before(network),
+                              .base = base,
+                              .h = h,
+                              .is_after = true};
     const outside o = outside_in(network, (double)h);
     for (int step = 0;; ++step) {
         bool exceeds;

@@ -86,11 +86,11 @@ typedef struct mspringi_component_budget {
     double internal, flight; ///< before: elastic and kinetic about it; kinetic of it, J
     double keep;             ///< new velocities are keep v + (add_x, add_y) + turn x (r - centre)
     double add_x, add_y, turn;
-    double shift_x, shift_y;                 ///< of all positions, m
-    bool is_free;                            ///< neither a pin nor the floor holds it
-    bool is_stopped;                         ///< the floor is in its way, though it gave it no impulse
-    uint32_t stop_slot;                      ///< slot where it is
-    double share;                            ///< of its way that it goes
+    double shift_x, shift_y; ///< of all positions, m
+    bool is_free;            ///< neither a pin nor the floor holds it
+    bool is_stopped;         ///< the floor or a collider is in its way, though it gave it no impulse
+    uint32_t stop_slot;      ///< slot where the floor is; MSPRING_NONE: a collider
+    double share;            ///< of its way that it goes
     double floor_impulse_x, floor_impulse_y; ///< N s that the floor has given it, but for what is counted
     uint32_t support_count;                  ///< contacts that hold it
     uint32_t second_support_slot;            ///< slot of another particle that the floor acts on
@@ -139,6 +139,13 @@ void mspringi_budget_begin(mspring_network *network);
 /// is only if may_halve; mspringi_budget_undo() then takes it back.
 bool mspringi_budget_end(mspring_network *network, float h, mspringi_field base, bool may_halve);
 void mspringi_budget_undo(mspring_network *network);
+
+/* walls.c */
+
+/// After a substep of h: stop the components that their shift would press deeper into a collider than they were.
+void mspringi_walls_stop_shifted(const mspring_network *network, double h);
+/// Stop those that have gone back into one. Returns whether any has to be placed again.
+bool mspringi_walls_stop_back(const mspring_network *network, double h);
 
 /* budget_sums.c */
 

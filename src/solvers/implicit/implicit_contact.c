@@ -32,6 +32,10 @@
 #define UNSEEN_SHARE 1e-6
 #define MENDED_SHARE 0.02
 
+/// What is deeper than this share of the thickness may not get deeper at all, and what is half as deep by half of
+/// that in a substep: what is pressed for long would sink through otherwise. Colliders do not give way.
+#define DEEPEST_SHARE 0.2
+
 /// Work of contact, and pull, that may be rounding, as shares of the largest work and push.
 #define GIVEN_SHARE 1e-3
 
@@ -349,7 +353,9 @@ void mspringi_implicit_contact_store_impulses(mspring_network *network, float h)
 static bool mend(const mspringi_contacts *contacts, mspringi_contact_constraint *t, double h, double given) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const double speed = mspringi_normal_speed(t, k->v);
-    const double least = (t->gap < 0.0 ? t->gap : 0.0) - given;
+    const double deep = t->gap < 0.0 ? -t->gap / (DEEPEST_SHARE * contacts->thickness) : 0.0;
+    const double gives = t->collider != MSPRING_NONE || deep > 1.0 ? 0.0 : given * (1.0 - deep);
+    const double least = (t->gap < 0.0 ? t->gap : 0.0) - gives;
     const double lacks = least - (t->gap + h * speed);
     if (!(lacks > UNSEEN_SHARE * contacts->thickness))
         return false;
@@ -385,6 +391,13 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
         for (uint32_t i = 0; i < contacts->constraint_count; ++i)
             again |= mend(contacts, &contacts->constraints[i], h, given);
         any |= again;
+    }
+    // Colliders last: nothing passes them, whatever else lies deeper for it.
+    for (uint32_t sweep = 0, again = any; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
+        again = 0;
+        for (uint32_t i = 0; i < contacts->constraint_count; ++i)
+            again |= contacts->constraints[i].collider != MSPRING_NONE &&
+                     mend(contacts, &contacts->constraints[i], h, given);
     }
     for (uint32_t i = 0; i < k->particle_count && any; ++i) {
         const uint32_t slot = slot_of(network, i);

@@ -1,0 +1,95 @@
+/// Colliders that are in the way of what the energy budget would do to a component.
+///
+/// Impulses after a substep leave nothing deeper in a collider than it was before (implicit_contact.c). The budget
+/// then shifts components, or has them go back. One that this would press into a collider stays where the substep
+/// has led it, or stops where it was: a body between a heavy one and a wall was pressed through the wall else, some
+/// of the thickness in each substep.
+#include "solvers/implicit/implicit_terms.h"
+
+/// Depth that is none, as a share of the thickness: twice that which impulses leave.
+#define UNSEEN_SHARE 2e-6
+
+/// A constraint between a collider and one of the network's particles at least.
+typedef struct wall {
+    uint32_t slot;   ///< of that particle
+    double nx, ny;   ///< direction from the collider to the body
+    double deepened; ///< m that the substep has made it deeper by
+} wall;
+
+static uint32_t slot_of(const mspring_network *network, uint32_t node) {
+    return network->topology.slot_of_particle[network->contacts->nodes.particles[node]];
+}
+
+// The way of a node in the substep.
+static void add_way(const mspring_network *network, uint32_t node, double share, double h, double way[2]) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    const mspringi_state *s = &network->state;
+    if (node >= k->particle_count) {
+        way[0] += share * h * k->v[node].x;
+        way[1] += share * h * k->v[node].y;
+        return;
+    }
+    way[0] += share * (mspringi_x_of(s, slot_of(network, node)) - k->x[node]);
+    way[1] += share * (mspringi_y_of(s, slot_of(network, node)) - k->y[node]);
+}
+
+static wall wall_of(const mspring_network *network, const mspringi_contact_constraint *t, double h) {
+    const bool is_of_point = t->p < network->contacts->nodes.particle_count;
+    const double sign = is_of_point ? 1.0 : -1.0, least = t->gap < 0.0 ? t->gap : 0.0;
+    double way[2] = {0.0, 0.0};
+    add_way(network, t->p, 1.0, h, way);
+    add_way(network, t->a, -t->bary_a, h, way);
+    add_way(network, t->b, -t->bary_b, h, way);
+    return (wall){.slot = slot_of(network, is_of_point ? t->p : t->a),
+                  .nx = sign * t->nx,
+                  .ny = sign * t->ny,
+                  .deepened = least - (t->gap + way[0] * t->nx + way[1] * t->ny)};
+}
+
+// Stop an account where the substep has led it, if the collider moves, else where it was. Returns whether that is
+// elsewhere than before.
+static bool stop_at(mspringi_component_budget *a, bool is_moving) {
+    const double share = is_moving ? 1.0 : 0.0;
+    if (a->is_stopped && a->share >= share)
+        return false;
+    a->is_stopped = true;
+    a->stop_slot = MSPRING_NONE;
+    a->share = share;
+    return true;
+}
+
+void mspringi_walls_stop_shifted(const mspring_network *network, double h) {
+    const mspringi_contacts *contacts = network->contacts;
+    mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    for (uint32_t i = 0; mspringi_implicit_contact_is_near(network) && i < contacts->constraint_count; ++i) {
+        if (contacts->constraints[i].collider == MSPRING_NONE)
+            continue;
+        const wall w = wall_of(network, &contacts->constraints[i], h);
+        if (budget->of_slot[w.slot] == MSPRINGI_NO_COMPONENT)
+            continue;
+        mspringi_component_budget *a = &budget->components[budget->of_slot[w.slot]];
+        const double deepened = w.deepened - (w.nx * a->shift_x + w.ny * a->shift_y);
+        if ((a->shift_x == 0.0 && a->shift_y == 0.0) || !(deepened > UNSEEN_SHARE * contacts->thickness))
+            continue;
+        a->is_stopped = true;
+        a->stop_slot = MSPRING_NONE;
+    }
+}
+
+bool mspringi_walls_stop_back(const mspring_network *network, double h) {
+    const mspringi_contacts *contacts = network->contacts;
+    mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    bool any = false;
+    for (uint32_t i = 0; mspringi_implicit_contact_is_near(network) && i < contacts->constraint_count; ++i) {
+        const uint32_t number = contacts->constraints[i].collider;
+        if (number == MSPRING_NONE)
+            continue;
+        const wall w = wall_of(network, &contacts->constraints[i], h);
+        if (budget->of_slot[w.slot] == MSPRINGI_NO_COMPONENT)
+            continue;
+        mspringi_component_budget *a = &budget->components[budget->of_slot[w.slot]];
+        if (a->exceeds && w.deepened > UNSEEN_SHARE * contacts->thickness)
+            any |= stop_at(a, contacts->colliders.list[number].is_moving);
+    }
+    return any;
+}
