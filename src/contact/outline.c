@@ -19,8 +19,9 @@ void mspringi_outline_ends(const mspring_network *network, mspring_id spring, ms
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
-    ends[0] = t->particle_of_slot[base];
-    ends[1] = t->particle_of_slot[tip];
+    const mspring_id a = t->particle_of_slot[base], b = t->particle_of_slot[tip];
+    ends[0] = a < b ? a : b; // which end is the base follows from the plan
+    ends[1] = a < b ? b : a;
 }
 
 // The next live spring at a particle, and its other end.
