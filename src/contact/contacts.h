@@ -8,6 +8,7 @@
 ///   constraints.c       which of them touch in a substep, in which order
 ///   contact_solver.c     solving these, in pieces of the substep, and how they move on
 ///   gauss_seidel.c     the impulses of those that touch
+///   piles.c      what sleeps on what, so that it wakes together
 ///   contact_stage.c   the stage: when to look, and which islands sleep and wake together
 ///   contact_events.c   contacts that begin and end, as events for the host
 ///   contact_materials.c      friction and restitution of particles of their own
@@ -351,6 +352,8 @@ static inline mspringi_closest_point mspringi_closest_point_on_edge(double px, d
 bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts);
 /// Look how near points and edges are, and for how many substeps nothing can touch. False: as above.
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts);
+/// List the pairs nearer than a distance, m, instead of those that there are. Those of the next look are others.
+void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
 
 /* constraints.c */
 
@@ -404,6 +407,11 @@ static inline double mspringi_normal_speed(const mspringi_contact_constraint *t,
 }
 /// Give all rows of a piece of h seconds their impulses. False: some would still get much deeper.
 bool mspringi_contact_sweep(const mspringi_contacts *contacts, double h, uint32_t sweeps);
+
+/* piles.c */
+
+/// Find what sleeps on what.
+void mspringi_piles_find(mspring_network *network);
 
 /* contact_stage.c */
 

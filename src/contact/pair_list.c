@@ -422,3 +422,13 @@ bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *
     contacts->quiet_substeps = contacts->is_second_try ? 0 : count_quiet(contacts);
     return true;
 }
+
+void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach) {
+    mspringi_outline_update(network, contacts);
+    measure_points(network, contacts);
+    if (!make_list(network, contacts, reach))
+        contacts->count = 0;
+    contacts->candidate_count = 0;
+    activate_all(contacts);
+    contacts->is_listed = contacts->is_fresh = false;
+}

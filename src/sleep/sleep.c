@@ -103,13 +103,24 @@ static void save_rest_times(mspringi_sleep *s) {
 }
 
 // The time at rest of a woken island restarts at 0.
-static void set_awake(mspring_network *network, uint32_t island) {
+static bool set_one_awake(mspring_network *network, uint32_t island) {
     mspringi_sleep *s = &network->sleep;
     const bool slept = s->still[island] < 0.0;
     s->still[island] = 0.0;
     s->sleeping -= slept;
     if (slept)
         mspringi_notify_change(network, MSPRINGI_CHANGED_NAPS, 0);
+    return slept;
+}
+
+// All of its pile wakes, too. What sleeps has a past: it has been at rest.
+static void set_awake(mspring_network *network, uint32_t island) {
+    mspringi_sleep *s = &network->sleep;
+    const uint32_t first = s->lowest[island];
+    if (!set_one_awake(network, island))
+        return;
+    for (uint32_t slot = s->beside[first]; slot != first; slot = s->beside[slot])
+        (void)set_one_awake(network, s->island[slot]);
 }
 
 static void set_all_awake(mspring_network *network) {
@@ -394,6 +405,7 @@ void mspringi_sleep_fall(mspring_network *network, mspringi_field force) {
         if (!s->mark[i])
             continue;
         s->still[i] = -1.0;
+        s->beside[s->lowest[i]] = s->lowest[i];
         s->sleeping++;
         mspringi_notify_change(network, MSPRINGI_CHANGED_NAPS, 0);
     }
@@ -450,10 +462,26 @@ const mspringi_stage mspringi_stage_waking = {.is_used = is_used,
                                               .roll_back = restore,
                                               .undo = drop_force};
 
-// The last stage of a step: it sees the effects of all others.
+// After all stages that change the state.
 const mspringi_stage mspringi_stage_falling_asleep = {.is_used = is_used, .after_step = fall_asleep};
 
 /* ---------------------------------------------------------------------------------------------------- relayout */
+
+// The lowest slot of the island of a particle of another network.
+static uint32_t lowest_of(const mspring_network *to, mspring_id particle) {
+    return to->sleep.lowest[to->sleep.island[to->topology.slot_of_particle[particle]]];
+}
+
+static void move_piles(mspring_network *to, const mspring_network *from) {
+    const mspringi_sleep *had = &from->sleep;
+    const mspring_id *of_slot = from->topology.particle_of_slot;
+    for (uint32_t i = 0; i < had->count; ++i) {
+        const uint32_t slot = had->lowest[i];
+        if (had->still[i] < 0.0)
+            to->sleep.beside[lowest_of(to, of_slot[slot])] = lowest_of(to, of_slot[had->beside[slot]]);
+    }
+    to->sleep.piled = to->edits.sleep_changes - (had->piled != from->edits.sleep_changes);
+}
 
 void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
     mspringi_sleep *s = &to->sleep;
@@ -482,6 +510,7 @@ void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
             s->still[i] = -1.0;
         s->sleeping += s->still[i] < 0.0;
     }
+    move_piles(to, from);
     s->has_force = had->has_force;
     s->origin_x = had->origin_x;
     s->origin_y = had->origin_y;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "contact/contacts.h"
 #include "step/ramps.h"
 #include "store/changed.h"
 #include "store/sections.h"
@@ -253,6 +254,7 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
     for (int i = 0; i < SECTIONS; ++i)
         if (concerns(sections[i], &header))
             sections[i]->load(network, in.from[i], in.size[i]);
+    mspringi_piles_find(network);
     network->parameter_fingerprint = header.parameter_fingerprint;
     network->events.count = 0;
     return MSPRING_OK;

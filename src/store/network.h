@@ -348,6 +348,7 @@ typedef struct mspringi_sleep {
     uint32_t sleeping; ///< of these asleep; what follows of slots and blocks is of no use as long as this is 0
     uint32_t *island;  ///< [slots] of each slot, MSPRING_NONE if it has no particle
     uint32_t *lowest;  ///< [particles] the lowest slot of each island
+    uint32_t *beside;  ///< [slots] of the lowest one of a sleeper: that of the next in its pile, in a ring
     double *still;     ///< [particles] of each island, for how long it has been still, s; < 0: asleep
     double *kept;      ///< [particles] still before the step, if it woke any
     bool has_kept;
@@ -368,6 +369,7 @@ typedef struct mspringi_sleep {
     mspringi_field force;          ///< from outside
     mspringi_field in_force;       ///< of the step that is being made; else NULL
     uint64_t masses, links, moved; ///< edits that it has seen; the last is edits.state
+    uint64_t piled;                ///< edits.naps for which piles were found
 } mspringi_sleep;
 
 /// Whether an id names something.

@@ -1,0 +1,107 @@
+/// @file test_supports.c
+/// What sleeps on something that goes away wakes and falls, and what sleeps elsewhere sleeps on.
+///
+/// SPDX-License-Identifier: MIT
+#include <stdlib.h>
+
+#include "snapshots.h"
+#include "support.h"
+
+#define DT (1.0 / 64)
+
+typedef enum way { BY_POSITIONS, BY_LIST, STIFFENED_BEFORE, BROKEN_BEFORE, AFTER_A_LOAD, WAYS } way;
+
+/// Two piles of two pinned particles, a bar on them, and a bar on that: particles 0 and 1, 2 and 3, 4 and 5 of the
+/// first.
+enum { IN_PILE = 6, PILES = 2 };
+
+static mspring_network *piles(mspring_solver solver) {
+    mspring_builder *builder = support_builder();
+    for (uint32_t pile = 0; pile < PILES; pile++) {
+        const double x = 20 * pile;
+        support_pinned(builder, x - 0.4, 0, 1);
+        support_pinned(builder, x + 0.4, 0, 1);
+        for (uint32_t bar = 0; bar < 2; bar++) {
+            const double length = bar == 0 ? 0.6 : 0.5, y = 0.201 * (1 + bar);
+            const mspring_id left = support_particle(builder, x - length, y, 1),
+                             right = support_particle(builder, x + length, y, 1);
+            support_spring(builder, left, right, 1e4f, 20);
+        }
+    }
+    mspring_network_def def = support_def(-9.8f, 8);
+    def.solver = solver;
+    def.sleep_speed = 0.05f;
+    def.sleep_time = 0.2f;
+    def.global_damping = 2;
+    mspring_network *network = support_network(builder, &def);
+    mspring_contact_def contact;
+    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    contact.thickness = 0.2;
+    contact.friction = 1;
+    check_ok(mspring_network_set_contact(network, &contact));
+    support_fall_asleep(network, DT);
+    return network;
+}
+
+static void move_away(mspring_network *network, mspring_id first, uint32_t count, way how) {
+    for (mspring_id id = first; id < first + count; id++) {
+        const double x = 100 + id, y = 50;
+        if (how == BY_LIST) {
+            check_ok(mspring_network_set_positions_at(network, &id, 1, &x, &y, 1));
+        } else {
+            check_ok(mspring_network_set_positions(network, id, 1, &x, &y, 1));
+        }
+    }
+}
+
+static void prepare(mspring_network *network, way how) {
+    const mspring_id spring = 0;
+    if (how == STIFFENED_BEFORE) {
+        const float stiffness = 2e4f;
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, spring, 1, &stiffness, 0));
+    }
+    if (how == BROKEN_BEFORE)
+        check_ok(mspring_network_break_springs(network, &spring, 1));
+    if (how == AFTER_A_LOAD) {
+        size_t size;
+        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+        void *snapshot = malloc(size);
+        assert_non_null(snapshot);
+        check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, snapshot, size, NULL));
+        check_ok(mspring_network_wake(network));
+        check_ok(mspring_network_load(network, snapshot, size));
+        free(snapshot);
+    }
+}
+
+/// The support: the pins below both bars, or the lower bar.
+static void run(mspring_solver solver, way how, mspring_id first, uint32_t count) {
+    mspring_network *network = piles(solver);
+    const double before = support_position(network, 4).y;
+    uint8_t asleep[IN_PILE * PILES];
+    prepare(network, how);
+    move_away(network, first, count, how);
+    support_steps(network, 32, DT);
+    // In half a second it falls 0.8 m, or onto the pins, which are 0.2 m lower.
+    if (!(support_position(network, 4).y < before - 0.15))
+        fail_msg("solver %d, way %d, support %u: the upper bar sleeps on", (int)solver, (int)how, first);
+    check_ok(mspring_network_get_sleepers(network, 0, IN_PILE * PILES, asleep, 1));
+    for (mspring_id id = IN_PILE; id < IN_PILE * PILES; id++)
+        assert_int_equal(asleep[id], 1);
+    mspring_network_destroy(network);
+}
+
+static void what_rests_on_a_support_wakes_when_it_is_moved(void **state) {
+    (void)state;
+    for (int solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++)
+        for (int how = 0; how < WAYS; how++) {
+            run((mspring_solver)solver, (way)how, 2, 2);
+            if (how != STIFFENED_BEFORE && how != BROKEN_BEFORE)
+                run((mspring_solver)solver, (way)how, 0, 2);
+        }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(what_rests_on_a_support_wakes_when_it_is_moved)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
