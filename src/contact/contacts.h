@@ -312,6 +312,8 @@ typedef struct mspringi_contacts mspringi_contacts;
 
 /// Forget the shape of what was in a slot: it is another particle's from now on.
 void mspringi_outline_clear_slot(const mspring_network *network, uint32_t slot);
+/// Have a particle take part in the shape where it is now: when contact is set, and in the call that adds it.
+void mspringi_outline_take_in(const mspring_network *network, mspringi_outline *outline, mspring_id particle);
 /// Find the outline, or what edits have changed of it. Allocates nothing.
 void mspringi_outline_update(const mspring_network *network, mspringi_contacts *contacts);
 /// The particles that a spring joins.

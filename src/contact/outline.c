@@ -276,17 +276,17 @@ void mspringi_outline_clear_slot(const mspring_network *network, uint32_t slot) 
         network->contacts->outline.is_known[p] = 0;
 }
 
-// What has been added takes part in the shape as it is now.
-static void know_all(const mspring_network *network, mspringi_outline *o) {
-    const mspringi_topology *t = &network->topology;
-    for (mspring_id p = 0; p < t->particle_count; ++p) {
-        if (o->is_known[p] || !mspringi_particle_exists(network, p))
-            continue;
-        const uint32_t slot = t->slot_of_particle[p];
-        o->shape_x[p] = mspringi_x_of(&network->state, slot) + (network->origin_x - o->origin_x);
-        o->shape_y[p] = mspringi_y_of(&network->state, slot) + (network->origin_y - o->origin_y);
-        o->is_known[p] = 1;
-    }
+void mspringi_outline_take_in(const mspring_network *network, mspringi_outline *o, mspring_id p) {
+    const uint32_t slot = network->topology.slot_of_particle[p];
+    o->shape_x[p] = mspringi_x_of(&network->state, slot) + (network->origin_x - o->origin_x);
+    o->shape_y[p] = mspringi_y_of(&network->state, slot) + (network->origin_y - o->origin_y);
+    o->is_known[p] = 1;
+}
+
+static void take_in_all(const mspring_network *network, mspringi_outline *o) {
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p)
+        if (!o->is_known[p] && mspringi_particle_exists(network, p))
+            mspringi_outline_take_in(network, o, p);
 }
 
 /* ------------------------------------------------------------------------------------------------------- lists */
@@ -381,7 +381,7 @@ static void judge_anew(const mspring_network *network, mspringi_contacts *contac
         judge_changed(network, contacts);
         return;
     }
-    know_all(network, o);
+    take_in_all(network, o);
     judge_all(network, contacts);
 }
 

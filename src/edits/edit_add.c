@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 #include "base/cpu.h"
 #include "base/hash.h"
+#include "contact/contacts.h"
 #include "contact/floor.h"
 #include "layout/emit/spare.h"
 #include "step/breaking.h"
@@ -83,6 +84,8 @@ static void put_particle(mspring_network *network, mspring_id p, const mspring_p
     network->state.vx[slot] = def->vx;
     network->state.vy[slot] = def->vy;
     mspringi_set_position(network, p, def->x, def->y);
+    if (network->contacts)
+        mspringi_outline_take_in(network, &network->contacts->outline, p);
     mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_PARTICLE, p);
     network->parameter_fingerprint = mspringi_hash(network->parameter_fingerprint, def->flags);
 }
