@@ -389,8 +389,8 @@ static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field f
     for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
         s->state[i * slots + slot] = state->x[i * slots + slot];
     s->inverse_mass[slot] = network->inverse_mass[slot];
-    s->force.x[slot] = force.x ? force.x[slot] : 0.0f;
-    s->force.y[slot] = force.x ? force.y[slot] : 0.0f;
+    s->force.x[slot] = force.x && isfinite(force.x[slot]) ? force.x[slot] : 0.0f; // a hook's may be no number
+    s->force.y[slot] = force.x && isfinite(force.y[slot]) ? force.y[slot] : 0.0f;
     if (network->solver.ops->rest_slot)
         network->solver.ops->rest_slot(network, network->solver.object, slot);
 }

@@ -14,9 +14,11 @@
 #include <math.h>
 
 #include "base/decay.h"
+#include "contact/contacts.h"
 #include "contact/floor.h"
 #include "stability/stability.h"
 #include "stability/stability_limit.h"
+#include "store/stages.h"
 
 /// Growth of the largest change of velocity from one check of the limit to the next.
 #define SUSPICIOUS 2.0f
@@ -83,6 +85,13 @@ static bool is_finite_in(const mspringi_state *s, uint32_t slot) {
     return isfinite(s->x[slot]) && isfinite(s->y[slot]) && isfinite(s->vx[slot]) && isfinite(s->vy[slot]);
 }
 
+// Move a coordinate within the bounds. A low word that belongs to another coordinate, or is no number, becomes 0.
+static void bound_coordinate(float *coordinate, float *low) {
+    const float bounded = between(*coordinate, (float)MSPRING_MAX_COORDINATE);
+    *low = bounded == *coordinate ? mspringi_low_of(bounded, *low) : 0.0f;
+    *coordinate = bounded;
+}
+
 void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *before) {
     const mspringi_state *s = &network->state;
     const mspringi_topology *t = &network->topology;
@@ -92,21 +101,33 @@ void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *
             const bool was_there = before && isfinite(before->x[slot]) && isfinite(before->y[slot]);
             s->x[slot] = was_there ? before->x[slot] : 0.0f;
             s->y[slot] = was_there ? before->y[slot] : 0.0f;
+            s->low_x[slot] = was_there ? before->low_x[slot] : 0.0f;
+            s->low_y[slot] = was_there ? before->low_y[slot] : 0.0f;
             s->vx[slot] = s->vy[slot] = 0.0f;
         }
-        s->x[slot] = between(s->x[slot], (float)MSPRING_MAX_COORDINATE);
-        s->y[slot] = between(s->y[slot], (float)MSPRING_MAX_COORDINATE);
+        bound_coordinate(&s->x[slot], &s->low_x[slot]);
+        bound_coordinate(&s->y[slot], &s->low_y[slot]);
         s->vx[slot] = between(s->vx[slot], network->settings.max_speed);
         s->vy[slot] = between(s->vy[slot], network->settings.max_speed);
     }
+    mspringi_clear_empty_slots(network);
+    mspringi_clear_unused_slots(network);
     mspringi_solver_forget(&network->solver);
+    if (network->solver.ops->new_floor) // a coarse matrix of positions that were none
+        network->solver.ops->new_floor(network->solver.object);
     network->outcome.flags |= MSPRING_STEP_PUT_BACK;
 }
 
-// Clamp the state at the end of a step.
+// Clamp the state at the end of a step. Impulses of grips and colliders may be NaN: they are cleared.
 static mspringi_extrema put_back(mspring_network *network) {
     mspringi_guard_clamp_state(network, &network->backup);
     mspringi_floor_roll_back(network->floor);
+    mspringi_stage_grips.roll_back(network);
+    if (network->contacts) {
+        mspringi_colliders_discard_step(network->contacts);
+        mspringi_contact_events_discard_step(network->contacts);
+        network->contacts->is_listed = false; // it may be of places that were none
+    }
     return mspringi_guard_extrema(network, 0, mspringi_used_slots(network));
 }
 

@@ -9,6 +9,9 @@
 /// Smallest distance from the origin at which it is worth to move it, m.
 #define SMALLEST_RECENTRE_DISTANCE 64.0f
 
+/// Farthest place that an origin moves to, m: that of the farthest particle of a network that did not move.
+#define FARTHEST_ORIGIN (2.0 * MSPRING_MAX_COORDINATE)
+
 mspringi_box mspringi_box_empty(void) {
     return (mspringi_box){INFINITY, INFINITY, -INFINITY, -INFINITY};
 }
@@ -45,12 +48,14 @@ void mspringi_set_position(mspring_network *network, mspring_id particle, double
 }
 
 // One coordinate's shift: the middle of the network, if all particles are on one side of the origin and the
-// farthest is at most about three times as far as the nearest. Then every coordinate is within a factor 2 of the
-// middle, and the difference of two floats within a factor 2 of each other is exact (Sterbenz 1974). Else 0.
-static float exact_shift(double low, double high) {
+// farthest is at most about three times as far as the nearest, and the origin does not go too far. Then every
+// coordinate is within a factor 2 of the middle, and the difference of two floats within a factor 2 of each other
+// is exact (Sterbenz 1974). Else 0.
+static float exact_shift(double origin, double low, double high) {
     const double nearest = low > 0.0 ? low : -high; // < 0 if the network is on both sides of the origin
     const double half = 0.501 * (high - low) + 1.0; // with room for the rounding of the middle
-    return nearest >= half ? (float)middle(low, high) : 0.0f;
+    const bool is_exact = nearest >= half && fabs(origin + middle(low, high)) <= FARTHEST_ORIGIN;
+    return is_exact ? (float)middle(low, high) : 0.0f;
 }
 
 void mspringi_origin_follow(mspring_network *network) {
@@ -68,7 +73,8 @@ void mspringi_origin_follow(mspring_network *network) {
         if (mspringi_particle_exists(network, p))
             mspringi_box_include(&box, (double)state->x[t->slot_of_particle[p]],
                                  (double)state->y[t->slot_of_particle[p]]);
-    const float shift_x = exact_shift(box.min_x, box.max_x), shift_y = exact_shift(box.min_y, box.max_y);
+    const float shift_x = exact_shift(network->origin_x, box.min_x, box.max_x),
+                shift_y = exact_shift(network->origin_y, box.min_y, box.max_y);
     if (shift_x == 0.0f && shift_y == 0.0f) {
         network->recentre_distance *= 2.0f; // as large as this or around the origin: look again further out
         return;

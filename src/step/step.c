@@ -7,6 +7,7 @@
 #include "sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
+#include "step/finite.h"
 #include "step/held_groups.h"
 #include "store/id_pool.h"
 #include "store/network.h"
@@ -314,10 +315,6 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
     return result;
 }
 
-/// Steps that follow one which the explicit solver could not take, and which it is not asked to: to find that it
-/// still cannot takes longer than they do.
-#define FALLBACK_STEPS 15
-
 /// Explicit substeps that take about as long as a clamped one. Where MSPRING_SUBSTEPS_AUTO finds that max_substeps
 /// are too few, so many fewer take the step: no frame is late for it.
 #define COST_OF_CLAMPED_SUBSTEP 100u
@@ -358,7 +355,7 @@ static mspring_result attempt_otherwise(mspring_network *network, const request 
 // Take the step that the solver cannot take, or will not be asked to.
 static mspring_result fall_back(mspring_network *network, const request *asked, const mspringi_solver *fallback) {
     const uint32_t fallback_steps = network->guard.fallback_steps,
-                   next = network->solver.ops->has_stability_limit ? FALLBACK_STEPS : 0;
+                   next = network->solver.ops->has_stability_limit ? MSPRINGI_FALLBACK_STEPS : 0;
     const mspring_result result = attempt_otherwise(network, asked, fallback);
     const bool took_it = result == MSPRING_OK && !is_idle(network, asked->stages);
     if (took_it)
@@ -426,8 +423,8 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     return MSPRING_OK;
 }
 
-// Note what came of a step.
-static void note(mspring_network *network, double dt, mspring_result result) {
+// Note what came of a step, rounding to nearest.
+static MSPRINGI_NOINLINE void note(mspring_network *network, double dt, mspring_result result) {
     mspringi_steps *steps = &network->steps;
     const uint32_t flags = network->outcome.flags;
     steps->result = result;
@@ -451,14 +448,14 @@ mspring_result mspring_network_step(mspring_network *network, double dt) {
         return result;
     network->outcome = mspringi_outcome_none();
     network->added_substeps = 0;
+    const size_t used = network->memory.used;
+    const mspringi_fp_state before = mspringi_fp_enter();
     result = mspringi_tasks_restart_after_fork(network->tasks, &network->message);
-    if (result == MSPRING_OK) {
-        const size_t used = network->memory.used;
-        const mspringi_fp_state before = mspringi_fp_enter();
+    if (result == MSPRING_OK)
         result = step(network, dt);
-        mspringi_fp_leave(before);
-        MSPRINGI_ASSERT(network->memory.used == used); // a step allocates nothing
-    }
     note(network, dt, result);
+    mspringi_fp_leave(before);
+    MSPRINGI_ASSERT(network->memory.used == used); // a step allocates nothing
+    MSPRINGI_ASSERT(result != MSPRING_OK || mspringi_is_finite(network));
     return result;
 }

@@ -20,11 +20,11 @@
 #include "sleep/sleep.h"
 #include "step/plastic.h"
 #include "step/strain.h"
+#include "store/record_sharing.h"
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/id_pool.h"
 #include "store/one_way.h"
-#include "store/record_sharing.h"
 #include "store/springs.h"
 #include "store/stages.h"
 #include "tasks/tasks.h"
@@ -45,7 +45,7 @@ static bool is_quiet(const mspring_network *network, const mspringi_attempt *att
 /* ------------------------------------------------------------------------------------------------------- a look */
 
 static uint32_t look_at_irregular(const mspring_network *network, const float *x, const float *y,
-                                  mspringi_strain_hit *hits) {
+                                 mspringi_strain_hit *hits) {
     const mspringi_topology *t = &network->topology;
     const mspringi_plastic *p = &network->plastic;
     uint32_t count = 0;
@@ -123,12 +123,11 @@ static void keep(mspringi_plastic *p, mspringi_spring_slot spring_slot, float re
 }
 
 // Whether a spring that is expected to act at the end of an implicit substep does not yet.
-static bool is_slack(const mspring_network *network, mspringi_spring_slot spring_slot,
-                     const mspringi_spring_values *spring, float length) {
+static bool is_slack(const mspring_network *network, mspringi_spring_slot spring_slot, const mspringi_spring_values *spring,
+                     float length) {
     if (!network->one_way.side)
         return false;
-    const mspring_id id =
-        mspringi_incident_springs_find(network, network->topology.particle_of_slot[spring->base], spring_slot);
+    const mspring_id id = mspringi_incident_springs_find(network, network->topology.particle_of_slot[spring->base], spring_slot);
     return mspringi_is_slack(mspringi_side_of(network, id), (double)length - (double)spring->rest_length);
 }
 
@@ -148,8 +147,7 @@ static void map(mspring_network *network, const mspringi_attempt *attempt, mspri
     const mspringi_state *s = &network->state;
     const mspringi_spring_values spring = mspringi_spring_slot_get(network, spring_slot);
     const mspringi_yield_values values = mspringi_yield_values_of(network, spring_slot);
-    const mspringi_yield_bounds bounds = {p->low[spring_slot], p->high[spring_slot], p->flow_low[spring_slot],
-                                          p->flow_high[spring_slot]};
+    const mspringi_yield_bounds bounds = {p->low[spring_slot], p->high[spring_slot], p->flow_low[spring_slot], p->flow_high[spring_slot]};
     const double dx = mspringi_x_of(s, spring.tip) - mspringi_x_of(s, spring.base);
     const double dy = mspringi_y_of(s, spring.tip) - mspringi_y_of(s, spring.base);
     const double square = dx * dx + dy * dy;
@@ -195,8 +193,7 @@ static float fastest_stretch(const mspring_network *network, float time) {
             const mspringi_spring_values spring = mspringi_spring_slot_get(network, spring_slot);
             const float dx = s->x[spring.tip] - s->x[spring.base], dy = s->y[spring.tip] - s->y[spring.base];
             const float vx = s->vx[spring.tip] - s->vx[spring.base], vy = s->vy[spring.tip] - s->vy[spring.base];
-            const float length = sqrtf(dx * dx + dy * dy),
-                        border = p->yield_strain[spring_slot] * p->nominal[spring_slot];
+            const float length = sqrtf(dx * dx + dy * dy), border = p->yield_strain[spring_slot] * p->nominal[spring_slot];
             const float stretch = fabsf(dx * vx + dy * vy) / length * time / border;
             fastest = stretch > fastest ? stretch : fastest;
         }
@@ -226,8 +223,7 @@ static uint32_t max_parts(mspring_network *network, const mspringi_attempt *atte
 static bool irregular_part_yields(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_plastic *p = &network->plastic;
-    for (mspringi_spring_slot spring_slot = t->chain_spring_slots, end = spring_slot + t->irregular_count;
-         spring_slot < end; ++spring_slot)
+    for (mspringi_spring_slot spring_slot = t->chain_spring_slots, end = spring_slot + t->irregular_count; spring_slot < end; ++spring_slot)
         if (p->high[spring_slot] < INFINITY || p->low[spring_slot] >= 0.0f)
             return true;
     return false;
@@ -291,8 +287,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
 }
 
 // Go through the springs that have flowed in the step, and forget that they have.
-static void end_flow(mspring_network *network,
-                     void (*end)(mspring_network *network, mspringi_spring_slot spring_slot)) {
+static void end_flow(mspring_network *network, void (*end)(mspring_network *network, mspringi_spring_slot spring_slot)) {
     mspringi_plastic *p = &network->plastic;
     const bool flows = p->flows || warmth_of_all(network) & MSPRINGI_HAS_FLOWED;
     const size_t words = flows ? mspringi_spring_slot_words(&network->topology) : 0;
@@ -322,11 +317,13 @@ static void roll_back(mspring_network *network) {
     memset(p->warmth, 0, network->topology.strip_count);
 }
 
-// Heat is summed place by place, so that no order of rows or lanes changes the sum.
+// Heat is summed place by place, so that no order of rows or lanes changes the sum. Where the guard has put
+// particles back it may be no number.
 static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
     mspringi_plastic *p = &network->plastic;
     p->count++;
-    p->dissipated += (double)p->heat[spring_slot];
+    if (isfinite(p->heat[spring_slot]))
+        p->dissipated += (double)p->heat[spring_slot];
     p->is_bent = true;
     if (network->strain.break_strain)
         mspringi_strain_renew_least(network, spring_slot);
@@ -335,12 +332,12 @@ static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
         return;
     const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     const double nominal = (double)p->nominal[spring_slot];
-    mspringi_events_push(network,
-                         (mspring_event){.kind = MSPRING_EVENT_YIELDED,
-                                         .id = mspringi_incident_springs_find(
-                                             network, network->topology.particle_of_slot[values.base], spring_slot),
-                                         .other = MSPRING_NONE,
-                                         .strain = (float)(((double)values.rest_length - nominal) / nominal)});
+    mspringi_events_push(
+        network,
+        (mspring_event){.kind = MSPRING_EVENT_YIELDED,
+                        .id = mspringi_incident_springs_find(network, network->topology.particle_of_slot[values.base], spring_slot),
+                        .other = MSPRING_NONE,
+                        .strain = (float)(((double)values.rest_length - nominal) / nominal)});
 }
 
 static void after_step(mspring_network *network, double dt) {

@@ -306,6 +306,10 @@ static inline mspringi_outcome mspringi_outcome_none(void) {
     return (mspringi_outcome){.particle = MSPRING_NONE, .spring = MSPRING_NONE};
 }
 
+/// Steps that follow one which the explicit solver could not take, and which it is not asked to: to find that it
+/// still cannot takes longer than they do.
+#define MSPRINGI_FALLBACK_STEPS 15u
+
 /// What the guard knows from step to step.
 typedef struct mspringi_guard {
     float h, global_damping; ///< the border was looked at for these; h is 0 at first

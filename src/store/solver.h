@@ -89,10 +89,12 @@ struct mspringi_solver_ops {
     void (*substeps)(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count);
     void (*end)(mspring_network *network);
 
-    // Undo. keep: before a step. restore: to what was kept. forget: a new motion begins.
+    // Undo. keep: before a step. restore: to what was kept. forget: a new motion begins. is_finite: all numbers are
+    // finite that it carries to the next step.
     void (*keep)(void *object);
     void (*restore)(mspring_network *network, void *object);
     void (*forget)(void *object);
+    bool (*is_finite)(const void *object);
 
     // Edits. clear_slot: the particle falls freely. rest_slot: it has come to rest. clear_spring: no spring lies in
     // the place any more. new_floor: it is another one, or none. is_isolated (never NULL): whether no spring pulls

@@ -1,4 +1,6 @@
 /// The tables of the implicit and the direct solver, which are one but for what solves the linear system.
+#include <math.h>
+
 #include "contact/floor.h"
 #include "solvers/implicit/implicit.h"
 
@@ -97,6 +99,16 @@ static void forget(void *object) {
     mspringi_implicit_forget(object);
 }
 
+static bool is_finite(const void *object) {
+    const mspringi_implicit *n = object;
+    bool finite = isfinite(n->scale) && isfinite(n->history.h);
+    for (size_t i = 0; finite && i < n->history_size; ++i)
+        finite = isfinite(n->history.first.x[i]);
+    for (size_t i = 0; finite && n->age > 0 && i < n->coarse.value_count; ++i)
+        finite = isfinite(n->coarse.values[i]);
+    return finite;
+}
+
 /* ------------------------------------------------------------------------------------------------------- edits */
 
 // As if it had fallen freely: forces that it holds act no more. With BDF2 a parabola is
@@ -104,9 +116,9 @@ static void forget(void *object) {
 static void clear_slot(const mspring_network *network, void *object, uint32_t slot) {
     mspringi_implicit *n = object;
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2, falls = network->inverse_mass[slot] > 0.0f;
-    const float h = n->history.h, share = !falls ? 0.0f : two ? -0.5f * h * h : 1.0f;
-    n->history.first.x[slot] = share * network->settings.gravity_x;
-    n->history.first.y[slot] = share * network->settings.gravity_y;
+    const float h = n->history.h, share = two ? -0.5f * h * h : 1.0f;
+    n->history.first.x[slot] = falls ? share * network->settings.gravity_x : 0.0f;
+    n->history.first.y[slot] = falls ? share * network->settings.gravity_y : 0.0f;
     if (!n->history.second.x)
         return;
     n->history.second.x[slot] = falls ? h * network->settings.gravity_x : 0.0f;
@@ -180,9 +192,9 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
     .has_implicit_areas = true, .create = create, .build = build, .fits = fits, .adjust = adjust,                  \
     .destroy = destroy, .relocate = relocate, .reserve = reserve, .get_def = get_def, .take_over = take_over,      \
     .get_basis = get_basis, .set_basis = set_basis, .substeps = substeps, .keep = keep, .restore = restore,        \
-    .forget = forget, .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring,              \
-    .new_floor = new_floor, .is_isolated = is_isolated, .has_isolated = has_isolated, .describe = describe,        \
-    .save = save, .check = check, .load = load
+    .forget = forget, .is_finite = is_finite, .clear_slot = clear_slot, .rest_slot = rest_slot,                    \
+    .clear_spring = clear_spring, .new_floor = new_floor, .is_isolated = is_isolated,                              \
+    .has_isolated = has_isolated, .describe = describe, .save = save, .check = check, .load = load
 
 const mspringi_solver_ops mspringi_implicit_ops = {.can_add = true, BOTH};
 
