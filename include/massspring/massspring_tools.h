@@ -216,7 +216,8 @@ typedef struct mspring_hook_args {
 } mspring_hook_args;
 
 /// A hook. On the network it may make shared calls only. If a step is rolled back and repeated, as by a guard, hooks
-/// are called again.
+/// are called again. A hook must return. If one is left by longjmp() or by an exception, mspring_network_destroy() still
+/// works, and exclusive calls return MSPRING_ERROR_BUSY for ever.
 typedef void(MSPRING_CALL *mspring_hook_fn)(const mspring_hook_args *args, void *user);
 
 /// Flags of hooks.

@@ -58,8 +58,9 @@ static double rest_of(const mspring_network *network, const mspring_angle_def *d
                : mspringi_angle_between(network, slots[particles[0]], slots[particles[1]], slots[particles[2]]);
 }
 
-mspring_result mspring_network_add_angles(mspring_network *network, const mspring_angle_def *def,
-                                          const mspring_id *particles, uint32_t count, mspring_id *first_angle) {
+static MSPRINGI_NOINLINE mspring_result add_angles(mspring_network *network, const mspring_angle_def *def,
+                                                   const mspring_id *particles, uint32_t count,
+                                                   mspring_id *first_angle) {
     mspring_angle_def taken;
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
@@ -85,13 +86,22 @@ mspring_result mspring_network_add_angles(mspring_network *network, const msprin
     return MSPRING_OK;
 }
 
+mspring_result mspring_network_add_angles(mspring_network *network, const mspring_angle_def *def,
+                                          const mspring_id *particles, uint32_t count, mspring_id *first_angle) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = add_angles(network, def, particles, count, first_angle);
+    mspringi_fp_leave(before);
+    return result;
+}
+
 mspring_result mspring_network_remove_angle(mspring_network *network, mspring_id angle) {
     return mspringi_area_remove(network, angle, true);
 }
 
 /* ---------------------------------------------------------------------------------------------------- changing */
 
-mspring_result mspring_network_set_angle(mspring_network *network, mspring_id angle, const mspring_angle_def *def) {
+static MSPRINGI_NOINLINE mspring_result set_angle(mspring_network *network, mspring_id angle,
+                                                  const mspring_angle_def *def) {
     mspring_angle_def taken;
     mspringi_area *found = NULL;
     mspring_result result = mspringi_check_call(network);
@@ -112,8 +122,15 @@ mspring_result mspring_network_set_angle(mspring_network *network, mspring_id an
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_set_rest_angles(mspring_network *network, mspring_id first, uint32_t count,
-                                               const double *rest_angles, uint32_t stride) {
+mspring_result mspring_network_set_angle(mspring_network *network, mspring_id angle, const mspring_angle_def *def) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = set_angle(network, angle, def);
+    mspringi_fp_leave(before);
+    return result;
+}
+
+static MSPRINGI_NOINLINE mspring_result set_rest_angles(mspring_network *network, mspring_id first, uint32_t count,
+                                                        const double *rest_angles, uint32_t stride) {
     mspringi_area *found = NULL;
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK && !rest_angles && count > 0)
@@ -133,6 +150,14 @@ mspring_result mspring_network_set_rest_angles(mspring_network *network, mspring
         mspringi_angle_set_rest(&of_first[i], rest_angles[(size_t)i * stride]);
     mspringi_notify_change(network, MSPRINGI_CHANGED_REST_ANGLES, 0);
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_rest_angles(mspring_network *network, mspring_id first, uint32_t count,
+                                               const double *rest_angles, uint32_t stride) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = set_rest_angles(network, first, count, rest_angles, stride);
+    mspringi_fp_leave(before);
+    return result;
 }
 
 /* ----------------------------------------------------------------------------------------------------- reading */

@@ -159,8 +159,8 @@ double mspringi_area_within(const mspring_network *network, const mspring_id *pa
     return 0.5 * twice;
 }
 
-mspring_result mspring_network_add_area(mspring_network *network, const mspring_area_def *def,
-                                        const mspring_id *particles, uint32_t count, mspring_id *area) {
+static MSPRINGI_NOINLINE mspring_result add_area(mspring_network *network, const mspring_area_def *def,
+                                                 const mspring_id *particles, uint32_t count, mspring_id *area) {
     mspring_area_def taken;
     mspring_id ordered[MSPRING_MAX_AREA_PARTICLES];
     double rest_area;
@@ -188,6 +188,14 @@ mspring_result mspring_network_add_area(mspring_network *network, const mspring_
     return MSPRING_OK;
 }
 
+mspring_result mspring_network_add_area(mspring_network *network, const mspring_area_def *def,
+                                        const mspring_id *particles, uint32_t count, mspring_id *area) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = add_area(network, def, particles, count, area);
+    mspringi_fp_leave(before);
+    return result;
+}
+
 /// Definition for each cell, and the corners of all.
 typedef struct cell_areas {
     const mspring_area_def *def;
@@ -209,8 +217,8 @@ static mspring_result take_cell(mspring_network *network, const mspring_id corne
     return choose_rest_area(network, all->def, &of, &rest_area);
 }
 
-mspring_result mspring_network_add_cell_areas(mspring_network *network, const mspring_area_def *def,
-                                              mspring_id *first_area, uint32_t *count) {
+static MSPRINGI_NOINLINE mspring_result add_cell_areas(mspring_network *network, const mspring_area_def *def,
+                                                       mspring_id *first_area, uint32_t *count) {
     mspring_area_def taken;
     cell_areas cells = {.def = &taken};
     mspring_result result = mspringi_check_call(network);
@@ -230,6 +238,14 @@ mspring_result mspring_network_add_cell_areas(mspring_network *network, const ms
     for (size_t i = 0; result == MSPRING_OK && i < cells.count; ++i)
         add(network, def, mspringi_area_within(network, cells.corners[i], 4), cells.corners[i], 4);
     mspringi_free(&network->memory, cells.corners);
+    return result;
+}
+
+mspring_result mspring_network_add_cell_areas(mspring_network *network, const mspring_area_def *def,
+                                              mspring_id *first_area, uint32_t *count) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = add_cell_areas(network, def, first_area, count);
+    mspringi_fp_leave(before);
     return result;
 }
 
@@ -275,8 +291,10 @@ mspring_result mspringi_area_remove(mspring_network *network, mspring_id id, boo
     if (result != MSPRING_OK)
         return result;
     const mspringi_area had = *found;
+    const mspringi_fp_state before = mspringi_fp_enter();
     mspringi_areas_drop(network, found);
-    mspringi_area_tell(network, MSPRINGI_EDIT_REMOVED_AREA, &had);
+    mspringi_area_tell(network, MSPRINGI_EDIT_REMOVED_AREA, &had); // rounds
+    mspringi_fp_leave(before);
     return MSPRING_OK;
 }
 
@@ -284,7 +302,8 @@ mspring_result mspring_network_remove_area(mspring_network *network, mspring_id 
     return mspringi_area_remove(network, area, false);
 }
 
-mspring_result mspring_network_set_area(mspring_network *network, mspring_id area, const mspring_area_def *def) {
+static MSPRINGI_NOINLINE mspring_result set_area(mspring_network *network, mspring_id area,
+                                                 const mspring_area_def *def) {
     mspring_area_def taken;
     mspringi_area *found;
     mspring_id particles[MSPRING_MAX_AREA_PARTICLES];
@@ -304,6 +323,13 @@ mspring_result mspring_network_set_area(mspring_network *network, mspring_id are
     network->areas.changes++;
     mspringi_area_tell(network, MSPRINGI_EDIT_SET_AREA, found);
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_area(mspring_network *network, mspring_id area, const mspring_area_def *def) {
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_result result = set_area(network, area, def);
+    mspringi_fp_leave(before);
+    return result;
 }
 
 const mspringi_area *mspringi_area_look_up(const mspring_network *network, mspring_id id, bool is_angle) {

@@ -97,11 +97,13 @@ mspring_result mspring_network_stable_dt(mspring_network *network, double *now, 
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
+    const mspringi_any_shape known = network->any_shape; // a question leaves the guard as it is
     if (now)
         result = find_now(network, now);
     mspring_id spring;
     if (result == MSPRING_OK && any_shape)
         *any_shape = mspringi_stable_in_any_shape(network, &spring);
+    network->any_shape = known;
     mspringi_fp_leave(before);
     return result;
 }
