@@ -212,7 +212,7 @@ static mspring_result find_sections(mspring_network *network, const mspringi_sna
     const uint8_t *at = snapshot + MSPRINGI_SNAPSHOT_HEADER_BYTES;
     size_t left = (size_t)header->size - MSPRINGI_SNAPSHOT_HEADER_BYTES - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
     *out = (found){.size = {0}};
-    for (uint32_t i = 0; i < header->section_count; ++i) {
+    for (uint32_t i = 0, next = 0; i < header->section_count; ++i) {
         uint64_t size = 0;
         const int number = left >= MSPRINGI_SECTION_HEADER_BYTES ? number_of(at) : -1;
         if (number < 0)
@@ -221,8 +221,10 @@ static mspring_result find_sections(mspring_network *network, const mspringi_sna
         left -= MSPRINGI_SECTION_HEADER_BYTES;
         at += MSPRINGI_SECTION_HEADER_BYTES;
         if (size == 0 || size > left || left - size < mspringi_round_up((size_t)size, 8) - size ||
-            out->size[number] > 0)
-            return mspringi_section_fail(network, sections[number], "they do not fit in, or come twice");
+            (uint32_t)number < next)
+            return mspringi_section_fail(network, sections[number],
+                                         "they do not fit in, or come twice or too late");
+        next = (uint32_t)number + 1;
         out->from[number] = at;
         out->size[number] = (size_t)size;
         left -= mspringi_round_up((size_t)size, 8);
@@ -236,6 +238,25 @@ static bool concerns(const mspringi_section *section, const mspringi_snapshot_he
     return !section->parameters || header->contents == MSPRING_SNAPSHOT_ALL;
 }
 
+// Whatever sections say of one another.
+static mspring_result check_together(mspring_network *network, const mspringi_snapshot_header *header,
+                                     const found *in) {
+    mspringi_saved saved = {.network = network, .angle_count = network->areas.angle_count};
+    mspring_result result = MSPRING_OK;
+    for (int i = 0; i < SECTIONS; ++i) {
+        if (sections[i] == &mspringi_section_growth && in->size[i] > 0)
+            saved.growth = in->from[i];
+        if (sections[i] == &mspringi_section_broken && in->size[i] > 0)
+            saved.live = in->from[i];
+        if (sections[i] == &mspringi_section_areas && header->contents == MSPRING_SNAPSHOT_ALL)
+            saved.angle_count = mspringi_saved_angles(in->from[i], in->size[i]);
+    }
+    for (int i = 0; result == MSPRING_OK && i < SECTIONS; ++i)
+        if (sections[i]->check_against && concerns(sections[i], header))
+            result = sections[i]->check_against(network, &saved, in->from[i], in->size[i]);
+    return result;
+}
+
 static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uint8_t *snapshot, size_t size) {
     mspringi_snapshot_header header = {0};
     found in;
@@ -247,6 +268,8 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
     for (int i = 0; result == MSPRING_OK && i < SECTIONS; ++i)
         if (concerns(sections[i], &header))
             result = sections[i]->check(network, in.from[i], in.size[i]);
+    if (result == MSPRING_OK)
+        result = check_together(network, &header, &in);
     if (result != MSPRING_OK)
         return result;
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);

@@ -126,7 +126,59 @@ static mspring_result areas_check(mspring_network *network, const uint8_t *from,
     return result == MSPRING_OK && head[1] > 0 ? mspringi_areas_reserve(network, head[1], corners, angles) : result;
 }
 
-// Load after the section of added and removed ids: areas with a missing corner are dropped.
+size_t mspringi_saved_angles(const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
+    uint32_t head[2] = {0, 0};
+    size_t count = 0;
+    if (size > 0)
+        mspringi_hand(&io, head, 2, sizeof head[0]);
+    for (uint32_t i = 0; i < head[1]; ++i) {
+        const mspringi_area area = read_area(&io);
+        count += area.is_angle;
+        for (uint32_t c = 0; c < area.count; ++c)
+            hand_corner(&io, &(mspringi_corner){0});
+    }
+    return count;
+}
+
+// Check that corners exist, differ, and belong to one group.
+static mspring_result check_corners(mspring_network *network, const mspringi_saved *saved, uint32_t *last_of,
+                                    mspringi_io *io) {
+    const uint32_t *group = network->groups.of_particle;
+    const mspringi_area area = read_area(io);
+    mspringi_corner first = {0}, corner;
+    for (uint32_t c = 0; c < area.count; ++c) {
+        hand_corner(io, &corner);
+        first = c == 0 ? corner : first;
+        if (!mspringi_saved_has_particle(saved, corner.particle) || last_of[corner.particle] == area.id + 1 ||
+            (group && group[corner.particle] != group[first.particle]))
+            return mspringi_section_fail(network, &mspringi_section_areas,
+                                         "area %u has particle %u twice, or it is not there or of another group",
+                                         (unsigned)area.id, (unsigned)corner.particle);
+        last_of[corner.particle] = area.id + 1;
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result areas_check_against(mspring_network *network, const mspringi_saved *saved,
+                                          const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
+    mspring_result result = MSPRING_OK;
+    uint32_t head[2] = {0, 0};
+    if (size > 0)
+        mspringi_hand(&io, head, 2, sizeof head[0]);
+    if (head[1] == 0)
+        return MSPRING_OK;
+    uint32_t *last_of = mspringi_alloc(&network->memory, network->topology.reserve.particle_end, sizeof *last_of);
+    if (!last_of)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to compare %u areas",
+                             (unsigned)head[1]);
+    for (uint32_t i = 0; result == MSPRING_OK && i < head[1]; ++i)
+        result = check_corners(network, saved, last_of, &io);
+    mspringi_free(&network->memory, last_of);
+    return result;
+}
+
 static void areas_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_areas *a = &network->areas;
     mspringi_io io = mspringi_io_from(from, size);
@@ -136,24 +188,20 @@ static void areas_load(mspring_network *network, const uint8_t *from, size_t siz
     a->next_id = head[0];
     for (uint32_t i = 0; i < head[1]; ++i) {
         mspringi_area *area = &a->list[a->count];
-        bool is_whole = true;
         *area = read_area(&io);
         area->first = (uint32_t)a->corner_count;
         area->cell = MSPRINGI_NO_CELL;
-        for (uint32_t c = 0; c < area->count; ++c) {
-            mspringi_corner *corner = &a->corners[area->first + c];
-            hand_corner(&io, corner);
-            is_whole = is_whole && corner->particle < network->topology.particle_count &&
-                       mspringi_particle_exists(network, corner->particle);
-        }
-        a->count += is_whole;
-        a->angle_count += is_whole && area->is_angle;
-        a->corner_count += is_whole ? area->count : 0;
+        for (uint32_t c = 0; c < area->count; ++c)
+            hand_corner(&io, &a->corners[area->first + c]);
+        a->count++;
+        a->angle_count += area->is_angle;
+        a->corner_count += area->count;
     }
     network->edits.values++; // affects the limit in any shape
 }
 
-const mspringi_section mspringi_section_areas = {"area", "areas", true, NULL, areas_save, areas_check, areas_load};
+const mspringi_section mspringi_section_areas = {"area",     "areas",     true,       NULL,
+                                                 areas_save, areas_check, areas_load, areas_check_against};
 
 /* ------------------------------------------------------------------------------------------------- rest angles */
 
@@ -175,6 +223,13 @@ static mspring_result rest_angles_check(mspring_network *network, const uint8_t 
     return mspringi_section_check_size(network, section, size % sizeof(double), 0);
 }
 
+static mspring_result rest_angles_check_against(mspring_network *network, const mspringi_saved *saved,
+                                                const uint8_t *from, size_t size) {
+    (void)from;
+    return mspringi_section_check_size(network, &mspringi_section_rest_angles, size,
+                                       saved->angle_count * sizeof(double));
+}
+
 // Load after the areas, which have their number.
 static void rest_angles_load(mspring_network *network, const uint8_t *from, size_t size) {
     size_t left = size / sizeof(double);
@@ -188,5 +243,11 @@ static void rest_angles_load(mspring_network *network, const uint8_t *from, size
     }
 }
 
-const mspringi_section mspringi_section_rest_angles = {"angl",           "rest angles",     false,           NULL,
-                                                       rest_angles_save, rest_angles_check, rest_angles_load};
+const mspringi_section mspringi_section_rest_angles = {"angl",
+                                                       "rest angles",
+                                                       false,
+                                                       NULL,
+                                                       rest_angles_save,
+                                                       rest_angles_check,
+                                                       rest_angles_load,
+                                                       rest_angles_check_against};

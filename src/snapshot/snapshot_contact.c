@@ -77,5 +77,5 @@ static void shape_load(mspring_network *network, const uint8_t *from, size_t siz
     }
 }
 
-const mspringi_section mspringi_section_shape = {"shap",     "shape of outlines", false,     shape_size,
-                                                 shape_save, shape_check,         shape_load};
+const mspringi_section mspringi_section_shape = {"shap",     "shape of outlines", false,      shape_size,
+                                                 shape_save, shape_check,         shape_load, NULL};

@@ -94,7 +94,24 @@ static mspring_result grips_check(mspring_network *network, const uint8_t *from,
     return result == MSPRING_OK && count > 0 ? mspringi_grips_reserve(network) : result;
 }
 
-// Load after the section of added and removed ids: a grip on a missing particle is dropped.
+static mspring_result grips_check_against(mspring_network *network, const mspringi_saved *saved,
+                                          const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
+    mspring_id next_id;
+    uint32_t reserved;
+    if (size > 0)
+        hand_head(&io, &next_id, &reserved);
+    while (io.left > 0) {
+        record r;
+        hand_grip(&io, &r);
+        if (!mspringi_saved_has_particle(saved, r.grip.particle))
+            return mspringi_section_fail(network, &mspringi_section_grips,
+                                         "grip %u holds particle %u, which is not there", (unsigned)r.grip.id,
+                                         (unsigned)r.grip.particle);
+    }
+    return MSPRING_OK;
+}
+
 static void grips_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_io io = mspringi_io_from(from, size);
     mspringi_grips *grips = &network->grips;
@@ -105,10 +122,9 @@ static void grips_load(mspring_network *network, const uint8_t *from, size_t siz
     while (io.left > 0) {
         record r = {0};
         hand_grip(&io, &r);
-        if (r.grip.particle < network->topology.particle_count &&
-            mspringi_particle_exists(network, r.grip.particle))
-            grips->list[grips->count++] = r.grip;
+        grips->list[grips->count++] = r.grip;
     }
 }
 
-const mspringi_section mspringi_section_grips = {"grip", "grips", false, NULL, grips_save, grips_check, grips_load};
+const mspringi_section mspringi_section_grips = {"grip",     "grips",     false,      NULL,
+                                                 grips_save, grips_check, grips_load, grips_check_against};

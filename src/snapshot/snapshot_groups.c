@@ -34,7 +34,7 @@ static void held_load(mspring_network *network, const uint8_t *from, size_t size
 }
 
 const mspringi_section mspringi_section_held = {
-    "held", "groups that are held", false, NULL, held_save, held_check, held_load};
+    "held", "groups that are held", false, NULL, held_save, held_check, held_load, NULL};
 
 /* ---------------------------------------------------------------------------------------------------- actuators */
 
@@ -102,5 +102,5 @@ static void actuators_load(mspring_network *network, const uint8_t *from, size_t
     }
 }
 
-const mspringi_section mspringi_section_actuators = {"actu",         "actuators",     false,         NULL,
-                                                     actuators_save, actuators_check, actuators_load};
+const mspringi_section mspringi_section_actuators = {"actu",         "actuators",     false,          NULL,
+                                                     actuators_save, actuators_check, actuators_load, NULL};

@@ -14,8 +14,9 @@ typedef struct record {
     mspringi_solver_basis fallback; ///< MSPRING_GUARD_IMPLICIT
 } record;
 
-/// State of dt: unknown, from before the last edit, or up to date.
-enum { UNKNOWN, OUTDATED, KNOWN };
+/// State of dt: unknown, from before the last edit of values or masses, up to date, or from before the last
+/// addition.
+enum { UNKNOWN, OUTDATED, KNOWN, OUTGROWN };
 
 static void hand(mspringi_io *io, record *r) {
     MSPRINGI_HAND(io, r->dt);
@@ -31,18 +32,19 @@ static void hand(mspringi_io *io, record *r) {
 static void guard_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_guard *guard = &network->guard;
     const mspringi_any_shape *known = &network->any_shape;
-    const bool outdated = known->masses != network->edits.masses || known->values != network->edits.values ||
-                          known->growth != network->edits.growth;
+    const bool outdated = known->masses != network->edits.masses || known->values != network->edits.values;
+    const bool is_of_now = known->is_known && !outdated && known->growth == network->edits.growth;
     mspringi_io io = mspringi_io_to(to);
-    record r = {.dt = known->dt,
+    record r = {.dt = is_of_now ? known->dt : 0.0,
                 .h = guard->h,
                 .global_damping = guard->global_damping,
                 .peak = guard->peak,
                 .policy = (uint32_t)network->settings.guard,
-                .spring = known->spring,
+                .spring = is_of_now ? known->spring : MSPRING_NONE,
                 .state = !known->is_known ? UNKNOWN
                          : outdated       ? OUTDATED
-                                          : KNOWN,
+                         : is_of_now      ? KNOWN
+                                          : OUTGROWN,
                 .fallback_steps = guard->fallback_steps};
     if (network->settings.guard == MSPRING_GUARD_IMPLICIT)
         r.fallback = mspringi_solver_get_basis(&network->fallback);
@@ -75,7 +77,8 @@ static mspring_result guard_check(mspring_network *network, const uint8_t *from,
         return result;
     if (!(head.h >= 0.0f && head.h <= FLT_MAX && head.global_damping >= 0.0f && head.global_damping <= 1e6f &&
           head.peak >= 0.0f && head.peak <= FLT_MAX && head.dt >= 0.0) ||
-        head.policy > MSPRING_GUARD_CLAMP_BOUNDS || head.state > KNOWN)
+        head.policy > MSPRING_GUARD_CLAMP_BOUNDS || head.state > OUTGROWN ||
+        head.fallback_steps > MSPRINGI_FALLBACK_STEPS)
         return mspringi_section_fail(network, section, "for substeps of %g s, with a peak of %g m/s and policy %u",
                                      (double)head.h, (double)head.peak, (unsigned)head.policy);
     if (head.reserved != 0)
@@ -104,14 +107,26 @@ static void guard_load(mspring_network *network, const uint8_t *from, size_t siz
     mspringi_any_shape *any_shape = &network->any_shape;
     *any_shape = (mspringi_any_shape){
         .masses = network->edits.masses, .values = network->edits.values - 1, .growth = network->edits.growth};
-    const bool has_spring = head.spring < network->topology.reserve.spring_end;
-    if (head.state == UNKNOWN || (!has_spring && head.spring != MSPRING_NONE))
+    if (head.state == UNKNOWN)
         return;
     any_shape->is_known = true;
     any_shape->dt = head.dt;
     any_shape->spring = head.spring;
-    any_shape->values += head.state == KNOWN;
+    any_shape->values += head.state != OUTDATED;
+    any_shape->growth -= head.state == OUTGROWN;
+}
+
+static mspring_result guard_check_against(mspring_network *network, const mspringi_saved *saved,
+                                          const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
+    record r;
+    hand(&io, &r);
+    return r.spring == MSPRING_NONE ||
+                   (r.spring < network->topology.reserve.spring_end && mspringi_saved_has_spring(saved, r.spring))
+               ? MSPRING_OK
+               : mspringi_section_fail(network, &mspringi_section_guard,
+                                       "the tightest spring is %u, which is not there", (unsigned)r.spring);
 }
 
 const mspringi_section mspringi_section_guard = {
-    "guar", "guard of the stability border", false, NULL, guard_save, guard_check, guard_load};
+    "guar", "guard of the stability border", false, NULL, guard_save, guard_check, guard_load, guard_check_against};

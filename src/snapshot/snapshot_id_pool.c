@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "base/bytes.h"
+#include "layout/analysis.h"
 #include "layout/emit/spare.h"
 #include "step/breaking.h"
 #include "store/changed.h"
@@ -61,8 +62,9 @@ static void growth_save(const mspring_network *network, mspringi_writer *to) {
         mspringi_put(to, &slot, 1, 1);
     }
     for (mspring_id s = t->reserve.first_spring; s < t->reserve.spring_end; ++s) {
-        const uint8_t kind = (uint8_t)((mspringi_spring_is_relative(network, s) ? IS_RELATIVE : 0) |
-                                       (spring_is_laid_out(t, s) ? IS_LAID_OUT : 0));
+        const bool is_relative = mspringi_spring_exists(network, s) && mspringi_spring_is_relative(network, s);
+        const uint8_t kind =
+            (uint8_t)((is_relative ? IS_RELATIVE : 0) | (spring_is_laid_out(t, s) ? IS_LAID_OUT : 0));
         mspringi_put(to, &kind, 1, 1);
     }
     for (mspring_id s = t->reserve.first_spring; s < t->reserve.spring_end; ++s) {
@@ -308,5 +310,97 @@ static void growth_load(mspring_network *network, const uint8_t *from, size_t si
     mspringi_notify_change(network, MSPRINGI_CHANGED_GRAFTS, 0);
 }
 
-const mspringi_section mspringi_section_growth = {
-    "grow", "added and removed particles and springs", false, growth_size, growth_save, growth_check, growth_load};
+/* ------------------------------------------------------------------------------------------------ other sections
+ */
+
+bool mspringi_saved_has_particle(const mspringi_saved *saved, mspring_id particle) {
+    const mspringi_topology *t = &saved->network->topology;
+    return saved->growth ? read_growth(t, saved->growth).particles[particle] == MSPRINGI_THERE
+                         : particle < t->reserve.first_particle;
+}
+
+bool mspringi_saved_has_spring(const mspringi_saved *saved, mspring_id spring) {
+    const mspringi_topology *t = &saved->network->topology;
+    return saved->growth ? read_growth(t, saved->growth).springs[spring] == MSPRINGI_THERE
+                         : spring < t->reserve.first_spring;
+}
+
+mspringi_spring_slot mspringi_saved_place(const mspringi_saved *saved, mspring_id spring) {
+    const mspringi_topology *t = &saved->network->topology;
+    if (spring < t->reserve.first_spring)
+        return t->slot_of_spring[spring];
+    const uint32_t i = spring - t->reserve.first_spring;
+    return read_growth(t, saved->growth).kinds[i] & IS_LAID_OUT ? t->initial_spring_slots[i]
+                                                                : mspringi_spare_spring_slot(t, spring);
+}
+
+// Whether an original spring joins the same two, broken or not.
+static bool is_joined(const mspring_network *network, const growth *g, mspring_id a, mspring_id b) {
+    const mspringi_topology *t = &network->topology;
+    if (a >= t->reserve.first_particle || b >= t->reserve.first_particle)
+        return false;
+    const uint32_t slot_a = slot_in(t, g, a), slot_b = slot_in(t, g, b);
+    for (uint32_t j = network->incidence.first[a]; j < network->incidence.first[a + 1]; ++j) {
+        const mspring_id s = network->incidence.springs[j];
+        uint32_t base, tip;
+        mspringi_topology_ends(t, t->slot_of_spring[s], &base, &tip);
+        if (g->springs[s] == MSPRINGI_THERE &&
+            ((base == slot_a && tip == slot_b) || (base == slot_b && tip == slot_a)))
+            return true;
+    }
+    return false;
+}
+
+// List the added springs by their ends, in *count keys. Returns the first that joins what an original one joins.
+static mspring_id list_added(const mspring_network *network, const growth *g, uint64_t *keys, size_t *count) {
+    const mspringi_reserve *r = &network->topology.reserve;
+    for (mspring_id s = r->first_spring; s < r->spring_end; ++s) {
+        const uint32_t i = s - r->first_spring;
+        const mspring_id a = end_of(g, 2 * i), b = end_of(g, 2 * i + 1);
+        if (g->springs[s] != MSPRINGI_THERE)
+            continue;
+        if (is_joined(network, g, a, b))
+            return s;
+        keys[(*count)++] = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+    }
+    return MSPRING_NONE;
+}
+
+// No two springs of which one was added join the same particles. Most often they are the springs that there are.
+static mspring_result growth_check_against(mspring_network *network, const mspringi_saved *saved,
+                                           const uint8_t *from, size_t size) {
+    const mspringi_topology *t = &network->topology;
+    const size_t spare = mspringi_spare_springs(t);
+    bool same = true;
+    (void)saved;
+    if (size == 0 || spare == 0)
+        return MSPRING_OK;
+    const growth g = read_growth(t, from);
+    for (mspring_id s = t->reserve.first_spring; same && s < t->reserve.spring_end; ++s)
+        same = stays(network, &g, s);
+    if (same && memcmp(g.springs, network->growth.springs, t->reserve.first_spring) == 0)
+        return MSPRING_OK;
+    uint64_t *keys = mspringi_alloc(&network->memory, 2 * spare, sizeof *keys);
+    if (!keys)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to compare %zu added springs",
+                             spare);
+    size_t count = 0, at = 1;
+    const mspring_id twice = list_added(network, &g, keys, &count);
+    mspringi_sort_keys(keys, keys + spare, count);
+    while (at < count && keys[at] != keys[at - 1])
+        ++at;
+    const uint64_t key = at < count ? keys[at] : 0;
+    mspringi_free(&network->memory, keys);
+    if (twice != MSPRING_NONE)
+        return mspringi_section_fail(network, &mspringi_section_growth, "spring %u joins what another one joins",
+                                     (unsigned)twice);
+    return at >= count
+               ? MSPRING_OK
+               : mspringi_section_fail(network, &mspringi_section_growth, "two springs join particles %u and %u",
+                                       (unsigned)(key >> 32), (unsigned)(key & UINT32_MAX));
+}
+
+const mspringi_section mspringi_section_growth = {"grow",      "added and removed particles and springs",
+                                                  false,       growth_size,
+                                                  growth_save, growth_check,
+                                                  growth_load, growth_check_against};

@@ -11,6 +11,7 @@
 
 /// Largest rest length before any flow, m: a spring may shrink to a tenth of it.
 #define LONGEST_NOMINAL 1e14f
+#define SHORTEST_NOMINAL MSPRINGI_WELD
 
 typedef struct yielding {
     float yield_strain, hardening, plastic_limit, nominal;
@@ -43,7 +44,7 @@ static mspring_result yielding_check(mspring_network *network, const uint8_t *fr
         if (!mspringi_are_allowed(MSPRING_YIELD_STRAIN, &v.yield_strain, 1, 1) ||
             !mspringi_are_allowed(MSPRING_HARDENING, &v.hardening, 1, 1) ||
             !mspringi_are_allowed(MSPRING_PLASTIC_LIMIT, &v.plastic_limit, 1, 1) ||
-            !(v.nominal > 0.0f && v.nominal <= LONGEST_NOMINAL))
+            !(v.nominal >= SHORTEST_NOMINAL && v.nominal <= LONGEST_NOMINAL))
             result = mspringi_section_fail(
                 network, section, "spring %u has yield strain %g, hardening %g, plastic limit %g, length %g m",
                 (unsigned)s, (double)v.yield_strain, (double)v.hardening, (double)v.plastic_limit,
@@ -71,8 +72,8 @@ static void yielding_load(mspring_network *network, const uint8_t *from, size_t 
     }
 }
 
-const mspringi_section mspringi_section_yielding = {"yiel",        "yield strains", true,         yielding_size,
-                                                    yielding_save, yielding_check,  yielding_load};
+const mspringi_section mspringi_section_yielding = {"yiel",        "yield strains", true,          yielding_size,
+                                                    yielding_save, yielding_check,  yielding_load, NULL};
 
 /* -------------------------------------------------------------------------------------------- plastic strains */
 
@@ -147,4 +148,4 @@ static void bent_load(mspring_network *network, const uint8_t *from, size_t size
 }
 
 const mspringi_section mspringi_section_bent = {
-    "bent", "springs that have yielded", false, NULL, bent_save, bent_check, bent_load};
+    "bent", "springs that have yielded", false, NULL, bent_save, bent_check, bent_load, NULL};

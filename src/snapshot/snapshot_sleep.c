@@ -155,4 +155,5 @@ static void sleep_load(mspring_network *network, const uint8_t *from, size_t siz
     sleep->has_force = head.has_force;
 }
 
-const mspringi_section mspringi_section_sleep = {"slee", "sleep", false, NULL, sleep_save, sleep_check, sleep_load};
+const mspringi_section mspringi_section_sleep = {"slee",     "sleep",     false,      NULL,
+                                                 sleep_save, sleep_check, sleep_load, NULL};

@@ -22,8 +22,8 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
         network->solver.ops->load(network, network->solver.object, from, size);
 }
 
-const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,        NULL,
-                                                    implicit_save, implicit_check,    implicit_load};
+const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,         NULL,
+                                                    implicit_save, implicit_check,    implicit_load, NULL};
 
 /* --------------------------------------------------------------------------------------------------- precision */
 
@@ -53,5 +53,5 @@ static void precision_load(mspring_network *network, const uint8_t *from, size_t
     (void)size;
 }
 
-const mspringi_section mspringi_section_precision = {"prec",         "precision",     false,         NULL,
-                                                     precision_save, precision_check, precision_load};
+const mspringi_section mspringi_section_precision = {"prec",         "precision",     false,          NULL,
+                                                     precision_save, precision_check, precision_load, NULL};

@@ -25,10 +25,17 @@ static bool bit_at(const uint8_t *from, mspringi_spring_slot spring_slot) {
 
 /* ----------------------------------------------------------------------------------------------------- broken */
 
-// A section is there for what has been done to springs, not for memory that is there for it: a call that fails may
-// have made that.
+// True if a spring is broken, or was left out of a compact layout for that.
+static bool is_any_broken(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    bool any = t->inactive_count > 0;
+    for (mspring_id s = 0; network->edits.broke && !any && s < t->spring_count; ++s)
+        any = mspringi_spring_exists(network, s) && !mspringi_spring_slot_is_live(network, t->slot_of_spring[s]);
+    return any;
+}
+
 static size_t broken_size(const mspring_network *network) {
-    return network->edits.broke ? words_size(network) : 0;
+    return is_any_broken(network) ? words_size(network) : 0;
 }
 
 static void broken_save(const mspring_network *network, mspringi_writer *to) {
@@ -50,9 +57,9 @@ static mspring_result broken_check(mspring_network *network, const uint8_t *from
 
 // True if the live bits are unchanged, the common case; comparing each spring would take half of loading a frame.
 // False if springs may have been added or removed.
-static bool are_as_in(const mspring_network *network, const uint8_t *from) {
-    const size_t words = mspringi_spring_slot_words(&network->topology);
-    bool same = !network->growth.springs;
+static bool are_as_in(const mspring_network *network, const uint8_t *from, size_t size) {
+    const size_t words = size / sizeof(uint16_t);
+    bool same = !network->growth.springs && (size > 0 || !network->edits.broke);
     for (size_t i = 0; same && i < words; ++i) {
         uint16_t word;
         mspringi_get(from + i * sizeof word, &word, 1, sizeof word);
@@ -63,9 +70,7 @@ static bool are_as_in(const mspring_network *network, const uint8_t *from) {
 
 static void broken_load(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_topology *t = &network->topology;
-    const bool broke = network->edits.broke;
-    network->edits.broke = size > 0;
-    if ((size == 0 && !broke) || (size > 0 && are_as_in(network, from)))
+    if (are_as_in(network, from, size))
         return;
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
@@ -77,10 +82,26 @@ static void broken_load(mspring_network *network, const uint8_t *from, size_t si
         else
             (void)mspringi_spring_break(network, s);
     }
+    network->edits.broke = size > 0;
 }
 
-const mspringi_section mspringi_section_broken = {"brok",      "broken springs", false,      broken_size,
-                                                  broken_save, broken_check,     broken_load};
+bool mspringi_saved_is_whole(const mspringi_saved *saved, mspring_id spring) {
+    return mspringi_saved_has_spring(saved, spring) &&
+           (!saved->live || bit_at(saved->live, mspringi_saved_place(saved, spring)));
+}
+
+// What is not there is not whole.
+static mspring_result broken_check_against(mspring_network *network, const mspringi_saved *saved,
+                                           const uint8_t *from, size_t size) {
+    for (mspring_id s = 0; size > 0 && saved->growth && s < network->topology.reserve.spring_end; ++s)
+        if (bit_at(from, mspringi_saved_place(saved, s)) && !mspringi_saved_has_spring(saved, s))
+            return mspringi_section_fail(network, &mspringi_section_broken, "spring %u is whole, but not there",
+                                         (unsigned)s);
+    return MSPRING_OK;
+}
+
+const mspringi_section mspringi_section_broken = {"brok",      "broken springs", false,       broken_size,
+                                                  broken_save, broken_check,     broken_load, broken_check_against};
 
 /* ----------------------------------------------------------------------------------------------------- values */
 
@@ -160,7 +181,7 @@ static void values_load(mspring_network *network, const uint8_t *from, size_t si
 }
 
 const mspringi_section mspringi_section_values = {
-    "valu", "stiffness, damping and rest lengths", true, values_size, values_save, values_check, values_load};
+    "valu", "stiffness, damping and rest lengths", true, values_size, values_save, values_check, values_load, NULL};
 
 /* ------------------------------------------------------------------------------------------------ strains */
 
@@ -208,8 +229,8 @@ static void thresholds_load(mspring_network *network, mspring_property property,
         if (network->strain.array)                                                                                 \
             thresholds_load(network, property, from, size);                                                        \
     }                                                                                                              \
-    const mspringi_section mspringi_section_##name = {tag,         words,        true,       name##_size,          \
-                                                      name##_save, name##_check, name##_load}
+    const mspringi_section mspringi_section_##name = {tag,         words,        true,        name##_size,         \
+                                                      name##_save, name##_check, name##_load, NULL}
 
 THRESHOLDS(break_strains, "brks", "break strains", MSPRING_BREAK_STRAIN, break_strain, breaks);
 THRESHOLDS(stress_strains, "strs", "stress strains", MSPRING_STRESS_STRAIN, stress_strain, stresses);
@@ -248,8 +269,8 @@ static void stressed_load(mspring_network *network, const uint8_t *from, size_t 
         stressed[i] &= network->live[i];
 }
 
-const mspringi_section mspringi_section_stressed = {"stsd",        "stressed springs", false,        stressed_size,
-                                                    stressed_save, stressed_check,     stressed_load};
+const mspringi_section mspringi_section_stressed = {"stsd",        "stressed springs", false,         stressed_size,
+                                                    stressed_save, stressed_check,     stressed_load, NULL};
 
 /* ------------------------------------------------------------------------------------------------------ ramps */
 
@@ -291,14 +312,38 @@ static mspring_result ramps_check(mspring_network *network, const uint8_t *from,
 static void ramps_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_io io = mspringi_io_from(from, size);
     network->ramps.count = 0;
-    while (io.left > 0) { // skips forged ramps of missing springs, which have no ends to wake
+    while (io.left > 0) {
         mspringi_ramp ramp;
         hand_ramp(&io, &ramp);
-        if (mspringi_spring_exists(network, ramp.spring))
-            mspringi_ramp_add(network, &ramp);
+        mspringi_ramp_add(network, &ramp);
     }
     mspringi_ramps_apply(network, 0.0);
 }
 
-const mspringi_section mspringi_section_ramps = {
-    "ramp", "springs on the way to their rest lengths", false, NULL, ramps_save, ramps_check, ramps_load};
+// Each is of another spring, which is whole.
+static mspring_result ramps_check_against(mspring_network *network, const mspringi_saved *saved,
+                                          const uint8_t *from, size_t size) {
+    mspringi_io io = mspringi_io_from(from, size);
+    mspring_result result = MSPRING_OK;
+    if (size == 0)
+        return MSPRING_OK;
+    uint8_t *has_one = mspringi_alloc(&network->memory, network->topology.reserve.spring_end, sizeof *has_one);
+    if (!has_one)
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to compare %zu bytes of ramps",
+                             size);
+    while (result == MSPRING_OK && io.left > 0) {
+        mspringi_ramp ramp;
+        hand_ramp(&io, &ramp);
+        if (has_one[ramp.spring]++ || !mspringi_saved_is_whole(saved, ramp.spring))
+            result = mspringi_section_fail(network, &mspringi_section_ramps,
+                                           "spring %u goes to its rest length twice, or is not whole",
+                                           (unsigned)ramp.spring);
+    }
+    mspringi_free(&network->memory, has_one);
+    return result;
+}
+
+const mspringi_section mspringi_section_ramps = {"ramp",     "springs on the way to their rest lengths",
+                                                 false,      NULL,
+                                                 ramps_save, ramps_check,
+                                                 ramps_load, ramps_check_against};

@@ -78,8 +78,8 @@ static void settings_load(mspring_network *network, const uint8_t *from, size_t 
     mspringi_derive_relative(network, s.relative_h);
 }
 
-const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,        NULL,
-                                                    settings_save, settings_check, settings_load};
+const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,         NULL,
+                                                    settings_save, settings_check, settings_load, NULL};
 
 /* ------------------------------------------------------------------------------------------------ step count */
 
@@ -120,7 +120,8 @@ static void steps_load(mspring_network *network, const uint8_t *from, size_t siz
     hand_steps(&io, &network->steps);
 }
 
-const mspringi_section mspringi_section_steps = {"step", "steps", false, NULL, steps_save, steps_check, steps_load};
+const mspringi_section mspringi_section_steps = {"step",     "steps",     false,      NULL,
+                                                 steps_save, steps_check, steps_load, NULL};
 
 /* ------------------------------------------------------------------------------------------------ whole arrays */
 
@@ -148,8 +149,28 @@ static size_t motion_size(const mspring_network *network) {
     return motion_floats(network) * sizeof(float);
 }
 
+// What somebody outside may have written is saved as the next step would put it in order: without low words of
+// other coordinates, and nothing where no particle is.
+static void put_tidied(const mspring_network *network, size_t array, mspringi_writer *to) {
+    const size_t slots = mspringi_slot_count(network), positions = MSPRINGI_STATE_ARRAYS - 2;
+    const float *values = network->state.x + array * slots;
+    const float *of = network->state.x + (array < positions ? array : array - positions) * slots;
+    for (size_t first = 0; first < slots; first += MSPRINGI_WIDTH) {
+        float block[MSPRINGI_WIDTH];
+        for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
+            const size_t slot = first + lane;
+            const float value = array < positions ? values[slot] : mspringi_low_of(of[slot], values[slot]);
+            block[lane] = network->topology.particle_of_slot[slot] == MSPRING_NONE ? 0.0f : value;
+        }
+        mspringi_put(to, block, MSPRINGI_WIDTH, sizeof(float));
+    }
+}
+
 static void motion_save(const mspring_network *network, mspringi_writer *to) {
-    mspringi_put(to, network->state.x, motion_floats(network), sizeof(float));
+    if (!network->is_open)
+        mspringi_put(to, network->state.x, motion_floats(network), sizeof(float));
+    for (size_t array = 0; network->is_open && array < MSPRINGI_STATE_ARRAYS; ++array)
+        put_tidied(network, array, to);
 }
 
 static mspring_result check_motion(mspring_network *network, const uint8_t *from, mspring_id p, uint32_t slot) {
@@ -192,7 +213,7 @@ static void motion_load(mspring_network *network, const uint8_t *from, size_t si
 }
 
 const mspringi_section mspringi_section_motion = {
-    "moti", "positions and velocities", false, motion_size, motion_save, motion_check, motion_load};
+    "moti", "positions and velocities", false, motion_size, motion_save, motion_check, motion_load, NULL};
 
 /* ----------------------------------------------------------------------------------------------------- masses */
 
@@ -336,8 +357,8 @@ static void masses_load(mspring_network *network, const uint8_t *from, size_t si
     mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0);
 }
 
-const mspringi_section mspringi_section_masses = {"mass",      "masses",     false,      masses_size,
-                                                  masses_save, masses_check, masses_load};
+const mspringi_section mspringi_section_masses = {"mass",      "masses",     false,       masses_size,
+                                                  masses_save, masses_check, masses_load, NULL};
 
 /* ----------------------------------------------------------------------------------------------------- forces */
 
@@ -377,4 +398,4 @@ static void forces_load(mspring_network *network, const uint8_t *from, size_t si
 }
 
 const mspringi_section mspringi_section_forces = {
-    "forc", "forces given for the next step", false, forces_size, forces_save, forces_check, forces_load};
+    "forc", "forces given for the next step", false, forces_size, forces_save, forces_check, forces_load, NULL};

@@ -18,6 +18,14 @@ static inline mspringi_io mspringi_io_from(const uint8_t *from, size_t size) {
     return (mspringi_io){.from = from, .size = size, .left = size};
 }
 
+/// What a snapshot says is there, for sections that name it.
+typedef struct mspringi_saved {
+    const mspring_network *network;
+    const uint8_t *growth; ///< its section, NULL: all is there
+    const uint8_t *live;   ///< section of broken springs, NULL: none is broken
+    size_t angle_count;
+} mspringi_saved;
+
 typedef struct mspringi_section {
     char tag[5];      ///< 4 letters
     const char *name; ///< what is in it, for messages
@@ -33,7 +41,21 @@ typedef struct mspringi_section {
     mspring_result (*check)(mspring_network *network, const uint8_t *from, size_t size);
     /// Put it into force; after check(). Size 0: the network is to have none of it.
     void (*load)(mspring_network *network, const uint8_t *from, size_t size);
+
+    /// Refuse what contradicts other sections; after all checks. NULL: nothing can.
+    mspring_result (*check_against)(mspring_network *network, const mspringi_saved *saved, const uint8_t *from,
+                                    size_t size);
 } mspringi_section;
+
+/// Whether there is a particle or a spring in the snapshot, in id_pool.c; and whether the spring is whole, in
+/// springs.c. Ids are below those of the reserve.
+bool mspringi_saved_has_particle(const mspringi_saved *saved, mspring_id particle);
+bool mspringi_saved_has_spring(const mspringi_saved *saved, mspring_id spring);
+bool mspringi_saved_is_whole(const mspringi_saved *saved, mspring_id spring);
+/// Place of a spring in the snapshot.
+mspringi_spring_slot mspringi_saved_place(const mspringi_saved *saved, mspring_id spring);
+/// Angles in a section of areas that has been checked.
+size_t mspringi_saved_angles(const uint8_t *from, size_t size);
 
 // In snapshot_state.c.
 extern const mspringi_section mspringi_section_settings;

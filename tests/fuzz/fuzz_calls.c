@@ -1,27 +1,33 @@
 /// @file fuzz_calls.c
 /// A network of any kind, and any calls on it: at two instruction sets and two numbers of workers at once, which
 /// all have to answer the same and to hold the same bits, whatever they are asked. Nothing that is not finite may
-/// come out, and a refused call may change nothing. Networks whose numbers are mild are compared with the plain
-/// reference in double precision as well.
+/// come out, and a refused call may change nothing: neither the snapshot nor what follows, as one of them never
+/// makes the calls that the first was refused. That one also has a caller who rounds upwards. Another one loads the
+/// first one's snapshot after each call, and saves the same bytes. Networks whose numbers are mild are compared
+/// with the plain reference in double precision as well.
 ///
 /// SPDX-License-Identifier: MIT
+#include <fenv.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include "calls.h"
-#include "fuzz.h"
+#include "check.h"
 #include "recipe.h"
 #include "reference.h"
+#include "step/finite.h"
 #include "support.h"
 
-enum { TWINS = 3, MOST_CALLS = 48, MOST_PARTICLES = 600 };
+/// The first is scalar; the second may have workers; the third is spared what the first is refused; the last loads.
+enum { SCALAR, WORKERS, SPARED, LOADED, TWINS, MOST_CALLS = 48, MOST_PARTICLES = 600 };
 
 /// The same network several times.
 typedef struct twins {
     mspring_network *of[TWINS];
     uint32_t particles, springs;
     uint64_t look;
+    fuzz_saved saved; ///< of the first
 } twins;
 
 /* ---------------------------------------------------------------------------------------------------- numbers */
@@ -117,7 +123,9 @@ static bool make_twins(twins *made, const recipe *from, bool mild, fuzz_bytes *b
     def.gravity_y = settings & 64 ? any_number(bytes) : -9.8f;
     const bool workers = settings & 128;
     const uint8_t more = fuzz_byte(bytes);
-    def.guard = more % 32 < 8 ? MSPRING_GUARD_CLAMP : settings / 8 % 4;
+    def.guard = more % 32 < 8    ? MSPRING_GUARD_CLAMP
+                : more % 32 < 14 ? MSPRING_GUARD_CLAMP_BOUNDS
+                                 : settings / 8 % 4;
     def.sleep_speed = more % 4 == 0 && !mild ? 0.1f : 0; // the reference never sleeps
     def.sleep_time = 0.01f;
     def.spare_particles = def.spare_springs = settings & 16 ? 24 : 0;
@@ -131,8 +139,8 @@ static bool make_twins(twins *made, const recipe *from, bool mild, fuzz_bytes *b
     *made = (twins){.particles = from->particle_count + def.spare_particles,
                     .springs = from->spring_count + (has_limits ? limited : 0) + def.spare_springs};
     for (int i = 0; i < TWINS && whole; i++) {
-        def.simd_level = i == 0 ? MSPRING_SIMD_SCALAR : MSPRING_SIMD_AUTO;
-        def.worker_count = i == 2 && workers ? 2 : 1;
+        def.simd_level = i == SCALAR ? MSPRING_SIMD_SCALAR : MSPRING_SIMD_AUTO;
+        def.worker_count = i == WORKERS && workers ? 2 : 1;
         whole = mspring_network_create(builder, &def, &made->of[i]) == MSPRING_OK;
         FUZZ_CHECK(whole || i == 0); // one as the other
     }
@@ -210,21 +218,46 @@ static void check_finite(const mspring_network *network, uint32_t count) {
         FUZZ_CHECK(isfinite(x[i]) && isfinite(y[i]) && isfinite(vx[i]) && isfinite(vy[i]));
 }
 
-// The same answer from all, and the same bits; from a refusal nothing but a message.
-static void check_answers(twins *all, const mspring_result results[TWINS]) {
+// All save the same, the last one once it has loaded that.
+static void check_snapshots(twins *all, const call *c, bool is_refused) {
+    static const char *const names[TWINS] = {"", "with workers", "without refused calls", "that was loaded"};
+    char after[80];
+    const fuzz_saved before = all->saved;
+    all->saved = fuzz_save(all->of[SCALAR]);
+    snprintf(after, sizeof after, "call %u (%u), refused", (unsigned)c->kind, (unsigned)c->kind % 52);
+    if (is_refused)
+        fuzz_check_saves(all->of[SCALAR], &before, after);
+    free(before.bytes);
     for (int i = 0; i < TWINS; i++) {
-        FUZZ_CHECK(results[i] == results[0]);
-        FUZZ_CHECK(hash_of(all->of[i]) == hash_of(all->of[0]));
-        FUZZ_CHECK(support_substeps(all->of[i]) == support_substeps(all->of[0]));
+        if (i == LOADED) {
+            const mspring_result result = mspring_network_load(all->of[i], all->saved.bytes, all->saved.size);
+            if (result != MSPRING_OK)
+                fprintf(stderr, "%s\n", mspring_network_error(all->of[i]));
+            FUZZ_CHECK(result == MSPRING_OK);
+        }
+        snprintf(after, sizeof after, "call %u (%u), in the one %s", (unsigned)c->kind, (unsigned)c->kind % 52,
+                 names[i]);
+        fuzz_check_saves(all->of[i], &all->saved, after);
     }
-    const uint64_t look = look_of(all->of[0]);
-    FUZZ_CHECK(look_of(all->of[1 + look % (TWINS - 1)]) == look); // now this one, now that
-    if (results[0] != MSPRING_OK) {
+}
+
+// The same answer from all, and the same bits; from a refusal nothing but a message.
+static void check_answers(twins *all, const call *c, const mspring_result results[TWINS]) {
+    for (int i = 0; i < TWINS; i++) {
+        FUZZ_CHECK(results[i] == results[SCALAR]);
+        FUZZ_CHECK(hash_of(all->of[i]) == hash_of(all->of[SCALAR]));
+        FUZZ_CHECK(support_substeps(all->of[i]) == support_substeps(all->of[SCALAR]));
+    }
+    const uint64_t look = look_of(all->of[SCALAR]);
+    FUZZ_CHECK(look_of(all->of[look % 2 ? WORKERS : SPARED]) == look); // now this one, now that
+    if (results[SCALAR] != MSPRING_OK) {
         FUZZ_CHECK(look == all->look);
-        FUZZ_CHECK(strlen(mspring_network_error(all->of[0])) > 0);
+        FUZZ_CHECK(strlen(mspring_network_error(all->of[SCALAR])) > 0);
     }
     all->look = look;
-    check_finite(all->of[0], mspring_network_particle_count(all->of[0]));
+    check_finite(all->of[SCALAR], mspring_network_particle_count(all->of[SCALAR]));
+    FUZZ_CHECK(mspringi_is_finite(all->of[SCALAR]));
+    check_snapshots(all, c, results[SCALAR] != MSPRING_OK);
 }
 
 /* ---------------------------------------------------------------------------------------------------- calls */
@@ -370,7 +403,7 @@ static mspring_result add_particles(mspring_network *network, const call *c) {
     mspring_id ids[2];
     for (int i = 0; i < 2; i++) {
         FUZZ_CHECK(mspring_particle_def_init(&defs[i], sizeof defs[i]) == MSPRING_OK);
-        defs[i].x = (double)c->a + i;
+        defs[i].x = (double)(i == 0 ? c->a : c->b); // no sum, which would depend on how the caller rounds
         defs[i].y = (double)c->b;
         defs[i].vx = c->b;
     }
@@ -537,9 +570,17 @@ static void make_calls(twins *all, fuzz_bytes *bytes) {
                         .dt = step_length(bytes),
                         .solver = solvers[fuzz_byte(bytes) % 4]};
         mspring_result results[TWINS];
-        for (int twin = 0; twin < TWINS; twin++)
+        for (int twin = 0; twin < TWINS; twin++) {
+            results[twin] = results[SCALAR];
+            if (twin > WORKERS && results[SCALAR] != MSPRING_OK)
+                continue;
+#if defined(FE_UPWARD)
+            fesetround(twin == SPARED ? FE_UPWARD : FE_TONEAREST);
+#endif
             results[twin] = make_call(all->of[twin], &c);
-        check_answers(all, results);
+            fesetround(FE_TONEAREST);
+        }
+        check_answers(all, &c, results);
     }
 }
 
@@ -580,11 +621,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     twins all;
     if (make_twins(&all, &made, mild, &bytes)) {
         all.look = look_of(all.of[0]);
+        all.saved = fuzz_save(all.of[0]);
         check_finite(all.of[0], made.particle_count);
         if (mild)
             compare_with_reference(&all, &made);
         else
             make_calls(&all, &bytes);
+        free(all.saved.bytes);
     }
     for (int i = 0; i < TWINS; i++)
         mspring_network_destroy(all.of[i]);

@@ -3,7 +3,7 @@
 /// be made into a network.
 ///
 /// SPDX-License-Identifier: MIT
-#include "fuzz.h"
+#include "check.h"
 
 #include <string.h>
 
@@ -17,7 +17,7 @@ static void check_scene(scene *made) {
     if (result == MSPRING_OK) {
         const uint32_t count = mspring_network_particle_count(network);
         FUZZ_CHECK(made->probe == MSPRING_NONE || made->probe < count);
-        result = mspring_network_step(network, 1e-4);
+        result = fuzz_step(network, 1e-4);
         FUZZ_CHECK(result == MSPRING_OK || result == MSPRING_ERROR_UNSTABLE);
         mspring_network_destroy(network);
     }

@@ -114,7 +114,7 @@ static void values_have_their_ranges(void **state) {
                                  {"ramp", 0, made.spring_count, "goes from"},
                                  {"guar", 20, MSPRING_GUARD_CLAMP_BOUNDS + 1, "for substeps of"},
                                  {"guar", 24, 1, "bits that have no meaning"},
-                                 {"guar", 32, 3, "for substeps of"}};
+                                 {"guar", 32, 4, "for substeps of"}};
     for (size_t i = 0; i < COUNT_OF(words); i++) {
         saved forged = snapshots_copy(&good);
         snapshots_put_word(snapshots_section_of(&forged, words[i].tag, &size) + words[i].at, words[i].value);

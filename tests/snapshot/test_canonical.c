@@ -1,0 +1,207 @@
+/// @file test_canonical.c
+/// The same state saves the same bytes: after a load, in a network that has lived otherwise before it, and after
+/// calls that only ask or are refused.
+///
+/// SPDX-License-Identifier: MIT
+#include <fenv.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "snapshots.h"
+#include "support.h"
+
+static mspring_network *make(mspring_solver solver, uint64_t seed) {
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, 1}};
+    recipe made = {0};
+    recipe_lattice(&made, 5, 3, 0, 0, 1, &stuff, &seed);
+    recipe_lattice(&made, 4, 2, 0, 9, 1, &stuff, &seed);
+    recipe_particle(&made, 20, 0, 1, 0);
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.spare_particles = def.spare_springs = 4;
+    mspring_network *network = recipe_network(&made, &def);
+    recipe_free(&made);
+    if (solver != MSPRING_SOLVER_EXPLICIT)
+        snapshots_use_solver(network, solver, MSPRING_INTEGRATOR_BDF2, 7);
+    return network;
+}
+
+static void check_same(const mspring_network *network, const saved *expected) {
+    const saved now = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    assert_int_equal(now.size, expected->size);
+    assert_memory_equal(now.bytes, expected->bytes, now.size);
+    free(now.bytes);
+}
+
+// One of many edits. Some are refused, as what they name is gone.
+static void edit(mspring_network *network, bool may_compact, uint64_t *seed) {
+    const mspring_id p = (mspring_id)(support_random(seed) % mspring_network_particle_count(network));
+    const mspring_id s = (mspring_id)(support_random(seed) % mspring_network_spring_count(network));
+    const float value = (float)support_random_between(seed, -1, 1), mass = 2 + value, strain = 0.5f;
+    const double x = support_random_between(seed, -5, 5);
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    mspring_particle_def particle;
+    mspring_spring_def spring;
+    mspring_id id;
+    mspring_result result = MSPRING_OK;
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    particle.x = x;
+    spring.a = p, spring.b = s % mspring_network_particle_count(network), spring.stiffness = 20;
+    switch (support_random(seed) % 14) {
+    case 0:
+        result = mspring_network_break_springs(network, &s, 1);
+        break;
+    case 1:
+        result = mspring_network_restore_springs(network, &s, 1, value > 0 ? 0.1 : 0.0);
+        break;
+    case 2:
+        result = mspring_network_set_velocities(network, p, 1, &value, &value, 1);
+        break;
+    case 3:
+        result = mspring_network_set_positions(network, p, 1, &x, &x, 1);
+        break;
+    case 4:
+        result = mspring_network_add_particles(network, &particle, 1, &id);
+        break;
+    case 5:
+        result = mspring_network_add_springs(network, &spring, 1, &id);
+        break;
+    case 6:
+        result = mspring_network_remove_particles(network, &p, 1);
+        break;
+    case 7:
+        result = mspring_network_remove_springs(network, &s, 1);
+        break;
+    case 8:
+        result = mspring_network_recycle(network);
+        break;
+    case 9:
+        check_ok(mspring_network_view_mutable(network, &view));
+        view.vy[view.slot_of_particle[p]] = value;
+        for (uint32_t slot = 0; slot < view.slot_count; slot++)
+            if (view.particle_of_slot[slot] == MSPRING_NONE)
+                view.x[slot] = value;
+        break;
+    case 10:
+        result = mspring_network_set(network, MSPRING_MASS, p, 1, &mass, 1);
+        break;
+    case 11:
+        result = mspring_network_set(network, MSPRING_STRESS_STRAIN, s, 1, &strain, 1);
+        break;
+    case 12:
+        result = may_compact ? mspring_network_compact(network) : MSPRING_OK;
+        break;
+    default:
+        result = mspring_network_wake(network);
+    }
+    (void)result;
+}
+
+static void a_load_brings_the_same_bytes(void **state) {
+    (void)state;
+    const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT};
+    for (uint64_t seed = 0; seed < (uint64_t)ROUNDS(60); seed++) {
+        mspring_network *one = make(solvers[seed % 2], 7), *other = make(solvers[seed % 2], 7);
+        uint64_t edits = seed;
+        for (int round = 0; round < 40; round++) {
+            uint64_t same = edits;
+            edit(one, seed % 2 == 0, &edits);
+            edit(other, seed % 2 == 0, &same);
+            if (round % 3 == 0) {
+                const mspring_result result = mspring_network_step(one, 0.01);
+                assert_int_equal(mspring_network_step(other, 0.01), result);
+            }
+            const saved now = snapshots_save(one, MSPRING_SNAPSHOT_ALL);
+            check_same(other, &now);
+            snapshots_load(other, &now);
+            check_same(other, &now);
+            free(now.bytes);
+        }
+        // Back from another life.
+        const saved now = snapshots_save(one, MSPRING_SNAPSHOT_ALL);
+        mspring_network *whole = make(solvers[seed % 2], 7);
+        const mspring_result fits = mspring_network_load(whole, now.bytes, now.size); // not if one is compact
+        if (fits == MSPRING_OK)
+            check_same(whole, &now);
+        for (int i = 0; fits == MSPRING_OK && i < 5; i++) {
+            const mspring_id s = (mspring_id)i + 1;
+            if (mspring_network_has_spring(one, s))
+                check_ok(mspring_network_break_springs(one, &s, 1));
+            (void)!mspring_network_step(one, 0.01);
+        }
+        if (fits == MSPRING_OK) {
+            snapshots_load(one, &now);
+            check_same(one, &now);
+        }
+        free(now.bytes);
+        mspring_network_destroy(one);
+        mspring_network_destroy(other);
+        mspring_network_destroy(whole);
+    }
+}
+
+/// Questions, answered or refused, leave the guard's knowledge as it was.
+static void questions_change_nothing(void **state) {
+    (void)state;
+    mspring_network *network = make(MSPRING_SOLVER_EXPLICIT, 7);
+    for (int round = 0; round < 3; round++) {
+        const float stiff = 1e6f;
+        uint32_t substeps;
+        double now, any_shape;
+        const saved before = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+        check_error(mspring_network_suggest_substeps(network, 1e9, 1e-9, &substeps), MSPRING_ERROR_UNSTABLE);
+        check_same(network, &before);
+        check_ok(mspring_network_suggest_substeps(network, 0.01, 0.5, &substeps));
+        check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+        check_same(network, &before);
+        free(before.bytes);
+        support_steps(network, 1, 1e-4);
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, (mspring_id)round, 1, &stiff, 1));
+    }
+    mspring_network_destroy(network);
+}
+
+#if defined(FE_UPWARD) && !defined(__wasm__)
+/// Whoever steps may round as they like.
+static void the_callers_rounding_does_not_count(void **state) {
+    (void)state;
+    const int modes[] = {FE_TONEAREST, FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
+    saved first = {NULL, 0};
+    for (size_t i = 0; i < COUNT_OF(modes); i++) {
+        mspring_network *network = make(MSPRING_SOLVER_EXPLICIT, 7);
+        mspring_area_def area;
+        mspring_angle_def angle;
+        const mspring_id corners[4] = {0, 2, 12, 10}, arms[3] = {0, 6, 2};
+        check_ok(mspring_area_def_init(&area, sizeof area));
+        check_ok(mspring_angle_def_init(&angle, sizeof angle));
+        area.stiffness = angle.stiffness = 1;
+        fesetround(modes[i]);
+        mspring_result worst = mspring_network_add_area(network, &area, corners, 4, NULL);
+        worst = worst ? worst : mspring_network_add_cell_areas(network, &area, NULL, NULL);
+        worst = worst ? worst : mspring_network_add_angles(network, &angle, arms, 1, NULL);
+        worst = worst ? worst : mspring_network_remove_area(network, 1);
+        for (int step = 0; step < 30; step++)
+            worst = worst ? worst : mspring_network_step(network, 1.0 / 60);
+        fesetround(FE_TONEAREST);
+        check_ok(worst);
+        if (i == 0)
+            first = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+        check_same(network, &first);
+        mspring_network_destroy(network);
+    }
+    free(first.bytes);
+}
+#endif
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_load_brings_the_same_bytes),
+        cmocka_unit_test(questions_change_nothing),
+#if defined(FE_UPWARD) && !defined(__wasm__)
+        cmocka_unit_test(the_callers_rounding_does_not_count),
+#endif
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
