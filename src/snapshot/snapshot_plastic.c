@@ -11,7 +11,6 @@
 
 /// Largest rest length before any flow, m: a spring may shrink to a tenth of it.
 #define LONGEST_NOMINAL 1e14f
-#define SHORTEST_NOMINAL MSPRINGI_WELD
 
 typedef struct yielding {
     float yield_strain, hardening, plastic_limit, nominal;
@@ -44,7 +43,7 @@ static mspring_result yielding_check(mspring_network *network, const uint8_t *fr
         if (!mspringi_are_allowed(MSPRING_YIELD_STRAIN, &v.yield_strain, 1, 1) ||
             !mspringi_are_allowed(MSPRING_HARDENING, &v.hardening, 1, 1) ||
             !mspringi_are_allowed(MSPRING_PLASTIC_LIMIT, &v.plastic_limit, 1, 1) ||
-            !(v.nominal >= SHORTEST_NOMINAL && v.nominal <= LONGEST_NOMINAL))
+            !(v.nominal > 0.0f && v.nominal <= LONGEST_NOMINAL))
             result = mspringi_section_fail(
                 network, section, "spring %u has yield strain %g, hardening %g, plastic limit %g, length %g m",
                 (unsigned)s, (double)v.yield_strain, (double)v.hardening, (double)v.plastic_limit,
