@@ -86,7 +86,7 @@ static bool is_finite_in(const mspringi_state *s, uint32_t slot) {
 }
 
 // Move a coordinate within the bounds. A low word that belongs to another coordinate, or is no number, becomes 0.
-static void bound_coordinate(float *coordinate, float *low) {
+static void clamp_coordinate(float *coordinate, float *low) {
     const float bounded = between(*coordinate, (float)MSPRING_MAX_COORDINATE);
     *low = bounded == *coordinate ? mspringi_low_of(bounded, *low) : 0.0f;
     *coordinate = bounded;
@@ -105,8 +105,8 @@ void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *
             s->low_y[slot] = was_there ? before->low_y[slot] : 0.0f;
             s->vx[slot] = s->vy[slot] = 0.0f;
         }
-        bound_coordinate(&s->x[slot], &s->low_x[slot]);
-        bound_coordinate(&s->y[slot], &s->low_y[slot]);
+        clamp_coordinate(&s->x[slot], &s->low_x[slot]);
+        clamp_coordinate(&s->y[slot], &s->low_y[slot]);
         s->vx[slot] = between(s->vx[slot], network->settings.max_speed);
         s->vy[slot] = between(s->vy[slot], network->settings.max_speed);
     }
