@@ -68,7 +68,7 @@ static mspring_result check_bounds(mspring_network *network, const mspringi_atte
     network->outcome.particle = named;
     if (!isfinite(x + y + vx + vy))
         return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                             "unstable: substeps of %g s throw particle %u to infinity or NaN. %s",
+                             "unstable: substeps of %g s throw particle %u out of the range of float. %s",
                              (double)attempt->h, (unsigned)named, cure);
     return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
                          "unstable: substeps of %g s throw particle %u to (%g, %g) m at (%g, %g) m/s, at most %g. "
