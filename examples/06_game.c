@@ -545,9 +545,10 @@ static bool run(const options *asked, const mspring_tasks *tasks) {
         play(&played, asked, &pictures);
         ok = check_water(&played);
         ok = check_rigging(&played) && ok;
-        // Velocities are floats, each substep rounds them: 1e-4 of all that went through in 10 minutes. Implicit
-        // substeps balance forces to what their iterations leave.
-        ok = books_close(&played.accounts, asked->implicit ? 0.02 : 1e-4) && ok;
+        // Contact that pushes apart what breaks have left overlapping gives back up to 1.6e-4 of the energy that went
+        // through, by chance (ten runs with other rope strains). Rounding is below 1e-6. Implicit substeps balance
+        // forces to what their iterations leave.
+        ok = books_close(&played.accounts, asked->implicit ? 0.02 : 3e-4) && ok;
         ok = check_end(&played, 5) && ok;
         ok = output_figure(&pictures, asked->folder, "06_game") && ok;
         figure_free(&pictures);

@@ -26,8 +26,9 @@
 #define MSPRING_CALL
 #endif
 
-/// Marks results that must not be ignored.
-#if defined(__cplusplus) && __cplusplus >= 201703L
+/// Marks results that must not be ignored. You may define it yourself before the headers, for instance as nothing.
+#if defined(MSPRING_NODISCARD)
+#elif defined(__cplusplus) && __cplusplus >= 201703L
 #define MSPRING_NODISCARD [[nodiscard]]
 #elif defined(__GNUC__)
 #define MSPRING_NODISCARD __attribute__((warn_unused_result))

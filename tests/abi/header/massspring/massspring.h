@@ -93,9 +93,10 @@
 /// **ABI.** Handles are opaque, and no struct is passed by value. Ids, counts, capacities and strides are uint32_t,
 /// sizes in bytes size_t, enums signed integers of 32 bits. All public structs but mspring_event begin with
 /// struct_size. If you fill a struct, call its init function first, which sets the defaults. If the library fills it,
-/// set struct_size. Reserved fields must be 0. Structs may grow at the end. Older programs keep working. So do newer
-/// ones, if they leave what this version does not know at 0. Ignore flags, results and kinds of event that you do not
-/// know: a result below 0 is an error.
+/// set struct_size. Reserved fields must be 0. Structs may grow at the end. Older programs keep working: a field that
+/// yours lacks has its default, and reports end where your struct does. So do newer ones, if they leave what this
+/// version does not know at 0; reports have 0 there. Ignore flags, results and kinds of event that you do not know: a
+/// result below 0 is an error.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MASSSPRING_MASSSPRING_H
@@ -332,7 +333,8 @@ typedef enum mspring_integrator {
 
 /// substeps for "as few as are stable in any shape that the network can reach", chosen before each step (see
 /// mspring_network_stable_dt()). For the implicit and the direct solver 1. mspring_step_info reports the number. If
-/// all springs are relative, it is 1: set a number to have them firmer.
+/// all springs are relative, it is 1: set a number to have them firmer. Stable is meant of equal steps and small
+/// motion; mspring_network_step() says what else makes energy.
 #define MSPRING_SUBSTEPS_AUTO 0xffffffffu
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. A solver ignores what it does not use.
@@ -378,7 +380,7 @@ enum {
 /// by no more than the work of gravity, forces and moving pins. The guide examples/guides/solvers.md has the details.
 typedef enum mspring_guard {
     /// Reject a step whose substeps exceed the stability limit (mspring_network_stable_dt()), or make motion grow.
-    /// Steps within the limit are never rejected.
+    /// Steps within the limit are never rejected, not even where uneven dt or violent motion adds energy step by step.
     MSPRING_GUARD_GROWTH = 0,
     /// Repeat a step that would be rejected, with twice as many substeps, up to max_substeps. Later steps keep that
     /// number until mspring_network_set_solver(). Hooks are called again. Relative springs gain nothing by it.
@@ -608,9 +610,15 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_se
 /// If a coordinate or speed would end out of bounds, or motion grow by instability (mspring_guard), the step is
 /// rolled back. The state is then that before the step, bit for bit, and forces given for it are still there. The
 /// message and mspring_step_info name a particle or a spring. Use a shorter dt, more substeps or lower stiffness.
+///
+/// Pass equal dt. The explicit solver keeps another energy at each length of substep. A dt that differs from step to
+/// step, as a frame's time does, therefore adds energy without bound where nothing damps, by stable substeps and with
+/// MSPRING_SUBSTEPS_AUTO, too; no guard sees it. If dt must vary, damp (springs, or global_damping), or set substeps
+/// that keep h = dt / substeps below 0.7 of any_shape (mspring_network_stable_dt()): then it grows slowly. Motion so
+/// violent that neighbours pass over a third of a spring's length in a substep adds energy, too: take more substeps.
 /// @param dt  s, > 0; as a float, dt / substeps must be finite and at least 1.2e-38
 /// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork();
-///          LIMIT if contact finds more pairs than its capacity (mspring_contact_def)
+///          LIMIT if contact finds more pairs than its capacity, or compares too many (mspring_contact_def)
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(mspring_network *network, double dt);
 
 /// Flags of mspring_step_info: how a step was made.
@@ -646,7 +654,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_st
 /// Return 1 if all of the network sleeps, else 0. NULL gives 0.
 /// Each component sleeps by itself; the guide calls it an island. It falls asleep after a step if it has been slower
 /// than mspring_settings.sleep_speed for sleep_time. Its velocities become 0. Steps do not move it, and cost only
-/// what is awake. It wakes if an edit, a force or a setting changes it. The rules: examples/guides/sleep.md.
+/// what is awake. It wakes if an edit, a force or a setting changes it, or what it
+/// rests on. The rules: examples/guides/sleep.md.
 /// @threads shared   @allocates never
 MSPRING_API uint32_t MSPRING_CALL mspring_network_is_asleep(const mspring_network *network);
 
@@ -807,8 +816,9 @@ typedef enum mspring_property {
     /// Nominal damping of a spring, N s/m, 0 to 1e30; of a relative spring its fraction. Values above 0 need a spring
     /// that was made with damping, or MSPRING_NETWORK_RESERVE_DAMPING. Allocates as MSPRING_STIFFNESS.
     MSPRING_DAMPING = 3,
-    /// Rest length of a spring, m, 0 to 4e12, for muscles and winches; 0 is a weld: its ends rest in the same place.
-    /// Writing it ends a ramp. Allocates for a spring of a lattice.
+    /// Rest length of a spring as given, m, 0 to 4e12, for muscles and winches; 0 is a weld: its ends rest in the same
+    /// place. What the spring has yielded comes on top: MSPRING_ACTIVE_REST_LENGTH. Writing it ends a ramp. Allocates
+    /// for a spring of a lattice.
     MSPRING_REST_LENGTH = 4,
     /// Break strain of a spring, > 0; default MSPRING_NEVER. If the size of a spring's strain exceeds it at the end
     /// of a step, the spring breaks. If substeps are too long to follow a blow, the strains are wrong. Allocates.
@@ -830,6 +840,7 @@ typedef enum mspring_property {
     MSPRING_HARDENING = 14,
     MSPRING_PLASTIC_LIMIT = 15,
     MSPRING_PLASTIC_STRAIN = 16,
+    MSPRING_ACTIVE_REST_LENGTH = 17, ///< in force, m: with its ramp and plastic strain; read only
     MSPRING_PROPERTY_INT = MSPRING_ENUM_INT ///< no value
 } mspring_property;
 

@@ -137,7 +137,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_observ
 /* ----------------------------------------------------------------------------------------------------- actuators */
 
 /// Make springs actuators: their rest lengths follow signals. This replaces the actuators that there are.
-/// Signal i is that of springs[i]. Signal 1 is the rest length that the spring has now. An actuator that is no more
+/// Signal i is that of springs[i]. Signal 1 is the MSPRING_REST_LENGTH of now. An actuator that is no more
 /// keeps the rest length that it has. Clones have actuators, and snapshots hold their rest lengths and signals. Before
 /// you load a snapshot, set the same actuators.
 /// @param springs  [count], each once, no welds

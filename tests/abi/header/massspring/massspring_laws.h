@@ -29,8 +29,9 @@
 ///                             back yields again, unless it may not yield until it rests. Writing it ends a ramp.
 ///                             Frames (MSPRING_SNAPSHOT_FRAME) hold it: it is no edit to them.
 ///
-/// To set any of them allocates, the first time. A spring that was broken and is restored keeps its plastic strain. If
-/// you write MSPRING_REST_LENGTH, the plastic strain stays: r0 changes by the same factor. A spring breaks by its total
+/// To set any of them allocates, the first time. A spring that was broken and is restored keeps its plastic strain.
+/// MSPRING_REST_LENGTH is r0, MSPRING_ACTIVE_REST_LENGTH is r. If you write r0, or a signal does (massspring_batch.h),
+/// p stays: rest lengths may be sent in each frame, and dents remain. A spring breaks by its total
 /// strain, (L - r0) / r0, but is stressed and relaxes by the strain in force. A weld never yields, nor does a spring on
 /// a ramp.
 ///
@@ -88,7 +89,8 @@ typedef struct mspring_plasticity {
     uint32_t struct_size;
     uint32_t bent_springs; ///< springs whose plastic strain is not 0 now
     uint64_t yield_count;  ///< springs that yielded in a step, summed over all steps
-    double dissipated;     ///< energy that yielding has turned into heat, J; no step lowers it
+    double dissipated;     ///< energy that yielding has turned into heat, J; no step lowers it. What a substep
+                           ///< stretches beyond the yield strain takes no work, and makes none
 } mspring_plasticity;
 
 /// Read the report of what has yielded. Takes a pass over all springs.
@@ -199,7 +201,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_add_ar
 /// small lattices, it is four particles that whole springs join each to each, two of which cross. The rest area in def
 /// must be 0. Each cell must have an area, as above. Ids are consecutive: by rising id of the corner that begins a cell
 /// in the layout's rows, elsewhere of the lowest corner. mspring_network_get_area_particles() reads which corners an
-/// area has. Without cells nothing is added. A second call adds all of them again.
+/// area has. Without cells nothing is added. A second call adds all of them again. Where cells lie above each other, as
+/// in a clique, there may be at most 16384, or as many as springs.
 /// @param first_area  receives the first id; may be NULL
 /// @param count       receives the number of areas added; may be NULL
 /// @threads exclusive access to network   @allocates yes   @errors ARGUMENT, STRUCT, LIMIT, MEMORY, BUSY

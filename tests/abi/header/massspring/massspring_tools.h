@@ -196,6 +196,7 @@ typedef enum mspring_phase {
 
 /// Arguments of a hook: arrays by slot. It handles first_slot ... first_slot + slot_count - 1. Slots without particle
 /// have MSPRING_NONE in particle_of_slot. A hook may write there: values within the bounds of a step have no effect.
+/// struct_size is that of the library: read a field of a later version only if the struct reaches that far.
 typedef struct mspring_hook_args {
     uint32_t struct_size;
     mspring_phase phase;
@@ -215,7 +216,8 @@ typedef struct mspring_hook_args {
 } mspring_hook_args;
 
 /// A hook. On the network it may make shared calls only. If a step is rolled back and repeated, as by a guard, hooks
-/// are called again.
+/// are called again. A hook must return. If one is left by longjmp() or by an exception, mspring_network_destroy() still
+/// works, and exclusive calls return MSPRING_ERROR_BUSY for ever.
 typedef void(MSPRING_CALL *mspring_hook_fn)(const mspring_hook_args *args, void *user);
 
 /// Flags of hooks.
@@ -411,7 +413,8 @@ MSPRING_API const char *MSPRING_CALL mspring_simd_name(mspring_simd level);
 /// @param any_shape  receives the limit in any shape that the network can reach, tangled ones included: at most
 ///                   now. For a full lattice at rest it is 0.71 of now, with dampers alone 0.49. It depends only
 ///                   on springs (broken ones count as whole), masses and pins. Areas and angle springs count in
-///                   the shape that they were added in; with them it may be longer than now. May be NULL.
+///                   the shape that they were added in; with them it may be longer than now. May be NULL. Where dt
+///                   differs from step to step and little damps, keep h below 0.7 of it (mspring_network_step()).
 /// @threads exclusive   @allocates yes, and frees it, if now is asked for   @since 0.2   @errors ARGUMENT for a
 ///          network NULL, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_stable_dt(
@@ -421,7 +424,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_stable
 /// In a step of dt each substep is then shorter than safety times the stable one of the present shape.
 /// @param dt      seconds, finite, > 0
 /// @param safety  > 0, at most 1. If the network keeps its shape, use 0.95. If it will be stretched or crushed,
-///                use less. On a lattice without dampers 0.7 is enough for any motion.
+///                use less. On a lattice without dampers 0.7 is enough for any shape. Equal dt and motion of less
+///                than a third of a spring's length in a substep are assumed (mspring_network_step()).
 /// @param substeps  receives the number
 /// @threads exclusive   @allocates yes, and frees it   @since 0.2   @errors ARGUMENT; UNSTABLE if
 ///          MSPRING_MAX_SUBSTEPS are too few; MEMORY, BUSY
