@@ -509,6 +509,7 @@ static void add_hook(arguments *a) {
     MEASURED(X, _force, MSPRING_FORCE)                                                                             \
     MEASURED(X, _active_stiffness, MSPRING_ACTIVE_STIFFNESS)                                                       \
     MEASURED(X, _active_damping, MSPRING_ACTIVE_DAMPING)                                                           \
+    MEASURED(X, _active_rest_length, MSPRING_ACTIVE_REST_LENGTH)                                                   \
     X(mspring_network_renew_relative_springs, "N", NOTHING, mspring_network_renew_relative_springs(a->network))    \
     X(mspring_network_break_springs, "NA", NOTHING, mspring_network_break_springs(a->network, a->ids, a->count))   \
     X(mspring_network_restore_springs, "NAJ", NOTHING,                                                             \
