@@ -411,11 +411,26 @@ void mspringi_implicit_relocate(mspringi_implicit *n, const mspring_network *net
 
 /* ------------------------------------------------------------------------------------------------------ history */
 
-// Whatever is computed by parts of tiles is 0 at slots that have none.
+// Clear what is 0 where there is no tile, unless numbers overflowed.
 static void clear_outside_of_tiles(const mspring_network *network, const mspringi_implicit *n) {
     const mspringi_field fields[] = {n->scaled, n->direction, n->product};
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
         memset(fields[i].x, 0, 2 * mspringi_slot_count(network) * sizeof *fields[i].x);
+}
+
+// Clear all vectors at slots without a particle. Kernels read them with mass 0, which does not end a NaN.
+static void clear_empty_slots(const mspring_network *network, const mspringi_implicit *n) {
+    const mspringi_field fields[] = {n->velocity, n->residual, n->displacement, n->arm};
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t slot = 0; slot < slots; ++slot) {
+        if (network->topology.particle_of_slot[slot] != MSPRING_NONE)
+            continue;
+        n->x[slot] = n->y[slot] = 0.0;
+        n->diagonal[slot] = n->diagonal[slot + slots] = n->diagonal[slot + 2 * slots] = 0.0f;
+        for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
+            if (fields[i].x)
+                fields[i].x[slot] = fields[i].y[slot] = 0.0f;
+    }
 }
 
 void mspringi_implicit_keep(mspringi_implicit *n) {
@@ -445,6 +460,7 @@ void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit
     memset(n->carry, 0, 3 * carry * sizeof *n->carry);
     if (!n->is_direct)
         clear_outside_of_tiles(network, n);
+    clear_empty_slots(network, n);
 }
 
 // What sleeps is left out of substeps: it is predicted where it is, and does not go on from there.

@@ -1,0 +1,89 @@
+/// @file test_after_refusal.c
+/// After numbers overflowed in an implicit step, the next steps are those of a network that never saw it.
+///
+/// SPDX-License-Identifier: MIT
+#include "support.h"
+
+/// A small lattice and a particle on it, added later and laid out by a compaction, so that all of it is irregular.
+static mspring_network *grown(mspring_guard guard, mspring_solver solver) {
+    mspring_network_def def = support_def(-9.8f, 2);
+    def.solver = solver;
+    def.guard = guard;
+    def.spare_particles = 4;
+    def.spare_springs = 8;
+    mspring_builder *builder = NULL;
+    check_ok(mspring_builder_create(NULL, &builder));
+    for (mspring_id i = 0; i < 12; i++) {
+        support_particle(builder, i % 4, i / 4, 1);
+    }
+    for (mspring_id i = 0; i < 12; i++) {
+        if (i % 4 < 3) {
+            support_spring(builder, i, i + 1, 1000, 0);
+        }
+        if (i < 8) {
+            support_spring(builder, i, i + 4, 1000, 0);
+        }
+    }
+    mspring_network *network = support_network(builder, &def);
+    mspring_particle_def particle;
+    mspring_spring_def spring;
+    mspring_id id, ignored;
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    particle.x = -3;
+    check_ok(mspring_network_add_particles(network, &particle, 1, &id));
+    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    spring.a = id, spring.b = 0, spring.stiffness = 100;
+    check_ok(mspring_network_add_springs(network, &spring, 1, &ignored));
+    support_steps(network, 10, 1.0 / 60);
+    check_ok(mspring_network_compact(network));
+    return network;
+}
+
+static void a_refused_step_leaves_no_trace(void **state) {
+    (void)state;
+    static const mspring_guard guards[] = {MSPRING_GUARD_GROWTH, MSPRING_GUARD_BOUNDS, MSPRING_GUARD_RETRY};
+    static const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT,
+                                             MSPRING_SOLVER_EXPLICIT};
+    for (size_t i = 0; i < COUNT_OF(guards) * COUNT_OF(solvers); i++) {
+        uint64_t hashes[2];
+        for (int refused = 0; refused < 2; refused++) {
+            mspring_network *network = grown(guards[i % COUNT_OF(guards)], solvers[i / COUNT_OF(guards)]);
+            check_ok(mspring_network_apply_force(network, 2, 1e30f, 0));
+            if (refused) {
+                check_error(mspring_network_step(network, 1.0 / 60), MSPRING_ERROR_UNSTABLE);
+            }
+            check_ok(mspring_network_apply_force(network, 2, -1e30f, 0));
+            support_steps(network, 5, 1.0 / 60);
+            hashes[refused] = support_hash(network);
+            mspring_network_destroy(network);
+        }
+        assert_int_equal(hashes[0], hashes[1]);
+    }
+}
+
+/// The state is put back into its bounds then. A snapshot of it, loaded elsewhere, has the same future.
+static void a_clamped_step_leaves_no_trace(void **state) {
+    (void)state;
+    static const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT,
+                                             MSPRING_SOLVER_EXPLICIT};
+    for (size_t i = 0; i < COUNT_OF(solvers); i++) {
+        mspring_network *network = grown(MSPRING_GUARD_CLAMP_BOUNDS, solvers[i]);
+        mspring_network *other = grown(MSPRING_GUARD_CLAMP_BOUNDS, solvers[i]);
+        check_ok(mspring_network_apply_force(network, 2, 1e30f, 0));
+        check_ok(mspring_network_step(network, 1.0 / 60));
+        support_bring(network, other, MSPRING_SNAPSHOT_ALL);
+        support_steps(network, 5, 1.0 / 60);
+        support_steps(other, 5, 1.0 / 60);
+        assert_int_equal(support_hash(network), support_hash(other));
+        mspring_network_destroy(network);
+        mspring_network_destroy(other);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_refused_step_leaves_no_trace),
+        cmocka_unit_test(a_clamped_step_leaves_no_trace),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
