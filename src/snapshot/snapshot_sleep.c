@@ -62,8 +62,8 @@ static bool has_bit(const uint8_t *bits, mspring_id particle) {
     return bits[particle / 8] >> particle % 8 & 1;
 }
 
-// Bits of particles, of use for the lowest ones of sleeping islands alone: 0 for all of a pile if one of them has been
-// disturbed, since they wake before the next step.
+// Bits of particles, of use for the lowest ones of sleeping islands alone: 0 for all of a pile if one of them has
+// been disturbed, since they wake before the next step.
 static void find_undisturbed(const mspring_network *network, uint8_t *bits) {
     const mspring_id *of_slot = network->topology.particle_of_slot;
     const mspringi_sleep *sleep = &network->sleep;
