@@ -89,7 +89,7 @@ static void motion_keeps_what_it_must(void **state) {
     (void)state;
     static const map_family sampled[] = {MAP_BLAST, MAP_HIT,   MAP_SPIN, MAP_DROP,     MAP_BOUNCE,
                                          MAP_HANG,  MAP_WRECK, MAP_FAR,  MAP_SUBSTEPS, MAP_MEET,
-                                         MAP_SILT,  MAP_PRESS, MAP_BEND};
+                                         MAP_SILT,  MAP_PRESS, MAP_BEND, MAP_WALL,     MAP_GRIP};
     uint32_t faults = 0;
     for (size_t i = 0; i < sizeof sampled / sizeof *sampled; i++)
         faults += count_faults(sampled[i]);
