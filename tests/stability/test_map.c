@@ -125,6 +125,8 @@ static void what_was_at_fault_holds(void **state) {
         {MAP_PRESS, 2533},   // what a particle without springs had was not counted, here with a rope
         {MAP_PRESS, 8463},   // the same with the direct solver
         {MAP_PRESS, 10202},  // and where a hundred times as much could move
+        {MAP_GRIP, 8426},    // a bounded grip gave its largest force on all of a way far beyond the target
+        {MAP_GRIP, 6820},    // the same of four on a particle
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         map_case drawn;
