@@ -74,8 +74,10 @@ void map_hold_add_energy(map_watch *watch) {
         const double force = fmin(k * length, most), off = 1.5 * watch->last_place;
         watch->elastic += k * length <= most ? 0.5 * k * length * length : most * (length - 0.5 * most / k);
         watch->rounding += force * off + 0.5 * k * off * off;
-        watch->components[watch->component[grip->particle]].is_held = true;
     }
+    // What a linear system leaves to the others is of the size of what grips give.
+    for (uint32_t i = 0; i < watch->component_count && what->grip_count > 0; i++)
+        watch->components[i].is_held = true;
 }
 
 map_verdict map_hold_judge(map_judge *judge) {

@@ -20,7 +20,7 @@ bool map_hold_begin(map_watch *watch);
 /// Before a step: move them.
 mspring_result map_hold_move(const map_watch *watch);
 
-/// Add the energies of grips, as springs whose force is bounded, to what is elastic.
+/// Add the energies of grips, as springs whose force is bounded, to what is elastic. All components are held then.
 void map_hold_add_energy(map_watch *watch);
 
 /// Judge whether a particle has passed the wedge.

@@ -151,11 +151,6 @@ static map_verdict judge_flights(map_judge *judge) {
     const map_watch *watch = judge->watch;
     const mspring_network_def *def = &watch->what->network;
     // Springs pull along lengths that are rounded, the same way all through a step.
-    double momentum_scale = 0;
-    for (uint32_t i = 0; i < watch->component_count; i++)
-        momentum_scale += watch->components[i].momentum_scale;
-    if (watch->what->grip_count > 0) // they give it to what was at rest
-        judge->momentum_scale = fmax(judge->momentum_scale, momentum_scale);
     judge->angle_squares += watch->what->dt * watch->what->dt * watch->rounding_squares;
     for (uint32_t i = 0; i < watch->component_count; i++) {
         // What sleeps is stopped, and global damping stops all that moves.
