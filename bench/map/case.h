@@ -24,6 +24,8 @@ typedef enum map_family {
     MAP_SILT,     ///< a body falls into silt above heights, which differ in friction and restitution
     MAP_PRESS,    ///< two bodies collide, with the implicit and the direct solver
     MAP_BEND,     ///< springs that yield, act on one side or have limits, areas and angle springs
+    MAP_WALL,     ///< a heavy body presses a light one against a wall or into a corner, which may move
+    MAP_GRIP,     ///< one to four grips on a particle, whose targets may move
     MAP_FAMILIES
 } map_family;
 
@@ -35,7 +37,7 @@ uint32_t map_family_size(map_family family);
 /// Springs on one side, springs that yield, limits, areas, angles.
 enum { MAP_ONE_SIDED = 1, MAP_YIELDS = 2, MAP_LIMITS = 4, MAP_AREAS = 8, MAP_ANGLES = 16, MAP_ALL_LAWS = 31 };
 
-enum { MAP_HEIGHTS = 40, MAP_PLANES = 4, MAP_STEPS = 48 };
+enum { MAP_HEIGHTS = 40, MAP_PLANES = 4, MAP_STEPS = 48, MAP_GRIPS = 4 };
 
 /// A case: everything that is to be known to run it again.
 typedef struct map_case {
@@ -56,9 +58,14 @@ typedef struct map_case {
     float frictions[MAP_HEIGHTS], restitutions[MAP_HEIGHTS];
     bool has_forces, by_hook; ///< constant forces, given before each step or by a hook
     float force_x[MAP_PARTICLES], force_y[MAP_PARTICLES];
-    double drift_x, drift_y; ///< m/s: velocity of all pinned particles
+    double drift_x, drift_y; ///< m/s: velocity of all pinned particles, of the wedge and of targets
     uint32_t first_count;    ///< particles of the first of two bodies that meet; 0: there is no contact
     mspring_contact_def contact;
+    bool has_wedge; ///< a collider of two sides that meet on the right
+    double apex_x, apex_y;
+    double wedge_angle, wedge_radius; ///< rad, between a side and the axis: a quarter turn is a straight wall; m
+    uint32_t grip_count;
+    mspring_grip_def grips[MAP_GRIPS];
     double limit_strain, limit_stiffening; ///< of all springs; 0: none
     float area_stiffness, angle_stiffness; ///< of all cells, N/m, and where springs follow each other, N m; 0: none
     uint32_t laws;                         ///< bits: MAP_ONE_SIDED and so on; 0: springs are linear

@@ -2,6 +2,7 @@
 /// How the cases of each family are drawn.
 ///
 /// SPDX-License-Identifier: MIT
+#include "map/hold.h"
 #include "map/meet.h"
 
 #include <math.h>
@@ -406,7 +407,7 @@ static void draw_spring_laws(map_case *drawn, uint64_t *seed) {
 }
 
 /// Explicit substeps no longer than this share of what is stable.
-static const double longest_with_laws = 0.5;
+static const double longest_with_laws = 0.5, longest_at_walls = 0.5;
 
 static void draw_bend(map_case *drawn, uint64_t *seed) {
     const map_stuff stuff = begin(drawn, seed);
@@ -432,12 +433,78 @@ static void draw_bend(map_case *drawn, uint64_t *seed) {
     draw_global_damping(drawn, seed);
 }
 
+/// Make the first body heavy, and as stiff as makes it vibrate as before.
+static void weigh_first(map_case *drawn, double ratio) {
+    for (uint32_t i = 0; i < drawn->first_count; i++)
+        drawn->body.particles[i].mass *= (float)ratio;
+    for (uint32_t i = 0; i < drawn->body.spring_count; i++)
+        if (drawn->body.springs[i].a < drawn->first_count) {
+            drawn->body.springs[i].stiffness *= (float)ratio;
+            drawn->body.springs[i].damping *= (float)ratio;
+        }
+}
+
+static void draw_wall(map_case *drawn, uint64_t *seed) {
+    const map_stuff stuff = begin(drawn, seed);
+    drawn->share = fmin(drawn->share, longest_at_walls);
+    const double gap = draw_second(drawn, &stuff, seed), ratio = map_decades(seed, 1, 1000);
+    weigh_first(drawn, ratio);
+    drawn->has_wedge = true;
+    drawn->wedge_angle = one_in(seed, 2) ? 0.5 * 3.14159265358979 : map_between(seed, 0.4, 1.2);
+    drawn->wedge_radius = one_in(seed, 3) ? map_between(seed, 0, 0.4) * stuff.spacing : 0;
+    map_hold_place_wedge(drawn, stuff.spacing * map_decades(seed, 0.01, 2));
+    // As in press, and slow enough that the light body is not crushed.
+    const double time = sqrt(stuff.mass_ratio / stuff.stiffness), light = 0.1 / (time * sqrt(ratio));
+    const bool is_explicit = drawn->solver.solver == MSPRING_SOLVER_EXPLICIT;
+    const double step =
+        is_explicit ? drawn->share * drawn->solver.substeps * 0.5 * time / sqrt(stuff.mass_ratio) : drawn->dt;
+    const double speed =
+        stuff.spacing * (is_explicit
+                             ? light * map_decades(seed, 0.01, 1)
+                             : fmin(drawn->solver.substeps / drawn->dt * map_decades(seed, 1e-3, 2), light));
+    let_first_fly(drawn, speed, seed);
+    if (one_in(seed, 2)) // it comes
+        drawn->drift_x = -speed * map_between(seed, 0.05, 1);
+    drawn->steps = (uint32_t)fmin(is_explicit ? 2000 : 400, fmax(20, 6 * gap / (speed * fmin(step, 0.25))));
+}
+
+static void draw_grip(map_case *drawn, uint64_t *seed) {
+    const map_stuff stuff = begin(drawn, seed);
+    drawn->share = fmin(drawn->share, longest_with_laws);
+    if (one_in(seed, 2)) {
+        const double speed = stuff.spacing * map_decades(seed, 0.01, 10);
+        drawn->drift_x = map_between(seed, -speed, speed);
+        drawn->drift_y = map_between(seed, -speed, speed);
+    }
+    if (one_in(seed, 3))
+        draw_gravity(drawn, seed);
+    if (one_in(seed, 2))
+        draw_velocities(drawn, map_decades(seed, 0.01, 20), seed);
+    if (one_in(seed, 4))
+        draw_pins(drawn, 1, seed);
+    const mspring_id particle = random_below(seed, drawn->body.particle_count);
+    const mspring_particle_def *at = &drawn->body.particles[particle];
+    drawn->grip_count = 1 + random_below(seed, MAP_GRIPS);
+    for (uint32_t i = 0; i < drawn->grip_count; i++) {
+        mspring_grip_def *grip = &drawn->grips[i];
+        mspring_grip_def_init(grip, sizeof *grip);
+        grip->particle = particle;
+        grip->x = at->x + stuff.spacing * map_between(seed, -1, 1);
+        grip->y = at->y + stuff.spacing * map_between(seed, -1, 1);
+        grip->stiffness = (float)map_decades(seed, 1, 1e10);
+        if (one_in(seed, 3))
+            grip->damping = (float)map_decades(seed, 1, 1e6);
+        if (!one_in(seed, 3))
+            grip->max_force = (float)(stuff.spacing * map_decades(seed, 1e-2, 1e6));
+    }
+}
+
 static const family families[MAP_FAMILIES] = {
     {"blast", 60000, draw_blast}, {"hit", 45000, draw_hit},       {"spin", 20000, draw_spin},
     {"drop", 60000, draw_drop},   {"bounce", 18000, draw_bounce}, {"hang", 30000, draw_hang},
     {"wreck", 20000, draw_wreck}, {"far", 16000, draw_far},       {"substeps", 3000, draw_substeps},
     {"meet", 20000, draw_meet},   {"silt", 10000, draw_silt},     {"press", 12000, draw_press},
-    {"bend", 16000, draw_bend},
+    {"bend", 16000, draw_bend},   {"wall", 12000, draw_wall},     {"grip", 16000, draw_grip},
 };
 
 const char *map_family_name(map_family of) {

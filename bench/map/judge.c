@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "map/bounce.h"
+#include "map/hold.h"
 #include "map/meet.h"
 
 const char *map_verdict_name(map_verdict verdict) {
@@ -87,10 +88,14 @@ static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
     judge->quickest = fmax(judge->quickest, watch->speed * watch->substep / watch->shortest);
     judge->growth = fmax(judge->growth, (gain - rounding) / fmax(could, rounding));
     // The library lets each of up to 32 pieces of a substep gain 1e-6 with the implicit and the direct solver.
-    // With laws the sum that explicit substeps keep is not known: kinetic and elastic energy swing by the share.
-    const double part = is_explicit && watch->what->laws != 0 ? 1.5 * watch->what->share
-                        : is_explicit                         ? 1e-2
-                                                              : fmin(1e-2, 1e-3 + 3.2e-5 * (double)judge->since);
+    // With laws and grips the sum that explicit substeps keep is not known: kinetic and elastic energy swing by the
+    // share.
+    const bool swings = watch->what->laws != 0 || watch->what->grip_count > 0;
+    // Grips act on where the substep would have led without them: of first order, with every solver.
+    const double part = is_explicit && swings         ? 1.5 * watch->what->share
+                        : is_explicit                 ? 1e-2
+                        : watch->what->grip_count > 0 ? 2e-2
+                                                      : fmin(1e-2, 1e-3 + 3.2e-5 * (double)judge->since);
     if (gain - rounding > part * could) {
         snprintf(judge->text, sizeof judge->text,
                  "%.4g J more than there were, where %.4g J could move and %.2g J are rounding; ways of %.2g of a "
@@ -187,5 +192,7 @@ map_verdict map_judge_step(map_judge *judge, uint32_t substeps) {
         verdict = map_bounce_judge(judge);
     if (verdict == MAP_HOLDS)
         verdict = map_meet_judge(judge);
+    if (verdict == MAP_HOLDS)
+        verdict = map_hold_judge(judge);
     return verdict;
 }

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "map/hold.h"
 #include "map/trade.h"
 #include "scenes/internal.h"
 
@@ -160,6 +161,8 @@ static map_verdict take_step(const map_case *what, mspring_network *network, map
         result =
             mspring_network_apply_forces(network, 0, what->body.particle_count, what->force_x, what->force_y, 1);
     if (result == MSPRING_OK)
+        result = map_hold_move(watch);
+    if (result == MSPRING_OK)
         result = mspring_network_step(network, what->dt);
     if (result != MSPRING_OK)
         return judge_rejection(what, result, mspring_network_error(network), text);
@@ -296,9 +299,10 @@ static map_verdict judge_gain(const map_case *run, const map_judge *judge) {
         return MAP_GAINED;
     if (run->share <= calm_share)
         return growth_of(run) <= calm_growth || holds_with_shorter(run) ? MAP_VIOLENT : MAP_GAINED;
-    // A copy without a floor has no silt either, so what the surface gives cannot be told apart.
-    const bool is_own =
-        run->floor.silt_rate > 0 ? holds_with_shorter(run) : !run->has_floor || gains_by_itself(run);
+    // A copy without a floor has no silt either, so what the surface gives cannot be told apart. What colliders and
+    // grips give cannot, either.
+    const bool is_shared = run->floor.silt_rate > 0 || run->has_wedge || run->grip_count > 0;
+    const bool is_own = is_shared ? holds_with_shorter(run) : !run->has_floor || gains_by_itself(run);
     return is_own ? MAP_VIOLENT : MAP_GAINED;
 }
 

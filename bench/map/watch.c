@@ -8,6 +8,8 @@
 
 #include <massspring/massspring_tools.h>
 
+#include "map/hold.h"
+
 /* -------------------------------------------------------------------------------------------------- components */
 
 static uint32_t root_of(const uint32_t *parents, uint32_t of) {
@@ -126,7 +128,7 @@ static void add_particle(map_watch *watch, uint32_t i) {
         of->is_held = true;
         return;
     }
-    if (watch->floor_x[i] != 0 || watch->floor_y[i] != 0)
+    if (watch->floor_x[i] != 0 || watch->floor_y[i] != 0 || what->has_wedge)
         of->is_held = true;
     of->mass += mass;
     of->x += mass * watch->x[i];
@@ -186,11 +188,12 @@ bool map_watch_read(map_watch *watch) {
         watch->components[i] = none;
     add_outside_forces(watch);
     add_springs(watch);
+    map_hold_add_energy(watch);
     for (uint32_t i = 0; i < watch->count; i++)
         add_particle(watch, i);
     add_spins(watch);
     // Of laws the library knows the energy; its tests see to it that forces are its slope.
-    watch->shadow = watch->what->laws != 0 ? 0 : watch->shadow;
+    watch->shadow = watch->what->laws != 0 || watch->what->grip_count > 0 ? 0 : watch->shadow;
     return watch->what->laws == 0 ||
            mspring_network_energy(watch->network, NULL, &watch->elastic, NULL) == MSPRING_OK;
 }
@@ -213,7 +216,7 @@ bool map_watch_begin(map_watch *watch, const map_case *what, mspring_network *ne
         const mspring_particle_def *def = &what->body.particles[i];
         watch->mass[i] = (def->flags & MSPRING_PARTICLE_PINNED) != 0 ? INFINITY : (double)def->mass;
     }
-    return map_watch_springs(watch) && map_watch_read(watch);
+    return map_hold_begin(watch) && map_watch_springs(watch) && map_watch_read(watch);
 }
 
 /* ------------------------------------------------------------------------------------------------------- floor */

@@ -29,6 +29,7 @@ typedef struct map_component {
 typedef struct map_watch {
     const map_case *what;
     mspring_network *network;
+    mspring_id wedge, grips[MAP_GRIPS]; ///< those that the case has
     uint32_t count, spring_count, component_count;
     map_spring springs[MAP_SPRINGS];
     double mass[MAP_PARTICLES]; ///< kg; INFINITY: pinned
@@ -52,7 +53,7 @@ typedef struct map_watch {
     double rounding_squares; ///< sum of ((|F| + k e) e)^2
 } map_watch;
 
-/// Begin to watch: masses, springs, components, first state.
+/// Begin to watch: add colliders and grips, read masses, springs, components and the first state.
 bool map_watch_begin(map_watch *watch, const map_case *what, mspring_network *network, double substep);
 
 /// Read springs and components again, after some were broken.

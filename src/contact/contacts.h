@@ -8,7 +8,7 @@
 ///   constraints.c       which of them touch in a substep, in which order
 ///   contact_solver.c     solving these, in pieces of the substep, and how they move on
 ///   gauss_seidel.c     the impulses of those that touch
-///   piles.c      what sleeps on what, so that it wakes together
+///   piles.c      islands that sleep on each other and wake together
 ///   contact_stage.c   the stage: when to look, and which islands sleep and wake together
 ///   contact_events.c   contacts that begin and end, as events for the host
 ///   contact_materials.c      friction and restitution of particles of their own
@@ -354,7 +354,7 @@ static inline mspringi_closest_point mspringi_closest_point_on_edge(double px, d
 bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts);
 /// Look how near points and edges are, and for how many substeps nothing can touch. False: as above.
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts);
-/// List the pairs nearer than a distance, m, instead of those that there are. Those of the next look are others.
+/// Replace the pair list by the pairs nearer than `reach`, m. The next refresh makes it anew.
 void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
 
 /* constraints.c */
@@ -412,7 +412,7 @@ bool mspringi_contact_sweep(const mspringi_contacts *contacts, double h, uint32_
 
 /* piles.c */
 
-/// Find what sleeps on what.
+/// Find the piles: islands that sleep on each other.
 void mspringi_piles_find(mspring_network *network);
 
 /* contact_stage.c */

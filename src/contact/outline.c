@@ -20,7 +20,7 @@ void mspringi_outline_ends(const mspring_network *network, mspring_id spring, ms
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
     const mspring_id a = t->particle_of_slot[base], b = t->particle_of_slot[tip];
-    ends[0] = a < b ? a : b; // which end is the base follows from the plan
+    ends[0] = a < b ? a : b; // the base depends on the layout
     ends[1] = a < b ? b : a;
 }
 

@@ -1,15 +1,16 @@
-/// Islands that sleep on each other are a pile: whatever wakes one of them wakes all.
+/// Piles: islands that sleep on each other. If one of them wakes, all do.
 ///
-/// An island may be moved from below another before anything is looked at again: by the host, by a view, or as its
-/// own springs broke. So what rests on what is found when islands fall asleep. It follows from where they lie, so a
-/// snapshot need not have it.
+/// The host, a view or breaking springs may move an island from below another before contact looks at them again. So
+/// piles are found when islands fall asleep. They follow from the positions, so a snapshot does not save them.
 #include "contact/contacts.h"
 #include "sleep/sleep.h"
 #include "store/stages.h"
 
-/// Islands this near rest on each other, as a share of the thickness: as near as for falling asleep together.
+/// Distance beyond the thickness, as a share of it, up to which islands rest on each other; as for falling asleep
+/// together.
 #define RESTING_SHARE 0.05
 
+// Lowest slot of a particle's island, which names the island in a ring.
 static uint32_t lowest_slot(const mspring_network *network, mspring_id p) {
     const mspringi_sleep *s = &network->sleep;
     return s->lowest[s->island[network->topology.slot_of_particle[p]]];
@@ -20,7 +21,7 @@ static bool sleeps(const mspring_network *network, const mspringi_contacts *cont
            mspringi_slot_is_asleep(network, network->topology.slot_of_particle[node]);
 }
 
-// Whether the ring of a slot leads to another one.
+// True if two slots are in the same ring.
 static bool is_in_ring(const mspringi_sleep *s, uint32_t slot, uint32_t other) {
     uint32_t at = slot;
     do
@@ -29,7 +30,7 @@ static bool is_in_ring(const mspringi_sleep *s, uint32_t slot, uint32_t other) {
     return at == other;
 }
 
-// Two rings that swap what follows two of their members are one.
+// Join two rings: two members, one of each, swap their successors.
 static void join(const mspringi_sleep *s, uint32_t a, uint32_t b) {
     const uint32_t behind = s->beside[a];
     if (is_in_ring(s, a, b))

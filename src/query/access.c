@@ -3,7 +3,6 @@
 
 #include "base/cpu.h"
 #include "base/hash.h"
-#include "sleep/sleep.h"
 #include "step/origin.h"
 #include "store/changed.h"
 #include "store/network.h"
@@ -138,17 +137,6 @@ static mspring_result check_position(mspring_network *network, mspring_id id, do
                          (unsigned)id, x, y);
 }
 
-// Wake a moved sleeper that others sleep on at once, and them with it: a snapshot does not save where it was.
-static void wake_moved(mspring_network *network, mspring_id particle) {
-    const mspringi_sleep *s = &network->sleep;
-    const uint32_t slot = network->topology.slot_of_particle[particle];
-    if (s->sleeping == 0 || !(s->still[s->island[slot]] < 0.0))
-        return;
-    const uint32_t lowest = s->lowest[s->island[slot]];
-    if (s->beside[lowest] != lowest && mspringi_sleeper_is_disturbed(network, slot))
-        mspringi_wake_slot(network, slot);
-}
-
 // A range of all particles moves the origin along.
 static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, const mspringi_selection *at,
                                                       const positions *to) {
@@ -165,13 +153,9 @@ static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, 
     }
     if (all && box.min_x <= box.max_x)
         mspringi_origin_choose(network, &box);
-    for (uint32_t i = 0; i < at->count; ++i) {
-        const mspring_id particle = mspringi_selected(at, i);
-        if (!mspringi_particle_exists(network, particle))
-            continue;
-        mspringi_set_position(network, particle, x_of(to, i), y_of(to, i));
-        wake_moved(network, particle);
-    }
+    for (uint32_t i = 0; i < at->count; ++i)
+        if (mspringi_particle_exists(network, mspringi_selected(at, i)))
+            mspringi_set_position(network, mspringi_selected(at, i), x_of(to, i), y_of(to, i));
     mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
     if (all)
         mspringi_notify_change(network, MSPRINGI_CHANGED_MOTION, 0);

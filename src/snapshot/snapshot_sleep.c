@@ -50,12 +50,56 @@ static sleep_head make_head(const mspring_network *network) {
     return head;
 }
 
-// What has been disturbed wakes before the next step.
-static bool sleeps_on(const mspring_network *network, mspring_id particle) {
+static uint32_t island_of(const mspring_network *network, mspring_id particle) {
+    return network->sleep.island[network->topology.slot_of_particle[particle]];
+}
+
+static bool is_asleep(const mspring_network *network, mspring_id particle) {
+    return mspringi_particle_exists(network, particle) && network->sleep.still[island_of(network, particle)] < 0.0;
+}
+
+static bool has_bit(const uint8_t *bits, mspring_id particle) {
+    return bits[particle / 8] >> particle % 8 & 1;
+}
+
+// Bits of particles, of use for the lowest ones of sleeping islands alone: 0 for all of a pile if one of them has
+// been disturbed, since they wake before the next step.
+static void find_undisturbed(const mspring_network *network, uint8_t *bits) {
+    const mspring_id *of_slot = network->topology.particle_of_slot;
     const mspringi_sleep *sleep = &network->sleep;
-    const uint32_t slot = network->topology.slot_of_particle[particle];
-    return mspringi_particle_exists(network, particle) && sleep->still[sleep->island[slot]] < 0.0 &&
-           !mspringi_sleeper_is_disturbed(network, slot);
+    memset(bits, 0xff, words_of_particles(network) * sizeof(uint32_t));
+    for (mspring_id p = 0; p < network->topology.reserve.particle_end; ++p) {
+        if (!is_asleep(network, p) ||
+            !mspringi_sleeper_is_disturbed(network, network->topology.slot_of_particle[p]))
+            continue;
+        uint32_t slot = sleep->lowest[island_of(network, p)];
+        for (mspring_id q; has_bit(bits, q = of_slot[slot]); slot = sleep->beside[slot])
+            bits[q / 8] &= (uint8_t) ~(1u << q % 8);
+    }
+}
+
+static bool sleeps_on(const mspring_network *network, const uint8_t *undisturbed, mspring_id particle) {
+    if (!is_asleep(network, particle))
+        return false;
+    const uint32_t lowest = network->sleep.lowest[island_of(network, particle)];
+    return has_bit(undisturbed, network->topology.particle_of_slot[lowest]);
+}
+
+// What is written is at first the bits that are read: those of lowest particles stay as they are.
+static void save_sleepers(const mspring_network *network, mspringi_writer *to) {
+    const uint32_t particles = network->topology.reserve.particle_end;
+    const uint8_t *undisturbed = to->at;
+    if (!to->sum) { // it counts
+        mspringi_put(to, NULL, words_of_particles(network), sizeof(uint32_t));
+        return;
+    }
+    find_undisturbed(network, to->at);
+    for (mspring_id first = 0; first < particles; first += 32) {
+        uint32_t bits = 0;
+        for (mspring_id p = first; p < first + 32 && p < particles; ++p)
+            bits |= (uint32_t)sleeps_on(network, undisturbed, p) << (p - first);
+        mspringi_put(to, &bits, 1, sizeof bits);
+    }
 }
 
 static void sleep_save(const mspring_network *network, mspringi_writer *to) {
@@ -66,13 +110,8 @@ static void sleep_save(const mspring_network *network, mspringi_writer *to) {
     for (uint32_t i = 0; i < sleep->count; ++i)
         if (is_listed(sleep, i))
             hand_still(&io, &sleep->lowest[i], &sleep->still[i]);
-    const uint32_t particles = network->topology.reserve.particle_end;
-    for (mspring_id first = 0; head.any_asleep && first < particles; first += 32) {
-        uint32_t bits = 0;
-        for (mspring_id p = first; p < first + 32 && p < particles; ++p)
-            bits |= (uint32_t)sleeps_on(network, p) << (p - first);
-        mspringi_put(to, &bits, 1, sizeof bits);
-    }
+    if (head.any_asleep)
+        save_sleepers(network, to);
     mspringi_put(to, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
 }
 

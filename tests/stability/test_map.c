@@ -89,7 +89,7 @@ static void motion_keeps_what_it_must(void **state) {
     (void)state;
     static const map_family sampled[] = {MAP_BLAST, MAP_HIT,   MAP_SPIN, MAP_DROP,     MAP_BOUNCE,
                                          MAP_HANG,  MAP_WRECK, MAP_FAR,  MAP_SUBSTEPS, MAP_MEET,
-                                         MAP_SILT,  MAP_PRESS, MAP_BEND};
+                                         MAP_SILT,  MAP_PRESS, MAP_BEND, MAP_WALL,     MAP_GRIP};
     uint32_t faults = 0;
     for (size_t i = 0; i < sizeof sampled / sizeof *sampled; i++)
         faults += count_faults(sampled[i]);
@@ -125,6 +125,8 @@ static void what_was_at_fault_holds(void **state) {
         {MAP_PRESS, 2533},   // what a particle without springs had was not counted, here with a rope
         {MAP_PRESS, 8463},   // the same with the direct solver
         {MAP_PRESS, 10202},  // and where a hundred times as much could move
+        {MAP_GRIP, 8426},    // a bounded grip gave its largest force on all of a way far beyond the target
+        {MAP_GRIP, 6820},    // the same of four on a particle
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         map_case drawn;

@@ -44,6 +44,7 @@
 
 typedef mspringi_budget budget_of;
 typedef mspringi_component_budget component;
+typedef mspringi_mass_centre centre;
 
 static mspringi_motion motion_of(const mspring_network *network) {
     const mspringi_state *s = &network->state;
@@ -58,8 +59,6 @@ static mspringi_motion motion_before(const mspring_network *network) {
 }
 
 /* ------------------------------------------------------------------------------------------------- mass centres */
-
-typedef mspringi_mass_centre centre;
 
 centre mspringi_mass_centre_of(const component *a) {
     const double *s = a->sums, mass = s[MSPRINGI_MOMENT_MASS];
@@ -276,9 +275,9 @@ static bool is_below_floor(const mspring_network *network, double x, double y) {
     const mspringi_floor *floor = network->floor;
     if (!floor)
         return false;
-    const mspringi_bounds clear = floor->clear;
-    const bool is_clear = x >= (double)clear.min_x && x <= (double)clear.max_x && y >= (double)clear.min_y &&
-                          y <= (double)clear.max_y;
+    const mspringi_bounds in = floor->clear;
+    const bool is_clear =
+        x >= (double)in.min_x && x <= (double)in.max_x && y >= (double)in.min_y && y <= (double)in.max_y;
     return !is_clear && mspringi_floor_distance(floor, x, y) < -SUNK * mspringi_floor_slop(x, y);
 }
 

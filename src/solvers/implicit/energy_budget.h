@@ -142,9 +142,9 @@ void mspringi_budget_undo(mspring_network *network);
 
 /* walls.c */
 
-/// After a substep of h: stop the components that their shift would press deeper into a collider than they were.
+/// After a substep of h: stop components whose shift would deepen their overlap with a collider.
 void mspringi_walls_stop_shifted(const mspring_network *network, double h);
-/// Stop those that have gone back into one. Returns whether any has to be placed again.
+/// Stop components that have gone back into a collider. True if any must be placed again.
 bool mspringi_walls_stop_back(const mspring_network *network, double h);
 
 /* budget_sums.c */

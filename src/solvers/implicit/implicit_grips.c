@@ -119,19 +119,34 @@ static double energy_of(const mspringi_grip *grip, double x, double y) {
     return k * length <= most ? 0.5 * k * (length * length) : most * (length - 0.5 * most / k);
 }
 
-// What a grip has given by the way of its particle, (x, y): by the damper, and what the spring has lost. Where the
-// target moves, that is measured from the middle of its way, or as force times way if that is more.
+// Energy that a grip's spring loses in a substep, at whose start and end the target is here.
+static double loss_of(const mspringi_budget_sums *all, const mspringi_grip *grip, uint32_t slot,
+                      const mspringi_grip_target *from, const mspringi_grip_target *to) {
+    const mspringi_motion *before = &all->before, *after = &all->motion;
+    return energy_of(grip, from->x - place_x(before, slot), from->y - place_y(before, slot)) -
+           energy_of(grip, to->x - place_x(after, slot), to->y - place_y(after, slot));
+}
+
+// Work of a grip whose force is its largest: in the frame of the target at most the energy that its spring loses,
+// as a particle that passes the target is pulled back from there on.
+static double work_of_bounded(const mspringi_budget_sums *all, const mspringi_grip *grip, uint32_t slot, double x,
+                              double y) {
+    const mspringi_grip_target from = aim_of(all->network, grip, 0.0f), to = aim_of(all->network, grip, all->h);
+    const double of_target = grip->force_x * (to.x - from.x) + grip->force_y * (to.y - from.y);
+    const double by_end = grip->force_x * x + grip->force_y * y;
+    return fmin(by_end, of_target + loss_of(all, grip, slot, &from, &to));
+}
+
+// Work of a grip on the way of its particle, (x, y): of the damper, and what the spring loses. Where the target
+// moves, that is measured from the middle of its way, or as force times way if that is more.
 static double work_of(const mspringi_budget_sums *all, const mspringi_grip *grip, uint32_t slot, double x,
                       double y) {
-    const mspring_network *network = all->network;
-    const double by_end = grip->force_x * x + grip->force_y * y;
     if (grip->is_bounded)
-        return by_end;
-    const mspringi_grip_target from = aim_of(network, grip, 0.0f), to = aim_of(network, grip, all->h);
-    const double target_x = 0.5 * (from.x + to.x), target_y = 0.5 * (from.y + to.y), c = (double)grip->damping;
-    const double lost =
-        energy_of(grip, target_x - place_x(&all->before, slot), target_y - place_y(&all->before, slot)) -
-        energy_of(grip, target_x - place_x(&all->motion, slot), target_y - place_y(&all->motion, slot));
+        return work_of_bounded(all, grip, slot, x, y);
+    const double by_end = grip->force_x * x + grip->force_y * y;
+    const mspringi_grip_target from = aim_of(all->network, grip, 0.0f), to = aim_of(all->network, grip, all->h);
+    const mspringi_grip_target middle = {.x = 0.5 * (from.x + to.x), .y = 0.5 * (from.y + to.y)};
+    const double c = (double)grip->damping, lost = loss_of(all, grip, slot, &middle, &middle);
     const double braked =
         grip->share * c * ((to.vx - (double)all->motion.vx[slot]) * x + (to.vy - (double)all->motion.vy[slot]) * y);
     const bool moves = to.vx != 0.0 || to.vy != 0.0;

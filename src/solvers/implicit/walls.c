@@ -1,26 +1,26 @@
-/// Colliders that are in the way of what the energy budget would do to a component.
+/// Colliders in the way of the energy budget.
 ///
-/// Impulses after a substep leave nothing deeper in a collider than it was before (implicit_contact.c). The budget
-/// then shifts components, or has them go back. One that this would press into a collider stays where the substep
-/// has led it, or stops where it was: a body between a heavy one and a wall was pressed through the wall else, some
-/// of the thickness in each substep.
+/// Impulses leave nothing deeper in a collider than it was before the substep (implicit_contact.c). Then the budget
+/// shifts components, or moves them back. A component that this would press into a collider stays at the end of its
+/// substep, or stops at its start. Otherwise a body between a heavy one and a wall passes the wall, a share of the
+/// thickness in each substep.
 #include "solvers/implicit/implicit_terms.h"
 
-/// Depth that is none, as a share of the thickness: twice that which impulses leave.
+/// Largest depth that is ignored, as a share of the thickness: twice the depth that impulses leave.
 #define UNSEEN_SHARE 2e-6
 
-/// A constraint between a collider and one of the network's particles at least.
+/// Constraint between a collider and a component.
 typedef struct wall {
-    uint32_t slot;   ///< of that particle
-    double nx, ny;   ///< direction from the collider to the body
-    double deepened; ///< m that the substep has made it deeper by
+    uint32_t slot;   ///< of a particle of the component
+    double nx, ny;   ///< normal from the collider to the component
+    double deepened; ///< increase of the depth in the substep, m
 } wall;
 
 static uint32_t slot_of(const mspring_network *network, uint32_t node) {
     return network->topology.slot_of_particle[network->contacts->nodes.particles[node]];
 }
 
-// The way of a node in the substep.
+// Add a share of a node's displacement in a substep of h.
 static void add_way(const mspring_network *network, uint32_t node, double share, double h, double way[2]) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     const mspringi_state *s = &network->state;
@@ -46,8 +46,8 @@ static wall wall_of(const mspring_network *network, const mspringi_contact_const
                   .deepened = least - (t->gap + way[0] * t->nx + way[1] * t->ny)};
 }
 
-// Stop an account where the substep has led it, if the collider moves, else where it was. Returns whether that is
-// elsewhere than before.
+// Stop a component at the end of its substep if the collider moves, otherwise at its start. Returns true if this
+// changes its position.
 static bool stop_at(mspringi_component_budget *a, bool is_moving) {
     const double share = is_moving ? 1.0 : 0.0;
     if (a->is_stopped && a->share >= share)
