@@ -141,6 +141,17 @@ static mspring_result check_still(mspring_network *network, mspringi_io *io, uin
     return MSPRING_OK;
 }
 
+// Check the bits of sleeping particles. Those behind the last particle are 0.
+static mspring_result check_bits(mspring_network *network, mspringi_io *io) {
+    const uint32_t particles = network->topology.reserve.particle_end;
+    uint32_t word = 0;
+    for (size_t i = 0; i < words_of_particles(network); ++i)
+        MSPRINGI_HAND(io, word);
+    return particles % 32 == 0 || word >> particles % 32 == 0
+               ? MSPRING_OK
+               : mspringi_section_fail(network, &mspringi_section_sleep, "particles sleep that are not there");
+}
+
 static mspring_result sleep_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_sleep;
     mspringi_io io = mspringi_io_from(from, size);
@@ -152,8 +163,8 @@ static mspring_result sleep_check(mspring_network *network, const uint8_t *from,
         return mspringi_section_fail(network, section, "%u islands below %g m/s for less than %g s",
                                      (unsigned)head.still_count, (double)head.speed, (double)head.time);
     mspring_result result = check_still(network, &io, head.still_count);
-    for (size_t i = 0; head.has_bits && i < words_of_particles(network); ++i)
-        mspringi_hand(&io, &(uint32_t){0}, 1, sizeof(uint32_t));
+    if (result == MSPRING_OK && head.has_bits)
+        result = check_bits(network, &io);
     for (size_t i = 0; result == MSPRING_OK && i < force_floats(network, &head); ++i) {
         float force;
         MSPRINGI_HAND(&io, force);
