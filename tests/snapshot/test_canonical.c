@@ -254,6 +254,22 @@ static void disturbed_sleepers_save_the_same_bytes(void **state) {
     }
 }
 
+/// A scale of -0 pins as one of 0 does.
+static void a_scale_has_no_sign(void **state) {
+    (void)state;
+    mspring_network *one = make(MSPRING_SOLVER_EXPLICIT, 7), *other = make(MSPRING_SOLVER_EXPLICIT, 7);
+    const float none = 0.0f, negative = -0.0f;
+    check_ok(mspring_network_set(one, MSPRING_INVERSE_MASS_SCALE, 3, 1, &negative, 1));
+    check_ok(mspring_network_set(other, MSPRING_INVERSE_MASS_SCALE, 3, 1, &none, 1));
+    const saved now = snapshots_save(one, MSPRING_SNAPSHOT_ALL);
+    check_same(other, &now);
+    snapshots_load(other, &now);
+    check_same(other, &now);
+    free(now.bytes);
+    mspring_network_destroy(one);
+    mspring_network_destroy(other);
+}
+
 /// A step that is refused after springs have yielded in it.
 static void a_refused_flow_leaves_no_trace(void **state) {
     (void)state;
@@ -324,6 +340,7 @@ int main(void) {
         cmocka_unit_test(a_load_brings_the_same_bytes),
         cmocka_unit_test(questions_change_nothing),
         cmocka_unit_test(disturbed_sleepers_save_the_same_bytes),
+        cmocka_unit_test(a_scale_has_no_sign),
         cmocka_unit_test(a_refused_flow_leaves_no_trace),
 #if defined(FE_UPWARD) && !defined(__wasm__)
         cmocka_unit_test(the_callers_rounding_does_not_count),
