@@ -264,7 +264,7 @@ static bool concerns(const mspringi_section *section, const mspringi_snapshot_he
     return !section->parameters || header->contents == MSPRING_SNAPSHOT_ALL;
 }
 
-// Whatever sections say of one another.
+// Check the sections against each other.
 static mspring_result check_together(mspring_network *network, const mspringi_snapshot_header *header,
                                      const found *in) {
     mspringi_saved saved = {.network = network, .angle_count = network->areas.angle_count};

@@ -90,8 +90,8 @@ static void set_island_bits(const mspring_network *network, uint8_t *bits) {
 static bool sleeps_on(const mspring_network *network, const uint8_t *bits, mspring_id particle) {
     const mspringi_sleep *sleep = &network->sleep;
     const uint32_t slot = network->topology.slot_of_particle[particle];
-    return sleep->sleeping > 0 && mspringi_particle_exists(network, particle) && sleep->still[sleep->island[slot]] < 0.0 &&
-           is_bit_set(bits, island_particle(network, slot));
+    return sleep->sleeping > 0 && mspringi_particle_exists(network, particle) &&
+           sleep->still[sleep->island[slot]] < 0.0 && is_bit_set(bits, island_particle(network, slot));
 }
 
 static void put_forces(const mspring_network *network, const uint8_t *bits, mspringi_writer *to) {
