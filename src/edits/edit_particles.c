@@ -155,7 +155,7 @@ static MSPRINGI_NOINLINE void store_scales(mspring_network *network, const mspri
                                            const mspringi_values *values, uint32_t i) {
     for (; i < at->count; ++i) {
         const mspring_id particle = mspringi_selected(at, i);
-        const float scale = mspringi_value_of(values, i);
+        const float scale = mspringi_value_of(values, i) + 0.0f; // -0 becomes 0, the scale of a pinned particle
         if (!mspringi_particle_exists(network, particle))
             continue;
         if (network->inverse_mass_scale)

@@ -83,15 +83,22 @@ static size_t next_disturbed(const mspring_network *network, size_t slot, bool s
     return slots;
 }
 
-bool mspringi_sleep_is_disturbed(const mspring_network *network) {
+size_t mspringi_next_disturbed_sleeper(const mspring_network *network, size_t slot) {
     const mspringi_sleep *s = &network->sleep;
+    const size_t slots = mspringi_slot_count(network);
     if (s->sleeping == 0)
-        return false;
+        return slots;
     const bool state = may_have_moved(network), masses = s->masses != network->edits.masses;
-    if (!state && !masses)
-        return false;
-    return network->origin_x != s->origin_x || network->origin_y != s->origin_y ||
-           next_disturbed(network, 0, state, masses) < mspringi_slot_count(network);
+    const bool all = network->origin_x != s->origin_x || network->origin_y != s->origin_y;
+    if (!all)
+        return state || masses ? next_disturbed(network, slot, state, masses) : slots;
+    while (slot < slots && !(s->sleepers[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH & 1))
+        ++slot;
+    return slot;
+}
+
+bool mspringi_sleep_is_disturbed(const mspring_network *network) {
+    return mspringi_next_disturbed_sleeper(network, 0) < mspringi_slot_count(network);
 }
 
 /* -------------------------------------------------------------------------------------------------- waking */
@@ -129,7 +136,7 @@ static void set_all_awake(mspring_network *network) {
 }
 
 void mspringi_wake(mspring_network *network) {
-    network->sleep.has_kept = false;
+    network->sleep.has_kept = network->sleep.has_force = false;
     set_all_awake(network);
 }
 

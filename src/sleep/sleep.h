@@ -71,6 +71,9 @@ void mspringi_wake_spring(mspring_network *network, mspring_id spring);
 
 /// True if the position, velocity or mass of a sleeping slot has changed since it fell asleep.
 bool mspringi_sleeper_is_disturbed(const mspring_network *network, size_t slot);
+/// First sleeping slot from `slot` on that the next step wakes, as its position, velocity or mass has changed since it
+/// fell asleep. The number of slots if there is none.
+size_t mspringi_next_disturbed_sleeper(const mspring_network *network, size_t slot);
 /// True if any sleeping slot has been disturbed.
 bool mspringi_sleep_is_disturbed(const mspring_network *network);
 

@@ -233,12 +233,38 @@ static mspring_result find_sections(mspring_network *network, const mspringi_sna
     return MSPRING_OK;
 }
 
+static bool are_zeros(const uint8_t *from, size_t size) {
+    uint8_t others = 0;
+    for (size_t i = 0; i < size; ++i)
+        others |= from[i];
+    return others == 0;
+}
+
+// Check the bytes without meaning: in the headers of sections, and behind each section.
+static mspring_result check_unused(mspring_network *network, const mspringi_snapshot_header *header,
+                                   const uint8_t *snapshot, const found *in) {
+    const uint8_t *const end = snapshot + header->size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+    const uint8_t *at = snapshot + MSPRINGI_SNAPSHOT_HEADER_BYTES;
+    for (int i = 0; i < SECTIONS; ++i) {
+        const size_t size = in->size[i], padding = mspringi_round_up(size, 8) - size;
+        if (size == 0)
+            continue;
+        at = in->from[i] + size + padding;
+        if (!are_zeros(in->from[i] - 12, 4) || !are_zeros(at - padding, padding))
+            return mspringi_section_fail(network, sections[i], "unused bytes are not 0");
+    }
+    const size_t left = (size_t)(end - at);
+    return left < MSPRINGI_CHECKSUM_UNIT && are_zeros(at, left)
+               ? MSPRING_OK
+               : fail(network, "has something behind its last section");
+}
+
 // True if a section is loaded. A frame has no parameters; they stay as they are.
 static bool concerns(const mspringi_section *section, const mspringi_snapshot_header *header) {
     return !section->parameters || header->contents == MSPRING_SNAPSHOT_ALL;
 }
 
-// Whatever sections say of one another.
+// Check the sections against each other.
 static mspring_result check_together(mspring_network *network, const mspringi_snapshot_header *header,
                                      const found *in) {
     mspringi_saved saved = {.network = network, .angle_count = network->areas.angle_count};
@@ -268,6 +294,8 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
     for (int i = 0; result == MSPRING_OK && i < SECTIONS; ++i)
         if (concerns(sections[i], &header))
             result = sections[i]->check(network, in.from[i], in.size[i]);
+    if (result == MSPRING_OK)
+        result = check_unused(network, &header, snapshot, &in);
     if (result == MSPRING_OK)
         result = check_together(network, &header, &in);
     if (result != MSPRING_OK)

@@ -1,8 +1,11 @@
 /// Snapshot of sleeping islands, and of the time at rest of the others.
 ///
-/// Islands have no names that edits would leave alone: what sleeps is told by particle, and how long others have
-/// been still by their lowest slots. Edits of springs have woken those that they change, so the others are found
-/// again.
+/// Edits leave islands no lasting number. The section therefore has a bit for each sleeping particle, and the time at
+/// rest by the lowest slot of each awake island. Edits of springs have woken the islands that they change; loading
+/// finds the others again.
+///
+/// An island disturbed since the last step, and its pile, would wake in the next step. They are saved as awake, and a
+/// loaded network saves the same bytes.
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +16,8 @@
 typedef struct sleep_head {
     float speed, time;
     uint32_t still_count; ///< awake islands with a time at rest
-    uint32_t any_asleep, has_force;
+    uint32_t has_bits;    ///< 1 if islands may sleep
+    uint32_t has_force;
 } sleep_head;
 
 static void hand_head(mspringi_io *io, sleep_head *head) {
@@ -43,65 +47,65 @@ static sleep_head make_head(const mspring_network *network) {
     const mspringi_sleep *sleep = &network->sleep;
     sleep_head head = {.speed = network->settings.sleep_speed,
                        .time = network->settings.sleep_time,
-                       .any_asleep = sleep->sleeping > 0,
-                       .has_force = sleep->sleeping > 0 && sleep->has_force};
+                       .has_bits = network->settings.sleep_speed > 0.0f,
+                       .has_force = network->settings.sleep_speed > 0.0f && sleep->has_force};
     for (uint32_t i = 0; i < sleep->count; ++i)
         head.still_count += is_listed(sleep, i);
     return head;
 }
 
-static uint32_t island_of(const mspring_network *network, mspring_id particle) {
-    return network->sleep.island[network->topology.slot_of_particle[particle]];
+// Particle with the bit of a slot's island.
+static mspring_id island_particle(const mspring_network *network, uint32_t slot) {
+    return network->topology.particle_of_slot[network->sleep.lowest[network->sleep.island[slot]]];
 }
 
-static bool is_asleep(const mspring_network *network, mspring_id particle) {
-    return mspringi_particle_exists(network, particle) && network->sleep.still[island_of(network, particle)] < 0.0;
-}
-
-static bool has_bit(const uint8_t *bits, mspring_id particle) {
+static bool is_bit_set(const uint8_t *bits, mspring_id particle) {
     return bits[particle / 8] >> particle % 8 & 1;
 }
 
-// Bits of particles, of use for the lowest ones of sleeping islands alone: 0 for all of a pile if one of them has
-// been disturbed, since they wake before the next step.
-static void find_undisturbed(const mspring_network *network, uint8_t *bits) {
-    const mspring_id *of_slot = network->topology.particle_of_slot;
+// Clear the bits of all islands in the pile of a slot.
+static void clear_pile(const mspring_network *network, uint8_t *bits, uint32_t slot) {
     const mspringi_sleep *sleep = &network->sleep;
-    memset(bits, 0xff, words_of_particles(network) * sizeof(uint32_t));
-    for (mspring_id p = 0; p < network->topology.reserve.particle_end; ++p) {
-        if (!is_asleep(network, p) ||
-            !mspringi_sleeper_is_disturbed(network, network->topology.slot_of_particle[p]))
-            continue;
-        uint32_t slot = sleep->lowest[island_of(network, p)];
-        for (mspring_id q; has_bit(bits, q = of_slot[slot]); slot = sleep->beside[slot])
-            bits[q / 8] &= (uint8_t) ~(1u << q % 8);
-    }
-}
-
-static bool sleeps_on(const mspring_network *network, const uint8_t *undisturbed, mspring_id particle) {
-    if (!is_asleep(network, particle))
-        return false;
-    const uint32_t lowest = network->sleep.lowest[island_of(network, particle)];
-    return has_bit(undisturbed, network->topology.particle_of_slot[lowest]);
-}
-
-// What is written is at first the bits that are read: those of lowest particles stay as they are.
-static void save_sleepers(const mspring_network *network, mspringi_writer *to) {
-    const uint32_t particles = network->topology.reserve.particle_end;
-    const uint8_t *undisturbed = to->at;
-    if (!to->sum) { // it counts
-        mspringi_put(to, NULL, words_of_particles(network), sizeof(uint32_t));
+    const uint32_t first = sleep->lowest[sleep->island[slot]];
+    uint32_t at = first;
+    if (sleep->still[sleep->island[slot]] >= 0.0 || !is_bit_set(bits, island_particle(network, slot)))
         return;
-    }
-    find_undisturbed(network, to->at);
-    for (mspring_id first = 0; first < particles; first += 32) {
-        uint32_t bits = 0;
-        for (mspring_id p = first; p < first + 32 && p < particles; ++p)
-            bits |= (uint32_t)sleeps_on(network, undisturbed, p) << (p - first);
-        mspringi_put(to, &bits, 1, sizeof bits);
+    do {
+        const mspring_id particle = network->topology.particle_of_slot[at];
+        bits[particle / 8] &= (uint8_t) ~(1u << particle % 8);
+        at = sleep->beside[at];
+    } while (at != first);
+}
+
+// Set the bits of sleeping islands, but not of those that the next step wakes.
+static void set_island_bits(const mspring_network *network, uint8_t *bits) {
+    const size_t slots = mspringi_slot_count(network);
+    memset(bits, 0xff, words_of_particles(network) * sizeof(uint32_t));
+    for (size_t slot = mspringi_next_disturbed_sleeper(network, 0); slot < slots;
+         slot = mspringi_next_disturbed_sleeper(network, slot + 1))
+        clear_pile(network, bits, (uint32_t)slot);
+}
+
+// True if a particle stays asleep in the next step.
+static bool sleeps_on(const mspring_network *network, const uint8_t *bits, mspring_id particle) {
+    const mspringi_sleep *sleep = &network->sleep;
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    return sleep->sleeping > 0 && mspringi_particle_exists(network, particle) &&
+           sleep->still[sleep->island[slot]] < 0.0 && is_bit_set(bits, island_particle(network, slot));
+}
+
+static void put_forces(const mspring_network *network, const uint8_t *bits, mspringi_writer *to) {
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t i = 0; i < 2 * slots; ++i) {
+        const uint32_t slot = (uint32_t)(i < slots ? i : i - slots);
+        const mspring_id particle = network->topology.particle_of_slot[slot];
+        const float *values = i < slots ? network->sleep.force.x : network->sleep.force.y;
+        const bool is_asleep = bits && particle != MSPRING_NONE && is_bit_set(bits, particle);
+        mspringi_put(to, is_asleep ? &values[slot] : &(float){0.0f}, 1, sizeof *values);
     }
 }
 
+// The bits of islands are those of their lowest particles, so the place of the bits in the snapshot has room for them.
 static void sleep_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_sleep *sleep = &network->sleep;
     mspringi_io io = mspringi_io_to(to);
@@ -110,9 +114,18 @@ static void sleep_save(const mspring_network *network, mspringi_writer *to) {
     for (uint32_t i = 0; i < sleep->count; ++i)
         if (is_listed(sleep, i))
             hand_still(&io, &sleep->lowest[i], &sleep->still[i]);
-    if (head.any_asleep)
-        save_sleepers(network, to);
-    mspringi_put(to, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);
+    const uint32_t particles = network->topology.reserve.particle_end;
+    uint8_t *const bits = to->sum ? to->at : NULL; // NULL: only count
+    if (head.has_bits && bits)
+        set_island_bits(network, bits);
+    for (mspring_id first = 0; head.has_bits && first < particles; first += 32) {
+        uint32_t word = 0;
+        for (mspring_id p = first; bits && p < first + 32 && p < particles; ++p)
+            word |= (uint32_t)sleeps_on(network, bits, p) << (p - first);
+        mspringi_put(to, &word, 1, sizeof word);
+    }
+    if (head.has_force)
+        put_forces(network, bits, to);
 }
 
 static mspring_result check_still(mspring_network *network, mspringi_io *io, uint32_t count) {
@@ -128,19 +141,30 @@ static mspring_result check_still(mspring_network *network, mspringi_io *io, uin
     return MSPRING_OK;
 }
 
+// Check the bits of sleeping particles. Those behind the last particle are 0.
+static mspring_result check_bits(mspring_network *network, mspringi_io *io) {
+    const uint32_t particles = network->topology.reserve.particle_end;
+    uint32_t word = 0;
+    for (size_t i = 0; i < words_of_particles(network); ++i)
+        MSPRINGI_HAND(io, word);
+    return particles % 32 == 0 || word >> particles % 32 == 0
+               ? MSPRING_OK
+               : mspringi_section_fail(network, &mspringi_section_sleep, "particles sleep that are not there");
+}
+
 static mspring_result sleep_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_sleep;
     mspringi_io io = mspringi_io_from(from, size);
     sleep_head head;
     hand_head(&io, &head);
     if (!(head.speed >= 0.0f && head.speed <= 1e15f && head.time >= 0.0f && head.time <= 1e6f) ||
-        head.any_asleep > (head.speed > 0.0f) || head.has_force > head.any_asleep ||
+        head.has_bits != (head.speed > 0.0f) || head.has_force > head.has_bits ||
         head.still_count > (head.speed > 0.0f ? network->topology.reserve.particle_end : 0))
         return mspringi_section_fail(network, section, "%u islands below %g m/s for less than %g s",
                                      (unsigned)head.still_count, (double)head.speed, (double)head.time);
     mspring_result result = check_still(network, &io, head.still_count);
-    for (size_t i = 0; head.any_asleep && i < words_of_particles(network); ++i)
-        mspringi_hand(&io, &(uint32_t){0}, 1, sizeof(uint32_t));
+    if (result == MSPRING_OK && head.has_bits)
+        result = check_bits(network, &io);
     for (size_t i = 0; result == MSPRING_OK && i < force_floats(network, &head); ++i) {
         float force;
         MSPRINGI_HAND(&io, force);
@@ -175,6 +199,7 @@ static void sleep_load(mspring_network *network, const uint8_t *from, size_t siz
     network->settings.sleep_speed = head.speed;
     network->settings.sleep_time = head.time;
     sleep->count = sleep->sleeping = 0;
+    sleep->has_force = false;
     mspringi_notify_change(network, MSPRINGI_CHANGED_NAPS, 0);
     if (!(head.speed > 0.0f))
         return;
@@ -186,8 +211,6 @@ static void sleep_load(mspring_network *network, const uint8_t *from, size_t siz
         if (sleep->island[slot] != MSPRING_NONE)
             sleep->still[sleep->island[slot]] = still;
     }
-    if (!head.any_asleep)
-        return;
     mark_asleep(network, &io);
     mspringi_sleep_fall(network, (mspringi_field){NULL, NULL});
     mspringi_hand(&io, sleep->force.x, force_floats(network, &head), sizeof *sleep->force.x);

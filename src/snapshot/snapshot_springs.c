@@ -90,7 +90,7 @@ bool mspringi_saved_is_whole(const mspringi_saved *saved, mspring_id spring) {
            (!saved->live || bit_at(saved->live, mspringi_saved_place(saved, spring)));
 }
 
-// What is not there is not whole.
+// Refuse live springs that do not exist.
 static mspring_result broken_check_against(mspring_network *network, const mspringi_saved *saved,
                                            const uint8_t *from, size_t size) {
     for (mspring_id s = 0; size > 0 && saved->growth && s < network->topology.reserve.spring_end; ++s)

@@ -149,8 +149,8 @@ static size_t motion_size(const mspring_network *network) {
     return motion_floats(network) * sizeof(float);
 }
 
-// What somebody outside may have written is saved as the next step would put it in order: without low words of
-// other coordinates, and nothing where no particle is.
+// Save the state that the host may have written to as the next step would tidy it: without stale low words, and with
+// 0 in empty slots.
 static void put_tidied(const mspring_network *network, size_t array, mspringi_writer *to) {
     const size_t slots = mspringi_slot_count(network), positions = MSPRINGI_STATE_ARRAYS - 2;
     const float *values = network->state.x + array * slots;

@@ -119,7 +119,7 @@ static void keep(mspringi_plastic *p, mspringi_spring_slot spring_slot, float re
         return;
     p->before[spring_slot] = rest_length;
     *word |= bit;
-    p->flows = p->is_bent = true;
+    p->flows = true;
 }
 
 // Whether a spring that is expected to act at the end of an implicit substep does not yet.

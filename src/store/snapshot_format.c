@@ -117,5 +117,5 @@ bool mspringi_get_header(const uint8_t *from, mspringi_snapshot_header *header) 
     from = mspringi_get(from, &reserved, 1, 4);
     from = mspringi_get(from, &header->topology_fingerprint, 1, 8);
     mspringi_get(from, &header->parameter_fingerprint, 1, 8);
-    return true;
+    return reserved == 0;
 }

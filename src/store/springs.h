@@ -5,6 +5,8 @@
 #ifndef MSPRINGI_SPRINGS_H
 #define MSPRINGI_SPRINGS_H
 
+#include <float.h>
+
 #include "store/fractions.h"
 
 /// What a spring is like, and the slots that it joins.
@@ -74,11 +76,14 @@ static inline double mspringi_reduced_mass(double a, double b) {
 static inline double mspringi_relative_rate(const mspring_network *network) {
     return network->relative_h > 0.0f ? 1.0 / (double)network->relative_h : 0.0;
 }
+/// At most FLT_MAX: great masses over short substeps would give infinity.
 static inline float mspringi_derived_stiffness(float fraction, double reduced_mass, double rate) {
-    return (float)((double)fraction * reduced_mass * rate * rate);
+    const double stiffness = (double)fraction * reduced_mass * rate * rate;
+    return stiffness < (double)FLT_MAX ? (float)stiffness : FLT_MAX;
 }
 static inline float mspringi_derived_damping(float fraction, double reduced_mass, double rate) {
-    return (float)((double)fraction * reduced_mass * rate);
+    const double damping = (double)fraction * reduced_mass * rate;
+    return damping < (double)FLT_MAX ? (float)damping : FLT_MAX;
 }
 
 /// Stiffness and damping that a spring, which lies in this place, has while it is not broken; fractions if it is

@@ -163,6 +163,146 @@ static void questions_change_nothing(void **state) {
     mspring_network_destroy(network);
 }
 
+// Two lattices, one asleep on the other, and a third of its own.
+static mspring_network *make_sleepers(mspring_solver solver) {
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {400, 400}, .damping = {8, 8}};
+    recipe made = {0};
+    uint64_t seed = 3;
+    recipe_lattice(&made, 4, 3, 0, 0, 1, &stuff, &seed);
+    recipe_lattice(&made, 4, 3, 0, 3.1, 1, &stuff, &seed);
+    recipe_lattice(&made, 3, 2, 20, 0, 1, &stuff, &seed);
+    mspring_network_def def = support_def(-9.8f, 8);
+    def.sleep_speed = 0.05f;
+    def.sleep_time = 0.1f;
+    def.global_damping = 2;
+    mspring_network *network = recipe_network(&made, &def);
+    recipe_free(&made);
+    mspring_floor_def floor;
+    mspring_contact_def contact;
+    const double plane[4] = {0, -0.5, 0, 1};
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    floor.planes = plane;
+    floor.plane_count = 1;
+    floor.friction = contact.friction = 0.5f;
+    contact.thickness = 0.1;
+    check_ok(mspring_network_set_floor(network, &floor));
+    check_ok(mspring_network_set_contact(network, &contact));
+    if (solver != MSPRING_SOLVER_EXPLICIT)
+        snapshots_use_solver(network, solver, MSPRING_INTEGRATOR_EULER, 7);
+    for (int step = 0; step < 3000 && !mspring_network_is_asleep(network); step++)
+        support_steps(network, 1, 0.01);
+    assert_true(mspring_network_is_asleep(network));
+    return network;
+}
+
+// Disturb one particle of sleepers without a step.
+static void disturb(mspring_network *network, uint32_t way, mspring_id p) {
+    const double x = 3, y = 12;
+    const float speed = 2, mass = 3, scale = 0.5f;
+    mspring_mutable_view view = {.struct_size = sizeof view};
+    switch (way) {
+    case 0:
+        check_ok(mspring_network_set_positions(network, p, 1, &x, &y, 1));
+        break;
+    case 1:
+        check_ok(mspring_network_set_velocities(network, p, 1, &speed, &speed, 1));
+        break;
+    case 2:
+        check_ok(mspring_network_set(network, MSPRING_MASS, p, 1, &mass, 1));
+        break;
+    case 3:
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, p, 1, &scale, 1));
+        break;
+    case 4:
+        check_ok(mspring_network_apply_impulses(network, p, 1, &speed, &speed, 1));
+        break;
+    default:
+        check_ok(mspring_network_view_mutable(network, &view));
+        view.x[view.slot_of_particle[p]] += 1.0f;
+    }
+}
+
+/// Sleepers that the host disturbs wake in the next step. Snapshots before it are those after a load, and both go on
+/// alike, with the pile of the disturbed island.
+static void disturbed_sleepers_save_the_same_bytes(void **state) {
+    (void)state;
+    const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT};
+    const mspring_id particles[] = {1, 14, 26};
+    for (size_t i = 0; i < COUNT_OF(solvers); i++) {
+        mspring_network *asleep = make_sleepers(solvers[i]);
+        const saved start = snapshots_save(asleep, MSPRING_SNAPSHOT_ALL);
+        for (uint32_t way = 0; way < 6 * COUNT_OF(particles); way++) {
+            mspring_network *one = NULL, *other = NULL;
+            check_ok(mspring_network_clone(asleep, NULL, &one));
+            check_ok(mspring_network_clone(asleep, NULL, &other));
+            check_same(one, &start);
+            disturb(one, way % 6, particles[way / 6]);
+            for (int step = 0; step < 20; step++) {
+                const saved now = snapshots_save(one, MSPRING_SNAPSHOT_ALL);
+                snapshots_load(other, &now);
+                check_same(other, &now);
+                free(now.bytes);
+                const mspring_result result = mspring_network_step(one, 0.01);
+                assert_int_equal(mspring_network_step(other, 0.01), result);
+            }
+            mspring_network_destroy(one);
+            mspring_network_destroy(other);
+        }
+        free(start.bytes);
+        mspring_network_destroy(asleep);
+    }
+}
+
+/// A scale of -0 pins as one of 0 does.
+static void a_scale_has_no_sign(void **state) {
+    (void)state;
+    mspring_network *one = make(MSPRING_SOLVER_EXPLICIT, 7), *other = make(MSPRING_SOLVER_EXPLICIT, 7);
+    const float none = 0.0f, negative = -0.0f;
+    check_ok(mspring_network_set(one, MSPRING_INVERSE_MASS_SCALE, 3, 1, &negative, 1));
+    check_ok(mspring_network_set(other, MSPRING_INVERSE_MASS_SCALE, 3, 1, &none, 1));
+    const saved now = snapshots_save(one, MSPRING_SNAPSHOT_ALL);
+    check_same(other, &now);
+    snapshots_load(other, &now);
+    check_same(other, &now);
+    free(now.bytes);
+    mspring_network_destroy(one);
+    mspring_network_destroy(other);
+}
+
+/// A step that is refused after springs have yielded in it.
+static void a_refused_flow_leaves_no_trace(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    const mspring_id centre = support_particle(builder, 0, 0, 1);
+    const double corners[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    for (int i = 0; i < 4; i++)
+        support_spring(builder, centre, support_particle(builder, corners[i][0], corners[i][1], 1), 100, 1);
+    const mspring_id far = support_particle(builder, 9e11, 0, 1); // half a step takes it past 1e12 m
+    mspring_network_def def = support_def(0, 8);
+    def.guard = MSPRING_GUARD_GROWTH;
+    mspring_network *network = support_network(builder, &def);
+    const float yield = 0.05f, fast = 200, faster = 9e11f;
+    uint64_t hash, hash_before;
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, 4, &yield, 0));
+    check_ok(mspring_network_set_velocities(network, 1, 1, &fast, &fast, 1));
+    check_ok(mspring_network_set_velocities(network, far, 1, &faster, &fast, 1));
+    check_ok(mspring_network_state_hash(network, &hash_before));
+    const saved before = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    assert_int_not_equal(mspring_network_step(network, 0.2), MSPRING_OK);
+    check_same(network, &before);
+    check_ok(mspring_network_state_hash(network, &hash));
+    assert_true(hash == hash_before);
+    const float slow = 0;
+    check_ok(mspring_network_set_velocities(network, far, 1, &slow, &slow, 1));
+    support_steps(network, 1, 0.02);
+    float strain = 0;
+    check_ok(mspring_network_get(network, MSPRING_PLASTIC_STRAIN, 0, 1, &strain, 1));
+    assert_true(strain != 0.0f); // it yields
+    free(before.bytes);
+    mspring_network_destroy(network);
+}
+
 #if defined(FE_UPWARD) && !defined(__wasm__)
 /// Whoever steps may round as they like.
 static void the_callers_rounding_does_not_count(void **state) {
@@ -199,6 +339,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_load_brings_the_same_bytes),
         cmocka_unit_test(questions_change_nothing),
+        cmocka_unit_test(disturbed_sleepers_save_the_same_bytes),
+        cmocka_unit_test(a_scale_has_no_sign),
+        cmocka_unit_test(a_refused_flow_leaves_no_trace),
 #if defined(FE_UPWARD) && !defined(__wasm__)
         cmocka_unit_test(the_callers_rounding_does_not_count),
 #endif

@@ -371,6 +371,44 @@ static void springs_are_counted(void **state) {
     recipe_free(&fewer);
 }
 
+/// Bytes without meaning are 0: in the header, in those of sections, and behind each section.
+static void unused_bytes_are_zero(void **state) {
+    (void)state;
+    recipe made = snapshots_small_recipe();
+    mspring_network *network = snapshots_small_network(&made);
+    saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+    const size_t end = good.size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
+    size_t at = MSPRINGI_SNAPSHOT_HEADER_BYTES, unused = 0;
+    uint8_t *is_unused = calloc(good.size, 1);
+    assert_non_null(is_unused);
+    memset(is_unused + 36, 1, 4); // reserved word of the header
+    while (at + MSPRINGI_SECTION_HEADER_BYTES <= end && good.bytes[at] != 0) {
+        uint64_t size;
+        memset(is_unused + at + 4, 1, 4);
+        mspringi_get(good.bytes + at + 8, &size, 1, sizeof size);
+        at += MSPRINGI_SECTION_HEADER_BYTES;
+        memset(is_unused + at + size, 1, mspringi_round_up((size_t)size, 8) - (size_t)size);
+        at += mspringi_round_up((size_t)size, 8);
+    }
+    memset(is_unused + at, 1, end - at);
+    for (size_t i = 0; i < good.size; i++) {
+        if (!is_unused[i])
+            continue;
+        for (int bit = 0; bit < 8; bit++) {
+            saved bad = snapshots_copy(&good);
+            bad.bytes[i] ^= (uint8_t)(1u << bit);
+            snapshots_check_refused(network, &bad, "");
+            free(bad.bytes);
+        }
+        unused++;
+    }
+    assert_true(unused > 50);
+    free(is_unused);
+    free(good.bytes);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(damage_is_found),
@@ -383,6 +421,7 @@ int main(void) {
         cmocka_unit_test(checksums_tell_words_and_their_order),
         cmocka_unit_test(sections_end_where_they_end),
         cmocka_unit_test(springs_are_counted),
+        cmocka_unit_test(unused_bytes_are_zero),
     };
     return cmocka_run_group_tests_name("forgeries", tests, NULL, NULL);
 }
