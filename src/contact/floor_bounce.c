@@ -1,9 +1,9 @@
-/// What the surface does to one particle in a substep, in all cases.
+/// Bounce of one particle on the floor, in a substep of symplectic Euler or in free flight.
 #include "contact/floor.h"
 
 #include <math.h>
 
-/// Times that all surfaces are gone through for one particle: corners need more than one.
+/// Most passes over all surfaces for one particle. Corners need more than one.
 #define ROUNDS 4
 
 static double distance_from(const mspringi_line *line, double x, double y) {
@@ -49,7 +49,7 @@ bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *
     return was_inside;
 }
 
-// Whether a way leads to where particles may be, through no surface.
+// True if a way ends outside, through no part of the heights.
 static bool is_free_way(const mspringi_floor *floor, double from_x, double from_y, double x, double y) {
     const double slop = mspringi_floor_slop(x, y);
     if (!(mspringi_floor_distance(floor, x, y) >= -slop))
@@ -77,7 +77,7 @@ static double bounce_at_heights(const mspringi_floor *floor, double h, double al
     return acts > 0.0 ? acts : bounce_at(&below, h, allowed, p);
 }
 
-// Go through all surfaces once. Returns whether any did anything.
+// Apply all surfaces once. Return true if one acted.
 static bool bounce_at_surfaces(const mspringi_floor *floor, double h, double allowed,
                                mspringi_bouncing_particle *p) {
     double any = 0.0;

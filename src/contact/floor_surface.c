@@ -1,4 +1,4 @@
-/// Where the surface is.
+/// Surface of the floor: distances, straight parts of the heights, first hit of a moving particle.
 #include "contact/floor.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 /// one that could take more.
 #define MOST_LOOKS 4096
 
-/// What a way meets that meets nothing.
+/// Knot number of a way that meets no knot.
 #define NO_KNOT ((int64_t)-1)
 
 /* ---------------------------------------------------------------------------------------------------- distances */

@@ -1,7 +1,8 @@
-/// Which points are near which edges, and for how many substeps none of them can touch.
+/// Verlet list of pairs: points near edges. From it follow the candidates, and the substeps in which nothing can
+/// touch.
 ///
-/// All motion is that beside the mean of the outline: what flies along together is at rest. How many substeps are
-/// quiet follows from positions and velocities alone, not from when the list was made.
+/// All motion is relative to the mean of the outline. The number of quiet substeps follows from positions and
+/// velocities alone, not from when the list was made.
 #include <math.h>
 #include <string.h>
 
@@ -244,7 +245,8 @@ static void activate(mspringi_contact_nodes *active, mspring_id p) {
     active->particles[active->count++] = p;
 }
 
-// Nodes below an id, of hot pairs, and their neighbours on the outline: a corner looks at the edges beside it.
+// Activate the nodes of candidates below an id, and their neighbours on the outline: corners compare incident
+// edges.
 static void activate_below(mspringi_contacts *contacts, mspring_id end) {
     mspringi_contact_nodes *active = &contacts->nodes;
     const mspringi_outline *o = &contacts->outline;
@@ -282,7 +284,7 @@ static void activate_all(mspringi_contacts *contacts) {
     }
 }
 
-// How far a look must answer for.
+// Distance up to which the list must be complete, m.
 static double required_reach(const mspringi_contacts *contacts) {
     const double thickness = contacts->thickness, substeps = SUBSTEPS_AHEAD * (double)contacts->h * contacts->speed;
     const double ahead = LEAST_SHARE * thickness + STEPS_AHEAD * contacts->dt * contacts->speed;
@@ -290,7 +292,7 @@ static double required_reach(const mspringi_contacts *contacts) {
     return thickness + (usual > substeps ? usual : substeps);
 }
 
-// All pairs nearer than this are in the list, however far their points have come since.
+// Distance up to which the list is still complete, m.
 static double guaranteed_reach(const mspringi_contacts *contacts) {
     return contacts->reach - 2.0 * contacts->moved;
 }
@@ -316,7 +318,7 @@ static bool make_list(const mspring_network *network, mspringi_contacts *contact
     return true;
 }
 
-// How far a point may come in a substep.
+// Longest way of a point in a substep, m.
 static double travel_per_substep(const mspringi_contacts *contacts) {
     const double h = (double)contacts->h;
     return MSPRINGI_SPEED_MARGIN * h * contacts->speed +
@@ -330,7 +332,7 @@ static double candidate_substeps(const mspringi_contacts *contacts) {
                                                : MIN_CANDIDATE_SUBSTEPS;
 }
 
-// For how many substeps the list answers for all that can touch.
+// Substeps until a pair may be missing from the list.
 static uint32_t valid_substeps(const mspringi_contacts *contacts) {
     const double way = travel_per_substep(contacts);
     const double least = contacts->thickness + 0.5 * (required_reach(contacts) - contacts->thickness);
@@ -338,7 +340,7 @@ static uint32_t valid_substeps(const mspringi_contacts *contacts) {
     return valid >= 1.0 ? valid < 1e6 ? (uint32_t)valid : 1000000 : 1;
 }
 
-// Whether a pair is one of two particles without springs, and the square of their distance.
+// True if both sides of a pair are particles without springs. Find the square of their distance.
 MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_contacts *contacts, const mspringi_pair *pair,
                                       double *square) {
     const mspring_id p = pair->point, a = contacts->outline.a[pair->edge];
@@ -348,8 +350,8 @@ MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_contacts *contacts, const m
            !mspringi_is_collider_point(contacts, a);
 }
 
-// Find the pairs that are hot, and the nearest one. Of two particles without springs there may be many, so neither
-// roots nor branches are spent on them.
+// Collect the candidates, and find the nearest pair. Pairs of particles without springs may be many, so they take
+// neither roots nor branches.
 static void collect_candidates(mspringi_contacts *contacts) {
     const double most = contacts->thickness + 2.0 * candidate_substeps(contacts) * travel_per_substep(contacts) +
                         4.0 * MSPRINGI_SPEED_MARGIN * (double)contacts->h * contacts->speed;
