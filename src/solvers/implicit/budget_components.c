@@ -1,4 +1,4 @@
-/// Which components there are, and which blocks lie in one of them as a whole.
+/// Components of the energy budget, and blocks that lie in a single one.
 #include <string.h>
 
 #include "solvers/implicit/energy_budget.h"

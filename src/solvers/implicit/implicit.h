@@ -3,7 +3,7 @@
 ///
 /// In the order of a substep:
 ///
-///   predict     positions and velocities without spring forces; gradients there   integrator.c
+///   predict     positions and velocities without spring forces                    integrator.c
 ///   assemble    matrix A and right-hand side b of A d = b, linearised there       assemble.c
 ///   terms       floor, contact, grips, areas and angles in the system             implicit_terms.h
 ///   solve       conjugate gradients with a two-level preconditioner               conjugate_gradients.c
@@ -14,8 +14,8 @@
 ///
 /// implicit_substeps.c runs this, and solves again while the active set of floor, contact and grips changes.
 ///
-/// A spring adds three *factors* to A: the vector pull (square root of its stiffness times its direction) and its
-/// geometric stiffness. Its 2 x 2 block is pull pull' + geometric I.
+/// A spring adds three *factors* to A: a vector `pull` along it, and its geometric stiffness. Its 2 x 2 block is
+/// pull pull' + geometric I. So pull' pull is the remaining stiffness along the spring, with damping.
 ///
 /// Workers share slots in chunks, rows in panels (panels.h), and tiles (team.h). Sums are over these parts first,
 /// so bits do not depend on the number of workers. One worker factors the matrix of the direct solver.

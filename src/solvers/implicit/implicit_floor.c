@@ -1,14 +1,13 @@
-/// Contact in the linear system of an implicit substep.
+/// Floor in the linear system of an implicit substep: an active-set method.
 ///
-/// A particle that would come below the surface is held by a spring across it, and by one along it as long as
-/// friction bears that; both are far stiffer than the network is at the particle, so that the network gives way and
-/// not they. Which particles are held, and which of them slide, is found by solving again: what pulls is let go,
-/// what comes below is held, what needs more than friction bears slides with that. (An active set, as of
-/// Hintermueller, Ito and Kunisch, 2003.) What these springs give way is taken back after the substep by
-/// mspringi_floor_apply_all().
+/// A normal spring holds a particle that would come below the surface. A tangential one holds it within the
+/// friction cone. Both are far stiffer than the network at the particle, so the network gives way. Solving again
+/// finds the active set: contacts that pull are released, new ones are added, and tangential forces beyond the cone
+/// slide. (Hintermueller, Ito and Kunisch, 2003.) mspringi_floor_apply_all() takes back what these springs give way
+/// after the substep.
 ///
-/// A substep in which particles hit the floor is one of implicit Euler, and the next one, too: methods of second
-/// order would take the blow for an acceleration that lasts, and throw the network back by up to half its speed.
+/// A substep with an impact, and the next one, are of implicit Euler. Methods of second order would take the impact
+/// for a lasting acceleration, and throw the network back at up to half its speed.
 #include "solvers/implicit/implicit_terms.h"
 
 #include <math.h>
@@ -136,7 +135,7 @@ uint32_t mspringi_floor_count_intervals(const mspring_network *network, float h)
 
 /* --------------------------------------------------------------------------------------------------- the terms */
 
-// What a contact adds to the matrix, and where it wants the particle to be.
+// Stiffness and target position of a contact in the matrix.
 typedef struct term {
     double xx, xy, yy, to_x, to_y;
 } term;

@@ -1,4 +1,4 @@
-/// The tables of the implicit and the direct solver, which are one but for what solves the linear system.
+/// Solver tables: implicit and direct. They differ in the solution of the linear system.
 #include <math.h>
 
 #include "contact/floor.h"

@@ -1,9 +1,9 @@
-/// Colliders that are in the way of what the energy budget would do to a component.
+/// Colliders stop the shifts of the energy budget.
 ///
-/// Impulses after a substep leave nothing deeper in a collider than it was before (implicit_contact.c). The budget
-/// then shifts components, or has them go back. One that this would press into a collider stays where the substep
-/// has led it, or stops where it was: a body between a heavy one and a wall was pressed through the wall else, some
-/// of the thickness in each substep.
+/// Impulses after a substep leave nothing deeper in a collider than before (implicit_contact.c). Then the budget
+/// shifts components, or moves them back. A component that this would press into a collider stays where the substep
+/// put it, or stops where it was. Otherwise a body between a heavy one and a wall moves through the wall, some of
+/// the thickness in each substep.
 #include "solvers/implicit/implicit_terms.h"
 
 /// Depth that is none, as a share of the thickness: twice that which impulses leave.
