@@ -9,28 +9,28 @@
 #include "base/cpu.h"
 #include "contact/contacts.h"
 
-/// What a look answers for goes beyond the thickness by this share of it, and by the way of so many steps; as a
-/// rule not beyond another thickness.
+/// Reach of a scan beyond the thickness: a share of it, plus the way of so many steps, which is bounded by another
+/// thickness.
 #define LEAST_SHARE 0.15
 #define STEPS_AHEAD 4.0
 
-/// So many times the way of a substep, for rows are made as far as two points can come towards each other in two.
+/// Ways of a substep in the reach at least. Constraints reach as far as two points can approach in two substeps.
 #define SUBSTEPS_AHEAD 8.0
 
-/// Pairs that may touch within so many substeps are looked at in each of them, and found anew after that. Where
-/// bodies are so fast that these would be all within a share of the thickness and more, it is fewer substeps.
+/// Substeps between two collections of candidates. Fewer if bodies are so fast that pairs within a share of the
+/// thickness and more would be candidates.
 #define CANDIDATE_SUBSTEPS 8.0
 #define MIN_CANDIDATE_SUBSTEPS 4.0
 #define CANDIDATE_FRACTION 0.5
 
-/// A list goes so many times as far beyond the thickness as is needed. Where few may touch soon, one in SPARSE of
-/// the outline's points, it goes further, and is made less often.
+/// Reach of a new list, as a multiple of the required reach beyond the thickness. A list with few candidates, one
+/// in SPARSE of the outline's points, reaches farther and lasts longer.
 #define REACH 2.0
 #define SPARSE_REACH 6.0
 #define SPARSE 4u
 
-/// Comparisons of a point and an edge that a step may take for each list: for each point, and for each pair that
-/// there is room for. (The bodies of tests/contact take 20 for a point; a crowd has no other than its pairs.)
+/// Comparisons of points with edges that a step may add for each list: for each point, and for each pair of the
+/// capacity. (The bodies of tests/contact take 20 for a point; a crowd takes those of its pairs.)
 #define WORK_OF_POINT 256
 #define WORK_OF_PAIR 2
 
