@@ -158,7 +158,7 @@ typedef struct mspringi_implicit_constraint {
     uint32_t slots[3];                ///< MSPRING_NONE: not an unknown of the system
     double across[3][2], along[3][2]; ///< Jacobians of the normal and the tangential displacement
     double gap;                       ///< gap at the prediction, less the wanted one, m
-    double spare;                     ///< overlap that does not activate a bouncing constraint, m
+    double spare;                     ///< slack before a bouncing constraint becomes active, m
     double ahead;                     ///< tangential displacement at the prediction, m
     double stiffness, grip;           ///< normal and tangential stiffness, in units of the matrix
     double friction;

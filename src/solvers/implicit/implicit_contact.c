@@ -18,10 +18,10 @@
 #include "contact/contacts.h"
 #include "solvers/implicit/implicit_terms.h"
 
-/// Stiffness of a row, in that of the network at it and its own inertia.
+/// Stiffness of a constraint, in units of the network's stiffness and inertia there.
 #define PENALTY 4.0
 
-/// Times that a substep is solved before rows are only added, and not let go or made to slide.
+/// Solutions of a substep that may release constraints or let them slide. Later ones only add constraints.
 #define FREE_PASSES 12
 
 /// Change of a normal force, as a part of it, that friction is worth another solution for.
@@ -37,10 +37,10 @@
 /// Work of contact, and pull, that may be rounding, as shares of the largest work and push.
 #define GIVEN_SHARE 1e-3
 
-/// Depth of a pair that had no row, as a share of the thickness, for which a substep is taken again in halves.
+/// Depth of a pair without a constraint, as a share of the thickness, that makes a substep repeat in halves.
 #define MISSED_SHARE 0.1
 
-/// Times that all rows are mended.
+/// Most sweeps over all constraints against deep overlaps.
 #define MOST_MENDING_SWEEPS 32
 
 /// Longest move of a constraint in an interval, as a share of the thickness, and most intervals of a substep.
@@ -53,7 +53,7 @@ static mspringi_contacts *pairs_of(const mspring_network *network) {
     return network->contacts && network->contacts->quiet_substeps == 0 ? network->contacts : NULL;
 }
 
-// The rows of the present substep; 0 of those that have none.
+// Number of constraints of the present substep; 0 without contact.
 static uint32_t count_of(const mspring_network *network) {
     const mspringi_contacts *contacts = network->contacts;
     return contacts && contacts->quiet_substeps == 0 ? contacts->constraint_count : 0;
@@ -98,7 +98,8 @@ static double product(double (*shares)[2], double (*vectors)[2]) {
     return sum;
 }
 
-// Where a row would be at the end without springs and contact.
+// Begin with a constraint. It is active if its gap would close at the end of the substep without springs and
+// contact.
 static void begin_constraint(const mspring_network *network, const mspringi_contact_constraint *t, double h,
                              hold *to) {
     const mspringi_contacts *contacts = network->contacts;
@@ -199,7 +200,7 @@ static void predict_constraint(const mspring_network *network, const mspringi_co
     c->grip = stiffness_of(network, c, c->along);
 }
 
-// Add what a row along some shares does to the system.
+// Add the terms of a constraint along some shares to the system.
 static void add_constraint(mspring_network *network, hold *c, double (*shares)[2], double stiffness, double force) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     for (int i = 0; i < 3; ++i) {
@@ -221,7 +222,7 @@ bool mspringi_implicit_constraint_sticks(const hold *c) {
     return c->is_active && c->slip == 0.0 && c->friction > 0.0;
 }
 
-// The factor of the direct solver has no rows: it solves for their forces.
+// The factor of the direct solver excludes constraints: it solves for their forces.
 void mspringi_implicit_contact_add_terms(mspring_network *network, float h) {
     const uint32_t count = count_of(network);
     const mspringi_implicit *n = mspringi_implicit_of(network);
@@ -287,7 +288,7 @@ bool mspringi_implicit_contact_is_active(const mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- the review */
 
-// Where a row came to. Of the direct solver displacement is all of it.
+// Displacement of a constraint at the solution. With the direct solver, displacement has all of it.
 static double end_of(const mspring_network *network, hold *c, double (*shares)[2], float alpha) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const double way = mspringi_implicit_contact_gather(network, c, shares, n->displacement);
@@ -295,7 +296,7 @@ static double end_of(const mspring_network *network, hold *c, double (*shares)[2
                         : way + (double)alpha * mspringi_implicit_contact_gather(network, c, shares, n->direction);
 }
 
-// Look at what a row came to. Returns whether that is other than what was assumed.
+// Update a constraint from the solution. Return true if it differs from the assumption.
 static bool update_constraint(const mspring_network *network, hold *c, float alpha, bool is_free) {
     const double end = c->gap + end_of(network, c, c->across, alpha), before = c->normal, slipped = c->slip;
     const bool was_active = c->is_active;
