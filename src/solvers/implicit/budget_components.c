@@ -73,7 +73,7 @@ static bool find_alone(const mspring_network *network, const mspringi_budget *bu
     return false;
 }
 
-// The account that all particles of a block are in.
+// Component of all particles of a block, or MSPRINGI_SEVERAL_COMPONENTS.
 static uint32_t component_of_block(const mspring_network *network, const mspringi_budget *budget, size_t block) {
     uint32_t account = MSPRINGI_NO_COMPONENT;
     bool any = false;

@@ -165,8 +165,8 @@ static void add_spring(const measuring *all, mspringi_spring_slot spring_slot) {
     a->length += k * (x * x + y * y);
 }
 
-// First place of the springs of a row's block, and how many words of places it has. Returns false if it is in no
-// row.
+// Find the first word of spring slots of a row's block, and their number. False: the block lies in no row with
+// springs.
 static bool find_places(const mspringi_topology *t, size_t block, size_t *word, size_t *words) {
     const bool is_lattice = block >= t->lattice_first && block < (size_t)t->lattice_first + t->lattice_blocks;
     const bool is_chain = block >= t->chain_first && block < (size_t)t->chain_first + t->chain_blocks;

@@ -285,7 +285,7 @@ static mspring_result list_springs(cutting *g, uint32_t first, uint32_t end) {
     return MSPRING_OK;
 }
 
-// One pass of a stable counting sort of joints, by the cell of one of the ends.
+// One round of a stable counting sort of cell edges, by the cell of one end.
 static void sort_joints(const mspringi_cells *cells, const mspringi_cell_edge *from, mspringi_cell_edge *to,
                         uint32_t *first, bool by_other) {
     for (uint32_t i = 0; i < cells->count + 2; ++i)

@@ -485,7 +485,7 @@ static void find_floor_impulse(const mspring_network *network, component *a, con
     a->second_support_slot = a->is_stopped ? a->stop_slot : MSPRING_NONE;
 }
 
-// The account of a contact that has held its particle, and that no pin holds. NULL: none.
+// Component of an active contact's particle. NULL: none, or pinned.
 static component *component_of(const mspring_network *network, const mspringi_floor_contact *contact) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const uint32_t number = budget->of_slot[contact->slot];

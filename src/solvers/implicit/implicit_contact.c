@@ -27,7 +27,7 @@
 /// Change of a normal force, as a part of it, that friction is worth another solution for.
 #define SAME_FORCE 0.1
 
-/// Depth that says nothing, and depth that is mended after the substep, as shares of the thickness.
+/// Rounding of a depth, and the depth left after the substep, as shares of the thickness.
 #define UNSEEN_SHARE 1e-6
 #define MENDED_SHARE 0.02
 

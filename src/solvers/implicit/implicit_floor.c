@@ -17,15 +17,15 @@
 #define PENALTY_DIRECT 1e3
 #define PENALTY_ITERATED 30.0
 
-/// Times that a substep is solved before particles are only held and made to stick, and not let go or made to
-/// slide.
+/// Solutions of a substep that may release contacts or let them slide. Later ones only add contacts or make them
+/// stick.
 #define FREE_PASSES 2
 
 /// Change of a normal force, as a part of it, that friction is worth another solution for.
 #define SAME_FORCE 0.02
 
-/// A substep in which a particle would come deeper than this share of the shortest spring is divided, into so many
-/// pieces at most: turned by more, springs are no longer what they were linearised as, and a blow makes energy.
+/// Depth of a particle, as a share of the shortest spring, that divides a substep into intervals, and most
+/// intervals. Springs that turn by more differ from their linearisation, so an impact adds energy.
 #define DEEPEST_SHARE 0.2
 #define MOST_PIECES 40u
 

@@ -8,8 +8,8 @@
 #include "store/one_way.h"
 #include "store/springs.h"
 
-/// Room for pieces: tiles beyond twice the cells, numbers of the coarse matrix beyond four times those of cells in
-/// one piece each, and springs to pinned particles beyond a quarter of all.
+/// Spare capacity for divided cells: tiles beyond twice the cells; entries of the coarse matrix beyond four times
+/// those of undivided cells; springs to pinned particles beyond a quarter of all.
 #define SPARE_TILES 64u
 #define SPARE_VALUES ((size_t)4096)
 #define SPARE_ANCHORS 1024u

@@ -46,8 +46,8 @@ static wall wall_of(const mspring_network *network, const mspringi_contact_const
                   .deepened = least - (t->gap + way[0] * t->nx + way[1] * t->ny)};
 }
 
-// Stop an account where the substep has led it, if the collider moves, else where it was. Returns whether that is
-// elsewhere than before.
+// Stop a component where the substep put it if the collider moves, else where it was. Return true if its position
+// changes.
 static bool stop_at(mspringi_component_budget *a, bool is_moving) {
     const double share = is_moving ? 1.0 : 0.0;
     if (a->is_stopped && a->share >= share)
