@@ -5,7 +5,7 @@
 /// has made it fast enough to.
 ///
 /// Restitution acts on the normal speed before the substep's forces. An impulse J changes the energy by J times the
-/// mean of the speeds before the forces and after contact, so any later speed would add energy.
+/// mean of the speeds before the forces and after contact. So any later speed would add energy.
 ///
 /// The order of constraints follows from ids and from the pairs alone. Results do not depend on when the list was
 /// made.

@@ -7,8 +7,8 @@
 /// A substep has about forty barriers. If workers share cores, barriers become sleeps, and one worker is faster
 /// (two workers on cores with a load of 10: 2.3 times, 1800x5). After a substep with more sleeps than bearable, one
 /// worker takes the next ones: few at first, then twice as many each time, up to a limit. The bits are the same.
-/// Few at first, because others take a core for a moment now and then (with 64 our ship's two workers were as fast
-/// as one, not 1.3 to 1.7 times as fast).
+/// Few at first, because others take a core for a moment now and then. (With 64 our ship's two workers were as fast
+/// as one; with 4 they are 1.3 to 1.7 times as fast.)
 #define BEARABLE_SLEEPS 6
 #define SHORTEST_PATIENCE 4
 #define LONGEST_PATIENCE 1024
