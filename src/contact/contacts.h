@@ -58,8 +58,7 @@ typedef struct mspringi_outline {
 typedef struct mspringi_pair {
     mspring_id point;
     uint32_t edge;
-    uint16_t tested_bits,
-        excluded_bits; ///< one bit for each edge at a's end and at b's: tested already; never touched by the point
+    uint16_t tested_bits, excluded_bits; ///< a bit for each edge at both ends: tested; never touched
 } mspringi_pair;
 
 /// Pair that may touch before the next scan, with its nodes.
@@ -162,11 +161,10 @@ typedef struct mspringi_implicit_constraint {
     double ahead;                     ///< tangential displacement at the prediction, m
     double stiffness, grip;           ///< normal and tangential stiffness, in units of the matrix
     double friction;
-    double slip;           ///< sign of sliding, 1 or -1; 0: sticking
-    double normal, braked; ///< normal and tangential force, in units of the right-hand side
-    double answer[2], left[2],
-        search[2];  ///< conjugate gradients of the direct solver: solution, residual, search direction
-    bool is_active; ///< in the active set
+    double slip;                          ///< sign of sliding, 1 or -1; 0: sticking
+    double normal, braked;                ///< normal and tangential force, in units of the right-hand side
+    double answer[2], left[2], search[2]; ///< of the direct solver: solution, residual, direction
+    bool is_active;                       ///< in the active set
 } mspringi_implicit_constraint;
 
 /// Pose of a collider, world coordinates.
@@ -214,14 +212,13 @@ typedef struct mspringi_contact_location {
 /// Ongoing contact, from its begin event to its end event: of a particle with another body or a collider, or of a
 /// collider's corners with a body.
 typedef struct mspringi_ongoing_contact {
-    mspring_id point;         ///< MSPRING_NONE for a collider's corners
-    mspring_id other;         ///< lowest particle of the other body; MSPRING_NONE for a collider
-    mspring_id collider;      ///< id, or MSPRING_NONE
-    bool is_new;              ///< began in this step
-    double largest;           ///< largest impulse of a constraint in an interval of this step, N s
-    double impulse, friction; ///< sums of normal and tangential impulses in this step, N s
-    mspringi_contact_location now,
-        last; ///< location of the largest impulse in this step; in the last step with one
+    mspring_id point;                    ///< MSPRING_NONE for a collider's corners
+    mspring_id other;                    ///< lowest particle of the other body; MSPRING_NONE for a collider
+    mspring_id collider;                 ///< id, or MSPRING_NONE
+    bool is_new;                         ///< began in this step
+    double largest;                      ///< largest impulse of a constraint in an interval of this step, N s
+    double impulse, friction;            ///< sums of normal and tangential impulses in this step, N s
+    mspringi_contact_location now, last; ///< of the largest impulse; of the last step with one
 } mspringi_ongoing_contact;
 
 /// Ongoing contacts by point, collider and other, and a ring of unread events.
@@ -229,8 +226,7 @@ typedef struct mspringi_contact_events {
     mspringi_ongoing_contact *list; ///< [capacity]
     mspring_contact_event *ring;    ///< [capacity]
     uint32_t capacity, count, first, waiting;
-    uint32_t dropped,
-        max_dropped; ///< constraints without room in the list: in this interval; most in an interval of the step
+    uint32_t dropped, max_dropped; ///< constraints without room in the interval; most in one of the step
     uint64_t lost;
     bool is_known; ///< false: contacts at rest get no begin event, as they began before
 } mspringi_contact_events;

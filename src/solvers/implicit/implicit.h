@@ -96,8 +96,7 @@ typedef struct mspringi_implicit {
     uint32_t solo_backoff;              ///< length of the present run of them
     float *sums;                        ///< [chunks]
     mspringi_tile_motion *tile_motions; ///< [tiles]
-    uint8_t
-        *is_coupled; ///< [loose and spare slots] 1 with added springs, so that A is not diagonal there; NULL: none
+    uint8_t *is_coupled;      ///< [loose and spare slots] 1 with added springs: not diagonal in A; NULL: none
     double irregular_product; ///< share of irregular springs and contacts in p . A p
     bool uses_euler;          ///< the present substep is of implicit Euler: an impact, or a history of no use
     bool restarts_with_euler; ///< repeat it as one of implicit Euler
