@@ -1,4 +1,4 @@
-/// Piles: islands that sleep on each other. Whatever wakes one of them wakes all.
+/// Islands that sleep on each other are a pile: whatever wakes one of them wakes all.
 ///
 /// An island may be moved from below another before anything is looked at again: by the host, by a view, or as its
 /// own springs broke. So what rests on what is found when islands fall asleep. It follows from where they lie, so a
@@ -20,7 +20,7 @@ static bool sleeps(const mspring_network *network, const mspringi_contacts *cont
            mspringi_slot_is_asleep(network, network->topology.slot_of_particle[node]);
 }
 
-// True if the ring of a slot contains another one.
+// Whether the ring of a slot leads to another one.
 static bool is_in_ring(const mspringi_sleep *s, uint32_t slot, uint32_t other) {
     uint32_t at = slot;
     do
@@ -29,7 +29,7 @@ static bool is_in_ring(const mspringi_sleep *s, uint32_t slot, uint32_t other) {
     return at == other;
 }
 
-// Join two rings: two members swap their successors.
+// Two rings that swap what follows two of their members are one.
 static void join(const mspringi_sleep *s, uint32_t a, uint32_t b) {
     const uint32_t behind = s->beside[a];
     if (is_in_ring(s, a, b))

@@ -140,9 +140,9 @@ void mspringi_budget_undo(mspring_network *network);
 
 /* walls.c */
 
-/// Stop components that their shift in a substep of h would press deeper into a collider.
+/// After a substep of h: stop the components that their shift would press deeper into a collider than they were.
 void mspringi_walls_stop_shifted(const mspring_network *network, double h);
-/// Stop components that moved back into one. Return true if one must be placed again.
+/// Stop those that have gone back into one. Returns whether any has to be placed again.
 bool mspringi_walls_stop_back(const mspring_network *network, double h);
 
 /* budget_sums.c */

@@ -119,9 +119,8 @@ static double energy_of(const mspringi_grip *grip, double x, double y) {
     return k * length <= most ? 0.5 * k * (length * length) : most * (length - 0.5 * most / k);
 }
 
-// Work of a grip over the displacement (x, y) of its particle: of the damper, and of the spring's lost energy. If
-// the target moves, the displacement counts from the middle of the target's way. Force times displacement counts if
-// larger.
+// What a grip has given by the way of its particle, (x, y): by the damper, and what the spring has lost. Where the
+// target moves, that is measured from the middle of its way, or as force times way if that is more.
 static double work_of(const mspringi_budget_sums *all, const mspringi_grip *grip, uint32_t slot, double x,
                       double y) {
     const mspring_network *network = all->network;

@@ -1,9 +1,9 @@
-/// Colliders stop the shifts of the energy budget.
+/// Colliders that are in the way of what the energy budget would do to a component.
 ///
-/// Impulses after a substep leave nothing deeper in a collider than before (implicit_contact.c). Then the budget
-/// shifts components, or moves them back. A component that this would press into a collider stays where the substep
-/// put it, or stops where it was. Otherwise a body between a heavy one and a wall moves through the wall, some of
-/// the thickness in each substep.
+/// Impulses after a substep leave nothing deeper in a collider than it was before (implicit_contact.c). The budget
+/// then shifts components, or has them go back. One that this would press into a collider stays where the substep
+/// has led it, or stops where it was: a body between a heavy one and a wall was pressed through the wall else, some
+/// of the thickness in each substep.
 #include "solvers/implicit/implicit_terms.h"
 
 /// Depth that is none, as a share of the thickness: twice that which impulses leave.
@@ -46,8 +46,8 @@ static wall wall_of(const mspring_network *network, const mspringi_contact_const
                   .deepened = least - (t->gap + way[0] * t->nx + way[1] * t->ny)};
 }
 
-// Stop a component where the substep put it if the collider moves, else where it was. Return true if its position
-// changes.
+// Stop an account where the substep has led it, if the collider moves, else where it was. Returns whether that is
+// elsewhere than before.
 static bool stop_at(mspringi_component_budget *a, bool is_moving) {
     const double share = is_moving ? 1.0 : 0.0;
     if (a->is_stopped && a->share >= share)
