@@ -1,7 +1,7 @@
-/// Where colliders are in the course of a step, and what they get in it.
+/// Motion of colliders in a step, and the impulses on them.
 ///
-/// A collider moves and turns at an even speed in a step. In each substep its points move straight from where they
-/// are before it to where they are after it, as particles do, so rows treat them alike.
+/// A collider moves and turns at constant speed in a step. In a substep its points move straight, as particles do,
+/// so constraints treat both alike.
 #include "contact/contacts.h"
 
 #include "base/rotation.h"

@@ -1,13 +1,14 @@
-/// Which points and edges touch in a substep, each with a row for its impulse. Their order follows from ids and
-/// from which pairs there are.
+/// Contact constraints: one for each outline point that touches, or may touch, an edge in an interval.
 ///
-/// A row is a point and the nearest place on an edge. The gap at the end of the substep, gap + h v, is not to be
-/// negative; what overlaps already is pushed apart slowly, by a velocity. A pair has a row if it may touch by the
-/// velocities that it has, or by those that the sweeps give it: what a third body throws at another is looked at
-/// again.
+/// A constraint keeps the gap at the end of the interval, gap + h v, from becoming negative. An overlap is pushed
+/// out at a bounded speed. A pair gets a constraint if its present velocities can close the gap, or if the solver
+/// has made it fast enough to.
 ///
-/// An impulse J changes the energy by J times the mean of the speeds before the substep's forces and after contact.
-/// So restitution is of the speed before the forces: with the one after them contact would make energy.
+/// Restitution acts on the normal speed before the substep's forces. An impulse J changes the energy by J times the
+/// mean of the speeds before the forces and after contact. So any later speed would add energy.
+///
+/// The order of constraints follows from ids and from the pairs alone. Results do not depend on when the list was
+/// made.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -16,31 +17,30 @@
 #include "contact/contacts.h"
 #include "store/network.h"
 
-/// Part of an overlap that is pushed apart in a substep, if that is not faster than the host allows. (Pieces of an
-/// implicit one push as fast. When each pushed by this part, what was taken in 32 pieces was pushed 32 times as
-/// fast: a stiff body in a pinch had 1.9 times its energy in a step.)
+/// Share of an overlap that is pushed out in a substep, within the host's limit on speed. Intervals of an implicit
+/// substep push at the same speed. (With this share in each of 32 intervals, a stiff body in a pinch had 1.9 times
+/// its energy in a step.)
 #define PUSHOUT_FRACTION 0.2
 
-/// Nothing bounces more slowly, m/s.
+/// Slowest bounce, m/s.
 #define RESTITUTION_THRESHOLD 0.2
 
-/// Further than this many thicknesses nothing may move in a piece as the sweeps have left it.
+/// Longest move of a fast node in an interval, in thicknesses.
 #define MAX_MOVE 1.25
 
-/// Half of how much nearer an implicit substep may bring two bodies than their speeds do, as a share of the
-/// thickness.
+/// Half of the extra reach of an implicit substep, as a share of the thickness.
 #define EXTRA_APPROACH 0.1
 
-/// Candidates are sieved so many at a time, and at rest within this share of the thickness beyond the border.
+/// Candidates in a batch of the filter, and its margin beyond the reach, as a share of the thickness.
 #define FILTER_BATCH 256u
 #define FILTER_MARGIN 0.05
 
-/// Edges at a corner that are remembered by bits, at each end.
+/// Edges at each end of a pair's edge with a bit of their own.
 #define REMEMBERED 8
 
 /* ------------------------------------------------------------------------------------------------------- nodes */
 
-// A point of a collider is where it will be whatever touches it.
+// Load a collider point. Contact does not move it.
 static void load_collider_point(const mspringi_contacts *contacts, uint32_t i) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const uint32_t point = k->particles[i] - contacts->particles;
@@ -77,7 +77,7 @@ void mspringi_contact_begin_substep(const mspring_network *network, mspringi_con
 
 /* --------------------------------------------------------------------------------------------------------- rows */
 
-// Whether a point never touches an edge beside the pair's: number of the edges at an end.
+// True if the point never touches another edge at this end of the pair's edge. The pair caches the answer.
 static bool is_excluded(const mspring_network *network, mspringi_contacts *contacts, mspringi_pair *pair,
                         uint32_t end, uint32_t number, mspring_id other) {
     const uint32_t bit = 1u << (end * REMEMBERED + number);
@@ -94,8 +94,7 @@ static bool is_excluded(const mspring_network *network, mspringi_contacts *conta
     return apart;
 }
 
-// Whether a point that is nearest to a corner of its edge is another edge's: of one that lies nearer, or of the
-// first.
+// True if another edge at the same corner takes the contact: a nearer one, else the one with the lower number.
 static bool belongs_to_other_edge(const mspring_network *network, mspringi_contacts *contacts, mspringi_pair *pair,
                                   uint32_t end) {
     const mspringi_outline *o = &contacts->outline;
@@ -117,7 +116,7 @@ static bool belongs_to_other_edge(const mspring_network *network, mspringi_conta
     return false;
 }
 
-// Friction on the ends of the edge, by a unit along (-ny, nx) on the point, and the couple that it needs.
+// Add friction. It acts on the surface, not on the edge's centre line; the couple conserves angular momentum.
 static void add_friction(const mspringi_contacts *contacts, mspringi_contact_constraint *t) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const double ex = k->x[t->b] - k->x[t->a], ey = k->y[t->b] - k->y[t->a], square = ex * ex + ey * ey;
@@ -142,8 +141,7 @@ static void add_friction(const mspringi_contacts *contacts, mspringi_contact_con
         t->surface_speed = mspringi_collider_surface_speed(contacts, t);
 }
 
-// What gravity does to the speed across in an implicit substep: free flight ends slower than it bounces, or it
-// would end higher than it began.
+// Normal speed from gravity in an implicit interval, m/s. A bounce that ignored it would rise above its start.
 static double gravity_normal_speed(const mspringi_contacts *contacts, const mspringi_contact_constraint *t) {
     const double *inverse_mass = contacts->nodes.inverse_mass;
     const double share = (inverse_mass[t->p] > 0.0 ? 1.0 : 0.0) - (inverse_mass[t->a] > 0.0 ? t->bary_a : 0.0) -
@@ -151,7 +149,7 @@ static double gravity_normal_speed(const mspringi_contacts *contacts, const mspr
     return share * (t->nx * contacts->fall_x + t->ny * contacts->fall_y);
 }
 
-// Say which speed across a row is to have at least, when it touches.
+// Set the target speed: restitution or push-out, whichever is larger.
 static void set_target_speed(const mspringi_contacts *contacts, mspringi_contact_constraint *t, double restitution,
                              double h) {
     t->target_speed = -t->gap / h;
@@ -176,7 +174,7 @@ static double square_of_speed(const mspringi_contact_nodes *k, uint32_t p, uint3
     return x * x + y * y;
 }
 
-// The collider that one of a pair is of; NULL if neither is.
+// Collider of the pair's point or edge, or NULL.
 static const mspringi_collider *collider_of_pair(const mspringi_contacts *contacts, const mspringi_pair *pair) {
     const mspring_id a = contacts->outline.a[pair->edge];
     return mspringi_is_collider_point(contacts, pair->point) ? mspringi_collider_of(contacts, pair->point)
@@ -184,13 +182,13 @@ static const mspringi_collider *collider_of_pair(const mspringi_contacts *contac
                                                              : NULL;
 }
 
-// The resistance of a row of a point and its nearest place on an edge, 1/kg.
+// Effective inverse mass of the point and the closest point of the edge, 1/kg.
 static double resistance_of(const mspringi_contact_nodes *k, const mspringi_candidate *c, double share) {
     const double of_a = 1.0 - share;
     return k->inverse_mass[c->p] + of_a * of_a * k->inverse_mass[c->a] + share * share * k->inverse_mass[c->b];
 }
 
-// The larger one of those towards the ends of an edge.
+// Largest squared speed of the point relative to an end of the edge.
 static double max_square_speed(const mspringi_contact_nodes *k, uint32_t p, uint32_t a, uint32_t b) {
     const double of_a = square_of_speed(k, p, a), of_b = square_of_speed(k, p, b);
     return of_a > of_b ? of_a : of_b;
@@ -204,7 +202,7 @@ static mspringi_contact_material material_of(const mspringi_contacts *contacts, 
                     : (mspringi_contact_material){contacts->def.friction, contacts->def.restitution};
 }
 
-// The row of a draft in a piece of h seconds.
+// Make the constraint of a pending one in an interval of h seconds.
 static void make_constraint(const mspringi_contacts *contacts, const mspringi_pending_constraint *pending,
                             mspringi_contact_constraint *t, double h) {
     const mspringi_candidate *c = &contacts->candidates[pending->candidate];
@@ -232,11 +230,11 @@ static void make_constraint(const mspringi_contacts *contacts, const mspringi_pe
         add_friction(contacts, t);
 }
 
-/// Colours of rows; the last one is also that of all that have none of their own.
+/// Colours of pending constraints. The last one holds the rest, which may share particles.
 #define COLOURS 32u
 
-// Rows of one colour share no particle that they could move, so none waits for the one before it. Each has the
-// first colour that its particles are not in yet. *end: behind those of each colour.
+// Colour the pending constraints greedily. Those of one colour share no movable particle, so that a processor can
+// overlap them. end[c] is the end of colour c.
 static void colour_pending(mspringi_contacts *contacts, uint32_t *end) {
     const double *inverse_mass = contacts->nodes.inverse_mass;
     uint32_t *used = contacts->colours, most = 0;
@@ -260,7 +258,7 @@ static void colour_pending(mspringi_contacts *contacts, uint32_t *end) {
         end[number] += end[number - 1];
 }
 
-// Make the rows of all drafts, in the order of their colours, and of ids within each.
+// Make all pending constraints, by colour and then by id.
 static void flush_pending(mspringi_contacts *contacts, double h) {
     uint32_t end[COLOURS] = {0};
     if (contacts->pending_count == 1) {
@@ -278,8 +276,8 @@ static void flush_pending(mspringi_contacts *contacts, double h) {
     contacts->pending_count = 0;
 }
 
-// Whether a point follows the last draft's along an outline. Only such rows are put into another order. (Impulses
-// reach fewer rows in a sweep by colours: heaps of fragments crept for a minute instead of 20 s.)
+// True if the point is next to the last pending one on an outline. Only such runs are reordered: with all
+// reordered, impulses spread so slowly that heaps of fragments crept for a minute instead of 20 s.
 static bool is_beside_last(const mspringi_contacts *contacts, mspring_id point) {
     const mspringi_outline *o = &contacts->outline;
     const mspring_id last =
@@ -290,8 +288,7 @@ static bool is_beside_last(const mspringi_contacts *contacts, mspring_id point) 
     return is_next;
 }
 
-// Draft the row of a pair in a piece of h seconds, if it may touch there, by its own speed or by one that it may be
-// given. *fastest: of all that have rows.
+// Queue a constraint if the pair may touch within h, at its own speed or at `given`. Raise *fastest.
 static void queue_constraint(const mspring_network *network, mspringi_contacts *contacts, uint32_t candidate,
                              double h, double given, double *fastest) {
     const mspringi_contact_nodes *k = &contacts->nodes;
@@ -332,8 +329,8 @@ static void queue_constraint(const mspring_network *network, mspringi_contacts *
     *fastest = speed > *fastest ? speed : *fastest;
 }
 
-// Whether two particles without springs are too far from each other for a row. No root: a way is at most half the
-// sum of any length and its own square through that length.
+// True if two particles are too far apart for a constraint. No root: a way w is at most (L + w^2 / L) / 2 for any
+// length L.
 MSPRINGI_ALWAYS_INLINE bool are_far(const mspringi_contact_nodes *k, const mspringi_candidate *c, double still,
                                     double per_square) {
     const double dx = k->x[c->p] - k->x[c->a], dy = k->y[c->p] - k->y[c->a];
@@ -346,7 +343,7 @@ static uint32_t filter_end(const mspringi_contacts *contacts, uint32_t first) {
     return contacts->candidate_count - first < FILTER_BATCH ? contacts->candidate_count : first + FILTER_BATCH;
 }
 
-// The candidates from one on that may have rows, branch-free: most have none.
+// Collect candidates that may need a constraint. Branch-free, since most need none.
 static uint32_t filter_candidates(const mspringi_contacts *contacts, uint32_t first, double h, double given,
                                   uint32_t *kept) {
     const double length = 2.0 * FILTER_MARGIN * contacts->thickness, per_square = 2.0 * h * h / length;
@@ -365,7 +362,7 @@ static bool any_fast(const mspringi_contacts *contacts, uint32_t p, uint32_t a, 
     return thrown[p] | thrown[a] | thrown[b];
 }
 
-// The candidates from one on that are thrown and have not been looked at.
+// Collect fast candidates without a constraint.
 static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, uint32_t *kept) {
     uint32_t count = 0;
     for (uint32_t i = first, end = filter_end(contacts, first); i < end; ++i) {
@@ -376,7 +373,7 @@ static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, u
     return count;
 }
 
-// Draft the rows of candidates that may have some; of those that are thrown alone, which have none yet.
+// Queue constraints of candidates: of all, or only of fast ones without a constraint.
 static void queue_constraints(const mspring_network *network, mspringi_contacts *contacts, double h, double given,
                               bool only_fast, double *fastest) {
     for (uint32_t first = 0; first < contacts->candidate_count; first += FILTER_BATCH) {

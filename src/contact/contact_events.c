@@ -1,11 +1,12 @@
-/// Contacts that begin and end, for the host to read.
+/// Begin and end events of contacts.
 ///
-/// A contact is what a particle has with another body or a collider, or what the corners of a collider have with a
-/// body, wherever on it. So a point that slides from edge to edge goes on with the same contact. It begins with an
-/// impulse. It ends after a step without one, once they are apart by more than what counts as resting on each
-/// other.
+/// One contact joins a particle to another body or a collider, or a collider's corners to a body. A point that
+/// slides from edge to edge stays in the same contact. It begins with an impulse. It ends after a step without one,
+/// once the two no longer rest on each other.
 ///
-/// Contacts are kept in the order of their ids. What an attempt at a step has found becomes final after the step.
+/// An impulse comes from mspringi_contact_count_impulses (contact_solver.c), or from
+/// mspringi_implicit_contact_count_impulses, after each accepted interval. Contacts are ordered by ids. Results of
+/// an attempt become final, and events are queued, after the step.
 #include "contact/contacts.h"
 
 #include <string.h>

@@ -1,18 +1,19 @@
-/// A substep of what touches: rows are solved, and what they throw gets rows, too. A substep in which something
-/// would move further than the thickness is taken in pieces.
+/// Contact in a substep: make constraints, find impulses, add constraints of pairs that these made fast.
+///
+/// A substep is divided into intervals in which no node moves further than the thickness.
 #include <math.h>
 #include <string.h>
 
 #include "contact/contacts.h"
 #include "store/network.h"
 
-/// A substep is cut into pieces in which nothing moves further than the thickness; into so many at most.
+/// Most intervals of a substep.
 #define MAX_INTERVALS 64
 
-/// So many times at most, in all pieces of a substep.
+/// Most subdivisions of the remaining intervals in a substep.
 #define MAX_CUTS 6
 
-/// Rows of what is thrown are added, and all rows swept again, so many times at most.
+/// Most rounds of added constraints and further sweeps in an interval.
 #define MAX_ROUNDS 8
 
 static void begin(const mspring_network *network, const mspringi_contact_nodes *k) {
@@ -24,8 +25,8 @@ static void begin(const mspring_network *network, const mspringi_contact_nodes *
     }
 }
 
-// Mark the particles whose velocities the sweeps have changed by so much that pairs beyond the border may have come
-// into reach. Returns whether there are any.
+// Mark the particles whose velocities contact changed so much that pairs beyond the near misses may come into
+// reach. Return true if there are any.
 static bool mark_fast(const mspringi_contacts *contacts, double h) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const double least = 0.25 * MSPRINGI_NEAR_MISS_FRACTION * contacts->thickness / h;
@@ -39,7 +40,7 @@ static bool mark_fast(const mspringi_contacts *contacts, double h) {
     return any;
 }
 
-// Solve a piece. False: it is too long for what the sweeps have made of it.
+// Solve an interval. False: its constraints fail, or its moves are too long.
 static bool solve(const mspring_network *network, mspringi_contacts *contacts, double h) {
     mspringi_floor_support_begin(contacts, h);
     for (uint32_t round = 0;; ++round) {
@@ -78,8 +79,8 @@ static void restore_velocities(const mspringi_contact_nodes *k) {
     memcpy(k->v, k->v_before, k->particle_count * sizeof *k->v);
 }
 
-// Go along for a piece of h seconds. What contact adds to the move is counted apart. The next piece bounces by what
-// this one has left.
+// Move the nodes for an interval of h seconds. The displacement by contact is kept apart. The next interval bounces
+// at the velocities that this one leaves.
 static void advance(const mspring_network *network, const mspringi_contact_nodes *k, double h, bool is_last) {
     for (uint32_t i = 0; i < k->particle_count && !is_last; ++i) {
         k->v_start[i].x += k->v[i].x - k->v_before[i].x;
@@ -96,7 +97,7 @@ static void advance(const mspring_network *network, const mspringi_contact_nodes
     }
 }
 
-// Returns the largest speed that contact has given beside the outline's mean, m/s.
+// Store velocities and displacements. Return the largest speed from contact relative to the outline's mean, m/s.
 static double put_back(const mspring_network *network, const mspringi_contacts *contacts) {
     const mspringi_state *s = &network->state;
     const mspringi_contact_nodes *k = &contacts->nodes;
@@ -115,7 +116,7 @@ static double put_back(const mspring_network *network, const mspringi_contacts *
     return sqrt(most);
 }
 
-// Take pieces of even length, or more of them where that is too long.
+// Solve intervals of equal length. Divide the remaining ones if one fails.
 static void solve_in_intervals(const mspring_network *network, mspringi_contacts *contacts, double h,
                                uint32_t pieces) {
     const mspringi_contact_nodes *k = &contacts->nodes;
@@ -140,8 +141,8 @@ static void solve_in_intervals(const mspring_network *network, mspringi_contacts
     }
 }
 
-// What contact has made faster than the last look allows for: the list is to be renewed. If pairs may be missing
-// from it in this substep already, the step is repeated with a look for such speeds.
+// Refresh the list if contact made nodes faster than the last scan allows. If pairs may be missing in this substep
+// already, repeat the step, with this speed in its scan.
 static void count_thrown(mspringi_contacts *contacts, double speed) {
     const double spare = MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt;
     if (speed > MSPRINGI_SPEED_MARGIN * contacts->speed + spare)

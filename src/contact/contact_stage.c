@@ -1,8 +1,8 @@
-/// The stage of contact between bodies: when to look, and which islands sleep and wake together.
+/// Stage of contact between bodies: when to scan, and islands that wake or fall asleep together.
 ///
-/// Steps and substeps in which nothing can touch are taken as if there were no contact. How many these are is
-/// bounded by the speeds at the last look. If forces have made points so fast that some could have touched, the
-/// step is taken back and repeated with a look after every substep.
+/// Quiet steps and substeps, in which nothing can touch, take the path without contact. The speeds at the last scan
+/// bound their number. If forces made points so fast that some could have touched, the step is repeated with a scan
+/// after every substep.
 #include "contact/contacts.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/// Contact between bodies as the host defines it.
+/// Definition of contact between bodies, set by the host, and memory for it.
 #include "contact/contacts.h"
 
 #include <math.h>
@@ -57,7 +57,7 @@ static mspring_result check_numbers(const mspring_contact_def *def, mspringi_mes
     return MSPRING_OK;
 }
 
-// What stands for defaults is filled in.
+// Fill in the defaults.
 static mspring_result check_def(const mspring_network *network, mspring_contact_def *def,
                                 mspringi_message *message) {
     const double shortest = network->shortest;
@@ -376,8 +376,7 @@ static mspring_result make(mspring_network *network, const mspring_contact_def *
     return result;
 }
 
-// What is there goes on with another definition, or with room for more points of colliders. On error nothing has
-// changed.
+// Apply another definition, or room for more collider points, to existing contact. On error nothing has changed.
 static mspring_result replace(mspring_network *network, const mspring_contact_def *def, uint32_t points) {
     mspringi_contacts *had = network->contacts;
     mspringi_contacts *made;
@@ -425,7 +424,7 @@ static mspring_result remove_contact(mspring_network *network) {
     return MSPRING_OK;
 }
 
-// Whether two differ by no more than how many pairs they have room for: that moves nothing.
+// True if two definitions differ in their capacity for pairs at most, which moves nothing.
 static bool are_alike(const mspring_contact_def *a, const mspring_contact_def *b) {
     return a->flags == b->flags && a->thickness == b->thickness && a->friction == b->friction &&
            a->restitution == b->restitution && a->push_speed == b->push_speed && a->sweeps == b->sweeps;

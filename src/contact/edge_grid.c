@@ -1,8 +1,8 @@
-/// Edges by cells, and those in the cells around a point.
+/// Broad phase: outline edges in a hashed grid, and search around a point.
 ///
-/// Edges lie in cells by their middles. The cells of a row lie in buckets one behind the other, from one on that a
-/// hash gives to the row, so it does not matter how far apart bodies are. A search reads what lies in a few runs of
-/// memory, and nothing else. Edges that are much longer than the others are in no cell.
+/// An edge lies in the cell of its midpoint. The cells of a grid row take consecutive buckets, from one that a hash
+/// of the row gives. So distances between bodies do not matter, and a search reads a few runs of memory. Much
+/// longer edges than the mean lie in no cell.
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +14,7 @@
 /// Cells in the reach of a search. More of them cover its circle better, and need more runs.
 #define CELLS_IN_REACH 2.0
 
-/// What rounding may do to the reach.
+/// Rounding of the reach, as a share of it.
 #define ROUNDING 1e-6
 
 /// Edges that a search passes in the time that a comparison takes.
@@ -131,7 +131,7 @@ void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *
 /* ----------------------------------------------------------------------------------------------------- searching
  */
 
-/// What a search compares edges with.
+/// Arguments of a search.
 typedef struct search {
     double x, y, square;
     uint32_t point;

@@ -1,4 +1,4 @@
-/// The floor as the host defines it.
+/// Definition of the floor, set by the host; its impulses, and the stage that guards substeps without it.
 #include "contact/floor.h"
 
 #include <math.h>
@@ -240,7 +240,7 @@ static bool reserve_field(mspringi_field *field, size_t slots, mspringi_memory *
     return field->x != NULL;
 }
 
-// What lies by strip and by slot. False: there is no memory.
+// Reserve the arrays by strip and by slot. False: no memory.
 static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     floor->slot_count = mspringi_slot_count(network);
@@ -334,7 +334,7 @@ static bool are_same(const float *a, const float *b, uint32_t count) {
     return count == 0 || (!a && !b) || (a && b && memcmp(a, b, count * sizeof *a) == 0);
 }
 
-// Whether a floor is the one that there is.
+// True if a floor equals the present one.
 static bool is_same(const mspringi_floor *floor, const mspring_floor_def *b) {
     if (!floor || !b)
         return !floor && !b;

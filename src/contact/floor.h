@@ -1,14 +1,14 @@
 /// @file floor.h
-/// What particles cannot get through: half-planes and a field of heights.
+/// Floor: half-planes and a field of heights that particles cannot enter.
 ///
-///   floor.c      the definition, given by the host
-///   floor_surface.c    where the surface is, and which way it faces
-///   floor_clearance.c     how far it is from strips and from the whole network
-///   floor_bounce.c     what it does to a particle in a substep of symplectic Euler, and to one without springs
-///   floor_explicit.c   the same of all particles of such substeps
-///   floor_implicit.c    what it does to particles with springs after an implicit substep; see
-///   solvers/implicit/implicit_floor.c silt.c       what silt above the heights does to a particle;
-///   kernels/silt_kernel.h has blocks of them
+///   floor.c            definition, set by the host; memory
+///   floor_surface.c    surface: distances, straight parts, first hit
+///   floor_clearance.c  distance from strips and from the whole network
+///   floor_bounce.c     bounce of one particle
+///   floor_explicit.c   floor in explicit substeps, and particles without springs
+///   floor_implicit.c   floor after an implicit substep; within it: solvers/implicit/implicit_floor.c
+///   floor_support.c    floor below bodies in contact
+///   silt.c             silt above the heights; kernels/silt_kernel.h for whole blocks
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FLOOR_H
@@ -22,10 +22,10 @@ typedef struct mspringi_half_plane {
     double nx, ny; ///< of length 1
 } mspringi_half_plane;
 
-/// Enough to come from MSPRING_MAX_HEIGHTS heights to one.
+/// Levels of the maximum pyramid over MSPRING_MAX_HEIGHTS heights.
 #define MSPRINGI_HEIGHT_LEVELS 27
 
-/// Straight lines from (x + i spacing, y + heights[i]) to the next; level beyond both ends.
+/// Field of heights: straight lines from (x + i spacing, y + heights[i]) to the next; level beyond both ends.
 typedef struct mspringi_heights {
     double x, y, spacing; ///< world coordinates
     double local_x, local_y;
@@ -39,32 +39,32 @@ typedef struct mspringi_heights {
                                             ///< highest[0] is heights
 } mspringi_heights;
 
-/// What is clear of the surface, for the slots of a strip.
+/// Clearance of a strip's slots.
 typedef struct mspringi_clearance {
-    mspringi_bounds clear; ///< no surface is in it, and no silt
-    float bare;            ///< no surface is in a box that begins here, instead of at clear.min_y
-    bool is_far;           ///< the strip cannot come out of it in the substeps that this was made for
+    mspringi_bounds clear; ///< box without surface and silt
+    float bare;            ///< lower bound of a box without surface, instead of clear.min_y
+    bool is_far;           ///< the strip stays in it for the substeps of the last survey
 } mspringi_clearance;
 
-/// A particle and a straight surface that it touches, or may touch, in an implicit substep.
+/// Floor contact of an implicit substep: a particle and a straight surface that it touches, or may touch.
 typedef struct mspringi_floor_contact {
     uint32_t slot;
-    bool is_active;   ///< it is held
-    double slip;      ///< it slides this way along the surface, 1 or -1; 0: it sticks
-    double nx, ny;    ///< across the surface
+    bool is_active;   ///< in the active set
+    double slip;      ///< sign of sliding along the surface, 1 or -1; 0: sticking
+    double nx, ny;    ///< normal
     double friction;  ///< of it
-    double gap;       ///< distance where it is predicted, m
-    double ahead;     ///< how far it is predicted to come along the surface, m
-    double stiffness; ///< of what holds it, in the units of the matrix
-    double normal;    ///< what holds it across the surface, in the units of the right-hand side
-    double along;     ///< what brakes it along the surface, likewise
+    double gap;       ///< distance at the prediction, m
+    double ahead;     ///< tangential displacement at the prediction, m
+    double stiffness; ///< of the contact's spring, in units of the matrix
+    double normal;    ///< normal force, in units of the right-hand side
+    double along;     ///< tangential force, likewise
 } mspringi_floor_contact;
 
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
-    double given[MSPRING_MAX_PLANES][4];         ///< the same, as the host gave them
-    float *plane_frictions, *plane_restitutions; ///< [plane_count] of these; NULL: all have the next two
-    mspringi_line lines[MSPRING_MAX_PLANES];     ///< the same, local
+    double given[MSPRING_MAX_PLANES][4];         ///< definition of the host
+    float *plane_frictions, *plane_restitutions; ///< [plane_count]; NULL: the next two hold for all
+    mspringi_line lines[MSPRING_MAX_PLANES];     ///< in local coordinates
     uint32_t plane_count;
     mspringi_heights heights;
     double friction, restitution;
@@ -72,84 +72,81 @@ typedef struct mspringi_floor {
     mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
     mspringi_state before;  ///< [slot_count] before a substep: velocities, or all of particles without springs
     mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
-    mspringi_field previous_impulse; ///< [slot_count] in the step before it, as long as one is made
+    mspringi_field previous_impulse; ///< [slot_count] in the step before, while a step is taken
     size_t slot_count;
-    double reach;           ///< twice as far, m, as anything may come in the substeps of the last survey
-    bool is_near;           ///< some strip may come near in these, or there was no survey yet
-    bool is_missed;         ///< forces have driven a strip further than the survey had thought
-    bool is_second_try;     ///< so this time none is left out
-    mspringi_safe_box room; ///< that all of the network was in
-    mspringi_bounds clear;  ///< where no surface is, around the network as it was before an implicit substep
+    double reach;                     ///< twice the longest way in the substeps of the last survey, m
+    bool is_near;                     ///< a strip may reach the surface in them, or there was no survey yet
+    bool is_missed;                   ///< forces moved a strip farther than the survey assumed: repeat the step
+    bool is_second_try;               ///< repeated step: no strip is left out
+    mspringi_safe_box room;           ///< safe box of the whole network
+    mspringi_bounds clear;            ///< box without surface around the network before an implicit substep
     mspringi_floor_contact *contacts; ///< of an implicit substep
     uint32_t contact_count, contact_capacity;
-    bool is_in_coarse; ///< some are in the coarse matrix
+    bool is_in_coarse; ///< contacts are in the coarse matrix
     bool has_impulse;  ///< impulse is not all zero
-    bool had_impulse;  ///< former is not all zero
+    bool had_impulse;  ///< previous_impulse is not all zero
 } mspringi_floor;
 
-/// A particle that has moved from its start in a substep, local coordinates.
+/// Particle with its start and its end of a substep, local coordinates.
 typedef struct mspringi_moved_particle {
     double start_x, start_y, x, y, vx, vy;
 } mspringi_moved_particle;
 
 void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
 
-/// Make the floor of another network, which has the same particles in another layout; the two share the definition.
-/// NULL if there is no memory.
+/// Make the floor of another layout of the same particles. Both share the definition. NULL: no memory.
 mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *from);
 
 /// Free a floor that shares its definition with another. NULL is allowed.
 void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory);
 
-/// Go back to the impulses of the step before the one that was begun last. NULL is allowed.
+/// Restore the impulses of the previous step. NULL is allowed.
 void mspringi_floor_roll_back(mspringi_floor *floor);
-/// Forget what pushed the particle in a slot: it is another one from now on.
+/// Clear the impulses of a slot, because another particle takes it.
 void mspringi_floor_clear_slot(const mspringi_floor *floor, uint32_t slot);
 
 /* floor_surface.c */
 
-/// Have lines and heights follow the local origin.
+/// Move lines and heights to the local origin.
 void mspringi_floor_set_origin(mspringi_floor *floor, double origin_x, double origin_y);
 
-/// Distances below which a particle at (x, y) touches a surface: some last places of its coordinates.
+/// Distance below which a particle at (x, y) touches a surface: rounding of its coordinates.
 double mspringi_floor_slop(double x, double y);
 
 /// The straight parts of a field of heights are numbered by their left ends; the level ones beyond its ends are -1
 /// and count - 1.
 mspringi_line mspringi_heights_line(const mspringi_heights *heights, int64_t part);
 
-/// The part that is below x.
+/// Part below x.
 int64_t mspringi_heights_segment_below(const mspringi_heights *heights, double x);
 
-/// The part that a particle on its way from (start_x, start_y) to (x, y) meets or, if it meets none, the one that
-/// is below it at the end.
+/// First part that a particle meets from (start_x, start_y) to (x, y); if it meets none, the part below the end.
 int64_t mspringi_heights_first_hit(const mspringi_heights *heights, double start_x, double start_y, double x,
                                    double y);
 
-/// Height of the highest knot between two x, and of the next ones beyond them.
+/// Largest height between two x, their next knots included.
 double mspringi_heights_highest(const mspringi_heights *heights, double low, double high);
 
-/// Smallest distance from any surface, < 0 where particles cannot be. (That of a point above the heights is the one
-/// from the line below it.)
+/// Smallest signed distance from a surface, < 0 inside. Above the heights, the line below (x, y) counts.
 double mspringi_floor_distance(const mspringi_floor *floor, double x, double y);
 
 /* floor_clearance.c */
 
-/// Look how far every strip is from the surface, and which of them stay clear of it for so many seconds.
+/// Survey: find the clearance of each strip, and the strips that stay clear for so many seconds.
 void mspringi_floor_update_clearances(mspring_network *network, double seconds);
 
-/// Whether a block of a strip that may come near the surface may do so itself, in the same substeps.
+/// True if a block of a strip near the surface may reach it in the same substeps.
 bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block);
 
-/// Whether nothing can come near the surface in a step of so many seconds. The clearances of the last survey then
-/// say so of every strip, too.
+/// True if no particle can reach the surface in a step of so many seconds. Then the clearances of the last survey
+/// hold for each strip, too.
 bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds);
 
-/// After that step, of substeps of h: whether nothing did, by bounds of what it has led to.
+/// True if no particle did reach it in that step of substeps of h, by bounds from the outcome.
 bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen);
 
-/// The same of other surfaces, whose lines are local, and a room of theirs; way is what a particle may have gone at
-/// the highest speed.
+/// The same test for other surfaces in local coordinates, with their own safe box. way: longest way at the largest
+/// speed, m.
 bool mspringi_safe_box_suffices(const mspring_network *network, const mspringi_floor *surfaces,
                                 mspringi_safe_box *room, double seconds);
 bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_safe_box *room, double way,
@@ -157,16 +154,16 @@ bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_s
 
 /* floor_bounce.c */
 
-/// Have a point that is inside the surface put onto it. Returns whether it was.
+/// Project a point inside the floor onto the surface. Return true if it was inside.
 bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *y);
 
-/// Let the surface act on a particle that a substep of symplectic Euler of h seconds moves from (x, y) at (vx, vy),
-/// and came there at (from_vx, from_vy). Returns false if it does nothing; else it ends at p->x + h p->vx.
+/// Bounce a particle that a substep of symplectic Euler of h seconds moves from (x, y) at (vx, vy), and that came
+/// there at (from_vx, from_vy). Return false if nothing happens; else it ends at p->x + h p->vx.
 bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx, double from_vy,
                            mspringi_bouncing_particle *p);
 
-/// Let a particle without springs fly past the surface for p->left seconds. Returns whether that did anything;
-/// (*vx, *vy) is the velocity of how->skew ago.
+/// Move a free particle past the surface for p->left seconds. Return true if it bounced. (*vx, *vy) is the velocity
+/// of how->skew ago.
 bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const mspringi_bounce_params *how,
                                        mspringi_free_particle *p, double *vx, double *vy);
 
@@ -176,51 +173,51 @@ static inline bool mspringi_has_silt(const mspringi_heights *heights) {
     return heights->count > 0 && heights->silt_depth > 0.0 && heights->silt_rate > 0.0;
 }
 
-/// The share of its velocity that silt takes from a particle at (x, y), if there is any, in so many seconds.
+/// Share of the velocity that silt removes from a particle at (x, y) in so many seconds.
 double mspringi_silt_damping(const mspringi_heights *heights, double x, double y, double seconds);
 
-/// Let it act on a particle after a substep of h seconds.
+/// Brake a particle in silt after a substep of h seconds.
 void mspringi_silt_brake(const mspring_network *network, size_t slot, double h);
 
 /* floor_explicit.c */
 
-/// Whether a strip may come near the surface in the substeps that the last survey was for.
+/// True if a strip may reach the surface in the substeps of the last survey.
 bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip);
 
-/// Before substeps of symplectic Euler: keep the velocities of whole blocks. Those of a strip that stays clear are
-/// left out, here and in what follows.
+/// Save the velocities of whole blocks before explicit substeps. Strips that stay clear are left out, here and
+/// below.
 void mspringi_floor_save_velocities(const mspring_network *network, const mspringi_strip *strip,
                                     const mspringi_span *spans, uint32_t span_count);
 
-/// Let the surface act on the particles of whole blocks that a substep of h seconds has moved: on those with
-/// springs, or on those without.
+/// Apply the floor to the particles of whole blocks after a substep of h seconds: to those with springs, or to
+/// those without.
 void mspringi_floor_apply(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
                           uint32_t span_count, float h);
 void mspringi_floor_apply_loose(const mspring_network *network, const mspringi_strip *strip,
                                 const mspringi_span *span, float h);
 
-/// Look whether the strips that were left out have stayed clear.
+/// Check that the strips left out have stayed clear.
 void mspringi_floor_check_clear(const mspring_network *network);
 
-/// Whether no spring pulls at a particle, in a network with another solver: it is in the loose row, or all its
-/// springs broke. (A clamped one knows of those in the loose row alone.)
+/// True if no spring acts on a particle, with a solver other than the explicit one: a loose particle, or one with
+/// broken springs only. (With the clamped solver, loose ones only.)
 bool mspringi_floor_is_isolated(const mspring_network *network, size_t slot);
 
-/// Of a network with another solver: keep the particles without springs as they are, and take so many substeps of
-/// theirs alone from there, in force fields as these: exact parabolas, for nothing else moves them.
+/// Save the isolated particles, then take `count` substeps of theirs alone in these force fields: exact parabolas.
+/// For solvers other than the explicit one.
 void mspringi_floor_save_isolated(const mspring_network *network);
 void mspringi_floor_step_isolated(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
 /* floor_implicit.c */
 
-/// Let the surface act on a body that an implicit substep of h seconds has moved.
+/// Apply the surface to a particle that an implicit substep of h seconds has moved.
 void mspringi_floor_collide(const mspringi_floor *floor, mspringi_moved_particle *body, double h);
 
-/// Keep the positions before an implicit substep of h, and let the surface act after it on particles with springs.
+/// Save the positions before an implicit substep of h, and apply the floor to particles with springs after it.
 void mspringi_floor_save_positions(mspring_network *network, float h);
 void mspringi_floor_apply_all(mspring_network *network, float h);
 
-/// Let silt act on them after that.
+/// Brake particles in silt after that.
 void mspringi_floor_apply_silt(const mspring_network *network, float h);
 
 #endif

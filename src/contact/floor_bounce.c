@@ -1,9 +1,9 @@
-/// What the surface does to one particle in a substep, in all cases.
+/// Bounce of one particle on the floor, in a substep of symplectic Euler or in free flight.
 #include "contact/floor.h"
 
 #include <math.h>
 
-/// Times that all surfaces are gone through for one particle: corners need more than one.
+/// Most passes over all surfaces for one particle. Corners need more than one.
 #define ROUNDS 4
 
 static double distance_from(const mspringi_line *line, double x, double y) {
@@ -49,7 +49,7 @@ bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *
     return was_inside;
 }
 
-// Whether a way leads to where particles may be, through no surface.
+// True if a way ends outside, through no part of the heights.
 static bool is_free_way(const mspringi_floor *floor, double from_x, double from_y, double x, double y) {
     const double slop = mspringi_floor_slop(x, y);
     if (!(mspringi_floor_distance(floor, x, y) >= -slop))
@@ -77,7 +77,7 @@ static double bounce_at_heights(const mspringi_floor *floor, double h, double al
     return acts > 0.0 ? acts : bounce_at(&below, h, allowed, p);
 }
 
-// Go through all surfaces once. Returns whether any did anything.
+// Apply all surfaces once. Return true if one acted.
 static bool bounce_at_surfaces(const mspringi_floor *floor, double h, double allowed,
                                mspringi_bouncing_particle *p) {
     double any = 0.0;
@@ -156,7 +156,7 @@ static hit find_first_hit(const mspringi_floor *floor, double slop, const msprin
     return first;
 }
 
-// What a particle is lifted by its speed pays for.
+// Pay for a lift with kinetic energy.
 static bool push_out_free_particle(const mspringi_floor *floor, mspringi_free_particle *p) {
     const double x = p->x, y = p->y, square = p->wx * p->wx + p->wy * p->wy;
     if (!mspringi_floor_put_outside(floor, &p->x, &p->y))
@@ -168,9 +168,9 @@ static bool push_out_free_particle(const mspringi_floor *floor, mspringi_free_pa
     return true;
 }
 
-// What of its velocity at the end a particle may keep: what lies on a surface has the speed of the end of the
-// substep at once, and may meet another surface by it. (Blocks leave such ones: free_kernel.h.) 0: it would be
-// higher than its energy allows.
+// Share of its end velocity that a particle may keep. One on a surface has the velocity of the end of the substep
+// at once, and may meet another surface with it. (Kernels leave such ones: free_kernel.h.) 0: it would rise above
+// its energy.
 static double kept_of(const mspringi_free_particle *start, const mspringi_free_particle *end, double since,
                       double x, double y) {
     const double vx = end->wx + since * end->ax, vy = end->wy + since * end->ay, square = vx * vx + vy * vy;
@@ -181,9 +181,8 @@ static double kept_of(const mspringi_free_particle *start, const mspringi_free_p
     return !(gained > 0.0) ? 1.0 : square > gained ? sqrt(1.0 - gained / square) : 0.0;
 }
 
-// What has lain on a part of the heights has no speed across it but what half a substep presses it on by, w = h a
-// / 2. Where it comes off the part, that must not be thrown back by the next one. (3 % of a particle's energy in
-// each, at restitution 1 and 0.25 s.)
+// Remove the normal velocity of a particle that lay on a part of the heights: that of half a substep, w = h a / 2.
+// Else the next part would throw it back. (3 % of a particle's energy in each, at restitution 1 and 0.25 s.)
 static bool leave_segment(const mspringi_floor *floor, const mspringi_bounce_params *how, double slop,
                           mspringi_free_particle *p) {
     if (floor->heights.count == 0 || !(how->skew > 0.0))
@@ -203,7 +202,7 @@ static bool leave_segment(const mspringi_floor *floor, const mspringi_bounce_par
     return lay;
 }
 
-// What has slid off the surface that it lay on has the velocity of half a substep ago again, across the way, too.
+// A particle that slid off its surface gets back the velocity of half a substep ago, across the way, too.
 static void leave_surface(const mspringi_floor *floor, const mspringi_bounce_params *how,
                           const mspringi_free_particle *start, const mspringi_free_particle *end, double *vx,
                           double *vy) {

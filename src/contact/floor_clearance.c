@@ -1,5 +1,4 @@
-/// How far the surface is: from every strip, in substeps that are taken one by one, or from the whole network, in a
-/// step that is taken at once.
+/// Distance of the floor from each strip, for single substeps, or from the whole network, for a step in passes.
 #include "contact/floor.h"
 
 #include <math.h>
@@ -11,7 +10,7 @@ typedef struct box {
     double min_x, max_x, min_y, max_y;
 } box;
 
-/// What slots cover, and how fast the fastest is, by lane.
+/// Bounding box and largest velocity of slots, by lane.
 typedef struct extent {
     float min_x[MSPRINGI_WIDTH], max_x[MSPRINGI_WIDTH], min_y[MSPRINGI_WIDTH], max_y[MSPRINGI_WIDTH];
     float fast[MSPRINGI_WIDTH];
@@ -127,7 +126,7 @@ static mspringi_clearance look_around(const mspringi_floor *floor, const box *st
                                 is_far};
 }
 
-// What forces from outside accelerate any particle by at most, along x or y, m/s^2.
+// Largest acceleration by forces from outside, along x or y, m/s^2.
 static double hardest_push(const mspring_network *network) {
     const mspringi_field *force = &network->sleep.in_force;
     const float *inverse_mass = mspringi_active_inverse_mass(network);
@@ -220,7 +219,7 @@ static mspringi_safe_box find_box(const mspring_network *network, const mspringi
         .origin_y = network->origin_y};
 }
 
-// Whether all particles are in the box. place: no coordinate is larger.
+// True if all particles are in the box. place: bound on coordinates.
 static bool is_in_box(const mspring_network *network, const mspringi_safe_box *room, float coordinate) {
     const mspringi_state *s = &network->state;
     const size_t slots = mspringi_used_slots(network);

@@ -1,5 +1,4 @@
-/// The surface and the particles that substeps of symplectic Euler move, or that nothing but forces from outside
-/// does.
+/// Floor in explicit substeps, and particles without springs beside any solver.
 #include "contact/floor.h"
 
 #include <math.h>
@@ -70,7 +69,8 @@ static void fly_slot(const mspring_network *network, const mspringi_floor_args *
 /// Least that global damping may leave of a velocity in a substep, for what forces did to be seen in it.
 static const double least_decay = 1e-12;
 
-// What forces have done in the substep is seen by the velocities of before, unless damping left none of them.
+// Arguments of the floor kernel. Velocities before the forces are the saved ones, unless damping leaves nothing of
+// them.
 static mspringi_floor_args args_of(const mspring_network *network, const mspringi_bounds *clear, float h) {
     const mspringi_floor *floor = network->floor;
     const double decay = (double)mspringi_decay(network->settings.global_damping, h);

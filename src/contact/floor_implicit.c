@@ -1,4 +1,4 @@
-/// What the surface does after an implicit substep to particles with springs.
+/// Floor after an implicit substep: projection of particles with springs.
 ///
 /// A particle that touches the surface (after Moreau, 1988, and Stewart and Trinkle, 1996: contact as a condition
 /// on the velocity at the end of a substep) does not move into it, and what friction takes from its velocity along
@@ -15,10 +15,10 @@
 
 #include "sleep/sleep.h"
 
-/// Times that all surfaces are gone through for one particle: corners need more than one.
+/// Most passes over all surfaces for one particle. Corners need more than one.
 #define ROUNDS 4
 
-// Let one straight surface act on a body. Returns whether it did anything.
+// Apply one straight surface to a particle. Return true if it acted.
 static bool touch(const mspringi_line *line, mspringi_moved_particle *b, double h, double slop) {
     const double distance = line->nx * b->x + line->ny * b->y + line->offset;
     if (!(distance < slop))
@@ -90,7 +90,7 @@ static void collide_slot(const mspring_network *network, size_t slot, double h) 
     s->vy[slot] = after_y;
 }
 
-/// What is done to a particle after a substep of h seconds.
+/// Action of the floor on a particle after a substep of h seconds.
 typedef void (*act_fn)(const mspring_network *network, size_t slot, double h);
 
 static void act_on_block(const mspring_network *network, size_t first, const mspringi_bounds *clear, double h,
@@ -143,7 +143,7 @@ void mspringi_floor_save_positions(mspring_network *network, float h) {
     const size_t size = mspringi_used_slots(network) * sizeof *floor->start.x;
     memcpy(floor->start.x, network->state.x, size);
     memcpy(floor->start.y, network->state.y, size);
-    // What is clear around all strips is clear around the network.
+    // The box that is clear of all strips' surfaces is clear around the network.
     mspringi_floor_update_clearances(network, (double)h);
     floor->clear = (mspringi_bounds){INFINITY, -INFINITY, -INFINITY, INFINITY};
     for (uint32_t i = 0; i < network->topology.strip_count; ++i) {

@@ -1,9 +1,9 @@
-/// The floor among the contacts: what bodies press into it.
+/// Floor supports: constraints of particles that other bodies may press into the floor.
 ///
-/// The floor has had its turn when contact begins, so all lies outside of it. Impulses of contact may press a
-/// particle into it again, and what lies between the floor and a heavy body would be squeezed, for each would undo
-/// what the other did. So the sweeps have a row for each particle that is near the surface: its velocity may not
-/// carry it farther than there is room. What the row gives is the floor's impulse.
+/// All particles lie outside the floor when contact begins, but impulses of contact may press them into it. Floor
+/// and contact in turn would undo each other, and squeeze a particle between the floor and a heavy body. So the
+/// sweeps visit a constraint for each particle near the surface. It bounds the velocity into the surface by the
+/// room left. Its impulse counts as the floor's.
 #include <math.h>
 
 #include "contact/contacts.h"

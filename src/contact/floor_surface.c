@@ -1,4 +1,4 @@
-/// Where the surface is.
+/// Surface of the floor: distances, straight parts of the heights, first hit of a moving particle.
 #include "contact/floor.h"
 
 #include <math.h>
@@ -7,7 +7,7 @@
 /// one that could take more.
 #define MOST_LOOKS 4096
 
-/// What a way meets that meets nothing.
+/// Knot number of a way that meets no knot.
 #define NO_KNOT ((int64_t)-1)
 
 /* ---------------------------------------------------------------------------------------------------- distances */
@@ -78,8 +78,8 @@ static bool is_below(const passage *w, int64_t knot, double y) {
     return w->start_y + share * w->along_y < y - w->slop;
 }
 
-// Whether the way comes below any of 2^level knots may be; where it is above the highest of them at both ends, it
-// is above each: each operation of is_below keeps the order of the knots, rounded, too.
+// True if the way may come below one of 2^level knots. False if it is above the highest of them at both ends: then
+// it is above each, since is_below is monotonic in the knots, after rounding, too.
 static bool may_meet(const passage *w, int64_t first, uint32_t level) {
     const mspringi_heights *h = w->heights;
     const double highest = h->local_y + (double)h->highest[level][first >> level];

@@ -1,47 +1,46 @@
-/// Impulses between what touches in a piece of a substep, one row after the other. Rows that follow each other
-/// mostly share no particle, so a processor takes several at once.
+/// Projected Gauss-Seidel: impulses of the contact constraints of an interval, one constraint after the other.
+/// Neighbours in the order mostly share no particle, so a processor overlaps them.
 ///
-/// Sums of impulses are clamped, so a later sweep may take back what an earlier one gave (Catto 2005). Friction
-/// acts along the surface at a distance from the edge, so it turns the edge, too: else angular momentum would be
-/// lost.
+/// Accumulated impulses are clamped, so a later sweep may take back impulses of an earlier one (Catto 2005).
+/// Friction acts on the surface, at a distance from the edge. Its couple on the edge conserves angular momentum.
 ///
-/// A heavy body presses a light one against another as hard as it takes, which a few sweeps may not come to. So
-/// rows that would get deeper are swept on until none does. Where bodies lie on each other there are none.
+/// A heavy body that presses a light one against another needs more sweeps. Constraints that would get deeper are
+/// swept until none does. Bodies at rest on each other have none.
 ///
-/// Rows that bounce may give energy together: one throws a point at another, which it was moving away from. Then
-/// all of them bounce less.
+/// Several bounces together may add energy, because one throws a point at another edge. Then all of them bounce
+/// less.
 #include "base/cpu.h"
 #include "contact/contacts.h"
 
-/// An overlap of this share of the thickness is given. Beyond it, and in colliders, which do not give way, nothing
-/// may get deeper faster than by a share of the thickness in a substep.
+/// Overlap that bodies may keep, as a share of the thickness. Deeper constraints, and all of colliders, may close
+/// at this speed at most, in thicknesses per substep.
 #define GIVEN_SHARE 0.05
 #define GIVEN_SPEED 1e-3
 
-/// So many sweeps at most, fewer of many rows: each row may be looked at so often in the mean; and of rows of
-/// colliders alone, at last.
+/// Limits on sweeps of penetrating constraints: most sweeps, least sweeps, visits of constraints, and last sweeps
+/// of colliders alone.
 #define MOST_GIVEN_SWEEPS 256
 #define LEAST_GIVEN_SWEEPS 16
 #define MOST_LOOKS 16384
 #define MOST_COLLIDER_SWEEPS 64
 
-/// Bounces that give energy are that much lower, and the last time there are none. A smaller share of the work is
-/// rounding.
+/// Factor on bounces that add energy, and rounds until there are none. A smaller share of work is rounding.
 #define BOUNCE_SHARE 0.5
 #define MOST_BOUNCES 3
 #define SEEN_SHARE 1e-9
 
-/// A piece is too long if a row would still end deeper than this share of the thickness.
+/// Depth at the end of a constraint that makes the interval too long, as a share of the thickness.
 #define MOST_SHARE 0.1
 
 /* --------------------------------------------------------------------------------------------------- one row */
 
-// Whether a row that gives nothing has nothing to give.
+// True if a constraint without an impulse needs none.
 MSPRINGI_ALWAYS_INLINE bool is_idle(const mspringi_contact_constraint *t, double speed) {
     return t->normal_impulse == 0.0 && speed >= t->clear_speed;
 }
 
-// Give the point an impulse (x, y), and the edge the opposite one, with a couple (by x, y of what it turns by).
+// Apply an impulse (x, y) to the point and the opposite one to the edge, with a couple (turn_x, turn_y) on its
+// ends.
 MSPRINGI_ALWAYS_INLINE void apply_impulse(const mspringi_contact_nodes *k, const mspringi_contact_constraint *t,
                                           double x, double y, double turn_x, double turn_y) {
     const double inverse_mass_p = k->inverse_mass[t->p], inverse_mass_a = k->inverse_mass[t->a],
@@ -54,7 +53,7 @@ MSPRINGI_ALWAYS_INLINE void apply_impulse(const mspringi_contact_nodes *k, const
     k->v[t->b].y -= inverse_mass_b * (t->bary_b * y - turn_y);
 }
 
-// Returns the impulse that it gives.
+// Accumulate the normal impulse. Return the change.
 MSPRINGI_ALWAYS_INLINE double add_normal_impulse(mspringi_contact_constraint *t, double speed) {
     const double sum = t->normal_impulse + (t->target_speed - speed) * t->normal_mass,
                  across = sum > 0.0 ? sum : 0.0;
@@ -71,7 +70,7 @@ static void push_apart(const mspringi_contact_nodes *k, mspringi_contact_constra
     apply_impulse(k, t, by * t->nx, by * t->ny, 0.0, 0.0);
 }
 
-// How fast a point slides along an edge.
+// Relative tangential speed of the surfaces, m/s.
 static double tangent_speed(const mspringi_contact_constraint *t, const mspringi_velocity *v) {
     const double x = v[t->p].x - t->bary_a * v[t->a].x - t->bary_b * v[t->b].x;
     const double y = v[t->p].y - t->bary_a * v[t->a].y - t->bary_b * v[t->b].y;
@@ -79,7 +78,8 @@ static double tangent_speed(const mspringi_contact_constraint *t, const mspringi
            t->surface_speed;
 }
 
-// Push apart and rub. What the push does to the speed along is known before it is done, so both are given at once.
+// Apply normal and tangential impulse together. couple_response tells the effect of the normal one on the
+// tangential speed in advance.
 MSPRINGI_ALWAYS_INLINE void solve_constraint(const mspringi_contact_nodes *k, mspringi_contact_constraint *t) {
     const mspringi_velocity p = k->v[t->p], a = k->v[t->a], b = k->v[t->b];
     const double x = p.x - t->bary_a * a.x - t->bary_b * b.x, y = p.y - t->bary_a * a.y - t->bary_b * b.y;
@@ -101,9 +101,9 @@ MSPRINGI_ALWAYS_INLINE void solve_constraint(const mspringi_contact_nodes *k, ms
     apply_impulse(k, t, by * t->nx - rub * t->ny, by * t->ny + rub * t->nx, rub * t->couple_y, -rub * t->couple_x);
 }
 
-/// What rows may still do in a piece when they have been swept.
+/// Bounds on constraints after the sweeps of an interval.
 typedef struct penetration {
-    double h, speed; ///< s; m/s that a row may close at where it is too deep
+    double h, speed; ///< interval, s; closing speed of a too deep constraint, m/s
     double deepest;  ///< m
 } penetration;
 
@@ -111,7 +111,7 @@ static penetration penetration_limit(const mspringi_contacts *contacts, double h
     return (penetration){h, GIVEN_SPEED * contacts->thickness / (double)contacts->h, share * contacts->thickness};
 }
 
-// Whether a row would end too deep, and deeper than it begins.
+// True if a constraint would end too deep, and deeper than it begins.
 MSPRINGI_ALWAYS_INLINE bool is_penetrating(const mspringi_contacts *contacts, const mspringi_contact_constraint *t,
                                            const penetration *most) {
     const double speed = mspringi_normal_speed(t, contacts->nodes.v),
@@ -119,7 +119,7 @@ MSPRINGI_ALWAYS_INLINE bool is_penetrating(const mspringi_contacts *contacts, co
     return end < (t->gap < 0.0 ? t->gap : 0.0) && end < -most->deepest;
 }
 
-// Returns whether any row gave way.
+// Return true if any constraint penetrated.
 static bool sweep_penetrating(const mspringi_contacts *contacts, double h, bool of_colliders) {
     const penetration of_bodies = penetration_limit(contacts, h, GIVEN_SHARE),
                       of_others = penetration_limit(contacts, h, 0.0);
@@ -136,7 +136,7 @@ static bool sweep_penetrating(const mspringi_contacts *contacts, double h, bool 
     return any;
 }
 
-// Sweep what gives way until nothing does. False: it takes too long.
+// Sweep penetrating constraints until there are none. False: too many sweeps.
 static bool resolve_penetration(const mspringi_contacts *contacts, double h) {
     const uint32_t by_looks = LEAST_GIVEN_SWEEPS + MOST_LOOKS / (contacts->constraint_count + 1);
     const uint32_t most = by_looks < MOST_GIVEN_SWEEPS ? by_looks : MOST_GIVEN_SWEEPS;
@@ -159,8 +159,8 @@ static void sweep_all(const mspringi_contacts *contacts, uint32_t sweeps) {
     }
 }
 
-// Whether rows, some of which bounce, have given energy: twice the work of their impulses is by the sum of the
-// speeds before the substep's forces and now. What is pushed out of an overlap may be given some.
+// True if bouncing constraints added energy. Twice the work of an impulse is its product with the sum of the speeds
+// before the substep's forces and now. Push-out of an overlap is left out.
 static bool gained_energy(const mspringi_contacts *contacts) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     double work = 0.0, size = 0.0;

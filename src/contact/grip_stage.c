@@ -63,7 +63,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
     return base;
 }
 
-// What the surface takes of the pull that a grip has moved a particle by.
+// Remove the part of a grip's displacement that the surface stops.
 static void collide(const mspring_network *network, uint32_t slot, mspringi_moved_particle *body, double h) {
     mspringi_floor *floor = network->floor;
     const double vx = body->vx, vy = body->vy, mass = 1.0 / (double)network->inverse_mass[slot];
@@ -224,7 +224,7 @@ static void apply_grips(mspring_network *network, mspringi_grips_of_particle *ho
     mspringi_set_y(s, slot, body.y);
 }
 
-// All that hold the particle of one, from that one on; none if an earlier one holds it, too.
+// Collect all grips on one particle. Empty unless `first` is the first of them, so each particle is visited once.
 static void collect_grips(mspring_network *network, uint32_t first, mspringi_grips_of_particle *hold) {
     mspringi_grips *grips = &network->grips;
     hold->count = 0;
@@ -255,7 +255,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     }
 }
 
-// What slept when the step began may have woken in it.
+// Islands asleep at the beginning of the step may have woken since.
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
     return !network->grips.could_act && any_active(network);

@@ -1,4 +1,4 @@
-/// Grips as the host defines them.
+/// Definition of grips, set by the host, and their law.
 #include "contact/grips.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 /// @file grips.h
-/// Particles that the host holds.
+/// Grips: springs and dampers from a particle to a moving target of the host.
 ///
 ///   grips.c      the definition, given by the host; the law
 ///   grip_stage.c    the stage; what a grip does after a substep of symplectic Euler
@@ -13,28 +13,28 @@
 
 #include "store/network.h"
 
-/// What a grip pulls at: a place that moves, local coordinates.
+/// Target of a grip, local coordinates.
 typedef struct mspringi_grip_target {
     double x, y, vx, vy;
 } mspringi_grip_target;
 
-/// Where the target is once so much of the step has passed.
+/// Find the target after a share of the step.
 mspringi_grip_target mspringi_grip_target_at(const mspring_network *network, const mspringi_grip *grip,
                                              double share);
 
-/// Bound a force by what the grip can. Returns whether it was more.
+/// Clamp a force to the limit of the grip. Return true if it was larger.
 bool mspringi_grip_bound(const mspringi_grip *grip, double *force_x, double *force_y);
 
-/// Whether a grip holds a particle that can be moved now. If so, *slot is where it is.
+/// True if the grip holds a movable particle. Then *slot is its slot.
 bool mspringi_grip_is_active(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot);
 
-/// Make room for all grips that there may be, unless it is there.
+/// Reserve all grips once.
 mspring_result mspringi_grips_reserve(mspring_network *network);
-/// There is no grip, and none has been.
+/// Reset to a network that never had a grip.
 void mspringi_grips_clear(mspringi_grips *grips);
 /// Remove the grips of a particle that is removed.
 void mspringi_grips_forget(mspring_network *network, mspring_id particle);
-/// The next step begins where the targets are.
+/// Move the grips to their targets at the end of a step.
 void mspringi_grips_finish_step(mspring_network *network);
 
 #endif

@@ -1,4 +1,4 @@
-/// Which springs and particles are the outline.
+/// Outline: live springs with a free side, and its update after edits.
 ///
 /// A live spring is inside if a triangle of live springs lies on each side of it; all others are edges. That is
 /// right for holes, concave corners, ropes and trusses alike. Sides are those of the shape that the network had
@@ -371,7 +371,7 @@ static void find_bodies(const mspring_network *network, uint32_t *body) {
         body[p] = mspringi_union_find_root(body, p);
 }
 
-// What edits have changed of the springs that are edges.
+// Update the edges after edits of springs.
 static void judge_anew(const mspring_network *network, mspringi_contacts *contacts) {
     mspringi_outline *o = &contacts->outline;
     const mspringi_edits *edits = &network->edits;

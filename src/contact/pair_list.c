@@ -1,35 +1,36 @@
-/// Which points are near which edges, and for how many substeps none of them can touch.
+/// Verlet list of pairs: points near edges. From it follow the candidates, and the substeps in which nothing can
+/// touch.
 ///
-/// All motion is that beside the mean of the outline: what flies along together is at rest. How many substeps are
-/// quiet follows from positions and velocities alone, not from when the list was made.
+/// All motion is relative to the mean of the outline. The number of quiet substeps follows from positions and
+/// velocities alone, not from when the list was made.
 #include <math.h>
 #include <string.h>
 
 #include "base/cpu.h"
 #include "contact/contacts.h"
 
-/// What a look answers for goes beyond the thickness by this share of it, and by the way of so many steps; as a
-/// rule not beyond another thickness.
+/// Reach of a scan beyond the thickness: a share of it, plus the way of so many steps, which is bounded by another
+/// thickness.
 #define LEAST_SHARE 0.15
 #define STEPS_AHEAD 4.0
 
-/// So many times the way of a substep, for rows are made as far as two points can come towards each other in two.
+/// Ways of a substep in the reach at least. Constraints reach as far as two points can approach in two substeps.
 #define SUBSTEPS_AHEAD 8.0
 
-/// Pairs that may touch within so many substeps are looked at in each of them, and found anew after that. Where
-/// bodies are so fast that these would be all within a share of the thickness and more, it is fewer substeps.
+/// Substeps between two collections of candidates. Fewer if bodies are so fast that pairs within a share of the
+/// thickness and more would be candidates.
 #define CANDIDATE_SUBSTEPS 8.0
 #define MIN_CANDIDATE_SUBSTEPS 4.0
 #define CANDIDATE_FRACTION 0.5
 
-/// A list goes so many times as far beyond the thickness as is needed. Where few may touch soon, one in SPARSE of
-/// the outline's points, it goes further, and is made less often.
+/// Reach of a new list, as a multiple of the required reach beyond the thickness. A list with few candidates, one
+/// in SPARSE of the outline's points, reaches farther and lasts longer.
 #define REACH 2.0
 #define SPARSE_REACH 6.0
 #define SPARSE 4u
 
-/// Comparisons of a point and an edge that a step may take for each list: for each point, and for each pair that
-/// there is room for. (The bodies of tests/contact take 20 for a point; a crowd has no other than its pairs.)
+/// Comparisons of points with edges that a step may add for each list: for each point, and for each pair of the
+/// capacity. (The bodies of tests/contact take 20 for a point; a crowd takes those of its pairs.)
 #define WORK_OF_POINT 256
 #define WORK_OF_PAIR 2
 
@@ -244,7 +245,8 @@ static void activate(mspringi_contact_nodes *active, mspring_id p) {
     active->particles[active->count++] = p;
 }
 
-// Nodes below an id, of hot pairs, and their neighbours on the outline: a corner looks at the edges beside it.
+// Activate the nodes of candidates below an id, and their neighbours on the outline: corners compare incident
+// edges.
 static void activate_below(mspringi_contacts *contacts, mspring_id end) {
     mspringi_contact_nodes *active = &contacts->nodes;
     const mspringi_outline *o = &contacts->outline;
@@ -282,7 +284,7 @@ static void activate_all(mspringi_contacts *contacts) {
     }
 }
 
-// How far a look must answer for.
+// Distance up to which the list must be complete, m.
 static double required_reach(const mspringi_contacts *contacts) {
     const double thickness = contacts->thickness, substeps = SUBSTEPS_AHEAD * (double)contacts->h * contacts->speed;
     const double ahead = LEAST_SHARE * thickness + STEPS_AHEAD * contacts->dt * contacts->speed;
@@ -290,7 +292,7 @@ static double required_reach(const mspringi_contacts *contacts) {
     return thickness + (usual > substeps ? usual : substeps);
 }
 
-// All pairs nearer than this are in the list, however far their points have come since.
+// Distance up to which the list is still complete, m.
 static double guaranteed_reach(const mspringi_contacts *contacts) {
     return contacts->reach - 2.0 * contacts->moved;
 }
@@ -316,7 +318,7 @@ static bool make_list(const mspring_network *network, mspringi_contacts *contact
     return true;
 }
 
-// How far a point may come in a substep.
+// Longest way of a point in a substep, m.
 static double travel_per_substep(const mspringi_contacts *contacts) {
     const double h = (double)contacts->h;
     return MSPRINGI_SPEED_MARGIN * h * contacts->speed +
@@ -330,7 +332,7 @@ static double candidate_substeps(const mspringi_contacts *contacts) {
                                                : MIN_CANDIDATE_SUBSTEPS;
 }
 
-// For how many substeps the list answers for all that can touch.
+// Substeps until a pair may be missing from the list.
 static uint32_t valid_substeps(const mspringi_contacts *contacts) {
     const double way = travel_per_substep(contacts);
     const double least = contacts->thickness + 0.5 * (required_reach(contacts) - contacts->thickness);
@@ -338,7 +340,7 @@ static uint32_t valid_substeps(const mspringi_contacts *contacts) {
     return valid >= 1.0 ? valid < 1e6 ? (uint32_t)valid : 1000000 : 1;
 }
 
-// Whether a pair is one of two particles without springs, and the square of their distance.
+// True if both sides of a pair are particles without springs. Find the square of their distance.
 MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_contacts *contacts, const mspringi_pair *pair,
                                       double *square) {
     const mspring_id p = pair->point, a = contacts->outline.a[pair->edge];
@@ -348,8 +350,8 @@ MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_contacts *contacts, const m
            !mspringi_is_collider_point(contacts, a);
 }
 
-// Find the pairs that are hot, and the nearest one. Of two particles without springs there may be many, so neither
-// roots nor branches are spent on them.
+// Collect the candidates, and find the nearest pair. Pairs of particles without springs may be many, so they take
+// neither roots nor branches.
 static void collect_candidates(mspringi_contacts *contacts) {
     const double most = contacts->thickness + 2.0 * candidate_substeps(contacts) * travel_per_substep(contacts) +
                         4.0 * MSPRINGI_SPEED_MARGIN * (double)contacts->h * contacts->speed;

@@ -1,6 +1,6 @@
 /// @file analysis.h
-/// Stages of the layout: graph, bundles, chains, grids, grid filter, shelves, assigned strips, list of irregular
-/// particles, tiers.
+/// Parts of the layout, in order: graph, bundles, chains, grids, grid filter, shelves, assigned strips, list of
+/// irregular particles, tiers.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ANALYSIS_H

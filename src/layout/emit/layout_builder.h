@@ -79,7 +79,7 @@ bool mspringi_layout_builder_is_loose(const mspringi_layout_builder *a, uint32_t
 uint32_t mspringi_layout_builder_find_block(const mspringi_layout_builder *a, uint32_t grid, uint32_t row,
                                             uint32_t column_block);
 
-/* Slots and places, in this order; a range is of particles, then of springs. */
+/* Slots and spring slots, in this order; a range is of particles, then of springs. */
 mspring_result mspringi_layout_builder_reserve_maps(mspringi_layout_builder *a);
 void mspringi_layout_builder_assign_slots(mspringi_layout_builder *a, uint32_t first, uint32_t end);
 void mspringi_layout_builder_assign_other_slots(mspringi_layout_builder *a);

@@ -1,3 +1,4 @@
+/// Builder of sliced ELLPACK storage: nodes, slices, interleaved ropes, entries, links of bundles.
 #include "layout/analysis.h"
 
 #include <string.h>

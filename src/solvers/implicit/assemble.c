@@ -1,4 +1,5 @@
-/// The linear system of a substep.
+/// Assembly of the linear system, and its product with a vector: panels of rows by kernels, irregular springs one
+/// by one.
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 
@@ -42,7 +43,7 @@ bool mspringi_panel_is_asleep(const mspring_network *network, const mspringi_pan
     return true;
 }
 
-// Whether the first of a share's panels gets something from a row that is another's.
+// True if another worker's row carries into the first panel of a share.
 static bool is_handed_on(const mspring_network *network, const panel_share *share) {
     return share->begin < share->end && share->begin->below_count > 0 &&
            !mspringi_panel_is_asleep(network, share->begin);
@@ -102,7 +103,7 @@ static void multiply_panels(const mspring_network *network, const mspringi_team_
 
 /* ------------------------------------------------------------------------------------------ irregular springs */
 
-/// One of them as it acts on its base.
+/// Force and factors of an irregular spring on its base.
 typedef struct irregular_spring {
     double force_x, force_y;
     float pull_x, pull_y, geometric;
@@ -140,7 +141,7 @@ static float *irregular_factors(const mspringi_implicit *n, uint32_t i) {
            i % MSPRINGI_WIDTH;
 }
 
-// Whether an irregular spring has nobody to pull at.
+// True if both ends of an irregular spring sleep.
 static bool sleeps(const mspring_network *network, uint32_t i) {
     const mspringi_topology *t = &network->topology;
     return mspringi_slot_is_asleep(network, t->irregular_a[i]) &&
@@ -212,7 +213,7 @@ static double multiply_irregular(const mspring_network *network, mspringi_field 
 
 /* --------------------------------------------------------------------------------------------------- the whole */
 
-// Rows write these; the slots of other rows begin at nothing.
+// Clear the slots outside lattice and chain rows. Rows write their own.
 static void clear_others(const mspring_network *network, mspringi_slots slots) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t swept = (size_t)network->topology.irregular_first * MSPRINGI_WIDTH;

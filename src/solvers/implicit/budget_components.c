@@ -1,4 +1,4 @@
-/// Which components there are, and which blocks lie in one of them as a whole.
+/// Components of the energy budget, and blocks that lie in a single one.
 #include <string.h>
 
 #include "solvers/implicit/energy_budget.h"
@@ -73,7 +73,7 @@ static bool find_alone(const mspring_network *network, const mspringi_budget *bu
     return false;
 }
 
-// The account that all particles of a block are in.
+// Component of all particles of a block, or MSPRINGI_SEVERAL_COMPONENTS.
 static uint32_t component_of_block(const mspring_network *network, const mspringi_budget *budget, size_t block) {
     uint32_t account = MSPRINGI_NO_COMPONENT;
     bool any = false;

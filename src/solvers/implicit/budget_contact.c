@@ -1,15 +1,15 @@
-/// The energy of bodies that touch, all together.
+/// Energy budget of bodies in contact, all together.
 ///
-/// Each component keeps a budget of its own, in which the work of other bodies is a gift. What one is given another
-/// has to lack, but forces of rows are only as right as the solution is: in stiff networks they show in how little
-/// springs give way, which rounding may hide. (Two lattices of 4.5e11 N/m had 46 times their energy after a touch:
-/// momenta followed an impulse of 464 N s where 20 were due.) So the sums of all that touch are looked at, too. A
-/// substep that gains is taken again in pieces, and in the end without rows in the system. (As long as particles
-/// without springs were left out, a rope that one of them hit gained 2.1 %.)
+/// The budget of a component counts the work of other bodies, so one body's gain should be another's loss. But
+/// contact forces are only as accurate as the solution. In stiff networks they show in how little springs give way,
+/// which rounding may hide. (Two lattices of 4.5e11 N/m had 46 times their energy after contact: momenta followed
+/// an impulse of 464 N s instead of 20.) So the sums of all bodies in contact are checked, too. A substep that
+/// gains energy is repeated in halves, and in the end without contact in the system. (As long as particles without
+/// springs were left out, a rope that one of them hit gained 2.1 %.)
 ///
-/// Colliders and pins that stand still do no work, and those that move the work of their rows. What overlaps one is
-/// pushed off at a speed, which is work, too: of a row's impulse along its way. (As long as that was a gain, bodies
-/// that landed on a collider took 12 times as long.) Between bodies it is a gain: one in a press had 0.4 % more.
+/// Colliders and pins at rest do no work. Moving ones do the work of their constraints. Push-out from a collider is
+/// work, too: an impulse times its way. (As long as that was a gain, bodies that landed on a collider took 12 times
+/// as long.) Between bodies push-out is a gain: one in a press had 0.4 % more.
 #include "contact/contacts.h"
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
@@ -94,8 +94,8 @@ static double work_of_constraints(const mspring_network *network, double h) {
     return sum;
 }
 
-// Whether all that touches has more energy together than before, but for work from outside. In stiff networks
-// forces of rows show in how little springs give way, which rounding may hide, and momenta would follow them.
+// True if all bodies in contact gained energy beyond the work from outside. In stiff networks rounding of contact
+// forces makes such energy, see the top of this file.
 bool mspringi_implicit_contact_gained_energy(const mspring_network *network, double h, mspringi_field base) {
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     const double gx = (double)network->settings.gravity_x, gy = (double)network->settings.gravity_y;

@@ -1,5 +1,5 @@
-/// Sums over components before and after a substep: of particles and of springs, by workers in blocks, and of what
-/// forces from outside, moving pins and the floor have done.
+/// Sums of the energy budget over components, before and after a substep: particles and springs in blocks by
+/// workers; outside forces, moving pins and the floor.
 #include "solvers/implicit/energy_budget.h"
 
 #include <math.h>
@@ -165,8 +165,8 @@ static void add_spring(const measuring *all, mspringi_spring_slot spring_slot) {
     a->length += k * (x * x + y * y);
 }
 
-// First place of the springs of a row's block, and how many words of places it has. Returns false if it is in no
-// row.
+// Find the first word of spring slots of a row's block, and their number. False: the block lies in no row with
+// springs.
 static bool find_places(const mspringi_topology *t, size_t block, size_t *word, size_t *words) {
     const bool is_lattice = block >= t->lattice_first && block < (size_t)t->lattice_first + t->lattice_blocks;
     const bool is_chain = block >= t->chain_first && block < (size_t)t->chain_first + t->chain_blocks;
@@ -205,7 +205,7 @@ static void add_springs(const measuring *all) {
             add_spring(all, spring_slot);
 }
 
-// What holds a particle in the linear system may come to no impulse that single precision shows.
+// The impulse of an active contact may be too small for single precision.
 static void add_contacts(const mspring_network *network) {
     budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_floor *floor = network->floor;
@@ -242,7 +242,7 @@ void mspringi_budget_measure(measuring *all) {
 
 /* -------------------------------------------------------------------------------------------- work of pins */
 
-// What pinned ends of a spring give it: force before the substep or after it, whichever is more, times their way.
+// Work of pinned ends of a spring: the larger force, before or after the substep, times their way.
 static double given_by_pins(const measuring *all, const mspringi_spring_values *s) {
     const mspringi_motion *const motions[] = {&all->before, &all->motion};
     const float *inverse_mass = all->network->inverse_mass;
@@ -275,7 +275,7 @@ static void add_given(const measuring *all, mspringi_spring_slot spring_slot) {
     budget->components[budget->of_slot[s.base]].given += given_by_pins(all, &s);
 }
 
-// Whether a pinned particle is among these slots.
+// True if one of these slots has a pinned particle.
 static bool has_pin(const mspring_network *network, size_t block) {
     bool any = false;
     for (size_t slot = block * MSPRINGI_WIDTH; slot <= (block + 1) * MSPRINGI_WIDTH; ++slot)

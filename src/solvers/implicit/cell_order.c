@@ -1,4 +1,4 @@
-/// Numbering cells so that the envelope of the coarse matrix is narrow.
+/// Order of cells for a narrow envelope of the coarse matrix (Cuthill and McKee 1969).
 #include "solvers/implicit/cells.h"
 
 // The cells that a spring joins, if it joins two.

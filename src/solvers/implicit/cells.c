@@ -1,4 +1,4 @@
-/// Cutting a network into cells.
+/// Division of a network into cells.
 #include "solvers/implicit/cells.h"
 
 #include "kernels/system.h"
@@ -20,7 +20,7 @@ uint32_t mspringi_factors_of_spring_slot(mspringi_spring_slot spring_slot) {
 
 /* ------------------------------------------------------------------------------------------------------ cutting */
 
-// Whether a row is the first of its grid: no block of the row before has a block above it.
+// True if a row is the first of its grid: no block of the row before has a block above it.
 static bool starts_grid(const mspringi_topology *t, uint32_t row) {
     if (row == 0)
         return true;
@@ -66,7 +66,7 @@ static void cut_grids(cutting *g, uint32_t size) {
     }
 }
 
-// Cut the chains' slots into pieces of size.
+// Divide the chains' slots into cells of `size` slots.
 static void cut_chains(cutting *g, uint32_t size) {
     const mspringi_topology *t = &g->network->topology;
     const uint32_t first = t->chain_first * MSPRINGI_WIDTH, count = t->chain_blocks * MSPRINGI_WIDTH;
@@ -232,7 +232,7 @@ static uint32_t springs_of(const cutting *g) {
     return g->network->topology.spring_count;
 }
 
-// The slots of a spring's ends; false if it is in no cell.
+// Find the slots of a spring's ends. False: it lies in no cell.
 static bool find_ends(const cutting *g, mspring_id spring, uint32_t *a, uint32_t *b) {
     const mspringi_topology *t = &g->network->topology;
     const mspringi_spring_slot spring_slot = t->slot_of_spring[spring];
@@ -285,7 +285,7 @@ static mspring_result list_springs(cutting *g, uint32_t first, uint32_t end) {
     return MSPRING_OK;
 }
 
-// One pass of a stable counting sort of joints, by the cell of one of the ends.
+// One round of a stable counting sort of cell edges, by the cell of one end.
 static void sort_joints(const mspringi_cells *cells, const mspringi_cell_edge *from, mspringi_cell_edge *to,
                         uint32_t *first, bool by_other) {
     for (uint32_t i = 0; i < cells->count + 2; ++i)

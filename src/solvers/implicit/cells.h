@@ -1,12 +1,9 @@
 /// @file cells.h
-/// Cells: the pieces that a network's particles are cut into by its layout alone, whichever springs are broken and
-/// whichever particles are pinned.
+/// Cells: regions of the layout, candidates for tiles. They depend neither on broken springs nor on pins.
 ///
-/// A cell is some rows by some columns of a grid, a piece of the chains, or a neighbourhood in the irregular part.
-/// Loose particles are in none, unless springs may be added; then each block of them is one. Springs that were
-/// added are not among those of the cells.
-///
-/// SPDX-License-Identifier: MIT
+/// A cell is a block of rows and columns of a grid, a part of the chains, or a neighbourhood in the irregular part.
+/// Loose particles lie in none, unless springs may be added; then each block of them is a cell. Cells ignore added
+/// springs.
 #ifndef MSPRINGI_CELLS_H
 #define MSPRINGI_CELLS_H
 
@@ -17,7 +14,7 @@
 typedef struct mspringi_cell_edge {
     uint32_t slot,
         other_slot;   ///< the end in the later cell, or the free one; the end in the earlier, or the pinned
-    uint32_t factors; ///< where in the factors
+    uint32_t factors; ///< index of its first factor (implicit.h)
 } mspringi_cell_edge;
 
 /// Rows and columns of a cell: a power of two.
@@ -37,7 +34,7 @@ typedef struct mspringi_cells {
     uint32_t *lowest;          ///< [count] lowest of a cell and its neighbours
 } mspringi_cells;
 
-/// What is needed while a network is cut.
+/// Intermediate results of a division into cells.
 typedef struct mspringi_cell_builder {
     const mspring_network *network;
     mspringi_memory *memory;
@@ -50,8 +47,8 @@ typedef struct mspringi_cell_builder {
     uint32_t listed;             ///< joints
 } mspringi_cell_builder;
 
-/// Cut a network into cells of size x size particles, numbered so that neighbours have near numbers: begin, then
-/// run until it is done, then end, on failure too.
+/// Divide a network into cells of size x size particles, numbered so that neighbours have near numbers: begin, run
+/// until done, then end, on failure too.
 void mspringi_cells_begin(mspringi_cell_builder *cutting, mspringi_cells *cells, const mspring_network *network,
                           uint32_t size, mspringi_memory *memory, mspringi_message *message);
 mspring_result mspringi_cells_run(mspringi_cell_builder *cutting, bool *is_done);
@@ -59,12 +56,11 @@ void mspringi_cells_end(mspringi_cell_builder *cutting);
 extern const mspringi_array_table mspringi_cells_columns;
 void mspringi_cells_destroy(mspringi_cells *cells, mspringi_memory *memory);
 
-/// Where the factors of a spring begin: lattice, chain and irregular records one behind the other.
+/// Index of a spring's first factor: lattice, chain and irregular ones lie end to end.
 uint32_t mspringi_factors_of_spring_slot(mspringi_spring_slot spring_slot);
 
-/// Give the cells, as of_slot has them, numbers that are near for neighbours (Cuthill and McKee 1969), in this
-/// order. Ranges are of springs.
-/// @return false: no memory
+/// Number the cells in of_slot so that neighbours get near numbers (Cuthill and McKee 1969). Call in this order.
+/// Ranges are of springs. @return false: no memory
 bool mspringi_cells_begin_order(mspringi_cell_builder *cutting);
 void mspringi_cells_count_neighbours(mspringi_cell_builder *cutting, uint32_t first, uint32_t end);
 bool mspringi_cells_add_up(mspringi_cell_builder *cutting);

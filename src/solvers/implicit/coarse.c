@@ -1,4 +1,4 @@
-/// The coarse matrix and its factor.
+/// Coarse matrix: assembly of Z^T A Z in its envelope, block Cholesky factorisation, solution.
 #include "solvers/implicit/coarse.h"
 
 #include <math.h>
@@ -6,10 +6,10 @@
 
 #include "base/cpu.h"
 
-/// Numbers in a block of the matrix.
+/// Entries of a block of the matrix.
 #define BLOCK_VALUES ((size_t)MSPRINGI_RIGID * MSPRINGI_RIGID)
 
-/// Joints that memory is asked for ahead: their factors lie scattered over the rows' records.
+/// Cell edges to prefetch: their factors lie scattered over the rows' records.
 #define AHEAD 12
 
 /* --------------------------------------------------------------------------------------------------- envelope */
@@ -153,7 +153,7 @@ static void add_sum(mspringi_coarse *coarse, uint32_t tile, uint32_t other, cons
     to.row[2][2] -= sum->near_far;
 }
 
-// Add joints, those of the same two tiles together as far as they follow each other.
+// Add cell edges, consecutive ones of the same two tiles together.
 static void add_joints(mspringi_coarse *coarse, const mspringi_tiles *tiles, const mspringi_coarse_parts *parts,
                        uint32_t first, uint32_t end) {
     const mspringi_cell_edge *const joints = tiles->cells.cell_edges;
@@ -187,7 +187,7 @@ void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *til
         add_diagonal(rows_of(coarse, t, t), sums[0], 0.0, sums[0], 0.0, 0.0,
                      sums[1] + sums[0] * (double)tiles->turn_inertia);
     }
-    // Joints are the later cell's. One without tiles, all pinned or asleep, has none that count.
+    // Cell edges belong to the later cell. A cell without tiles, all pinned or asleep, has none that count.
     for (uint32_t cell = first, behind; cell < end; cell = behind + (behind == cell)) {
         for (behind = cell; behind < end && tiles->first_of_cell[behind] < tiles->first_of_cell[behind + 1];)
             ++behind;
@@ -341,7 +341,7 @@ void mspringi_coarse_factor(mspringi_coarse *coarse) {
         invert_diagonal(rows_of(coarse, t, t));
 }
 
-// Subtract from a tile's right-hand side what the earlier ones make of it.
+// Subtract the earlier tiles' unknowns from a tile's right-hand side.
 static void solve_forward(const mspringi_coarse *coarse, double (*unknowns)[MSPRINGI_RIGID], uint32_t t) {
     const uint32_t first = coarse->first[t];
     const block_rows rows = rows_of(coarse, t, first);
@@ -359,7 +359,7 @@ static void solve_forward(const mspringi_coarse *coarse, double (*unknowns)[MSPR
     }
 }
 
-// Have a tile's unknowns, now that they are known, count in the earlier ones'.
+// Subtract a tile's solved unknowns from the earlier tiles' right-hand sides.
 static void solve_backward(const mspringi_coarse *coarse, double (*unknowns)[MSPRINGI_RIGID], uint32_t t) {
     const uint32_t first = coarse->first[t];
     const block_rows rows = rows_of(coarse, t, first);

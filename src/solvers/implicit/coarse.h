@@ -9,7 +9,7 @@
 
 #include "solvers/implicit/tiles.h"
 
-/// Displacement in x and y, and turn.
+/// Rigid motions of a tile: displacement in x and y, and rotation.
 #define MSPRINGI_RIGID 3
 
 typedef struct mspringi_coarse {
@@ -19,7 +19,7 @@ typedef struct mspringi_coarse {
     double *values;  ///< the lower triangle, then its factor with reciprocals on the diagonal
     double *kept;    ///< the values of another time
     size_t value_count;
-    double *far_turns; ///< [blocks] what each block's springs resist a turn of the earlier of its tiles with
+    double *far_turns; ///< [blocks] stiffness of each block's springs against a rotation of its earlier tile
     double (*restricted)[MSPRINGI_RIGID]; ///< [tiles] the right-hand side
 } mspringi_coarse;
 
@@ -32,42 +32,42 @@ mspring_result mspringi_coarse_create(mspringi_coarse *coarse, const mspringi_ti
 extern const mspringi_array_table mspringi_coarse_columns;
 void mspringi_coarse_destroy(mspringi_coarse *coarse, mspringi_memory *memory);
 
-/// Take over the tiles that there are now.
+/// Adapt the envelope to the present tiles.
 void mspringi_coarse_shape(mspringi_coarse *coarse, const mspringi_tiles *tiles);
 
-/// What Z^T A Z is made of. Springs inside a tile are left out: they resist a turn of it with their tension only.
+/// Parts of Z^T A Z. Springs inside a tile are left out: only their tension resists a turn of the tile.
 typedef struct mspringi_coarse_parts {
     const mspringi_system_kernels *kernels;
     const mspringi_iterate *iterate;
     const float *factors, *mass;
 } mspringi_coarse_parts;
 
-/// Compute the rows of the tiles of cells first to end - 1, but for what these get from later tiles' springs.
+/// Compute the rows of the tiles of cells first to end - 1, without the shares of later tiles' springs.
 void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *tiles,
                               const mspringi_coarse_parts *parts, uint32_t first, uint32_t end);
 
-/// Add that, and springs to pinned particles, when all rows are there.
+/// Add those shares, and springs to pinned particles, once all rows are computed.
 void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *tiles,
                               const mspringi_coarse_parts *parts);
 
-/// Add what holds a particle at (x, y) from its tile's mass centre to the tile's block on the diagonal.
+/// Add the stiffness that holds a particle at (x, y) from its tile's mass centre to the tile's diagonal block.
 void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, double xy, double yy, double x,
                          double y);
 
-/// What pulls at the rigid motions of a few tiles at once.
+/// Vector over the rigid motions of a few tiles.
 typedef struct mspringi_coarse_rank_one {
     uint32_t count, tiles[3];
     double rows[3][MSPRINGI_RIGID];
 } mspringi_coarse_rank_one;
 
-/// Add the product of that with itself. Where the envelope has no place for two of the tiles, what is added is
-/// more.
+/// Add its product with itself, a matrix of rank one. If the envelope lacks an entry for two tiles, an upper bound
+/// is added.
 void mspringi_coarse_add_rank_one(mspringi_coarse *coarse, const mspringi_coarse_rank_one *pulls);
 
-/// Factor in place. Never fails: a pivot that rounding has made too small is replaced.
+/// Factor in place. Never fails: a pivot spoilt by rounding is replaced.
 void mspringi_coarse_factor(mspringi_coarse *coarse);
 
-/// Keep the factor, and take back what was kept. The tiles must be the same ones.
+/// Save the factor, and restore it. The tiles must be the same.
 void mspringi_coarse_keep(const mspringi_coarse *coarse);
 void mspringi_coarse_restore(const mspringi_coarse *coarse);
 

@@ -17,17 +17,15 @@
 
 typedef mspringi_implicit_substep substep_of;
 
-/// Product of residuals at which nothing is left to do, as a part of the first one: a last place squared is 1e-14,
-/// and what comes far below it are denormal numbers, whose quotients are noise that grows from iteration to
-/// iteration.
+/// Relative product of residuals at the end of the iteration. A last place squared is 1e-14. Products far below are
+/// denormal, and their quotients are noise that grows with the iterations.
 #define LEAST_PRODUCT 1e-30
 
-/// Product of residuals, or of a direction, that is none: below it single precision keeps fewer and fewer digits,
-/// so quotients of such products are noise, or infinite. Masses are scaled to be near 1, so it moves nothing by
-/// more than 1e-19 m.
+/// Smallest usable product of residuals or of a direction. Below it single precision loses digits, so quotients are
+/// noise or infinite. Masses are scaled to be near 1, so it moves nothing by more than 1e-19 m.
 #define NO_PRODUCT ((double)FLT_MIN)
 
-/// LEAST_PRODUCT where rows join bodies, and so many times the usual iterations at most.
+/// LEAST_PRODUCT with constraints between bodies, and their factor on the iterations.
 #define LEAST_PRODUCT_WITH_ROWS 1e-9
 #define TIMES_WITH_ROWS 16
 
@@ -38,7 +36,7 @@ static mspringi_coarse_parts coarse_parts(const mspring_network *network) {
     return (mspringi_coarse_parts){&network->kernels->system, &n->iterate, n->factors, n->mass};
 }
 
-// Invert the blocks of D, but those of particles without springs: these are not solved for here.
+// Invert the blocks of D. Those of particles without springs are set to 0: they are no unknowns here.
 static void invert(const mspring_network *network, mspringi_slots slots) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
@@ -57,7 +55,7 @@ static void invert(const mspring_network *network, mspringi_slots slots) {
             blocks[0][slot] = blocks[1][slot] = blocks[2][slot] = 0.0f;
 }
 
-// Whether a cell is a team member's: those without tiles are nobody's.
+// True if a team member owns a cell. Cells without tiles have no owner.
 static bool is_of(const mspring_network *network, const mspringi_team_member *member, uint32_t cell) {
     const uint32_t *first = &mspringi_implicit_of(network)->tiles.first_of_cell[cell];
     return first[0] < first[1] && mspringi_tile_is_of(network, member, (first[0] + first[1]) / 2);
@@ -92,8 +90,8 @@ static double (*unknowns_of(const mspringi_implicit *n, const mspringi_team_memb
     return n->unknowns + (size_t)member->index * n->tiles.capacity;
 }
 
-// Apply Ac^-1 to Z^T r, into the team member's own coarse unknowns: to compute them takes each of them less than to
-// wait for another. Returns r . Z Ac^-1 Z^T r.
+// Apply Ac^-1 to Z^T r. Each team member computes its own copy of the coarse unknowns, which is faster than waiting
+// for another. Return r . Z Ac^-1 Z^T r.
 static double correct(const substep_of *substep, mspringi_team_member *member, bool is_first) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
@@ -109,7 +107,7 @@ static double correct(const substep_of *substep, mspringi_team_member *member, b
     return mspringi_coarse_solve(&n->coarse, unknowns_of(n, member));
 }
 
-// direction = z + beta direction, or what of it there is to be.
+// Update the search direction: z + beta direction, or a part of it at the beginning.
 static void turn(const substep_of *substep, mspringi_team_member *member, mspringi_search_update what, float beta) {
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = mspringi_implicit_of(network);
@@ -120,7 +118,7 @@ static void turn(const substep_of *substep, mspringi_team_member *member, msprin
     mspringi_team_barrier(member);
 }
 
-// Go on by alpha. Returns r . D^-1 r.
+// Step along the direction by alpha. Return r . D^-1 r.
 static double advance(const substep_of *substep, mspringi_team_member *member, float alpha, bool is_first) {
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = mspringi_implicit_of(network);
@@ -140,9 +138,9 @@ static double advance(const substep_of *substep, mspringi_team_member *member, f
     return sum;
 }
 
-// The first iteration: the tiles alone, as rigid bodies. It takes the fast changes of a heavy or a spinning part
-// off those that follow, which then leave less force unbalanced (80x5 with a tip of 1000 times the mass: no gain of
-// energy, where without it there is one of 0.1 %).
+// First iteration: the coarse space alone. It removes the fast changes of a heavy or a spinning part, so that later
+// iterations leave less unbalanced force. (80x5 with a tip of 1000 times the mass: no gain of energy, instead of
+// 0.1 %.)
 static double solve_tiles(const substep_of *substep, mspringi_team_member *member) {
     const double product = correct(substep, member, true);
     turn(substep, member, MSPRINGI_SEARCH_COARSE_ONLY, 0.0f);
@@ -167,10 +165,10 @@ static double begin_anew(const substep_of *substep, mspringi_team_member *member
 float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    // Contacts are far stiffer than all else: with the usual iterations a bar on the floor trembles, at 0.01 m/s.
-    // And what a substep is in pieces for may be that iterations end too early.
+    // Contacts are far stiffer than springs: with the usual iterations a bar on the floor trembles at 0.01 m/s.
+    // Halves of a substep need more, too, because iterations that ended early may have caused the halving.
     const bool has_contacts = network->floor && network->floor->contact_count > 0;
-    // Rows that join bodies are not in the coarse matrix: each is found by an iteration or two.
+    // Constraints between bodies are not in the coarse matrix: each takes an iteration or two.
     const bool has_rows = mspringi_implicit_contact_is_active(network);
     const uint32_t times = has_rows ? TIMES_WITH_ROWS : has_contacts || n->is_piece ? 2 : 1;
     uint32_t left = times * n->iterations;
@@ -188,7 +186,7 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
         n->solves += member->index == 0;
         if (!(curvature < INFINITY && product < INFINITY))
             return NAN;
-        // Nothing is left to do, or to be done in this precision.
+        // Converged, or at the limit of this precision.
         if (curvature < NO_PRODUCT || product < NO_PRODUCT || product <= least)
             return 0.0f;
         const float alpha = (float)(product / curvature);

@@ -1,4 +1,4 @@
-/// What follows from the sums before and after a substep.
+/// Corrections that follow from the energy budget: scaled velocities, rigid motions, moves back.
 #include "solvers/implicit/energy_budget.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 
-/// Share of its energy that a component's springs may have too much: what solutions in single precision leave.
+/// Excess of elastic energy that is tolerated, as a share: rounding of solutions in single precision.
 #define TOLERATED 1e-6
 
 /// The same of m g times a coordinate, where the floor has put particles. Positions have low words: what is left is
@@ -21,12 +21,12 @@
 /// have low words. With 1e-7 it came to a hundredth of a stiff graph's energy in 74 substeps of 32 pieces.
 #define LENGTH_ROUNDING 1e-8
 
-/// Share of its energy that a component may get from nowhere, and is scaled out of its velocities, before the
-/// substep is taken again: scaling takes from slow motion, too, where a single rope has made the energy. (A ship
-/// with rigging held at its bow: scaled up to any share, its fall came to rest in a second; with a hundredth it
-/// lost four times as much as now.) What gravity would give it in the substep counts, too: springs and floor take
-/// that out again, and what lies still has little other energy. (Without it fragments on the floor of the example
-/// game had nine of 15 substeps taken in 32 pieces, for hundredths of a joule.)
+/// Share of its energy that a component may gain, and that is scaled out of its velocities, before the substep is
+/// repeated. Scaling takes from slow motion, too, where one rope gained the energy. (A ship with rigging held at
+/// its bow: without a bound, its fall came to rest in a second; with a hundredth it lost four times as much as
+/// now.) The work of gravity in the substep counts, too, because bodies at rest have little other energy. (Without
+/// it fragments on the floor of the example game had nine of 15 substeps taken in 32 parts, for hundredths of a
+/// joule.)
 #define MUCH 1e-3
 
 /// Share of the kinetic energy below which a rigid motion is lost in the rounding of velocities.
@@ -118,8 +118,8 @@ static void count_edits(const mspring_network *network, uint64_t *to) {
     memcpy(to, counts, sizeof counts);
 }
 
-// Whether elastic energy is what it was after the last substep. Where the host may write to the state, rest lengths
-// and stiffnesses follow from the time, or relative springs are those of another substep, it is computed again.
+// True if elastic energy is still that after the last substep. False if the host may write to the state, if rest
+// lengths or stiffnesses follow from the time, or if relative springs are of another substep.
 static bool knows_elastic(const mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     uint64_t now[MSPRINGI_BUDGET_EDITS];
@@ -193,7 +193,7 @@ static double velocity_scale_of(double room, double motion) {
     return !(motion > room) ? 1.0 : room > 0.0 ? sqrt(room / motion) : 0.0;
 }
 
-/// What an account has and may have, J.
+/// Energies of a component, and their bounds, J.
 typedef struct balance {
     double room, motion; ///< for velocities, and what they have
     double had;          ///< before, with work
@@ -239,7 +239,7 @@ static void check_free(const mspring_network *network, component *a, const centr
     a->turned = c->inertia > 0.0 ? 0.25 * o->h * (a->spin + spin) / c->inertia : 0.0;
     a->is_free = true;
     restore_momentum(a, c, vx - a->origin[2], vy - a->origin[3], turn);
-    // What another body gave it acts from the beginning of the substep on.
+    // Impulses of other bodies act from the beginning of the substep.
     const double before = a->is_touched ? 0.0 : 0.5, after = 1.0 - before;
     move_centre(a, c, o->h * (before * (a->origin[2] + a->vx) + after * vx),
         o->h * (before * (a->origin[3] + a->vy) + after * vy));
@@ -268,9 +268,8 @@ static void check_held(const mspring_network *network, component *a, const centr
     a->turn = 0.0;
 }
 
-// Whether a place is below the floor, which the substep has left everything above. By no more than the rounding of
-// positions: nothing gives a fragment at rest the energy to be lifted. (By the floor's own tolerance two particles
-// that had gone back some micrometres into it were pushed up and put back in all that followed, in 32 pieces.)
+// True if a position is below the floor by more than rounding. Nothing lifts a fragment at rest. (With the floor's
+// own tolerance, two particles that moved back some micrometres into it were pushed up in all later substeps.)
 static bool is_below_floor(const mspring_network *network, double x, double y) {
     const mspringi_floor *floor = network->floor;
     if (!floor)
@@ -316,7 +315,7 @@ static void check_component(const mspring_network *network, component *a, const 
         check_free(network, a, &c, o);
 }
 
-// Returns whether any component has gained much; exceeds: whether the springs of any have too much.
+// Return true if any component gained much. Set exceeds if the springs of any have too much.
 static bool check_all(const mspring_network *network, const outside *o, bool *exceeds) {
     budget_of *budget = &mspringi_implicit_of(network)->budget;
     component *const end = budget->components + budget->count;
@@ -473,7 +472,7 @@ static void step_back(mspring_network *network, const mspringi_motion *before, d
     } while (mspringi_walls_stop_back(network, h));
 }
 
-// What the floor has given a component in a substep, from what its momentum has changed by.
+// Find the floor's impulse on a component from its change of momentum.
 static void find_floor_impulse(const mspring_network *network, component *a, const outside *o) {
     const centre c = mspringi_mass_centre_of(a);
     const double fx = a->sums[MSPRINGI_EFFECT_X], fy = a->sums[MSPRINGI_EFFECT_Y];
@@ -485,7 +484,7 @@ static void find_floor_impulse(const mspring_network *network, component *a, con
     a->second_support_slot = a->is_stopped ? a->stop_slot : MSPRING_NONE;
 }
 
-// The account of a contact that has held its particle, and that no pin holds. NULL: none.
+// Component of an active contact's particle. NULL: none, or pinned.
 static component *component_of(const mspring_network *network, const mspringi_floor_contact *contact) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const uint32_t number = budget->of_slot[contact->slot];
@@ -514,9 +513,9 @@ static void count_supports(const mspring_network *network) {
     }
 }
 
-// What held a component in the linear system shows in how little it gave way, which rounding hides in stiff
-// networks. (Particles of 8 kg at 1e10 N/m: impulses of 0 or 48,000 N s where 4 were due.) So contacts share what
-// their component's momentum lacks.
+// Contact forces in the linear system follow from small displacements, which rounding hides in stiff networks.
+// (Particles of 8 kg at 1e10 N/m: impulses of 0 or 48,000 N s instead of 4.) So contacts share the missing
+// momentum.
 static void balance_floor(const mspring_network *network, const outside *o) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_floor *floor = network->floor;
@@ -544,7 +543,7 @@ static void balance_floor(const mspring_network *network, const outside *o) {
     }
 }
 
-// What was summed is that of the places that there are now, unless these were shifted since.
+// The sums stay valid for the next substep if no component was shifted.
 static void remember_elastic(const mspring_network *network) {
     budget_of *budget = &mspringi_implicit_of(network)->budget;
     budget->knows_elastic = true;

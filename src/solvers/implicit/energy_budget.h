@@ -1,37 +1,35 @@
 /// @file energy_budget.h
-/// The energy budget of implicit substeps: no component gets energy, momentum or spin from nowhere.
+/// Energy budget of implicit substeps: no component gains energy, momentum or spin that no force explains.
 ///
-/// A substep linearises every spring once. A slack rope, a lattice that turns fast, or iterations that end too
-/// early then stretch springs by more than any force has done work for. So after each substep, and after the floor
-/// has acted, every component (all that live springs join) is looked at by itself:
+/// A substep linearises each spring once. A slack rope, a fast rotation, or iterations that end too early then
+/// stretch springs by more than the work of forces. So each component is checked after the substep and the floor:
 ///
-///   - It is held if it has a pinned particle, if a grip holds one, or if the floor has given it an impulse in this
-///     substep. Else it is free: momentum and angular momentum about its mass centre are what they were, with what
-///     forces from outside and global damping have added. Where the substep has changed them otherwise, the
-///     velocities get a rigid motion that makes up for it.
-///   - Its room is the energy from before the substep, with the work of gravity and forces, less what its springs
-///     have now and less what its momenta demand. Work of the floor does not count: it can only take energy. A free
-///     component is seen from its mass centre, where gravity does no work, and one whose pins all move alike from
-///     these, where they do none. Of other pins the forces on them tell their work, by more rather than less.
-///   - What the floor has given a component that no pin holds is what its momentum lacks, and counts as impulse.
-///   - What velocities have beyond that room is scaled out of them, about the rigid motion of a free component,
-///     about its pins or rest in a held one. Momenta stay.
-///   - If springs alone have a little more than the room, the component goes back towards where it was, as far as
-///   it
-///     must: bodies that spin and bodies that rest on the floor do so in most substeps, and pieces would not help
-///     them.
-///   - If a component has gained much, or going back does not help, the whole substep is taken again by implicit
-///     Euler, with twice the iterations. If that does not help, two halves of it are taken, and so on,
-///     MSPRINGI_MOST_HALVINGS times. The shortest piece is not refused. The next MSPRINGI_RECOVERY_SUBSTEPS are of
-///     implicit Euler, too.
+///   - It is held if it has a pinned particle, if a grip holds one, or if the floor gave it an impulse in this
+///     substep. Else it is free: momentum, and angular momentum about its mass centre, change by outside forces and
+///     global damping only. A rigid motion corrects the velocities for the rest.
+///   - Its budget is the energy before the substep plus the work of gravity and forces, less the energy of its
+///     springs now, less the kinetic energy that its momenta need. Work of the floor does not count: the floor only
+///     takes energy. A free component is seen from its mass centre, where gravity does no work. One whose pins all
+///     move alike is seen from these. For other pins, the forces on them give an upper bound of their work.
+///   - The floor's impulse on a component without pins is the change of momentum that nothing else explains.
+///   - Kinetic energy beyond the budget is scaled out of the velocities: about the rigid motion of a free
+///     component, about the pins or rest in a held one. Momenta stay.
+///   - If the springs alone exceed the budget by little, the component moves back towards its start, as far as
+///     needed. Spinning bodies and bodies at rest on the floor do so in most substeps. Shorter substeps would not
+///     help them.
+///   - If the gain is large, or moving back does not help, the substep is repeated by implicit Euler with twice the
+///     iterations. If that does not help, two halves are taken, and so on, MSPRINGI_MOST_HALVINGS times. The
+///     shortest one is always accepted. The next MSPRINGI_RECOVERY_SUBSTEPS are of implicit Euler, too.
 ///
 /// All sums have a fixed order, whatever the number of workers: blocks by kernels, then components in the order of
 /// blocks.
 ///
-///   budget_components.c   which components there are
-///   budget_sums.c         sums before and after
-///   energy_budget.c       what follows from them
-///   implicit_substeps.c     substeps and their halves
+///   budget_components.c  components
+///   budget_sums.c        sums before and after a substep
+///   budget_contact.c     the check over all bodies in contact
+///   energy_budget.c      corrections that follow
+///   walls.c              colliders that stop a correction
+///   implicit_substeps.c  substeps and their halves
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ENERGY_BUDGET_H
@@ -39,13 +37,13 @@
 
 #include "store/network.h"
 
-/// Times that a substep is halved; and where bodies touch. (With 5 there, too, stiff bodies overlapped in 20 of
-/// 12,000 collisions by more than 0.63 of the thickness: the last piece holds them by impulses alone.)
+/// Most halvings of a substep, and most with bodies in contact. (With 5 there, too, stiff bodies overlapped in 20
+/// of 12,000 collisions by more than 0.63 of the thickness: the shortest substep acts by impulses alone.)
 #define MSPRINGI_MOST_HALVINGS 5u
 #define MSPRINGI_MOST_HALVINGS_OF_BODIES 8u
 
-/// Substeps of implicit Euler, at most, from one that got energy from nowhere on. Without them a falling ship with
-/// rigging had to take twice as many again.
+/// Most substeps of implicit Euler after one that gained energy. Without them a falling ship with rigging needed
+/// twice as many substeps again.
 #define MSPRINGI_RECOVERY_SUBSTEPS 15u
 
 /// Counters of edits that may change elastic energy.
@@ -55,7 +53,7 @@
 #define MSPRINGI_NO_COMPONENT MSPRING_NONE
 #define MSPRINGI_SEVERAL_COMPONENTS (MSPRING_NONE - 1)
 
-/// What is summed over a run of blocks after a substep, beside its moments.
+/// Sums over a run of blocks after a substep, beside its moments.
 enum {
     MSPRINGI_EFFECT_X = MSPRINGI_MOMENTS, ///< forces from outside, N
     MSPRINGI_EFFECT_Y,
@@ -78,7 +76,7 @@ typedef struct mspringi_component_budget {
     double elastic, length;  ///< J, as in mspringi_elastic
     double frame_x, frame_y; ///< m/s: of its pins if they move alike, else 0
     uint32_t frame_pin;      ///< slot of one of them
-    double given;            ///< work of pins that do not, J
+    double given;            ///< work of moving pins, J
     double pushed;           ///< work of other bodies, J
     double x, y, vx, vy;     ///< mass centre before, from the origin
     double spin;             ///< about it before, kg m^2/s
@@ -90,9 +88,9 @@ typedef struct mspringi_component_budget {
     bool is_free;            ///< neither a pin nor the floor holds it
     bool is_stopped;         ///< the floor or a collider is in its way, though it gave it no impulse
     uint32_t stop_slot;      ///< slot where the floor is; MSPRING_NONE: a collider
-    double share;            ///< of its way that it goes
+    double share;            ///< share of its way back that it moves
     double floor_impulse_x, floor_impulse_y; ///< N s that the floor has given it, but for what is counted
-    uint32_t support_count;                  ///< contacts that hold it
+    uint32_t support_count;                  ///< floor contacts that hold it
     uint32_t second_support_slot;            ///< slot of another particle that the floor acts on
 } mspringi_component_budget;
 
@@ -104,7 +102,7 @@ typedef struct mspringi_budget {
     uint32_t *pins;                  ///< [slots] those of pinned particles in components
     uint32_t pin_count;
     bool has_isolated; ///< some particles outside the loose row have no live springs
-    bool is_known;     ///< which components and pins there are, for these edits
+    bool is_known;     ///< components and pins are up to date for these edits
     uint64_t links, growth, grafts, masses;
     bool is_driven;                       ///< some component is
     uint64_t seen[MSPRINGI_BUDGET_EDITS]; ///< edits after the last substep, and the origin then
@@ -119,24 +117,24 @@ typedef struct mspringi_budget {
 } mspringi_budget;
 
 mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *network);
-/// Set a range of the accounts to zero, of which there are slots / 2 + 1: all are to be, after it was made.
+/// Set a range of the components' budgets to zero. All slots / 2 + 1 of them need it after creation.
 void mspringi_budget_clear(const mspringi_budget *budget, uint32_t first, uint32_t end);
 extern const mspringi_array_table mspringi_budget_columns;
 void mspringi_budget_destroy(mspringi_budget *budget, mspringi_memory *memory);
 
-/// Have the components that there are. Allocates nothing.
+/// Update the components. Allocates nothing.
 void mspringi_budget_update(mspring_network *network);
 
-/// Whether a slot is of no component.
+/// True if a slot lies in no component.
 static inline bool mspringi_budget_is_isolated(const mspringi_budget *budget, size_t slot) {
     return budget->of_slot[slot] == MSPRINGI_NO_COMPONENT;
 }
 
-/// Before a substep: keep what it begins with.
+/// Save the state before a substep.
 void mspringi_budget_begin(mspring_network *network);
 
-/// After a substep of h seconds, and after the floor. Returns false if the substep should be taken in halves, which
-/// is only if may_halve; mspringi_budget_undo() then takes it back.
+/// Apply the budget after a substep of h seconds and the floor. Return false if the substep should be halved, only
+/// with may_halve. Then mspringi_budget_undo() takes it back.
 bool mspringi_budget_end(mspring_network *network, float h, mspringi_field base, bool may_halve);
 void mspringi_budget_undo(mspring_network *network);
 
@@ -149,34 +147,34 @@ bool mspringi_walls_stop_back(const mspring_network *network, double h);
 
 /* budget_sums.c */
 
-/// What the workers sum up.
+/// Arguments of the workers' sums.
 typedef struct mspringi_budget_sums {
     mspring_network *network;
     mspringi_motion motion, before; ///< before: where it was, after a substep
     mspringi_field base;            ///< forces from outside
     float h;                        ///< length of the substep, after it
     bool is_after;
-    bool knows_elastic; ///< elastic and length are there already
+    bool knows_elastic; ///< elastic and length are up to date
     uint32_t workers;
 } mspringi_budget_sums;
 
-/// Fill in the sums, elastic and length of all accounts, and before a substep keep the state. Moving pins' work is
-/// extra.
+/// Compute sums, elastic and length of all components, and save the state before a substep. The work of moving pins
+/// is separate.
 void mspringi_budget_measure(mspringi_budget_sums *sums);
 void mspringi_budget_add_pin_work(const mspringi_budget_sums *sums);
 
-/// A component about its mass centre, which is told from the origin.
+/// Motion of a component about its mass centre. Positions are from the component's origin.
 typedef struct mspringi_mass_centre {
     double mass, x, y, vx, vy, inertia, spin, kinetic;
 } mspringi_mass_centre;
 mspringi_mass_centre mspringi_mass_centre_of(const mspringi_component_budget *component);
-/// What of an energy may be rounding, J.
+/// Rounding of an energy, J.
 double mspringi_energy_rounding(const mspringi_component_budget *component, double energy);
-/// Whether all that touches would have more energy together than before a substep of h, but for work from outside.
+/// True if all bodies in contact gained energy in a substep of h, beyond the work from outside.
 bool mspringi_implicit_contact_gained_energy(const mspring_network *network, double h, mspringi_field base);
-/// What gravity would give in a substep to what touches other bodies, J. In a piece of it, however short, impulses
-/// between them err as much. (Without it heaps had seven of ten substeps taken in 16 to 256 pieces, and half of
-/// these without friction.)
+/// Work of gravity in a substep on a component in contact, J. Impulses between bodies err as much in an interval,
+/// however short. (Without it heaps had seven of ten substeps taken in 16 to 256 intervals, and half of these
+/// without friction.)
 double mspringi_gravity_energy_in_contact(const mspring_network *network,
                                           const mspringi_component_budget *component, double mass);
 

@@ -1,4 +1,4 @@
-/// What floor and grips add to the linear system of a substep: a block for each particle that they hold.
+/// Stiffness of floor contacts and grips in the linear system: a diagonal block for each particle.
 #include "solvers/implicit/implicit_terms.h"
 
 // The next, from number at on: the floor's, then the grips'.

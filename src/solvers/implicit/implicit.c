@@ -1,4 +1,4 @@
-/// Making an implicit solver, and what it keeps.
+/// Creation of an implicit solver, its memory, its edits and its history.
 #include "solvers/implicit/implicit.h"
 
 #include <math.h>
@@ -133,7 +133,7 @@ static mspring_result allocate_factors(making *m) {
     return m->made->factors ? MSPRING_OK : no_memory(m->network);
 }
 
-// What conjugate gradients need besides.
+// Further arrays of conjugate gradients.
 static mspring_result allocate_iterate(making *m) {
     mspringi_implicit *n = m->made;
     mspring_network *network = m->network;
@@ -187,7 +187,7 @@ static void wire(mspringi_implicit *n, const mspring_network *network) {
     };
 }
 
-// What each of the workers that there are now has for itself.
+// Reserve the arrays of each worker.
 mspring_result mspringi_implicit_reserve(mspringi_implicit *n, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     const uint32_t team = mspringi_tasks_concurrency(network->tasks);
@@ -214,7 +214,7 @@ mspring_result mspringi_implicit_reserve(mspringi_implicit *n, mspring_network *
     return MSPRING_OK;
 }
 
-// Whether the coarse matrix of these tiles is one that can be factored in every substep.
+// True if the coarse matrix of these tiles is cheap enough to be factored in each substep.
 static mspring_result check_coarse(const mspringi_implicit *n, mspring_network *network) {
     const double cost = mspringi_coarse_cost(&n->tiles);
     if (cost <= MOST_COARSE_COST)
@@ -463,7 +463,7 @@ void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit
     clear_empty_slots(network, n);
 }
 
-// What sleeps is left out of substeps: it is predicted where it is, and does not go on from there.
+// Sleeping particles are left out of substeps: their prediction is their position.
 static void rest_sleepers(const mspring_network *network, mspringi_implicit *n) {
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
         if (!mspringi_slot_is_asleep(network, slot))

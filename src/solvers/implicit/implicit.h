@@ -1,17 +1,24 @@
 /// @file implicit.h
-/// The implicit solver: one linear system a substep, whatever the stiffness.
+/// Implicit solver: one linear system a substep, stable at any stiffness.
 ///
-///   weigh, fly, predict    where the particles would be without forces               integrator.c
-///   assemble               springs, linearised there, into A d = b                   assemble.c
-///   solve                  two-level preconditioned conjugate gradients              conjugate_gradients.c,
-///   tiles.c, coarse.c
-///                          or, for the direct solver, a factorisation                solvers/direct/direct.c
-///   land                   positions and velocities from d                           integrator.c
-///   budget                 what no force has done is taken back                      energy_budget.h
+/// In the order of a substep:
 ///
-/// Workers share all of it (team.h): slots in chunks, rows in panels (panels.h), and tiles. Whatever is summed is
-/// summed in these pieces first, so that the bits do not depend on how many there are. The factorisation of the
-/// direct solver is one worker's.
+///   predict     positions and velocities without spring forces                    integrator.c
+///   assemble    matrix A and right-hand side b of A d = b, linearised there       assemble.c
+///   terms       floor, contact, grips, areas and angles in the system             implicit_terms.h
+///   solve       conjugate gradients with a two-level preconditioner               conjugate_gradients.c
+///                 its coarse space: cells, tiles, the coarse matrix               cells.h, tiles.h, coarse.h
+///               or, in the direct solver, a factorisation                         solvers/direct/direct.c
+///   correct     positions and velocities from the displacement d                  integrator.c
+///   budget      energy, momentum and spin that no force explains are removed      energy_budget.h
+///
+/// implicit_substeps.c runs this, and solves again while the active set of floor, contact and grips changes.
+///
+/// A spring adds three *factors* to A: a vector `pull` along it, and its geometric stiffness. Its 2 x 2 block is
+/// pull pull' + geometric I. So pull' pull is the remaining stiffness along the spring, with damping.
+///
+/// Workers share slots in chunks, rows in panels (panels.h), and tiles (team.h). Sums are over these parts first,
+/// so bits do not depend on the number of workers. One worker factors the matrix of the direct solver.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_IMPLICIT_H
@@ -26,29 +33,29 @@
 #include "solvers/implicit/panels.h"
 #include "solvers/implicit/tiles.h"
 
-/// Slots from which more than one worker is worth it.
+/// Fewest slots for more than one worker.
 #define MSPRINGI_SMALLEST_SHARED_SLOTS 4096
 
 /// Most iterations, and most substeps with one coarse matrix.
 #define MSPRINGI_MOST_ITERATIONS 10000
 
-/// What is the integrator's, apart from the state: kept from substep to substep, restored with the state.
+/// State of the integrator: kept from substep to substep, restored with the state.
 typedef struct mspringi_history {
     mspringi_field first;  ///< acceleration, m/s^2; of BDF2: the last displacement beyond h v, m
     mspringi_field second; ///< of BDF2: the last change of velocity, m/s; else NULL
     float h;               ///< substep that it belongs to, s
-    uint32_t restarts;     ///< substeps to come that are of implicit Euler, as there is none or it says nothing
+    uint32_t restarts;     ///< coming substeps of implicit Euler, because the history is missing or of no use
 } mspringi_history;
 
-/// Iterations after which a substep is taken as it comes: no piece is taken again, and contact acts after it alone.
-/// They bound the product of pieces, halvings, passes, and iterations within iterations. (Heaps and presses need
-/// 8,000. A tangle of 87 springs with contact and angles took 310,000 in a substep, 1.3 s; these take 70 ms.)
-/// Whoever asks for many iterations gets as many more.
+/// Iterations after which a substep is accepted: no interval is repeated, and contact acts by impulses alone. They
+/// bound the product of intervals, halvings, passes and nested iterations. (Heaps and presses need 8,000. A tangle
+/// of 87 springs with contact and angles took 310,000 in a substep, 1.3 s; these take 70 ms.) A host that asks for
+/// many iterations gets as many more.
 #define MSPRINGI_MOST_SOLVES 16384u
 #define MSPRINGI_TIMES_SOLVED 32u
 
-/// How contact between bodies acts in a substep: with friction; without, where friction and what presses bodies
-/// together would raise each other; after the substep alone, by impulses.
+/// Contact between bodies in a substep: with friction; without it, where friction and normal forces would raise
+/// each other; by impulses after the substep only.
 typedef enum mspringi_contact_mode {
     MSPRINGI_CONTACT_WITH_FRICTION,
     MSPRINGI_CONTACT_FRICTIONLESS,
@@ -58,62 +65,60 @@ typedef enum mspringi_contact_mode {
 typedef struct mspringi_implicit {
     mspring_integrator integrator;
     uint32_t iterations, coarse_period;
-    uint32_t tile_size;     ///< as asked for: 0 is by plan
-    uint32_t age;           ///< substeps since the coarse matrix was factored; 0: it is to be
-    uint32_t kept_age;      ///< before the step; 0: there is none to go back to
-    uint32_t kept_restarts; ///< those of the history before the step
-    uint32_t retry_count;   ///< pieces of this substep that were undone
-    uint32_t solves;        ///< iterations of this substep, each of which multiplies by the system or its inverse
+    uint32_t tile_size;     ///< as requested; 0: automatic
+    uint32_t age;           ///< substeps since the coarse matrix was factored; 0: factor it
+    uint32_t kept_age;      ///< before the step; 0: nothing to restore
+    uint32_t kept_restarts; ///< restarts of the history before the step
+    uint32_t retry_count;   ///< intervals of this substep that were undone
+    uint32_t solves;        ///< products with A or its inverse in this substep
     double scale;           ///< power of two that brings masses near 1
 
-    mspringi_history history, backup; ///< backup is that of before the step once that has written one
-    mspringi_history previous;        ///< what the next substep is written to; that of before the last substep
-    bool is_kept;                     ///< history is that of before the step
-    bool is_first;                    ///< the last substep was the first of a step, so backup is what was before it
-    bool has_changed;                 ///< backup is
+    mspringi_history history, backup; ///< backup: before the step, once the step has changed it
+    mspringi_history previous;        ///< output of the next substep; until then, before the last one
+    bool is_kept;                     ///< history is still that of before the step
+    bool is_first;                    ///< the last substep was the first of a step, so backup is its start
+    bool has_changed;                 ///< backup is in use
     size_t history_size;              ///< floats in a history
 
     double *x, *y;           ///< [slots] predicted positions, in one block
-    mspringi_field velocity; ///< after the substep, if d were 0
+    mspringi_field velocity; ///< velocity after the substep for d = 0
     mspringi_field residual, displacement, direction, product, scaled;
-    mspringi_field arm;                 ///< from the mass centre of its tile to each particle, m
+    mspringi_field arm;                 ///< from the tile's mass centre to each particle, m
     float *mass;                        ///< [slots] scaled; 0 if pinned or empty
     float *diagonal;                    ///< [slots] xx, then xy, then yy of A's blocks, then of their inverses
-    float *factors;                     ///< of lattices, chains and irregular springs, one behind the other
-    float *irregular_factors;           ///< where those of the irregular springs begin: [block][factor][lane]
-    double *force_carry;                ///< carry rows, one for each worker: see mspringi_system
+    float *factors;                     ///< factors of lattice, chain and irregular springs, end to end
+    float *irregular_factors;           ///< first factors of irregular springs: [block][factor][lane]
+    double *force_carry;                ///< carry rows, one for each worker (mspringi_system)
     float *carry;                       ///< likewise
     double (*unknowns)[MSPRINGI_RIGID]; ///< [workers][tiles] of the coarse matrix; each worker solves for them
-    uint32_t team;                      ///< workers that there are carry rows and unknowns for
-    uint32_t solo_substeps;             ///< substeps to come that one worker takes, as others had no core
-    uint32_t solo_backoff;              ///< how many these were to be
+    uint32_t team;                      ///< workers with carry rows and unknowns
+    uint32_t solo_substeps;             ///< coming substeps of one worker, because others had no core
+    uint32_t solo_backoff;              ///< length of the present run of them
     float *sums;                        ///< [chunks]
     mspringi_tile_motion *tile_motions; ///< [tiles]
-    uint8_t *is_coupled;                ///< [loose and spare slots] 1 where springs were added, so that A is not
-                                        ///< diagonal there; NULL: nowhere
-    double irregular_product;           ///< what irregular springs and contacts add to p . A p
-    bool uses_euler;                    ///< the present substep is one of implicit Euler: particles hit the floor,
-                                        ///< or motion is not to be followed as the integrator would
-    bool restarts_with_euler;           ///< it is to be begun again, as one of implicit Euler
-    bool must_solve_again;              ///< it is to be solved again, as floor or grips hold particles otherwise
-    mspringi_contact_mode contact_mode; ///< how rows between bodies hold in the present substep
-    bool is_piece;                      ///< it is a half of one that got energy from nowhere, or of such a half
+    uint8_t *is_coupled;      ///< [loose and spare slots] 1 with added springs: not diagonal in A; NULL: none
+    double irregular_product; ///< share of irregular springs and contacts in p . A p
+    bool uses_euler;          ///< the present substep is of implicit Euler: an impact, or a history of no use
+    bool restarts_with_euler; ///< repeat it as one of implicit Euler
+    bool must_solve_again;    ///< solve again: the active set has changed
+    mspringi_contact_mode contact_mode; ///< of the present substep
+    bool is_piece;                      ///< it is a half of one that gained energy, or of such a half
     mspringi_system system;
     mspringi_iterate iterate;
-    mspringi_edits seen;                      ///< the edits that it has followed
+    mspringi_edits seen;                      ///< edits up to the last update
     struct mspringi_implicit_builder *making; ///< NULL: it is complete
-    size_t used_slot_end; ///< behind these no particle has ever been: all that is kept by slot is 0 there
-    uint64_t rested;      ///< edits.naps for which what sleeps is at rest in all that is kept by slot
+    size_t used_slot_end;                     ///< no slot behind has had a particle: arrays by slot are 0 there
+    uint64_t rested; ///< edits.naps up to which arrays by slot are at rest for sleeping particles
 
     mspringi_budget budget;
     mspringi_panels panels;
     bool is_direct;
-    mspringi_direct direct; ///< all there is of it unless is_direct: zero
-    mspringi_tiles tiles;   ///< none, nor a coarse matrix, if it is
+    mspringi_direct direct; ///< zero unless is_direct
+    mspringi_tiles tiles;   ///< tiles and coarse are empty if is_direct
     mspringi_coarse coarse;
 } mspringi_implicit;
 
-/// The object of the solver that takes the step that is being made.
+/// The running solver's implicit object.
 static inline mspringi_implicit *mspringi_implicit_of(const mspring_network *network) {
     MSPRINGI_ASSERT(network->running);
     return network->running->object;
@@ -125,22 +130,22 @@ mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_s
 mspring_result mspringi_implicit_make(mspringi_implicit *implicit, bool *is_done);
 void mspringi_implicit_adjust(mspringi_implicit *implicit, const mspring_solver_def *def);
 void mspringi_implicit_destroy(mspringi_implicit *implicit, mspringi_memory *memory);
-/// Have a copied solver's pointers lead into the copy of its network.
+/// Redirect a copied solver's pointers into the copy of its network.
 void mspringi_implicit_relocate(mspringi_implicit *implicit, const mspring_network *network,
                                 const mspringi_memory *from, const mspringi_memory *to);
-/// Have carry rows for the workers that there are now.
+/// Reserve carry rows for the present workers.
 mspring_result mspringi_implicit_reserve(mspringi_implicit *implicit, mspring_network *network);
 
 /// Forget the history, as if a new motion began.
 void mspringi_implicit_forget(mspringi_implicit *implicit);
 
-/// Take count substeps of length h, all with the forces from outside that are in base (x NULL: none).
+/// Take count substeps of length h with the outside forces in base (x NULL: none).
 void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_field base, uint32_t count);
 
-/// Cut tiles anew where springs broke or were restored, or pins changed. Allocates nothing.
+/// Update tiles where springs broke or were restored, or pins changed. Allocates nothing.
 void mspringi_implicit_update(const mspring_network *network, mspringi_implicit *implicit);
 
-/// Keep the history for a step that fails, and get it back.
+/// Save the history before a step, and restore it after a failed one.
 void mspringi_implicit_keep(mspringi_implicit *implicit);
 void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit *implicit);
 
@@ -153,7 +158,7 @@ mspring_result mspringi_implicit_check(mspring_network *network, const mspringi_
 void mspringi_implicit_load(mspring_network *network, mspringi_implicit *implicit, const uint8_t *from,
                             size_t size);
 
-/// What the workers of one substep share.
+/// Arguments that the workers of a substep share.
 typedef struct mspringi_implicit_substep {
     mspring_network *network;
     mspringi_field base;
@@ -168,7 +173,7 @@ typedef struct mspringi_implicit_substep {
     mspringi_history_kind history;
 } mspringi_implicit_substep;
 
-/// A range of slots: those of a team member's share of the chunks.
+/// Range of slots: a team member's share of the chunks.
 typedef struct mspringi_slots {
     size_t first, end;
 } mspringi_slots;
@@ -179,10 +184,9 @@ static inline mspringi_slots mspringi_slots_of(const mspring_network *network, c
     return (mspringi_slots){mspringi_range_begin(member, chunks) * MSPRINGI_CHUNK, end < slots ? end : slots};
 }
 
-/// Whether a team member computes what a tile or cell with this slot in its middle needs: its particles are mostly
-/// those that the team member moves. (With equal shares of tiles in their order, half of all particles went from
-/// core to core and back in each iteration. Where cores are far apart, two workers took 1.15 times as long as one
-/// then.)
+/// True if a team member owns a tile or cell whose middle slot this is: it moves most of its particles. (With equal
+/// shares of tiles in their order, half of all particles went from core to core in each iteration. Where cores are
+/// far apart, two workers then took 1.15 times as long as one.)
 static inline bool mspringi_slot_is_of(const mspring_network *network, const mspringi_team_member *member,
                                        size_t slot) {
     const mspringi_slots slots = mspringi_slots_of(network, member);
@@ -195,11 +199,11 @@ static inline bool mspringi_tile_is_of(const mspring_network *network, const msp
     return member->count == 1 || mspringi_slot_is_of(network, member, tiles->parts[middle].first_slot);
 }
 
-/// The next of these slots that are to be gone through, in whole chunks, from *at on, which goes behind them: all,
-/// but for chunks in which nothing is swept. Returns false if there are none.
+/// Find the next run of whole chunks with awake particles from *at on, and move *at behind it. Return false at the
+/// end.
 bool mspringi_next_slots(const mspring_network *network, mspringi_slots slots, size_t *at, mspringi_slots *run);
 
-/// Slots of loose particles, spare ones among them, and whether one of them is in the linear system.
+/// Slots of loose particles, spare ones included; true if one of them is in the linear system.
 static inline mspringi_slots mspringi_loose_slots(const mspringi_topology *t, const mspringi_slots *within) {
     const size_t loose = (size_t)t->loose_first * MSPRINGI_WIDTH;
     const size_t loose_end = loose + ((size_t)t->loose_blocks + t->spare_blocks) * MSPRINGI_WIDTH;
@@ -217,35 +221,35 @@ static inline bool mspringi_may_iterate(const mspringi_implicit *n) {
 
 /* integrator.c */
 
-/// Where an integrator puts the forces: A = M + c K + s C, with c = force_fraction h^2 and s = c velocity_fraction
-/// / h; the velocity after the substep is that of d = 0 plus velocity_fraction d / h.
+/// Coefficients of an integrator: A = M + c K + s C with c = force_fraction h^2 and s = c velocity_fraction / h.
+/// The velocity after the substep grows by velocity_fraction d / h.
 typedef struct mspringi_integrator_coefficients {
     double force_fraction, velocity_fraction;
 } mspringi_integrator_coefficients;
 mspringi_integrator_coefficients mspringi_integrator_coefficients_of(mspring_integrator integrator);
 
-/// Fill in all that a substep needs to know but its workers.
+/// Prepare a substep for its workers.
 void mspringi_integrator_prepare(mspringi_implicit_substep *substep);
 void mspringi_predict(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 /// d = displacement + alpha direction.
 void mspringi_correct(const mspringi_implicit_substep *substep, const mspringi_team_member *member, float alpha);
-/// Let the history be that of the substep that has landed.
+/// Accept the history of the corrected substep.
 void mspringi_integrator_accept(const mspringi_implicit_substep *substep);
-/// Go back to the history of before the substep that has landed.
+/// Restore the history of before that substep.
 void mspringi_integrator_undo(mspring_network *network);
 
 /* assemble.c */
 
-/// Whether nothing of a panel is to be swept.
+/// True if all of a panel sleeps.
 bool mspringi_panel_is_asleep(const mspring_network *network, const mspringi_panel *panel);
 
 void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_member *member);
-/// product = A direction. Returns their scalar product, when all have met.
+/// product = A direction. Return direction . product, after a barrier.
 double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 
 /* conjugate_gradients.c: from residual, factors and diagonal to d */
 
-/// Solve for d, but for the last step along the direction. Returns its length; NaN if numbers overflowed.
+/// Solve for d, except for the last step along the direction. Return its length; NaN after an overflow.
 float mspringi_solve(const mspringi_implicit_substep *substep, mspringi_team_member *member);
 
 #endif

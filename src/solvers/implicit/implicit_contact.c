@@ -1,17 +1,16 @@
-/// Contact between bodies in the linear system of an implicit substep.
+/// Contact between bodies in the linear system of an implicit substep: an active-set method.
 ///
-/// A row is what contact/constraints.c makes of a point that is near an edge: directions and shares of the start of
-/// the substep. What is nearer at its end than the thickness is held apart by a spring across, and by one along as
-/// long as friction bears that. They join two bodies, so they are added to products of the matrix, or to the
-/// solution of its factor, and to the blocks on its diagonal. Which rows hold is found by solving again, as of the
-/// floor: what pulls is let go. The springs are about as stiff as the network is at the row, so that iterations
-/// find them, and give way by about as much as it does. If a row gives way by more, impulses after the substep mend
-/// it.
+/// contact/constraints.c makes the constraints, with normals and weights of the start of the substep. Where the gap
+/// would close, a normal spring keeps it open. A tangential spring acts within the friction cone. These springs
+/// join two bodies. So they enter products with the matrix, or the solution of its factor, and the diagonal blocks.
+/// Solving again finds the active set: constraints that pull are released. The springs are about as stiff as the
+/// network at the constraint, so that few iterations find them; both give way about equally. Impulses after the
+/// substep correct larger overlaps.
 ///
-/// A particle without springs is no unknown of the system. What it hits feels its mass: a row that it is in gives
-/// way like a spring and a mass in a line.
+/// A particle without springs is no unknown of the system. A constraint with one gives way like a spring and a mass
+/// in series.
 ///
-/// A substep in which bodies touch is one of implicit Euler, and so is the next: see implicit_floor.c.
+/// Substeps with active constraints, and the next one each, are of implicit Euler: see implicit_floor.c.
 #include <math.h>
 #include <string.h>
 
@@ -19,33 +18,32 @@
 #include "contact/contacts.h"
 #include "solvers/implicit/implicit_terms.h"
 
-/// Stiffness of a row, in that of the network at it and its own inertia.
+/// Stiffness of a constraint, in units of the network's stiffness and inertia there.
 #define PENALTY 4.0
 
-/// Times that a substep is solved before rows are only added, and not let go or made to slide.
+/// Solutions of a substep that may release constraints or let them slide. Later ones only add constraints.
 #define FREE_PASSES 12
 
 /// Change of a normal force, as a part of it, that friction is worth another solution for.
 #define SAME_FORCE 0.1
 
-/// Depth that says nothing, and depth that is mended after the substep, as shares of the thickness.
+/// Rounding of a depth, and the depth left after the substep, as shares of the thickness.
 #define UNSEEN_SHARE 1e-6
 #define MENDED_SHARE 0.02
 
-/// What is deeper than this share of the thickness may not get deeper at all, and what is half as deep by half of
-/// that in a substep: what is pressed for long would sink through otherwise. Colliders do not give way.
+/// Overlap that may not grow, as a share of the thickness; half of it may grow by half of the tolerance.
 #define DEEPEST_SHARE 0.2
 
 /// Work of contact, and pull, that may be rounding, as shares of the largest work and push.
 #define GIVEN_SHARE 1e-3
 
-/// Depth of a pair that had no row, as a share of the thickness, for which a substep is taken again in halves.
+/// Depth of a pair without a constraint, as a share of the thickness, that makes a substep repeat in halves.
 #define MISSED_SHARE 0.1
 
-/// Times that all rows are mended.
+/// Most sweeps over all constraints against deep overlaps.
 #define MOST_MENDING_SWEEPS 32
 
-/// Nothing in a row moves further than this share of the thickness in a piece of a substep; so many pieces at most.
+/// Longest move of a constraint in an interval, as a share of the thickness, and most intervals of a substep.
 #define PIECE_SHARE 1.0
 #define MOST_PIECES 40u
 
@@ -55,7 +53,7 @@ static mspringi_contacts *pairs_of(const mspring_network *network) {
     return network->contacts && network->contacts->quiet_substeps == 0 ? network->contacts : NULL;
 }
 
-// The rows of the present substep; 0 of those that have none.
+// Number of constraints of the present substep; 0 without contact.
 static uint32_t count_of(const mspring_network *network) {
     const mspringi_contacts *contacts = network->contacts;
     return contacts && contacts->quiet_substeps == 0 ? contacts->constraint_count : 0;
@@ -69,7 +67,7 @@ static uint32_t slot_of(const mspring_network *network, uint32_t node) {
     return network->topology.slot_of_particle[network->contacts->nodes.particles[node]];
 }
 
-// Whether a particle is alone in the loose row: its row of the system is its mass.
+// True if a particle is loose: its equation in the system is its mass alone.
 static bool flies(const mspring_network *network, size_t slot) {
     return slot >= (size_t)network->topology.loose_first * MSPRINGI_WIDTH &&
            !mspringi_is_coupled(network, mspringi_implicit_of(network), slot);
@@ -100,7 +98,8 @@ static double product(double (*shares)[2], double (*vectors)[2]) {
     return sum;
 }
 
-// Where a row would be at the end without springs and contact.
+// Begin with a constraint. It is active if its gap would close at the end of the substep without springs and
+// contact.
 static void begin_constraint(const mspring_network *network, const mspringi_contact_constraint *t, double h,
                              hold *to) {
     const mspringi_contacts *contacts = network->contacts;
@@ -171,7 +170,7 @@ static void predict(const mspring_network *network, hold *c, const mspringi_cont
     }
 }
 
-// What a row holds with: springs in a line with how stiff the network is at each end.
+// Stiffness of a constraint: in series with the network's at each end.
 static double stiffness_of(const mspring_network *network, hold *c, double (*shares)[2]) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     double give = 0.0;
@@ -201,7 +200,7 @@ static void predict_constraint(const mspring_network *network, const mspringi_co
     c->grip = stiffness_of(network, c, c->along);
 }
 
-// Add what a row along some shares does to the system.
+// Add the terms of a constraint along some shares to the system.
 static void add_constraint(mspring_network *network, hold *c, double (*shares)[2], double stiffness, double force) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     for (int i = 0; i < 3; ++i) {
@@ -223,7 +222,7 @@ bool mspringi_implicit_constraint_sticks(const hold *c) {
     return c->is_active && c->slip == 0.0 && c->friction > 0.0;
 }
 
-// The factor of the direct solver has no rows: it solves for their forces.
+// The factor of the direct solver excludes constraints: it solves for their forces.
 void mspringi_implicit_contact_add_terms(mspring_network *network, float h) {
     const uint32_t count = count_of(network);
     const mspringi_implicit *n = mspringi_implicit_of(network);
@@ -289,7 +288,7 @@ bool mspringi_implicit_contact_is_active(const mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- the review */
 
-// Where a row came to. Of the direct solver displacement is all of it.
+// Displacement of a constraint at the solution. With the direct solver, displacement has all of it.
 static double end_of(const mspring_network *network, hold *c, double (*shares)[2], float alpha) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const double way = mspringi_implicit_contact_gather(network, c, shares, n->displacement);
@@ -297,7 +296,7 @@ static double end_of(const mspring_network *network, hold *c, double (*shares)[2
                         : way + (double)alpha * mspringi_implicit_contact_gather(network, c, shares, n->direction);
 }
 
-// Look at what a row came to. Returns whether that is other than what was assumed.
+// Update a constraint from the solution. Return true if it differs from the assumption.
 static bool update_constraint(const mspring_network *network, hold *c, float alpha, bool is_free) {
     const double end = c->gap + end_of(network, c, c->across, alpha), before = c->normal, slipped = c->slip;
     const bool was_active = c->is_active;
@@ -349,7 +348,7 @@ void mspringi_implicit_contact_store_impulses(mspring_network *network, float h)
 
 /* ---------------------------------------------------------------------------------------------------- mending */
 
-// What would get too deep by more than is given is pushed apart by as much. Returns whether it was.
+// Push a constraint apart by its overlap beyond the tolerance. Return true if it had one.
 static bool mend(const mspringi_contacts *contacts, mspringi_contact_constraint *t, double h, double given) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     const double speed = mspringi_normal_speed(t, k->v);
@@ -377,7 +376,7 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
     bool any = false;
     if (!contacts || contacts->constraint_count == 0)
         return;
-    // Where rows hold by this alone, many pieces of a substep would each give some.
+    // If contact acts by impulses alone, tolerances of many intervals would add up.
     const bool is_isolated = mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES;
     const double given = is_isolated ? 0.0 : MENDED_SHARE * contacts->thickness;
     const mspringi_contact_nodes *k = &contacts->nodes;
@@ -413,12 +412,12 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
 
 /* ---------------------------------------------------------------------------------------------------- the check */
 
-// The speed across a row at the start of the substep.
+// Normal speed of a constraint at the start of the substep.
 static double speed_before(const mspringi_contacts *contacts, const mspringi_contact_constraint *t) {
     return mspringi_normal_speed(t, contacts->nodes.v_start);
 }
 
-// The speed of a row along some shares at the end of the substep, by how far it came.
+// Speed of a constraint along some shares, from the displacement in the substep.
 static double speed_of(const mspring_network *network, const mspringi_contact_constraint *t, hold *c,
                        double (*shares)[2], double h) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
@@ -434,7 +433,7 @@ static double speed_of(const mspring_network *network, const mspringi_contact_co
     return sum;
 }
 
-// A row that should push gives energy to what it pushes apart, as long as that is no faster than it should be.
+// Push-out of an overlap may add energy up to the target speed.
 bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float h) {
     const mspringi_contacts *contacts = network->contacts;
     const uint32_t count = count_of(network);
@@ -459,7 +458,7 @@ bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float
 
 /* ------------------------------------------------------------------------------------------- what has no row */
 
-// Where a node is at the end of a substep.
+// Find the position of a node at the end of a substep.
 static void end_of_node(const mspring_network *network, uint32_t node, double h, double *x, double *y) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     *x = k->x[node] + h * k->v[node].x;
@@ -474,7 +473,7 @@ static double square_of(const mspringi_closest_point *at) {
     return at->x * at->x + at->y * at->y;
 }
 
-// Whether a pair did not touch at the start of a substep and is too deep at its end.
+// True if a pair was apart at the start of a substep and is too deep at its end.
 static bool is_thrown(const mspring_network *network, const mspringi_candidate *c, double h) {
     const mspringi_contacts *contacts = network->contacts;
     const mspringi_contact_nodes *k = &contacts->nodes;
@@ -508,7 +507,7 @@ bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, floa
 
 /* --------------------------------------------------------------------------------------------- once it is taken */
 
-// What rows gave to particles that are flown past the floor by themselves.
+// Add the impulses of a constraint to isolated particles, which move past the floor by themselves.
 static void gain(const mspring_network *network, const mspringi_contact_constraint *t, hold *c) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     for (int i = 0; i < 3; ++i) {
@@ -532,7 +531,7 @@ void mspringi_implicit_contact_count_impulses(mspring_network *network, float h)
         return;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i)
         gain(network, &contacts->constraints[i], &contacts->implicit_constraints[i]);
-    // They move on with what they got in the pieces before, too.
+    // They keep the velocities from earlier intervals, too.
     const mspringi_contact_nodes *k = &contacts->nodes;
     for (uint32_t i = 0; i < k->particle_count; ++i) {
         k->shift_x[i] += (double)h * k->extra_vx[i];

@@ -1,14 +1,13 @@
-/// Contact in the linear system of an implicit substep.
+/// Floor in the linear system of an implicit substep: an active-set method.
 ///
-/// A particle that would come below the surface is held by a spring across it, and by one along it as long as
-/// friction bears that; both are far stiffer than the network is at the particle, so that the network gives way and
-/// not they. Which particles are held, and which of them slide, is found by solving again: what pulls is let go,
-/// what comes below is held, what needs more than friction bears slides with that. (An active set, as of
-/// Hintermueller, Ito and Kunisch, 2003.) What these springs give way is taken back after the substep by
-/// mspringi_floor_apply_all().
+/// A normal spring holds a particle that would come below the surface. A tangential one holds it within the
+/// friction cone. Both are far stiffer than the network at the particle, so the network gives way. Solving again
+/// finds the active set: contacts that pull are released, new ones are added, and tangential forces beyond the cone
+/// slide. (Hintermueller, Ito and Kunisch, 2003.) mspringi_floor_apply_all() takes back what these springs give way
+/// after the substep.
 ///
-/// A substep in which particles hit the floor is one of implicit Euler, and the next one, too: methods of second
-/// order would take the blow for an acceleration that lasts, and throw the network back by up to half its speed.
+/// A substep with an impact, and the next one, are of implicit Euler. Methods of second order would take the impact
+/// for a lasting acceleration, and throw the network back at up to half its speed.
 #include "solvers/implicit/implicit_terms.h"
 
 #include <math.h>
@@ -18,15 +17,15 @@
 #define PENALTY_DIRECT 1e3
 #define PENALTY_ITERATED 30.0
 
-/// Times that a substep is solved before particles are only held and made to stick, and not let go or made to
-/// slide.
+/// Solutions of a substep that may release contacts or let them slide. Later ones only add contacts or make them
+/// stick.
 #define FREE_PASSES 2
 
 /// Change of a normal force, as a part of it, that friction is worth another solution for.
 #define SAME_FORCE 0.02
 
-/// A substep in which a particle would come deeper than this share of the shortest spring is divided, into so many
-/// pieces at most: turned by more, springs are no longer what they were linearised as, and a blow makes energy.
+/// Depth of a particle, as a share of the shortest spring, that divides a substep into intervals, and most
+/// intervals. Springs that turn by more differ from their linearisation, so an impact adds energy.
 #define DEEPEST_SHARE 0.2
 #define MOST_PIECES 40u
 
@@ -136,7 +135,7 @@ uint32_t mspringi_floor_count_intervals(const mspring_network *network, float h)
 
 /* --------------------------------------------------------------------------------------------------- the terms */
 
-// What a contact adds to the matrix, and where it wants the particle to be.
+// Stiffness and target position of a contact in the matrix.
 typedef struct term {
     double xx, xy, yy, to_x, to_y;
 } term;

@@ -12,20 +12,20 @@
 
 #include "contact/grips.h"
 
-// Whether a grip is in the system. What no spring pulls at is none of its rows; see contact/grip_stage.c.
+// True if a grip is in the system. Particles without springs have no equation there; see contact/grip_stage.c.
 static bool is_held(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot) {
     return mspringi_grip_is_active(network, grip, slot) &&
            !network->running->ops->is_isolated(network, network->running->object, *slot);
 }
 
-// Where the target is at the end of a substep, or of a piece of it.
+// Target at the end of a substep, or of an interval.
 static mspringi_grip_target aim_of(const mspring_network *network, const mspringi_grip *grip, float h) {
     const mspringi_grips *grips = &network->grips;
     const double passed = grips->passed + (double)h / (double)grips->h;
     return mspringi_grip_target_at(network, grip, grips->begin + passed * grips->share);
 }
 
-// What it adds to the diagonal.
+// Stiffness and damping of a grip on the diagonal.
 static double weight_of(const mspring_network *network, const mspringi_grip *grip) {
     const mspringi_system *s = &mspringi_implicit_of(network)->system;
     const double whole = (double)grip->stiffness + (double)grip->damping * s->damping_rate;

@@ -1,5 +1,5 @@
-/// What the implicit solver carries from step to step, in a snapshot: the history and, unless it is to be factored
-/// anew, the coarse matrix. The direct solver has no tiles, but an order of elimination.
+/// Snapshot section of the implicit solver: the history and, between factorisations, the coarse matrix. The direct
+/// solver saves its elimination order instead of tiles.
 #include <float.h>
 #include <math.h>
 #include <string.h>

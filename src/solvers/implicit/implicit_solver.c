@@ -1,4 +1,4 @@
-/// The tables of the implicit and the direct solver, which are one but for what solves the linear system.
+/// Solver tables: implicit and direct. They differ in the solution of the linear system.
 #include <math.h>
 
 #include "contact/floor.h"
@@ -132,7 +132,7 @@ static void rest_slot(const mspring_network *network, void *object, size_t slot)
         n->history.first.x[i + slot] = n->backup.first.x[i + slot] = n->previous.first.x[i + slot] = 0.0f;
 }
 
-// A place outside of rows in which no spring lies any more adds nothing.
+// Clear the factors of an irregular spring slot that no spring uses any more.
 static void clear_spring(const mspring_network *network, void *object, mspringi_spring_slot spring_slot) {
     const mspringi_implicit *n = object;
     for (uint32_t factor = 0; spring_slot >= network->topology.chain_spring_slots && factor < MSPRINGI_FACTORS;

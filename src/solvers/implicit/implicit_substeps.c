@@ -1,14 +1,14 @@
-/// A substep: one linear system, the floor, and the energy budget; or its halves.
+/// Substeps: linear system, active set, floor, energy budget; repeated in halves if the budget is exceeded.
 #include "contact/floor.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 #include "stability/guard.h"
 
-/// Workers meet some forty times in a substep. Where they have to share cores, these become sleeps, and one worker
-/// is faster alone (two workers on cores with a load of 10: 2.3 times, 1800x5). So after a substep with more than
-/// so many sleeps the next ones are taken alone: so many, and twice as many each time, up to so many. The bits are
-/// the same. Few at first, as others take a core away for a moment now and then (with 64 our ship's two workers
-/// were as fast as one, where they are 1.3 to 1.7 times).
+/// A substep has about forty barriers. If workers share cores, barriers become sleeps, and one worker is faster
+/// (two workers on cores with a load of 10: 2.3 times, 1800x5). After a substep with more sleeps than bearable, one
+/// worker takes the next ones: few at first, then twice as many each time, up to a limit. The bits are the same.
+/// Few at first, because others take a core for a moment now and then. (With 64 our ship's two workers were as fast
+/// as one; with 4 they are 1.3 to 1.7 times as fast.)
 #define BEARABLE_SLEEPS 6
 #define SHORTEST_PATIENCE 4
 #define LONGEST_PATIENCE 1024
@@ -35,11 +35,11 @@ static float solve(const mspringi_implicit_substep *substep, mspringi_team_membe
     return 0.0f;
 }
 
-// Most times that a substep is solved to find out which particles the floor holds, and which rows of bodies do.
+// Most solutions of a substep while the active set changes: of the floor, of bodies.
 #define MOST_PASSES 4
 #define MOST_PASSES_OF_BODIES 16
 
-// Add what floor and grips add. Returns false if particles hit the floor.
+// Add the terms of floor, grips and contact. Return false if particles hit the floor.
 static bool add_terms(const mspringi_implicit_substep *substep, uint32_t pass) {
     mspring_network *network = substep->network;
     if (network->floor && !mspringi_floor_add_terms(network, substep->h, pass))
@@ -49,12 +49,12 @@ static bool add_terms(const mspringi_implicit_substep *substep, uint32_t pass) {
     return true;
 }
 
-// Whether a substep in which something hits is one of another integrator than it should be.
+// True if an impact needs implicit Euler in this substep, but another integrator began it.
 static bool must_begin_anew(const mspringi_implicit *n) {
     return !n->uses_euler && n->integrator != MSPRING_INTEGRATOR_EULER;
 }
 
-// Returns whether other particles are to be held than were, or otherwise.
+// Update the active sets. Return true if one changed.
 static bool review_terms(mspring_network *network, float alpha, uint32_t pass) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const bool by_floor = network->floor && mspringi_floor_update_active_set(network, alpha, pass);
@@ -63,7 +63,7 @@ static bool review_terms(mspring_network *network, float alpha, uint32_t pass) {
     return mspringi_grips_update_active_set(network, alpha) || by_floor || by_bodies;
 }
 
-// Solve with what floor and grips add. Returns false if the substep is to be begun anew.
+// Solve with the terms of floor, grips and contact. Return false if the substep must begin again.
 static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_team_member *member, float *alpha) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
@@ -120,7 +120,7 @@ static void choose_team(mspringi_implicit_substep *substep) {
     substep->progress = substep->workers > 1 ? mspringi_tasks_progress(network->tasks) : NULL;
 }
 
-// Whether the workers had a core each.
+// Choose the next substeps of one worker from the sleeps at barriers.
 static void judge_team(mspringi_implicit *n, uint32_t sleeps) {
     if (sleeps <= BEARABLE_SLEEPS) {
         n->solo_backoff = 0;
@@ -137,7 +137,7 @@ static void run_team(mspringi_implicit_substep *substep) {
     mspringi_tasks_run(tasks, substep->workers, run_share, substep);
 }
 
-// Solve a substep, by implicit Euler if it is a piece of another, and let the floor act.
+// Solve a substep, by implicit Euler for a half of another, and apply the floor.
 static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
@@ -158,19 +158,19 @@ static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
     mspringi_integrator_accept(substep);
     n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
     mspringi_implicit_contact_fix_overlaps(network, substep->h);
-    // Last: what lay below the floor would be lifted out of it in the next piece, however short that is.
+    // Last: otherwise the next interval, however short, would lift particles from below the floor.
     if (network->floor)
         mspringi_floor_apply_all(network, substep->h);
 }
 
-/// Pieces that may be taken again in a substep, before all that is left of it is taken as it comes. (Heaps need 60.
-/// A tangle of some hundred crossing springs took 8,000 in each, and half a minute for a step.)
+/// Most repeated intervals in a substep; later ones are accepted. (Heaps need 60. A tangle of some hundred crossing
+/// springs took 8,000 in each, and half a minute for a step.)
 #define MOST_RETAKEN 512u
 
 static void take_halves(mspringi_implicit_substep *substep, uint32_t halvings);
 
-// Take a substep of substep->h. One that gets energy from nowhere is taken again, by implicit Euler and with more
-// iterations, and then in halves.
+// Take a substep of substep->h. If it exceeds the energy budget, repeat it by implicit Euler and with more
+// iterations, then in halves.
 static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
@@ -219,7 +219,7 @@ static void take_halves(mspringi_implicit_substep *substep, uint32_t tries) {
     substep->h = h;
 }
 
-// Where particles would hit the floor or other bodies hard, a substep is taken in pieces.
+// Divide a substep into intervals before hard impacts on the floor or between bodies.
 static void take_pieces(mspringi_implicit_substep *substep) {
     mspring_network *network = substep->network;
     const float h = substep->h;

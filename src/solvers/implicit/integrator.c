@@ -39,7 +39,7 @@ mspringi_integrator_coefficients mspringi_integrator_coefficients_of(mspring_int
     }
 }
 
-// Whether the substep is one of implicit Euler, whatever the integrator.
+// True if the substep is of implicit Euler, whatever the integrator.
 static bool starts_anew(const mspringi_implicit *n) {
     return n->history.restarts > 0 || n->uses_euler;
 }
@@ -50,7 +50,7 @@ static mspring_integrator integrator_now(const mspringi_implicit *n) {
 
 /* ------------------------------------------------------------------------------------------------- preparation */
 
-// What a history of another substep is multiplied with: of a smooth motion, E grows as h^2 and G as h.
+// Factor on a history of another substep length: for a smooth motion, E grows as h^2 and G as h.
 static float rescaling(const mspringi_implicit *n, float h) {
     const bool other = n->integrator == MSPRING_INTEGRATOR_BDF2 && !starts_anew(n) && n->history.h != h;
     return other ? h / n->history.h : 1.0f;
@@ -172,7 +172,7 @@ void mspringi_integrator_prepare(mspringi_implicit_substep *substep) {
     const mspring_integrator integrator = integrator_now(n);
     const mspringi_integrator_coefficients scheme = mspringi_integrator_coefficients_of(integrator);
     const double h = (double)substep->h, c = scheme.force_fraction * h * h;
-    // What global damping multiplies masses by.
+    // Factor of global damping on masses.
     const double heavier =
         1.0 + scheme.force_fraction * scheme.velocity_fraction * h * (double)network->settings.global_damping;
     n->system.force_scale = n->scale * c;

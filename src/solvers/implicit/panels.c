@@ -1,4 +1,4 @@
-/// Cutting rows into panels.
+/// Division of rows into panels.
 #include "solvers/implicit/panels.h"
 
 /// Slots that make a panel: few enough for workers to have equal shares of a network that is worth sharing, and

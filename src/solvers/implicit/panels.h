@@ -1,10 +1,7 @@
 /// @file panels.h
-/// Panels: whole rows of one kind that follow each other, which one worker assembles and multiplies.
+/// Panels: consecutive whole rows of one kind, which one worker assembles and multiplies.
 ///
-/// Which rows are one panel depends on the layout alone, so a sum over panels is the same for any number of
-/// workers.
-///
-/// SPDX-License-Identifier: MIT
+/// Panels depend on the layout alone, so a sum over panels is the same for any number of workers.
 #ifndef MSPRINGI_PANELS_H
 #define MSPRINGI_PANELS_H
 
@@ -12,7 +9,7 @@
 
 typedef struct mspringi_panel {
     uint32_t first_span, span_count;
-    uint32_t below_first, below_count; ///< spans of the row before if it hands on to this one, else none
+    uint32_t below_first, below_count; ///< spans of the row before, if it carries into this one; else none
     bool is_lattice;                   ///< else chain
 } mspringi_panel;
 

@@ -1,4 +1,4 @@
-/// Finding the tiles in the cells, and following edits.
+/// Tiles: components of the cells, and their update after edits.
 #include "solvers/implicit/tiles.h"
 
 #include <string.h>
@@ -8,14 +8,14 @@
 #include "store/one_way.h"
 #include "store/springs.h"
 
-/// Room for pieces: tiles beyond twice the cells, numbers of the coarse matrix beyond four times those of cells in
-/// one piece each, and springs to pinned particles beyond a quarter of all.
+/// Spare capacity for divided cells: tiles beyond twice the cells; entries of the coarse matrix beyond four times
+/// those of undivided cells; springs to pinned particles beyond a quarter of all.
 #define SPARE_TILES 64u
 #define SPARE_VALUES ((size_t)4096)
 #define SPARE_ANCHORS 1024u
 
-// Whether a spring can pull. One that only pulls or only pushes can, even where it is slack in this step: when
-// tiles are cut must not matter, as they are cut after a snapshot is loaded, too.
+// True if a spring can pull. One-way springs can, even if slack in this step. Tiles must not depend on when they
+// are made, because loading a snapshot makes them, too.
 static bool is_live(const mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot) {
     return mspringi_spring_slot_is_live(network, spring_slot) &&
            (mspringi_side_of(network, spring) != 0 ||
@@ -47,7 +47,7 @@ static bool is_loose(const mspring_network *network, uint32_t slot) {
     return slot >= network->topology.loose_first * MSPRINGI_WIDTH;
 }
 
-// Whether a slot's particle is in some tile: one that is loose only while an added spring pulls at it.
+// True if a slot's particle may lie in a tile. A loose one does while an added spring acts on it.
 static bool is_in_tile(const mspring_network *network, uint32_t slot) {
     if (!is_free(network, slot) || !is_loose(network, slot))
         return is_free(network, slot);
@@ -270,7 +270,7 @@ static void mark_changed_links(mspringi_tiles *tiles, const mspring_network *net
     }
 }
 
-// What sleeps is as good as pinned.
+// Sleeping particles count as pinned.
 static bool pins_have_changed(const mspringi_tiles *tiles, const mspring_network *network,
                               const mspringi_edits *seen) {
     if (seen->masses == network->edits.masses && seen->sleep_changes == network->edits.sleep_changes)

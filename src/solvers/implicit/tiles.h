@@ -1,12 +1,9 @@
 /// @file tiles.h
-/// Tiles: small parts of a network, each moving as a rigid body in the coarse space of the two-level
-/// preconditioner.
+/// Tiles: aggregates of the coarse space. Each moves as a rigid body in the two-level preconditioner.
 ///
-/// A tile is a connected component of live springs inside a cell, so that the two sides of a crack are never one
-/// body. Pinned particles are in no tile. Where more springs break than there is room for tiles, cells in many
-/// pieces are one tile each again: the preconditioner is worse then, the result the same but for the iterations.
-///
-/// SPDX-License-Identifier: MIT
+/// A tile is a connected component of live springs inside a cell, so both sides of a crack are separate. Pinned
+/// particles lie in no tile. If breaks leave more tiles than there is room for, divided cells become one tile each.
+/// Then iterations converge more slowly.
 #ifndef MSPRINGI_TILES_H
 #define MSPRINGI_TILES_H
 
@@ -50,8 +47,8 @@ void mspringi_tiles_begin(mspringi_tile_builder *tiling, mspringi_tiles *tiles, 
                           uint32_t size, mspringi_memory *memory, mspringi_message *message);
 mspring_result mspringi_tiles_run(mspringi_tile_builder *tiling, bool *is_done);
 void mspringi_tiles_end(mspringi_tile_builder *tiling);
-/// Have the bodies turn as hard as those of other tiles of the same network, in which rest lengths may have been
-/// others.
+/// Set the added moment of inertia to that of other tiles of the same network, whose rest lengths may have
+/// differed.
 void mspringi_tiles_set_inertia(mspringi_tiles *tiles, float turn_inertia, size_t slots);
 extern const mspringi_array_table mspringi_tiles_columns;
 void mspringi_tiles_destroy(mspringi_tiles *tiles, mspringi_memory *memory);
@@ -78,11 +75,11 @@ static inline uint32_t mspringi_tiles_envelope(const mspringi_tiles *tiles, uint
     return tiles->first_of_cell[tiles->cells.lowest[cell]];
 }
 
-/// Whether springs or pins that tiles depend on were edited since seen.
+/// True if springs or pins that tiles depend on were edited since seen.
 bool mspringi_tiles_are_outdated(const mspringi_tiles *tiles, const mspring_network *network,
                                  const mspringi_edits *seen);
 
-/// Follow the edits since seen. Allocates nothing.
+/// Update after the edits since seen. Allocates nothing.
 void mspringi_tiles_update(mspringi_tiles *tiles, const mspring_network *network, const mspringi_edits *seen);
 
 #endif
