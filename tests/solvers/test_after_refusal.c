@@ -7,7 +7,8 @@
 /// A small lattice and a particle on it, added later and laid out by a compaction, so that all of it is irregular.
 static mspring_network *grown(mspring_guard guard, mspring_solver solver) {
     mspring_network_def def = support_def(-9.8f, 2);
-    def.solver = solver;
+    def.solver =
+        solver == MSPRING_SOLVER_DIRECT ? MSPRING_SOLVER_IMPLICIT : solver; // the direct one takes no springs
     def.guard = guard;
     def.spare_particles = 4;
     def.spare_springs = 8;
@@ -36,6 +37,13 @@ static mspring_network *grown(mspring_guard guard, mspring_solver solver) {
     check_ok(mspring_network_add_springs(network, &spring, 1, &ignored));
     support_steps(network, 10, 1.0 / 60);
     check_ok(mspring_network_compact(network));
+    if (solver == MSPRING_SOLVER_DIRECT) {
+        mspring_solver_def direct;
+        check_ok(mspring_solver_def_init(&direct, sizeof direct));
+        direct.solver = solver;
+        direct.substeps = 2;
+        check_ok(mspring_network_set_solver(network, &direct));
+    }
     return network;
 }
 

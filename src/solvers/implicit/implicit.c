@@ -433,6 +433,16 @@ static void clear_empty_slots(const mspring_network *network, const mspringi_imp
     }
 }
 
+void mspringi_implicit_clear_overflow(const mspring_network *network, mspringi_implicit *n) {
+    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->team;
+    memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
+    memset(n->carry, 0, 3 * carry * sizeof *n->carry);
+    if (!n->is_direct)
+        clear_outside_of_tiles(network, n);
+    clear_empty_slots(network, n);
+    n->may_have_overflowed = false;
+}
+
 void mspringi_implicit_keep(mspringi_implicit *n) {
     n->is_kept = true;
     n->has_changed = false;
@@ -454,13 +464,7 @@ void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit
     n->age = n->kept_age;
     if (n->age > 0)
         mspringi_coarse_restore(&n->coarse);
-    // These are zero between steps, or where there is no tile, unless numbers overflowed.
-    const size_t carry = (size_t)network->topology.carry_blocks * MSPRINGI_WIDTH * n->team;
-    memset(n->force_carry, 0, 2 * carry * sizeof *n->force_carry);
-    memset(n->carry, 0, 3 * carry * sizeof *n->carry);
-    if (!n->is_direct)
-        clear_outside_of_tiles(network, n);
-    clear_empty_slots(network, n);
+    mspringi_implicit_clear_overflow(network, n);
 }
 
 // Sleeping particles are left out of substeps: their prediction is their position.
@@ -501,6 +505,7 @@ void mspringi_implicit_forget(mspringi_implicit *n) {
     memset(n->history.first.x, 0, n->history_size * sizeof *n->history.first.x);
     n->history.restarts = 1;
     n->budget.knows_elastic = false;
+    n->may_have_overflowed = true;
 }
 
 /* ----------------------------------------------------------------------------------------------------- ranges */

@@ -112,6 +112,7 @@ typedef struct mspringi_implicit {
 
     mspringi_budget budget;
     mspringi_panels panels;
+    bool may_have_overflowed; ///< the motion was forgotten: clear work vectors before the next substep
     bool is_direct;
     mspringi_direct direct; ///< zero unless is_direct
     mspringi_tiles tiles;   ///< tiles and coarse are empty if is_direct
@@ -147,6 +148,8 @@ void mspringi_implicit_update(const mspring_network *network, mspringi_implicit 
 
 /// Save the history before a step, and restore it after a failed one.
 void mspringi_implicit_keep(mspringi_implicit *implicit);
+/// Clear what is 0 between steps, unless numbers overflowed.
+void mspringi_implicit_clear_overflow(const mspring_network *network, mspringi_implicit *n);
 void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit *implicit);
 
 /* implicit_snapshot.c: a snapshot's section */

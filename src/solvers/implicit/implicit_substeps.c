@@ -18,6 +18,8 @@ static void follow_edits(mspring_network *network) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     if (n->seen.motion != network->edits.motion)
         mspringi_implicit_forget(n);
+    if (n->may_have_overflowed)
+        mspringi_implicit_clear_overflow(network, n);
     mspringi_implicit_update(network, n);
     n->system.parts = network->parts;
     n->system.rest_lengths = network->rest_lengths.lengths;
