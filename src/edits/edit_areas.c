@@ -237,7 +237,8 @@ static MSPRINGI_NOINLINE mspring_result add_cell_areas(mspring_network *network,
         *count = (uint32_t)cells.count;
     for (size_t i = 0; result == MSPRING_OK && i < cells.count; ++i)
         add(network, def, mspringi_area_within(network, cells.corners[i], 4), cells.corners[i], 4);
-    mspringi_free(&network->memory, cells.corners);
+    if (cells.corners)
+        mspringi_free(&network->memory, cells.corners);
     return result;
 }
 
