@@ -220,7 +220,7 @@ typedef struct mspring_collider_def {
 MSPRING_API mspring_result MSPRING_CALL mspring_collider_def_init(mspring_collider_def *def, size_t size);
 
 /// Add a collider.
-/// Bodies keep the contact's thickness from it. Nothing passes it, from either side: boxes and closed chains are walls
+/// Bodies keep the contact's thickness from it. No outline passes it, from either side: boxes and closed chains are walls
 /// around a space, and what lies inside stays inside. Sides may cross. Colliders do not touch each other. Their mass is
 /// infinite. The contact's sweeps and push_speed are theirs, too. The guide examples/guides/contact.md has the
 /// guarantees.
