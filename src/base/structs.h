@@ -31,7 +31,7 @@ mspring_result mspringi_init_struct(const mspringi_struct *of, void *out, size_t
 mspring_result mspringi_take_struct(mspringi_message *message, const mspringi_struct *of, const void *given,
                                     void *taken);
 
-/// The same of an element of an array, in which all are as large as the first.
+/// Copy an element of an array, all of whose elements must be as large as the first.
 mspring_result mspringi_take_struct_at(mspringi_message *message, const mspringi_struct *of, const void *array,
                                        size_t index, void *taken);
 
@@ -40,7 +40,7 @@ mspring_result mspringi_check_given(mspringi_message *message, const mspringi_st
 
 /// Refuse a struct that cannot be filled. NULL is MSPRING_ERROR_ARGUMENT. The message may be NULL.
 mspring_result mspringi_check_output(mspringi_message *message, const mspringi_struct *of, const void *out);
-/// The same of all elements of an array, which are as large as the first.
+/// Check all elements of an array of equal size.
 mspring_result mspringi_check_outputs(mspringi_message *message, const mspringi_struct *of, const void *array,
                                       uint32_t count);
 

@@ -334,7 +334,7 @@ mspringi_spring_slot mspringi_saved_place(const mspringi_saved *saved, mspring_i
                                                                 : mspringi_spare_spring_slot(t, spring);
 }
 
-// Whether an original spring joins the same two, broken or not.
+// True if an original spring, broken or not, joins these two.
 static bool is_joined(const mspring_network *network, const growth *g, mspring_id a, mspring_id b) {
     const mspringi_topology *t = &network->topology;
     if (a >= t->reserve.first_particle || b >= t->reserve.first_particle)

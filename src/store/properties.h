@@ -22,8 +22,8 @@ static inline bool mspringi_is_inverse_mass_scale(float scale) {
     return (scale == 0.0f) | ((scale >= MSPRINGI_SMALLEST_SCALE) & (scale <= 1.0f));
 }
 
-/// Whether a network may keep this stiffness, damping or rest length in force, which flow may take to 1.9 times the
-/// longest that may be given.
+/// True if a record may hold this stiffness, damping or rest length in force. Flow may stretch a rest length to 1.9
+/// times the longest that a host may set.
 static inline bool mspringi_is_spring_value(mspringi_part part, float value) {
     return part == MSPRINGI_REST_LENGTH ? (value > 0.0f) & (value <= 8e12f) : (value >= 0.0f) & (value <= 1e30f);
 }

@@ -18,7 +18,7 @@ static inline mspringi_io mspringi_io_from(const uint8_t *from, size_t size) {
     return (mspringi_io){.from = from, .size = size, .left = size};
 }
 
-/// What a snapshot says is there, for sections that name it.
+/// Particles and springs of a snapshot, for sections that refer to them.
 typedef struct mspringi_saved {
     const mspring_network *network;
     const uint8_t *growth; ///< its section, NULL: all is there
@@ -47,8 +47,8 @@ typedef struct mspringi_section {
                                     size_t size);
 } mspringi_section;
 
-/// Whether there is a particle or a spring in the snapshot, in id_pool.c; and whether the spring is whole, in
-/// springs.c. Ids are below those of the reserve.
+/// True if the snapshot has a particle or a spring (snapshot_id_pool.c); true if that spring is unbroken
+/// (snapshot_springs.c). Ids are below the end of the reserve.
 bool mspringi_saved_has_particle(const mspringi_saved *saved, mspring_id particle);
 bool mspringi_saved_has_spring(const mspringi_saved *saved, mspring_id spring);
 bool mspringi_saved_is_whole(const mspringi_saved *saved, mspring_id spring);

@@ -183,7 +183,8 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
     turn(substep, member, MSPRINGI_SEARCH_RESTART, 0.0f);
     for (;;) {
         const double curvature = mspringi_multiply(substep, member);
-        n->solves += member->index == 0;
+        if (member->index == 0)
+            n->solves++;
         if (!(curvature < INFINITY && product < INFINITY))
             return NAN;
         // Converged, or at the limit of this precision.
