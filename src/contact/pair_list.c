@@ -219,21 +219,21 @@ static bool list_pairs_of_point(const mspring_network *network, mspringi_contact
     mspringi_edge_grid *cells = &contacts->cells;
     const uint32_t found = mspringi_edge_grid_search(network, contacts, p),
                    room = contacts->capacity - contacts->count;
-    uint32_t near = 0;
+    uint32_t close_count = 0;
     contacts->work += found + cells->long_count;
-    for (uint32_t k = 0; k < found && near <= room; ++k) {
-        cells->found[near] = cells->found[k];
-        near += are_near(network, contacts, p, cells->found[k]);
+    for (uint32_t k = 0; k < found && close_count <= room; ++k) {
+        cells->found[close_count] = cells->found[k];
+        close_count += are_near(network, contacts, p, cells->found[k]);
     }
-    for (uint32_t k = 0; k < cells->long_count && near <= room; ++k) {
-        cells->found[near] = cells->long_edges[k];
-        near += !mspringi_is_duplicate_pair(&contacts->outline, p, cells->long_edges[k]) &&
-                are_near(network, contacts, p, cells->long_edges[k]);
+    for (uint32_t k = 0; k < cells->long_count && close_count <= room; ++k) {
+        cells->found[close_count] = cells->long_edges[k];
+        close_count += !mspringi_is_duplicate_pair(&contacts->outline, p, cells->long_edges[k]) &&
+                       are_near(network, contacts, p, cells->long_edges[k]);
     }
-    const bool has_room = near <= room, is_done = contacts->work <= contacts->most_work;
-    near = has_room ? near : room;
-    sort(cells->found, near);
-    for (uint32_t k = 0; k < near; ++k)
+    const bool has_room = close_count <= room, is_done = contacts->work <= contacts->most_work;
+    close_count = has_room ? close_count : room;
+    sort(cells->found, close_count);
+    for (uint32_t k = 0; k < close_count; ++k)
         contacts->list[contacts->count++] = (mspringi_pair){.point = p, .edge = cells->found[k]};
     return has_room && is_done;
 }
