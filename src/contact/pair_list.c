@@ -76,7 +76,7 @@ static double max_or_nan(double known, double found) {
     return found <= known ? known : found;
 }
 
-// The same of their motion beside the mean: squares of the largest.
+// Largest squares of their motion relative to the mean.
 static void compare_colliders(const mspringi_contacts *contacts, const mean_motion *mean, double *speed,
                               double *moved) {
     const mspringi_colliders *c = &contacts->colliders;

@@ -28,7 +28,7 @@ mspring_result mspringi_rest_lengths_reserve(mspringi_rest_lengths *rests, const
 /// once.
 mspring_result mspringi_rest_lengths_unshare(mspring_network *network);
 
-/// Whether several blocks have the rest length at a lattice place.
+/// True if several blocks share the rest length of a lattice spring slot.
 static inline bool mspringi_rest_lengths_are_shared(const mspringi_rest_lengths *rests,
                                                     mspringi_spring_slot spring_slot) {
     return rests->of_block[spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH)] < rests->shared_count;

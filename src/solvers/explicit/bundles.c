@@ -12,7 +12,7 @@
 /// Substeps times springs from which more than one worker is worth it.
 #define SMALLEST_SHARED_WORK 400000u
 
-/// What the workers of a sweep have in common. (The job of network/job.h is another thing.)
+/// Data that the workers of a sweep share.
 typedef struct job {
     const mspring_network *network;
     mspringi_field base;
@@ -31,7 +31,7 @@ bool mspringi_bundles_are_apart(const mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------- bundles of a span */
 
-// Whether a group is the first of a bundle: all of its slice columns lead down.
+// True if a slice is the first of a bundle: all of its columns lead down.
 static bool begins_bundle(const mspringi_sell *irregular, uint32_t group) {
     const uint32_t *first_link = irregular->first_link + (group - irregular->first_bundle);
     return first_link[1] - first_link[0] ==

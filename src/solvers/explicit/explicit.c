@@ -107,7 +107,7 @@ static mspringi_span tier_span(const job *wavefront, uint32_t tier) {
     return span;
 }
 
-// The same of a tier of the irregular row.
+// Take one substep of a tier of the irregular row.
 static void sweep_tier(const job *wavefront, const mspringi_substep *substep, uint32_t tier) {
     const mspring_network *network = wavefront->network;
     const mspringi_span span = tier_span(wavefront, tier);
