@@ -654,8 +654,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_st
 /// Return 1 if all of the network sleeps, else 0. NULL gives 0.
 /// Each component sleeps by itself; the guide calls it an island. It falls asleep after a step if it has been slower
 /// than mspring_settings.sleep_speed for sleep_time. Its velocities become 0. Steps do not move it, and cost only
-/// what is awake. It wakes if an edit, a force or a setting changes it, or what it
-/// rests on. The rules: examples/guides/sleep.md.
+/// what is awake. It wakes if an edit, a force or a setting changes it, or what it rests on. The rules:
+/// examples/guides/sleep.md.
 /// @threads shared   @allocates never
 MSPRING_API uint32_t MSPRING_CALL mspring_network_is_asleep(const mspring_network *network);
 
