@@ -61,12 +61,40 @@ static void substeps_take_so_many_iterations(void **state) {
         }
         mspring_network_destroy(network);
     }
-    printf("at most %u iterations in a substep\n", (unsigned)most);
+    printf("at most %u iterations in a step\n", (unsigned)most);
+}
+
+// The count of iterations goes on from substep to substep of a step.
+static void look_at_count(const mspring_hook_args *args, void *user) {
+    uint32_t *seen = user;
+    const mspringi_implicit *n = args->network->solver.object;
+    assert_true(n->solves >= seen[0]);
+    seen[0] = n->solves;
+    seen[1]++;
+}
+
+static void substeps_share_one_limit(void **state) {
+    (void)state;
+    for (int kind = 0; kind < 2; kind++) {
+        mspring_network *network = tangle(7, kind ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT);
+        uint32_t seen[2] = {0, 0}, hook;
+        mspring_solver_def solver;
+        check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        solver.solver = kind ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+        solver.substeps = 16;
+        check_ok(mspring_network_set_solver(network, &solver));
+        check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, look_at_count, seen, &hook));
+        support_steps(network, 1, 1.0 / 60);
+        assert_int_equal(seen[1], 16);
+        assert_true(seen[0] > 16);
+        mspring_network_destroy(network);
+    }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(substeps_take_so_many_iterations),
+        cmocka_unit_test(substeps_share_one_limit),
     };
     return cmocka_run_group_tests_name("iteration_limit", tests, NULL, NULL);
 }

@@ -448,6 +448,7 @@ void mspringi_implicit_keep(mspringi_implicit *n) {
     n->has_changed = false;
     n->kept_age = n->age;
     n->kept_restarts = n->history.restarts;
+    n->solves = 0;
     if (n->age > 0)
         mspringi_coarse_keep(&n->coarse);
 }

@@ -47,10 +47,11 @@ typedef struct mspringi_history {
     uint32_t restarts;     ///< coming substeps of implicit Euler, because the history is missing or of no use
 } mspringi_history;
 
-/// Iterations after which a substep is accepted: no interval is repeated, and contact acts by impulses alone. They
-/// bound the product of intervals, halvings, passes and nested iterations. (Heaps and presses need 8,000. A tangle
-/// of 87 springs with contact and angles took 310,000 in a substep, 1.3 s; these take 70 ms.) A host that asks for
-/// many iterations gets as many more.
+/// Iterations of a step after which its substeps are accepted: no interval is repeated, and contact acts by
+/// impulses alone. They bound the product of substeps, intervals, halvings, passes and nested iterations. (Heaps
+/// and presses need 8,000. A tangle of 87 springs with contact and angles took 310,000 in a substep, 1.3 s; these
+/// take 70 ms. 35 thrown particles with 16 substeps: 0.10 s instead of 0.63 s.) A host that asks for many
+/// iterations gets more.
 #define MSPRINGI_MOST_SOLVES 16384u
 #define MSPRINGI_TIMES_SOLVED 32u
 
@@ -70,7 +71,7 @@ typedef struct mspringi_implicit {
     uint32_t kept_age;      ///< before the step; 0: nothing to restore
     uint32_t kept_restarts; ///< restarts of the history before the step
     uint32_t retry_count;   ///< intervals of this substep that were undone
-    uint32_t solves;        ///< products with A or its inverse in this substep
+    uint32_t solves;        ///< products with A or its inverse in this step
     double scale;           ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup: before the step, once the step has changed it
@@ -217,7 +218,7 @@ static inline bool mspringi_is_coupled(const mspring_network *network, const msp
     return n->is_coupled && n->is_coupled[slot - (size_t)network->topology.loose_first * MSPRINGI_WIDTH];
 }
 
-/// True if a substep may take more iterations.
+/// True if a step may take more iterations.
 static inline bool mspringi_may_iterate(const mspringi_implicit *n) {
     return n->solves < MSPRINGI_MOST_SOLVES + MSPRINGI_TIMES_SOLVED * n->iterations;
 }

@@ -169,6 +169,9 @@ static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
 /// springs took 8,000 in each, and half a minute for a step.)
 #define MOST_RETAKEN 512u
 
+/// Iterations that take as long as finding the constraints of an interval.
+#define INTERVAL_SOLVES 8u
+
 static void take_halves(mspringi_implicit_substep *substep, uint32_t halvings);
 
 // Take a substep of substep->h. If it exceeds the energy budget, repeat it by implicit Euler and with more
@@ -185,6 +188,7 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
         mspringi_budget_begin(network);
     else
         n->budget.knows_elastic = false;
+    n->solves += are_near ? INTERVAL_SOLVES : 0;
     run_substep(substep, tries > 0);
     const bool is_sound = mspringi_implicit_contact_kept_energy(network, substep->h);
     const bool is_last = !may_halve && (is_sound || n->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES);
@@ -252,7 +256,7 @@ void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_
     mspringi_implicit_substep substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_guard_checks_limit(network->settings.guard)};
     for (uint32_t i = 0; i < count; ++i) {
-        mspringi_implicit_of(network)->retry_count = mspringi_implicit_of(network)->solves = 0;
+        mspringi_implicit_of(network)->retry_count = 0;
         if (network->floor || mspringi_implicit_contact_is_near(network))
             take_pieces(&substep);
         else
