@@ -41,14 +41,14 @@ class Sweeps(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
-        self.alone = massspring.sweep(drop, GRID, engine=1)
+        self.alone = massspring.sweep(drop, GRID, processes=1)
 
     def test_processes(self):
-        result = massspring.sweep(drop, GRID, engine=2, folder=self.folder.name)
+        result = massspring.sweep(drop, GRID, processes=2, folder=self.folder.name)
         self.assertEqual(result.hash, self.alone.hash)
         self.assertEqual(result.array("drop").shape, (3, 2))
         self.assertEqual(dict(list(result)[3][0]), {"stiffness": 2e3, "rows": 3})
-        again = massspring.sweep(drop, GRID, engine=1, folder=self.folder.name)
+        again = massspring.sweep(drop, GRID, processes=1, folder=self.folder.name)
         self.assertEqual(again.hash, self.alone.hash)
 
     def test_shards(self):
@@ -67,16 +67,22 @@ class Sweeps(unittest.TestCase):
         with self.assertRaises(TypeError):
             massspring.sweep(object, {}, 1)
 
-    def test_engines_and_functions(self):
-        for engine in ("dask", 2.0, True, object()):
+    def test_workers_and_functions(self):
+        for engine in ("dask", 1, 5, np.int64(5), 2.0, True, object()):
             with self.assertRaisesRegex(TypeError, "engine is"):
-                massspring.sweep(drop, GRID, engine)
-        for engine in (0, -1):
-            with self.assertRaises(ValueError):
-                massspring.sweep(drop, GRID, engine)
-        for engine in (None, 2, 5):
+                massspring.sweep(drop, GRID, engine=engine)
+        for processes in ("5", 2.0, True, object()):
+            with self.assertRaisesRegex(TypeError, "processes is"):
+                massspring.sweep(drop, GRID, processes)
+        for processes in (0, -1):
+            with self.assertRaisesRegex(ValueError, "processes is"):
+                massspring.sweep(drop, GRID, processes)
+        client = type("Client", (), {"submit": None, "gather": None})()
+        with self.assertRaisesRegex(TypeError, "beside an engine"):
+            massspring.sweep(drop, GRID, 2, engine=client)
+        for processes in (None, 2, 5):
             with self.assertRaisesRegex(TypeError, "other processes cannot import it"):
-                massspring.sweep(lambda stiffness, rows: 1, GRID, engine)
+                massspring.sweep(lambda stiffness, rows: 1, GRID, processes)
         self.assertEqual(len(massspring.sweep(lambda stiffness, rows: 1, GRID, np.int64(1))), 6)
 
     def test_frame(self):
@@ -129,7 +135,7 @@ class Sweeps(unittest.TestCase):
                               "--name", str(number)) for number in range(2)]
         with Client(scheduler_file=str(where)) as client:
             client.wait_for_workers(2, timeout=60)
-            self.assertEqual(massspring.sweep(drop, GRID, client).hash, self.alone.hash)
+            self.assertEqual(massspring.sweep(drop, GRID, engine=client).hash, self.alone.hash)
             done = []
 
             def kill_one():
@@ -140,7 +146,7 @@ class Sweeps(unittest.TestCase):
 
             killer = threading.Thread(target=kill_one)
             killer.start()
-            result = massspring.sweep(slow_drop, GRID, client, kept)
+            result = massspring.sweep(slow_drop, GRID, folder=kept, engine=client)
             killer.join()
             self.assertIsNotNone(workers[0].wait())
             self.assertIsNone(workers[1].poll())
@@ -155,7 +161,7 @@ class Sweeps(unittest.TestCase):
         except ImportError:
             self.skipTest("there is no distributed (Debian: python3-distributed)")
         with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
-            self.assertEqual(massspring.sweep(drop, GRID, client).hash, self.alone.hash)
+            self.assertEqual(massspring.sweep(drop, GRID, engine=client).hash, self.alone.hash)
 
 
 if __name__ == "__main__":

@@ -58,13 +58,13 @@ def main():
     parser.add_argument("--processes", type=int)
     parser.add_argument("--scheduler")
     options = parser.parse_args()
-    engine = options.processes
+    engine = None
     if options.scheduler:
         from distributed import Client
         engine = Client(options.scheduler)
         engine.upload_file(__file__)
     shard = tuple(int(number) for number in options.shard.split("/"))
-    result = massspring.sweep(bounce, GRID, engine, options.folder, shard)
+    result = massspring.sweep(bounce, GRID, options.processes, options.folder, shard, engine=engine)
     if result is None:
         print("the shard is done, others are not")
         return

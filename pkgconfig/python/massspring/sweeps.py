@@ -96,45 +96,49 @@ def _run(function: Callable[..., Any], case: Case, path: Optional[str]) -> Any:
     return result
 
 
-def _check_engine(engine: Any, function: Any) -> None:
-    is_number = isinstance(engine, (int, np.integer)) and not isinstance(engine, bool)
-    if not is_number and engine is not None and not (hasattr(engine, "submit") and hasattr(engine, "gather")):
-        raise TypeError(f"engine is {engine!r}: it must be a number of processes, None or a client of Dask")
-    if is_number and engine < 1:
-        raise ValueError(f"engine is {engine}: it must be at least 1")
-    if engine is None or (is_number and engine > 1):
+def _check_workers(processes: Any, engine: Any, function: Any) -> None:
+    if engine is not None and not (hasattr(engine, "submit") and hasattr(engine, "gather")):
+        raise TypeError(f"engine is {engine!r}: it must be a client of Dask or None; processes is a number")
+    if processes is not None and (isinstance(processes, bool) or not isinstance(processes, (int, np.integer))):
+        raise TypeError(f"processes is {processes!r}: it must be a number or None; engine takes a client of Dask")
+    if processes is not None and engine is not None:
+        raise TypeError(f"processes is {processes} beside an engine: its client knows its workers, so leave one out")
+    if processes is not None and processes < 1:
+        raise ValueError(f"processes is {processes}: it must be at least 1")
+    if engine is None and processes != 1:
         try:
             pickle.dumps(function)
         except (pickle.PicklingError, AttributeError, TypeError):
             raise TypeError(f"function is {function!r}: other processes cannot import it. It must be one of a module, or "
-                            "engine=1") from None
+                            "processes=1") from None
 
 
-def _submit(engine: Any, calls: List[Tuple[Any, ...]]) -> List[Any]:
-    if isinstance(engine, (int, np.integer)) and engine == 1:
-        return [_run(*call) for call in calls]
-    if not isinstance(engine, (int, np.integer)) and engine is not None:  # a client of Dask
+def _submit(processes: Optional[int], engine: Any, calls: List[Tuple[Any, ...]]) -> List[Any]:
+    if engine is not None:  # a client of Dask
         return engine.gather([engine.submit(_run, *call, pure=False) for call in calls])
+    if processes == 1:
+        return [_run(*call) for call in calls]
     from concurrent.futures import ProcessPoolExecutor  # a third of what all of massspring's own import takes
 
-    with ProcessPoolExecutor(engine) as pool:
+    with ProcessPoolExecutor(processes) as pool:
         return [future.result() for future in [pool.submit(_run, *call) for call in calls]]
 
 
-def sweep(function: Callable[..., Any], grid: Dict[str, Iterable[Any]], engine: Any = None,
-          folder: Union[str, Path, None] = None, shard: Tuple[int, int] = (0, 1)) -> Optional[SweepResult]:
+def sweep(function: Callable[..., Any], grid: Dict[str, Iterable[Any]], processes: Optional[int] = None,
+          folder: Union[str, Path, None] = None, shard: Tuple[int, int] = (0, 1), *,
+          engine: Any = None) -> Optional[SweepResult]:
     """Call function(**case) for each combination of the grid's values.
 
     function  a function of a module, which other processes can import. It returns numbers, texts, arrays, lists, dicts.
     grid      values by the names of the function's arguments
-    engine    a number of processes, None for one for each processor, 1 for none besides this one; or a
-              distributed.Client of Dask, whose workers can import function
+    processes at least 1, None for one for each processor, 1 for none besides this one
     folder    keeps each result in a file. A sweep that was killed goes on where it was. With a cluster of several
               machines it must be one that all of them see.
     shard     (i, n): only cases i, i + n, i + 2n ... For arrays of jobs, such as Slurm's: each job takes a shard, with
               the same folder. Returns None, unless all cases are there by then.
+    engine    a distributed.Client of Dask instead of processes. Its workers must be able to import function.
     """
-    _check_engine(engine, function)
+    _check_workers(processes, engine, function)
     every = cases(grid)
     index, count = shard
     if not 0 <= index < count:
@@ -148,7 +152,8 @@ def sweep(function: Callable[..., Any], grid: Dict[str, Iterable[Any]], engine: 
         paths = [folder / f"{number:08d}.json" for number in range(len(every))]
     had = [_stored(path, case) for path, case in zip(paths, every)]
     wanted = [number for number in range(index, len(every), count) if had[number] is None]
-    made = _submit(engine, [(function, every[number], None if folder is None else str(paths[number])) for number in wanted])
+    calls = [(function, every[number], None if folder is None else str(paths[number])) for number in wanted]
+    made = _submit(processes, engine, calls)
     for number, result in zip(wanted, made):
         had[number] = {"result": result}
     if count > 1:
