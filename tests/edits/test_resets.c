@@ -14,14 +14,16 @@ typedef struct batch {
     mspring_network *network;
     uint32_t group_count, spring_count;
     uint32_t group_of[MOST_SPRINGS];
+    mspring_id firsts[MOST_GROUPS + 1];
 } batch;
 
 // Add rings of any size with chords, the last of them outside of all groups, and their springs in any order.
 static void make(batch *b, uint32_t groups, uint64_t *seed) {
     mspring_builder *builder = support_builder();
-    mspring_id firsts[MOST_GROUPS + 1] = {0}, ends[MOST_SPRINGS][2];
+    mspring_id ends[MOST_SPRINGS][2];
     b->group_count = groups;
     b->spring_count = 0;
+    b->firsts[0] = 0;
     for (uint32_t g = 0; g <= groups; g++) {
         const uint32_t size = 1 + (uint32_t)(support_random(seed) % 12);
         const mspring_id first = mspring_builder_particle_count(builder);
@@ -34,7 +36,7 @@ static void make(batch *b, uint32_t groups, uint64_t *seed) {
                 b->group_of[b->spring_count] = g;
             }
         if (g < groups)
-            firsts[g + 1] = first + size;
+            b->firsts[g + 1] = first + size;
     }
     for (uint32_t s = b->spring_count; s-- > 1;) {
         const uint32_t other = (uint32_t)(support_random(seed) % (s + 1)), group = b->group_of[s];
@@ -49,7 +51,7 @@ static void make(batch *b, uint32_t groups, uint64_t *seed) {
     mspring_network_def def = support_def(0, 4);
     def.guard = MSPRING_GUARD_BOUNDS;
     b->network = support_network(builder, &def);
-    check_ok(mspring_network_set_groups(b->network, firsts, groups));
+    check_ok(mspring_network_set_groups(b->network, b->firsts, groups));
 }
 
 static bool one_in(uint32_t count, uint64_t *seed) {
@@ -121,10 +123,69 @@ static void clones_and_layouts_reset_alike(void **state) {
     }
 }
 
+// Give every third spring a yield strain, or none: their rest lengths change in a step.
+static void let_yield(batch *b) {
+    for (mspring_id s = 0; s < b->spring_count; s += 3) {
+        const float strain = 0.01f;
+        check_ok(mspring_network_set(b->network, MSPRING_YIELD_STRAIN, s, 1, &strain, 1));
+    }
+}
+
+// Break springs and restore them with ramps, of which some end before the reset and others run on.
+static void run_ramps(batch *b, uint64_t *seed) {
+    for (mspring_id s = 0; s < b->spring_count; s += 1 + (mspring_id)(support_random(seed) % 3)) {
+        const float longer = 3;
+        if (b->group_of[s] == b->group_count)
+            continue; // no reset restores it
+        check_ok(mspring_network_break_springs(b->network, &s, 1));
+        check_ok(mspring_network_restore_springs(b->network, &s, 1, one_in(2, seed) ? 0.01 : 10));
+        if (one_in(4, seed))
+            check_ok(mspring_network_set(b->network, MSPRING_REST_LENGTH, s, 1, &longer, 1));
+    }
+    for (int step = 0; step < 4; step++)
+        check_ok(mspring_network_step(b->network, 0.01));
+}
+
+static uint64_t state_hash(const mspring_network *network) {
+    uint64_t hash = 0;
+    check_ok(mspring_network_state_hash(network, &hash));
+    return hash;
+}
+
+// A reset to the start leaves no ramp: the future is that of a network without one, bit for bit.
+static void resets_undo_ramps(void **state) {
+    static batch b;
+    uint64_t seed = 3;
+    (void)state;
+    for (int round = 0; round < ROUNDS(20); round++) {
+        mspring_network *fresh = NULL;
+        make(&b, 1 + (uint32_t)(round % 5), &seed);
+        if (round % 2)
+            let_yield(&b);
+        for (mspring_id p = 0; p < mspring_network_particle_count(b.network); p++)
+            check_ok(mspring_network_set_velocities(b.network, p, 1, &(float){1}, &(float){(float)(p % 5)}, 1));
+        check_ok(mspring_network_set_groups(b.network, b.firsts, b.group_count)); // the start has the velocities
+        check_ok(mspring_network_clone(b.network, NULL, &fresh));
+        for (int step = 0; step < 4; step++)
+            check_ok(mspring_network_step(fresh, 0.01));
+        check_ok(mspring_network_reset_groups(fresh, NULL, 0, MSPRING_RESET_START));
+        run_ramps(&b, &seed);
+        check_ok(mspring_network_reset_groups(b.network, NULL, 0, MSPRING_RESET_START));
+        for (int step = 0; step < 5; step++) {
+            assert_true(state_hash(b.network) == state_hash(fresh));
+            check_ok(mspring_network_step(b.network, 0.01));
+            check_ok(mspring_network_step(fresh, 0.01));
+        }
+        mspring_network_destroy(fresh);
+        mspring_network_destroy(b.network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(resets_put_back_their_springs),
         cmocka_unit_test(clones_and_layouts_reset_alike),
+        cmocka_unit_test(resets_undo_ramps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
