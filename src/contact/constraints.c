@@ -102,18 +102,20 @@ static bool belongs_to_other_edge(const mspring_network *network, mspringi_conta
     const mspring_id corner = end == 0 ? o->a[pair->edge] : o->b[pair->edge];
     const uint32_t at = k->number[corner], p = k->number[pair->point];
     const double dx = k->x[p] - k->x[at], dy = k->y[p] - k->y[at];
-    for (uint32_t j = o->first[corner]; j < o->first[corner + 1]; ++j) {
+    bool is_found = false;
+    uint32_t j = o->first[corner];
+    for (; j < o->first[corner + 1] && !is_found; ++j) {
         const uint32_t edge = o->at[j];
         if (edge == pair->edge)
             continue;
         const mspring_id other = o->a[edge] == corner ? o->b[edge] : o->a[edge];
         const uint32_t beyond = k->number[other];
         const bool is_nearer = dx * (k->x[beyond] - k->x[at]) + dy * (k->y[beyond] - k->y[at]) > 0.0;
-        if ((is_nearer || edge < pair->edge) && other != pair->point &&
-            !is_excluded(network, contacts, pair, end, j - o->first[corner], other))
-            return true;
+        is_found = (is_nearer || edge < pair->edge) && other != pair->point &&
+                   !is_excluded(network, contacts, pair, end, j - o->first[corner], other);
     }
-    return false;
+    mspringi_contact_count_visits(contacts, j - o->first[corner]);
+    return is_found;
 }
 
 // Add friction. It acts on the surface, not on the edge's centre line; the couple conserves angular momentum.
@@ -278,13 +280,15 @@ static void flush_pending(mspringi_contacts *contacts, double h) {
 
 // True if the point is next to the last pending one on an outline. Only such runs are reordered: with all
 // reordered, impulses spread so slowly that heaps of fragments crept for a minute instead of 20 s.
-static bool is_beside_last(const mspringi_contacts *contacts, mspring_id point) {
+static bool is_beside_last(mspringi_contacts *contacts, mspring_id point) {
     const mspringi_outline *o = &contacts->outline;
     const mspring_id last =
         contacts->list[contacts->candidates[contacts->pending[contacts->pending_count - 1].candidate].pair].point;
     bool is_next = point == last;
-    for (uint32_t j = o->first[last]; j < o->first[last + 1] && !is_next; ++j)
+    uint32_t j = o->first[last];
+    for (; j < o->first[last + 1] && !is_next; ++j)
         is_next = o->a[o->at[j]] == point || o->b[o->at[j]] == point;
+    mspringi_contact_count_visits(contacts, j - o->first[last]);
     return is_next;
 }
 
@@ -376,13 +380,21 @@ static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, u
 // Queue constraints of candidates: of all, or only of fast ones without a constraint.
 static void queue_constraints(const mspring_network *network, mspringi_contacts *contacts, double h, double given,
                               bool only_fast, double *fastest) {
-    for (uint32_t first = 0; first < contacts->candidate_count; first += FILTER_BATCH) {
+    for (uint32_t first = 0; first < contacts->candidate_count && !contacts->is_out_of_room;
+         first += FILTER_BATCH) {
         uint32_t kept[FILTER_BATCH];
         const uint32_t count =
             only_fast ? filter_fast(contacts, first, kept) : filter_candidates(contacts, first, h, given, kept);
-        for (uint32_t i = 0; i < count; ++i)
+        for (uint32_t i = 0; i < count && !contacts->is_out_of_room; ++i)
             queue_constraint(network, contacts, kept[i], h, given, fastest);
     }
+}
+
+// Make what is pending. If there was no room, the step will be rejected: do nothing more for it.
+static void flush_or_end(mspringi_contacts *contacts, double h) {
+    flush_pending(contacts, h);
+    if (contacts->is_out_of_room)
+        contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
 }
 
 double mspringi_contact_make_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
@@ -391,7 +403,7 @@ double mspringi_contact_make_constraints(const mspring_network *network, mspring
     contacts->max_pending = pending;
     contacts->constraint_count = contacts->pending_count = contacts->near_miss_count = 0;
     queue_constraints(network, contacts, h, given, false, &fastest);
-    flush_pending(contacts, h);
+    flush_or_end(contacts, h);
     return fastest;
 }
 
@@ -423,7 +435,7 @@ bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_c
     }
     if (any_fast)
         queue_constraints(network, contacts, h, 0.0, true, &fastest);
-    flush_pending(contacts, h);
+    flush_or_end(contacts, h);
     for (uint32_t i = before; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
         if (t->gap + h * mspringi_normal_speed(t, contacts->nodes.v) < 0.0)

@@ -136,6 +136,11 @@ static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     return mspringi_pair_list_scan(network, contacts);
 }
 
+// True if the step will be rejected.
+static bool has_failed(const mspringi_contacts *contacts) {
+    return contacts->is_pair_list_full || contacts->is_out_of_room;
+}
+
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_contacts *contacts = network->contacts;
     mspringi_outline_update(network, contacts);
@@ -188,7 +193,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     mspringi_contacts *contacts = network->contacts;
     const uint32_t count = substep + 1 - contacts->first_substep;
     contacts->substeps_done += count;
-    if (contacts->is_pair_list_full)
+    if (has_failed(contacts))
         return;
     contacts->is_fresh = false;
     if (contacts->quiet_substeps > 0) {
@@ -212,9 +217,9 @@ static bool must_repeat(mspring_network *network, const mspringi_attempt *attemp
     mspringi_contacts *contacts = network->contacts;
     const uint32_t count = contacts->substeps_done == 0 ? attempt->substeps : contacts->substeps_since_scan;
     contacts->substeps_done = attempt->substeps;
-    if (count > 0 && !contacts->is_pair_list_full)
+    if (count > 0 && !has_failed(contacts))
         look_back(network, contacts, count);
-    if (!contacts->is_missed || contacts->is_second_try || contacts->is_pair_list_full)
+    if (!contacts->is_missed || contacts->is_second_try || has_failed(contacts))
         return false;
     contacts->is_second_try = true;
     return true;
@@ -222,15 +227,15 @@ static bool must_repeat(mspring_network *network, const mspringi_attempt *attemp
 
 static mspring_result verify(mspring_network *network) {
     const mspringi_contacts *contacts = network->contacts;
-    if (!contacts->is_pair_list_full && !contacts->is_out_of_room)
+    if (!has_failed(contacts))
         return MSPRING_OK;
     if (contacts->work > contacts->most_work)
-        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
-                             "over %.3g comparisons of outline points and edges in a step, as many of %u edges are "
-                             "within %g m of many points: set contact with less thickness, take a shorter dt, or "
-                             "divide long springs",
-                             (double)contacts->most_work, (unsigned)contacts->outline.edge_count,
-                             contacts->cells.reach);
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_LIMIT,
+            "over %.3g comparisons of outline points and edges in a step, as many of %u edges are "
+            "within %g m of many points, or at one particle: set contact with less thickness, take a "
+            "shorter dt, or divide long springs",
+            (double)contacts->most_work, (unsigned)contacts->outline.edge_count, contacts->cells.reach);
     return mspringi_fail(
         &network->message, MSPRING_ERROR_LIMIT,
         "more than %u pairs of an outline point and an outline edge %s each other: set "

@@ -300,7 +300,7 @@ struct mspringi_contacts {
     uint32_t constraint_count, near_miss_count, constraint_capacity;
     mspringi_pending_constraint pending[MSPRINGI_MAX_PENDING];
     uint32_t pending_count, max_pending;
-    bool is_out_of_room;                                ///< constraint_capacity was exceeded
+    bool is_out_of_room; ///< constraint_capacity or most_work was exceeded: the step will be rejected
     mspringi_implicit_constraint *implicit_constraints; ///< [constraint_capacity] the same constraints in a linear
                                                         ///< system; NULL unless a solver has one
     double passed;                                      ///< time taken in intervals of an implicit substep, s
@@ -313,6 +313,18 @@ struct mspringi_contacts {
 };
 
 typedef struct mspringi_contacts mspringi_contacts;
+
+/// Edges at a particle that cost nothing to visit. More count as comparisons: hubs of thousands would take their
+/// square.
+#define MSPRINGI_FREE_EDGES 64u
+
+/// Count visits of outline edges at one particle.
+static inline void mspringi_contact_count_visits(mspringi_contacts *contacts, uint32_t visits) {
+    if (visits <= MSPRINGI_FREE_EDGES)
+        return;
+    contacts->work += visits;
+    contacts->is_out_of_room |= contacts->work > contacts->most_work;
+}
 
 /* outline.c */
 

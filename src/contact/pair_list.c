@@ -245,12 +245,25 @@ static void activate(mspringi_contact_nodes *active, mspring_id p) {
     active->particles[active->count++] = p;
 }
 
+// Activate what is joined to a corner below an id.
+static void activate_neighbours(mspringi_contacts *contacts, mspring_id corner, mspring_id end) {
+    const mspringi_outline *o = &contacts->outline;
+    if (corner >= end)
+        return;
+    mspringi_contact_count_visits(contacts, o->first[corner + 1] - o->first[corner]);
+    for (uint32_t j = o->first[corner]; j < o->first[corner + 1]; ++j) {
+        activate(&contacts->nodes, o->a[o->at[j]]);
+        activate(&contacts->nodes, o->b[o->at[j]]);
+    }
+}
+
 // Activate the nodes of candidates below an id, and their neighbours on the outline: corners compare incident
 // edges.
 static void activate_below(mspringi_contacts *contacts, mspring_id end) {
     mspringi_contact_nodes *active = &contacts->nodes;
     const mspringi_outline *o = &contacts->outline;
-    for (uint32_t i = 0; i < contacts->candidate_count; ++i) {
+    mspring_id last[2] = {MSPRING_NONE, MSPRING_NONE}; // corners; consecutive candidates share a hub
+    for (uint32_t i = 0; i < contacts->candidate_count && !contacts->is_out_of_room; ++i) {
         const mspringi_pair *pair = &contacts->list[contacts->candidates[i].pair];
         const mspring_id ends[] = {o->a[pair->edge], o->b[pair->edge]};
         if (pair->point < end)
@@ -258,10 +271,8 @@ static void activate_below(mspringi_contacts *contacts, mspring_id end) {
         if (ends[0] == ends[1] && ends[0] < end)
             activate(active, ends[0]);
         for (int k = 0; k < 2 && ends[0] != ends[1]; ++k)
-            for (uint32_t j = o->first[ends[k]]; j < o->first[ends[k] + 1] && ends[k] < end; ++j) {
-                activate(active, o->a[o->at[j]]);
-                activate(active, o->b[o->at[j]]);
-            }
+            if (ends[k] != last[k])
+                activate_neighbours(contacts, last[k] = ends[k], end);
     }
 }
 
@@ -275,6 +286,8 @@ static void activate_all(mspringi_contacts *contacts) {
     active->particle_count = active->count;
     if (contacts->colliders.count > 0)
         activate_below(contacts, MSPRING_NONE);
+    if (contacts->is_out_of_room)
+        contacts->candidate_count = 0;
     for (uint32_t i = 0; i < contacts->candidate_count; ++i) {
         mspringi_candidate *c = &contacts->candidates[i];
         const mspringi_pair *pair = &contacts->list[c->pair];
@@ -377,7 +390,8 @@ static void collect_candidates(mspringi_contacts *contacts) {
 
 bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts) {
     measure_points(network, contacts);
-    if (!contacts->is_listed || !(guaranteed_reach(contacts) >= required_reach(contacts))) {
+    if (!contacts->is_out_of_room &&
+        (!contacts->is_listed || !(guaranteed_reach(contacts) >= required_reach(contacts)))) {
         const bool is_sparse =
             contacts->is_listed && SPARSE * (uint64_t)contacts->candidate_count < contacts->outline.point_count;
         const double most = required_reach(contacts),
@@ -385,7 +399,7 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
         contacts->is_listed = make_list(network, contacts, more) || make_list(network, contacts, most);
         contacts->is_pair_list_full = !contacts->is_listed;
     }
-    if (contacts->is_pair_list_full) {
+    if (contacts->is_pair_list_full || contacts->is_out_of_room) {
         // The step will be rejected. Its other substeps have no candidates: these were of another list.
         contacts->candidate_count = 0;
         activate_all(contacts);
