@@ -2,6 +2,8 @@
 /// After numbers overflowed in an implicit step, the next steps are those of a network that never saw it.
 ///
 /// SPDX-License-Identifier: MIT
+#include <string.h>
+
 #include "support.h"
 
 /// A small lattice and a particle on it, added later and laid out by a compaction, so that all of it is irregular.
@@ -88,10 +90,49 @@ static void a_clamped_step_leaves_no_trace(void **state) {
     }
 }
 
+static size_t save(const mspring_network *network, unsigned char *bytes, size_t capacity) {
+    size_t size = 0;
+    memset(bytes, 0, capacity);
+    check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, bytes, capacity, &size));
+    return size;
+}
+
+// Ends of broken springs and added particles begin a history, also with an integrator that keeps none.
+static void a_refused_step_leaves_no_trace_in_snapshots(void **state) {
+    (void)state;
+    static const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};
+    static unsigned char bytes[2][1 << 16];
+    for (uint32_t i = 0; i < 3 * COUNT_OF(solvers); i++) {
+        size_t sizes[2];
+        for (int refused = 0; refused < 2; refused++) {
+            mspring_network *network = grown(MSPRING_GUARD_GROWTH, solvers[i / 3]);
+            mspring_solver_def def;
+            check_ok(mspring_solver_def_init(&def, sizeof def));
+            def.solver = solvers[i / 3];
+            def.integrator = (mspring_integrator)(i % 3);
+            def.substeps = 1;
+            check_ok(mspring_network_set_solver(network, &def));
+            support_steps(network, 3, 1.0 / 60);
+            check_ok(mspring_network_break_springs(network, (mspring_id[]){0, 3}, 2));
+            support_steps(network, 1 + (int)(i / 3), 1.0 / 60);
+            check_ok(mspring_network_apply_force(network, 2, 1e30f, 0));
+            if (refused)
+                check_error(mspring_network_step(network, 1.0 / 60), MSPRING_ERROR_UNSTABLE);
+            check_ok(mspring_network_apply_force(network, 2, -1e30f, 0));
+            support_steps(network, 5, 1.0 / 60);
+            sizes[refused] = save(network, bytes[refused], sizeof bytes[0]);
+            mspring_network_destroy(network);
+        }
+        assert_int_equal(sizes[0], sizes[1]);
+        assert_memory_equal(bytes[0], bytes[1], sizes[0]);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_refused_step_leaves_no_trace),
         cmocka_unit_test(a_clamped_step_leaves_no_trace),
+        cmocka_unit_test(a_refused_step_leaves_no_trace_in_snapshots),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -112,10 +112,12 @@ static bool is_finite(const void *object) {
 /* ------------------------------------------------------------------------------------------------------- edits */
 
 // As if it had fallen freely: forces that it holds act no more. With BDF2 a parabola is
-// x - x(t-h) = h v - h^2 g / 2.
+// x - x(t-h) = h v - h^2 g / 2. Implicit Euler writes no history, so a value would stay in one of three buffers.
 static void clear_slot(const mspring_network *network, void *object, uint32_t slot) {
     mspringi_implicit *n = object;
     const bool two = n->integrator == MSPRING_INTEGRATOR_BDF2, falls = network->inverse_mass[slot] > 0.0f;
+    if (n->integrator == MSPRING_INTEGRATOR_EULER)
+        return;
     const float h = n->history.h, share = two ? -0.5f * h * h : 1.0f;
     n->history.first.x[slot] = falls ? share * network->settings.gravity_x : 0.0f;
     n->history.first.y[slot] = falls ? share * network->settings.gravity_y : 0.0f;
