@@ -97,7 +97,8 @@ typedef enum mspring_reset {
 } mspring_reset;
 
 /// Put groups back to their start or their mark, and hold them no more.
-/// A spring on a ramp is put back to the end of its ramp: starts and marks hold no ramps.
+/// Ramps end: each spring gets the rest length that it had there, with no ramp. If it was on a ramp there already, it
+/// gets that of the ramp's end.
 /// Springs that broke since are restored, which gives events. Masses, stiffness, damping, thresholds and forces for the
 /// next step stay as they are. Signals that no step has used yet are dropped.
 /// @param groups  [count]; NULL with count 0: all groups
