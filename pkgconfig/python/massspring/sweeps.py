@@ -129,14 +129,14 @@ def sweep(function: Callable[..., Any], grid: Dict[str, Iterable[Any]], processe
           engine: Any = None) -> Optional[SweepResult]:
     """Call function(**case) for each combination of the grid's values.
 
-    function  a function of a module, which other processes can import. It returns numbers, texts, arrays, lists, dicts.
-    grid      values by the names of the function's arguments
-    processes at least 1, None for one for each processor, 1 for none besides this one
-    folder    keeps each result in a file. A sweep that was killed goes on where it was. With a cluster of several
-              machines it must be one that all of them see.
-    shard     (i, n): only cases i, i + n, i + 2n ... For arrays of jobs, such as Slurm's: each job takes a shard, with
-              the same folder. Returns None, unless all cases are there by then.
-    engine    a distributed.Client of Dask instead of processes. Its workers must be able to import function.
+    function   a function of a module, which other processes can import. It returns numbers, texts, arrays, lists, dicts.
+    grid       values by the names of the function's arguments
+    processes  a number from 1 on: 1 for none besides this one. None: one for each processor
+    folder     keeps each result in a file. A sweep that was killed goes on where it was. With a cluster of several
+               machines it must be one that all of them see.
+    shard      (i, n): only cases i, i + n, i + 2n ... For arrays of jobs, such as Slurm's: each job takes a shard, with
+               the same folder. Returns None, unless all cases are there by then.
+    engine     a distributed.Client of Dask instead of processes. Its workers must be able to import function.
     """
     _check_workers(processes, engine, function)
     every = cases(grid)
