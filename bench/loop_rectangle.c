@@ -131,10 +131,10 @@ static void pull_row(const rectangle *r, size_t row) {
 
 // One coordinate of all particles.
 static void move(size_t count, float *restrict x, float *restrict v, float *restrict force,
-                 const float *restrict inverse, float gravity, float keep, float h) {
+                 const float *restrict inverse, float gravity, float loss, float kick, float h) {
     for (size_t i = 0; i < count; i++) {
         const float is_free = inverse[i] > 0 ? 1.0f : 0.0f;
-        v[i] = (v[i] + (force[i] * inverse[i] + is_free * gravity) * h) * keep;
+        v[i] += (force[i] * inverse[i] + is_free * gravity) * kick - loss * v[i];
         x[i] += v[i] * h;
         force[i] = 0;
     }
@@ -143,12 +143,13 @@ static void move(size_t count, float *restrict x, float *restrict v, float *rest
 static void step(void *self, const naive_network *from, double dt, uint32_t substeps) {
     const rectangle *r = self;
     const size_t w = r->columns;
-    const float h = (float)(dt / substeps), keep = expf(-from->global_damping * h);
+    const float h = (float)(dt / substeps), rate = from->global_damping, loss = -expm1f(-rate * h);
+    const float kick = rate > 0.0f ? loss / rate : h;
     for (uint32_t substep = 0; substep < substeps; substep++) {
         for (size_t row = 0; row < r->rows; row++)
             pull_row(r, row);
-        move(w * r->rows, r->x, r->vx, r->fx, r->inverse, from->gravity_x, keep, h);
-        move(w * r->rows, r->y, r->vy, r->fy, r->inverse, from->gravity_y, keep, h);
+        move(w * r->rows, r->x, r->vx, r->fx, r->inverse, from->gravity_x, loss, kick, h);
+        move(w * r->rows, r->y, r->vy, r->fy, r->inverse, from->gravity_y, loss, kick, h);
     }
 }
 

@@ -221,7 +221,8 @@ static void pull_others(const squares *s) {
 
 static void step(void *self, const naive_network *from, double dt, uint32_t substeps) {
     const squares *s = self;
-    const float h = (float)(dt / substeps), keep = expf(-from->global_damping * h);
+    const float h = (float)(dt / substeps), rate = from->global_damping, loss = -expm1f(-rate * h);
+    const float kick = rate > 0.0f ? loss / rate : h;
     const size_t n = 2 * (size_t)s->particle_count;
     for (uint32_t substep = 0; substep < substeps; substep++) {
         pull_squares(s);
@@ -229,7 +230,7 @@ static void step(void *self, const naive_network *from, double dt, uint32_t subs
         float *restrict x = s->places, *restrict v = s->velocities, *restrict f = s->forces;
         const float *restrict inverse = s->inverse, *restrict weight = s->weight;
         for (size_t i = 0; i < n; i++) {
-            v[i] = (v[i] + (f[i] * inverse[i] + weight[i]) * h) * keep;
+            v[i] += (f[i] * inverse[i] + weight[i]) * kick - loss * v[i];
             x[i] += v[i] * h;
             f[i] = 0;
         }

@@ -31,12 +31,12 @@ static void add_spring_forces(naive_particle *restrict particles, const naive_sp
 }
 
 static void move_particles(naive_particle *restrict particles, uint32_t count, float gravity_x, float gravity_y,
-                           float keep, float h) {
+                           float loss, float kick, float h) {
     for (uint32_t i = 0; i < count; i++) {
         naive_particle *p = &particles[i];
         if (p->inverse_mass > 0.0f) {
-            p->vx = (p->vx + p->force_x * p->inverse_mass * h) * keep;
-            p->vy = (p->vy + p->force_y * p->inverse_mass * h) * keep;
+            p->vx += p->force_x * p->inverse_mass * kick - loss * p->vx;
+            p->vy += p->force_y * p->inverse_mass * kick - loss * p->vy;
         }
         p->x += p->vx * h;
         p->y += p->vy * h;
@@ -47,14 +47,15 @@ static void move_particles(naive_particle *restrict particles, uint32_t count, f
 
 void naive_step(naive_network *network, double dt, uint32_t substeps) {
     float h = (float)(dt / substeps);
-    float keep = expf(-network->global_damping * h);
+    float loss = -expm1f(-network->global_damping * h);
+    float kick = network->global_damping > 0.0f ? loss / network->global_damping : h;
     for (uint32_t i = 0; i < network->particle_count; i++) {
         network->particles[i].force_x = network->particles[i].mass * network->gravity_x;
         network->particles[i].force_y = network->particles[i].mass * network->gravity_y;
     }
     for (uint32_t substep = 0; substep < substeps; substep++) {
         add_spring_forces(network->particles, network->springs, network->spring_count);
-        move_particles(network->particles, network->particle_count, network->gravity_x, network->gravity_y, keep,
-                       h);
+        move_particles(network->particles, network->particle_count, network->gravity_x, network->gravity_y, loss,
+                       kick, h);
     }
 }

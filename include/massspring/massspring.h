@@ -61,10 +61,11 @@
 ///     d = p_b - p_a;  L = |d|;  u = d / L
 ///     f = (L - rest_length) * stiffness + ((v_b - v_a) . u) * damping
 ///     F_a += f u;  F_b -= f u
-///     v(t+h) = (v + (F / m + gravity) h) * exp(-global_damping h);   p(t+h) = p + v(t+h) h
+///     v(t+h) = v exp(-b h) + (F / m + gravity) (1 - exp(-b h)) / b;   p(t+h) = p + v(t+h) h
 ///
-/// A spring of length 0 has no direction and exerts no force. A pinned particle feels no force: it keeps the velocity
-/// that the host gives it, at first zero, and moves by it. With damping, a speed below 1e-30 m/s becomes 0.
+/// with b = global_damping; where that is 0, gravity and forces act for h. A spring of length 0 has no direction and
+/// exerts no force. A pinned particle feels no force: it keeps the velocity that the host gives it, at first zero, and
+/// moves by it. With damping, a speed below 1e-30 m/s becomes 0.
 ///
 /// **Precision.** Positions and velocities are single precision, relative to a local origin in double precision. The
 /// library moves the origin with the network. A network 10 km from the world's origin behaves as it does there. Each
@@ -369,9 +370,10 @@ typedef enum mspring_simd {
 enum {
     MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0,  ///< springs may get damping later, though none has any now
     MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1, ///< relative springs may be added later, though there is none now
-    /// The second words of positions count in the lengths of springs, too. Use it for stiff springs far from the
-    /// local origin, which tremble without it. Explicit steps are a little dearer. The implicit and direct solver
-    /// always count them. Strains for breaking and stress use the first words.
+    /// Lengths of springs and velocities have two words in explicit steps. The energy of what nothing damps then
+    /// stays, gravity is right to 1e-6 at any number of substeps, and stiff springs far from the local origin do not
+    /// tremble. A step takes 1.7 to 2.2 times as long; each particle takes 17 bytes more. In implicit and direct steps
+    /// second words of positions always count. Strains for breaking and stress use the first words.
     MSPRING_NETWORK_PRECISE = 1u << 2
 };
 

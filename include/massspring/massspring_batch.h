@@ -59,7 +59,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_co
 /// Snapshots hold which groups are held, but neither groups nor marks. Before you load one, set the same groups.
 /// @param firsts  [count + 1], rising: no group is empty
 /// @param count   0: no groups; then firsts may be NULL. No group is held any more.
-/// @threads exclusive   @allocates yes; 36 bytes for a particle, 17 for a spring   @since 0.2
+/// @threads exclusive   @allocates yes; 44 bytes for a particle (8 more in precise networks), 17 for a spring   @since 0.2
 /// @errors ARGUMENT also for a spring or area that leads out of a group (the message names it), or if the network is
 ///         not as groups ask; ID, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_groups(

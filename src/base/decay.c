@@ -21,3 +21,25 @@ float mspringi_decay(float rate, float h) {
         sum *= sum;
     return (float)sum;
 }
+
+static double loss(double x) {
+    if (!(x < 0.125))
+        return 1.0 - (double)mspringi_decay((float)x, 1.0f);
+    double sum = 1.0; // x (1 - x/2 (1 - x/3 (...)))
+    for (int power = 9; power >= 2; --power)
+        sum = 1.0 - x / (double)power * sum;
+    return x * sum;
+}
+
+float mspringi_loss(float rate, float h) {
+    return (float)loss((double)rate * (double)h);
+}
+
+float mspringi_gain(float rate, float h) {
+    return rate > 0.0f ? (float)(loss((double)rate * (double)h) / (double)rate) : h;
+}
+
+double mspringi_stability_bound(float rate, float h) {
+    const double x = (double)rate * (double)h;
+    return x > 0.0 ? 2.0 * (2.0 - loss(x)) * x / loss(x) : 4.0;
+}

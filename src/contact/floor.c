@@ -250,13 +250,17 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     floor->contacts = mspringi_alloc(memory, floor->contact_capacity, sizeof *floor->contacts);
     floor->impulse = floor->previous_impulse = floor->start = (mspringi_field){NULL, NULL};
     floor->before = (mspringi_state){
-        .x = mspringi_alloc(memory, MSPRINGI_STATE_ARRAYS * floor->slot_count, sizeof *floor->before.x)};
+        .x = mspringi_alloc(memory, mspringi_state_arrays(network) * floor->slot_count, sizeof *floor->before.x)};
     if (floor->before.x) {
         floor->before.y = floor->before.x + floor->slot_count;
         floor->before.vx = floor->before.y + floor->slot_count;
         floor->before.vy = floor->before.vx + floor->slot_count;
         floor->before.low_x = floor->before.vy + floor->slot_count;
         floor->before.low_y = floor->before.low_x + floor->slot_count;
+        if (network->is_precise) {
+            floor->before.low_vx = floor->before.low_y + floor->slot_count;
+            floor->before.low_vy = floor->before.low_vx + floor->slot_count;
+        }
     }
     floor->had_impulse = false;
     floor->is_near = true;

@@ -43,15 +43,14 @@ static void put(const mspring_network *network, size_t slot, double x, double y,
     floor->impulse.y[slot] += mass * (after_y - s->vy[slot]);
     mspringi_set_x(s, slot, x);
     mspringi_set_y(s, slot, y);
-    s->vx[slot] = after_x;
-    s->vy[slot] = after_y;
+    mspringi_set_velocity(s, slot, after_x, after_y);
 }
 
 static void bounce_slot(const mspring_network *network, const mspringi_floor_args *g, size_t slot) {
     const double from_vx = (double)g->from_vx[slot], from_vy = (double)g->from_vy[slot];
     mspringi_bouncing_particle p =
         mspringi_bouncing_particle_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot],
-                                        (double)g->vy[slot], from_vx, from_vy, g->undamped, g->h, g->per_length);
+                                        (double)g->vy[slot], from_vx, from_vy, g->damping, g->h, g->per_length);
     if (mspringi_floor_bounce(network->floor, g->h, from_vx, from_vy, &p))
         put(network, slot, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
 }
@@ -60,21 +59,21 @@ static void fly_slot(const mspring_network *network, const mspringi_floor_args *
     const mspringi_bounce_params how = {.h = g->h, .skew = 0.5 * g->h};
     mspringi_free_particle p = mspringi_free_particle_from(
         (double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot], (double)g->from_vx[slot],
-        (double)g->from_vy[slot], g->undamped, g->h);
+        (double)g->from_vy[slot], g->damping, g->h);
     double vx, vy;
     if (mspringi_floor_move_free_particle(network->floor, &how, &p, &vx, &vy))
         put(network, slot, p.x, p.y, vx, vy);
 }
 
-/// Least that global damping may leave of a velocity in a substep, for what forces did to be seen in it.
-static const double least_decay = 1e-12;
+static mspringi_damping damping_of(const mspring_network *network, float h) {
+    const float rate = network->settings.global_damping;
+    return (mspringi_damping){.keep = 1.0 - (double)mspringi_loss(rate, h),
+                              .scale = (double)h / (double)mspringi_gain(rate, h)};
+}
 
-// Arguments of the floor kernel. Velocities before the forces are the saved ones, unless damping leaves nothing of
-// them.
+// Arguments of the floor kernel.
 static mspringi_floor_args args_of(const mspring_network *network, const mspringi_bounds *clear, float h) {
     const mspringi_floor *floor = network->floor;
-    const double decay = (double)mspringi_decay(network->settings.global_damping, h);
-    const bool is_seen = decay >= least_decay;
     return (mspringi_floor_args){
         .lines = floor->lines,
         .line_count = floor->plane_count,
@@ -95,15 +94,15 @@ static mspringi_floor_args args_of(const mspring_network *network, const mspring
         .y = network->state.y,
         .vx = network->state.vx,
         .vy = network->state.vy,
-        .from_vx = is_seen ? floor->before.vx : network->state.vx,
-        .from_vy = is_seen ? floor->before.vy : network->state.vy,
+        .from_vx = floor->before.vx,
+        .from_vy = floor->before.vy,
         .low_x = network->state.low_x,
         .low_y = network->state.low_y,
-        .before_vx = is_seen ? floor->before.vx : NULL,
-        .before_vy = is_seen ? floor->before.vy : NULL,
+        .before_vx = floor->before.vx,
+        .before_vy = floor->before.vy,
         .silt_depth = floor->heights.silt_depth,
         .silt_rate = floor->heights.silt_rate,
-        .undamped = is_seen ? 1.0 / decay : 1.0,
+        .damping = damping_of(network, h),
         .impulse_x = floor->impulse.x,
         .impulse_y = floor->impulse.y,
         .inverse_mass = network->inverse_mass,
@@ -223,7 +222,8 @@ void mspringi_floor_save_isolated(const mspring_network *network) {
 /// A substep of particles without springs.
 typedef struct gliding {
     mspringi_bounce_params how;
-    double before, within, after; ///< what global damping leaves of velocities
+    double before, after;     ///< what global damping leaves of velocities before and after the parabola
+    mspringi_damping damping; ///< within it
 } gliding;
 
 // Velocities of symplectic Euler skew by half a substep and are damped within it. After implicit substeps damping
@@ -234,25 +234,23 @@ static gliding glide(const mspring_network *network, float h) {
     const double half = skews ? 1.0 : (double)mspringi_decay(network->settings.global_damping, 0.5f * h);
     return (gliding){.how = {.h = (double)h, .skew = skews ? 0.5 * (double)h : 0.0},
                      .before = half,
-                     .within = skews ? (double)mspringi_decay(network->settings.global_damping, h) : 1.0,
-                     .after = half};
+                     .after = half,
+                     .damping = skews ? damping_of(network, h) : (mspringi_damping){1.0, 1.0}};
 }
 
 // A substep with an acceleration of (ax, ay).
 static void fly_free(const mspring_network *network, size_t slot, const gliding *g, double ax, double ay) {
     const mspringi_state *s = &network->state;
     const double h = g->how.h, vx = g->before * (double)s->vx[slot], vy = g->before * (double)s->vy[slot];
-    const double undamped_vx = vx + h * ax, undamped_vy = vy + h * ay;
-    double to_vx = g->within * undamped_vx, to_vy = g->within * undamped_vy;
-    mspringi_free_particle p = {.left = h};
+    const double change_x = h * ax, change_y = h * ay;
+    double to_vx = g->damping.keep * vx + change_x / g->damping.scale;
+    double to_vy = g->damping.keep * vy + change_y / g->damping.scale;
+    mspringi_free_particle p = {.ax = ax, .ay = ay, .left = h};
     p.x = (double)s->x[slot] + (double)s->low_x[slot];
     p.y = (double)s->y[slot] + (double)s->low_y[slot];
-    p.wx = g->how.skew > 0.0 ? mspringi_velocity_in_step(vx, undamped_vx, to_vx) : vx;
-    p.wy = g->how.skew > 0.0 ? mspringi_velocity_in_step(vy, undamped_vy, to_vy) : vy;
-    p.ax = (undamped_vx - vx) / h;
-    p.ay = (undamped_vy - vy) / h;
-    s->vx[slot] = (float)(g->after * to_vx);
-    s->vy[slot] = (float)(g->after * to_vy);
+    p.wx = g->how.skew > 0.0 ? to_vx - 0.5 * change_x : vx;
+    p.wy = g->how.skew > 0.0 ? to_vy - 0.5 * change_y : vy;
+    mspringi_set_velocity(s, slot, (float)(g->after * to_vx), (float)(g->after * to_vy));
     const double taken = mspringi_silt_damping(&network->floor->heights, p.x, p.y, h);
     p.wx -= taken * p.wx;
     p.wy -= taken * p.wy;

@@ -57,7 +57,8 @@ static void free_mark(mspringi_memory *memory, mspringi_mark *mark) {
 mspring_result mspringi_mark_allocate(mspring_network *network, mspringi_mark *mark, uint32_t groups) {
     mspringi_memory *memory = &network->memory;
     const mspringi_topology *t = &network->topology;
-    mark->motion = mspringi_alloc(memory, (size_t)t->particle_count * MSPRINGI_MARKED_VALUES, sizeof *mark->motion);
+    mark->motion =
+        mspringi_alloc(memory, (size_t)t->particle_count * mspringi_state_arrays(network), sizeof *mark->motion);
     mark->lengths = mspringi_alloc(memory, (size_t)t->spring_count * 2, sizeof *mark->lengths);
     mark->live = mspringi_alloc(memory, t->spring_count, sizeof *mark->live);
     mark->origin = mspringi_alloc(memory, (size_t)groups * 2, sizeof *mark->origin);
@@ -90,7 +91,7 @@ static mspring_result allocate(mspring_network *network, mspringi_groups *g) {
     g->changing = mspringi_alloc(memory, t->spring_count, sizeof *g->changing);
     g->of_particle = mspringi_alloc(memory, t->reserve.particle_end, sizeof *g->of_particle);
     g->flags = mspringi_alloc(memory, g->count, sizeof *g->flags);
-    g->velocity = mspringi_alloc(memory, (size_t)t->particle_count * 2, sizeof *g->velocity);
+    g->velocity = mspringi_alloc(memory, (size_t)t->particle_count * 4, sizeof *g->velocity);
     g->active_inverse_mass = mspringi_alloc(memory, mspringi_slot_count(network), sizeof *g->active_inverse_mass);
     if (g->first && g->first_spring && g->springs && g->changing && g->of_particle && g->flags && g->velocity &&
         g->active_inverse_mass)

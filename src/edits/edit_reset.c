@@ -18,10 +18,10 @@ void mspringi_mark_take(mspring_network *network, mspringi_mark *mark, uint32_t 
     const mspringi_groups *g = &network->groups;
     const mspringi_topology *t = &network->topology;
     const float *arrays = network->state.x, *nominal = network->plastic.nominal;
-    const size_t slots = mspringi_slot_count(network);
+    const size_t slots = mspringi_slot_count(network), values = mspringi_state_arrays(network);
     for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p)
-        for (size_t i = 0; i < MSPRINGI_MARKED_VALUES; ++i)
-            mark->motion[p * MSPRINGI_MARKED_VALUES + i] = arrays[i * slots + t->slot_of_particle[p]];
+        for (size_t i = 0; i < values; ++i)
+            mark->motion[p * values + i] = arrays[i * slots + t->slot_of_particle[p]];
     for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i) {
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, g->springs[i]);
         const float length = mspringi_spring_slot_own_length(network, spring_slot);
@@ -72,7 +72,7 @@ mspring_result mspring_network_mark_groups(mspring_network *network, const uint3
             return result;
         const mspringi_topology *t = &network->topology;
         memcpy(g->mark.motion, g->start.motion,
-               (size_t)t->particle_count * MSPRINGI_MARKED_VALUES * sizeof *g->mark.motion);
+               (size_t)t->particle_count * mspringi_state_arrays(network) * sizeof *g->mark.motion);
         memcpy(g->mark.lengths, g->start.lengths, (size_t)t->spring_count * 2 * sizeof *g->mark.lengths);
         memcpy(g->mark.live, g->start.live, t->spring_count * sizeof *g->mark.live);
         memcpy(g->mark.origin, g->start.origin, (size_t)g->count * 2 * sizeof *g->mark.origin);
@@ -114,15 +114,15 @@ static mspring_result restore_links(mspring_network *network, const mspringi_mar
 static void restore_motion(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
     const mspringi_groups *g = &network->groups;
     const mspringi_state *s = &network->state;
-    const size_t slots = mspringi_slot_count(network);
+    const size_t slots = mspringi_slot_count(network), values = mspringi_state_arrays(network);
     const double dx = mark->origin[2 * (size_t)group] - network->origin_x,
                  dy = mark->origin[2 * (size_t)group + 1] - network->origin_y;
     for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
         if (!mspringi_particle_exists(network, p))
             continue;
-        for (size_t i = 0; i < MSPRINGI_MARKED_VALUES; ++i)
-            s->x[i * slots + slot] = mark->motion[p * MSPRINGI_MARKED_VALUES + i];
+        for (size_t i = 0; i < values; ++i)
+            s->x[i * slots + slot] = mark->motion[p * values + i];
         if (dx != 0.0 || dy != 0.0) {
             mspringi_set_x(s, slot, mspringi_x_of(s, slot) + dx);
             mspringi_set_y(s, slot, mspringi_y_of(s, slot) + dy);

@@ -36,6 +36,21 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm256_sqrt_ps(a);
 }
+// The leading half of the digits, whose square is exact.
+static inline vec leading(vec a) {
+    return _mm256_and_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32((int)MSPRINGI_LEADING_BITS)));
+}
+// a, or 0 where it is tiny; NaN stays.
+static inline vec flush_tiny(vec a) {
+    return _mm256_and_ps(a, _mm256_cmp_ps(_mm256_and_ps(a, _mm256_castsi256_ps(_mm256_set1_epi32(0x7fffffff))),
+                                          _mm256_set1_ps(MSPRINGI_TINY_SPEED), _CMP_NLT_UQ));
+}
+static inline vec maximum(vec a, vec b) {
+    return _mm256_max_ps(a, b);
+}
+static inline vec minimum(vec a, vec b) {
+    return _mm256_min_ps(a, b);
+}
 // 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     return _mm256_and_ps(_mm256_div_ps(_mm256_set1_ps(1.0f), square),

@@ -36,6 +36,24 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm512_sqrt_ps(a);
 }
+// The leading half of the digits, whose square is exact.
+static inline vec leading(vec a) {
+    return _mm512_castsi512_ps(
+        _mm512_and_si512(_mm512_castps_si512(a), _mm512_set1_epi32((int)MSPRINGI_LEADING_BITS)));
+}
+// a, or 0 where it is tiny; NaN stays.
+static inline vec flush_tiny(vec a) {
+    return _mm512_maskz_mov_ps(_mm512_cmp_ps_mask(_mm512_castsi512_ps(_mm512_and_si512(
+                                                      _mm512_castps_si512(a), _mm512_set1_epi32(0x7fffffff))),
+                                                  _mm512_set1_ps(MSPRINGI_TINY_SPEED), _CMP_NLT_UQ),
+                               a);
+}
+static inline vec maximum(vec a, vec b) {
+    return _mm512_max_ps(a, b);
+}
+static inline vec minimum(vec a, vec b) {
+    return _mm512_min_ps(a, b);
+}
 // 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     return _mm512_maskz_div_ps(_mm512_cmp_ps_mask(square, _mm512_set1_ps(MSPRINGI_NO_DIRECTION), _CMP_GT_OQ),

@@ -8,8 +8,9 @@
 /// in which an impulse changes w only. So contact acts at x, before the move, on w = (v + v') / 2. It neither moves
 /// x nor increases |w|, so it dissipates energy whatever the forces are.
 ///
-/// With global damping v' = d (v + h F/m). Damping acts at x too, before the contact, which acts on its result: w =
-/// v' - h/2 F/m, with F/m = (v' / d - v) / h. As a part of F it would act on the velocity after contact.
+/// With global damping v' = d v + g F/m (see mspringi_gain()). Damping acts at x too, before the contact, which
+/// acts on its result: w = v' - h/2 F/m, with F/m = (v' - d v) / g. As a part of F it would act on the velocity
+/// after contact.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_BOUNCE_KERNEL_H
@@ -45,8 +46,12 @@ static inline double mspringi_bouncing_particle_square(const mspringi_bouncing_p
     return wx * wx + wy * wy;
 }
 
-/// Particle that has moved to (x, y) at (vx, vy), with (from_vx, from_vy) before. Without global damping its
-/// velocity would be undamped times (vx, vy). per_length is 4 h / l.
+/// Change of a velocity by acceleration alone in a substep, in which it went from `from` to `to`.
+static inline double mspringi_pushed(mspringi_damping damping, double from, double to) {
+    return damping.scale * (to - damping.keep * from);
+}
+
+/// Particle that has moved to (x, y) at (vx, vy), with (from_vx, from_vy) before. per_length is 4 h / l.
 ///
 /// If particles move a large part of their springs' length in a substep, h |w| = s l, the integrator itself gains
 /// energy from a bounce. So restitution is at most 1 - (4 s)^2. Of 300 bodies of 2 to 20 particles that fall 10 m
@@ -54,14 +59,14 @@ static inline double mspringi_bouncing_particle_square(const mspringi_bouncing_p
 /// any shape.
 static inline mspringi_bouncing_particle mspringi_bouncing_particle_from(double x, double y, double vx, double vy,
                                                                          double from_vx, double from_vy,
-                                                                         double undamped, double h,
+                                                                         mspringi_damping damping, double h,
                                                                          double per_length) {
     mspringi_bouncing_particle p = {.x = x - h * vx,
                                     .y = y - h * vy,
                                     .vx = vx,
                                     .vy = vy,
-                                    .half_x = 0.5 * (undamped * vx - from_vx),
-                                    .half_y = 0.5 * (undamped * vy - from_vy)};
+                                    .half_x = 0.5 * mspringi_pushed(damping, from_vx, vx),
+                                    .half_y = 0.5 * mspringi_pushed(damping, from_vy, vy)};
     const double most = 1.0 - per_length * per_length * mspringi_bouncing_particle_square(&p);
     p.max_restitution = most > 0.0 ? most : 0.0;
     return p;
@@ -121,21 +126,17 @@ typedef struct mspringi_free_particle {
     double left;   ///< rest of the substep, s
 } mspringi_free_particle;
 
-/// Velocity in step. Forces changed it from `from` to `undamped`, then global damping to `to`.
-static inline double mspringi_velocity_in_step(double from, double undamped, double to) {
-    return 0.5 * (from + to - (undamped - to));
-}
-
 /// As mspringi_bouncing_particle_from().
 static inline mspringi_free_particle mspringi_free_particle_from(double x, double y, double vx, double vy,
-                                                                 double from_vx, double from_vy, double undamped,
-                                                                 double h) {
+                                                                 double from_vx, double from_vy,
+                                                                 mspringi_damping damping, double h) {
+    const double change_x = mspringi_pushed(damping, from_vx, vx), change_y = mspringi_pushed(damping, from_vy, vy);
     return (mspringi_free_particle){.x = x - h * vx,
                                     .y = y - h * vy,
-                                    .wx = mspringi_velocity_in_step(from_vx, undamped * vx, vx),
-                                    .wy = mspringi_velocity_in_step(from_vy, undamped * vy, vy),
-                                    .ax = (undamped * vx - from_vx) / h,
-                                    .ay = (undamped * vy - from_vy) / h,
+                                    .wx = vx - 0.5 * change_x,
+                                    .wy = vy - 0.5 * change_y,
+                                    .ax = change_x / h,
+                                    .ay = change_y / h,
                                     .left = h};
 }
 

@@ -89,12 +89,13 @@ static void load_bounce_block(const mspringi_floor_args *g, size_t slot, bounce_
     const float *restrict x = g->x + slot, *restrict y = g->y + slot;
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
-    const double h = g->h, undamped = g->undamped, per_length = g->per_length;
+    const double h = g->h, per_length = g->per_length;
+    const mspringi_damping damping = g->damping;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
         const mspringi_bouncing_particle p =
             mspringi_bouncing_particle_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i],
-                                            (double)from_vx[i], (double)from_vy[i], undamped, h, per_length);
+                                            (double)from_vx[i], (double)from_vy[i], damping, h, per_length);
         b->x[i] = p.x;
         b->y[i] = p.y;
         b->vx[i] = p.vx;
@@ -295,8 +296,8 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
         const float mass = 1.0f / inverse_mass[i];
         to_x[i] = (float)b->x[i];
         to_y[i] = (float)b->y[i];
-        low_x[i] = mspringi_low_of(to_x[i], (float)(b->x[i] - (double)to_x[i]));
-        low_y[i] = mspringi_low_of(to_y[i], (float)(b->y[i] - (double)to_y[i]));
+        low_x[i] = mspringi_low_of(to_x[i], (float)(b->x[i] - (double)to_x[i]), 0.0f);
+        low_y[i] = mspringi_low_of(to_y[i], (float)(b->y[i] - (double)to_y[i]), 0.0f);
         to_vx[i] = (float)b->vx[i];
         to_vy[i] = (float)b->vy[i];
         has_x[i] = impulse_x[i] + mass * (to_vx[i] - vx[i]);

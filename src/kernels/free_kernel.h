@@ -26,12 +26,13 @@ static void load_free(const mspringi_floor_args *g, size_t slot, free_block *res
     const float *restrict x = g->x + slot, *restrict y = g->y + slot;
     const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     const float *restrict from_vx = g->from_vx + slot, *restrict from_vy = g->from_vy + slot;
-    const double h = g->h, undamped = g->undamped;
+    const double h = g->h;
+    const mspringi_damping damping = g->damping;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const mspringi_free_particle p =
             mspringi_free_particle_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i],
-                                        (double)from_vx[i], (double)from_vy[i], undamped, h);
+                                        (double)from_vx[i], (double)from_vy[i], damping, h);
         b->x[i] = p.x;
         b->y[i] = p.y;
         b->wx[i] = p.wx;

@@ -17,6 +17,18 @@
 /// Squared length, m^2, up to which a spring has no direction and no force. Above it the inverse is finite.
 #define MSPRINGI_NO_DIRECTION 1e-37f
 
+/// Mask of a float without its last 12 bits: the square of what is left is exact.
+#define MSPRINGI_LEADING_BITS 0xfffff000u
+
+/// Speeds below this count as none, m/s: they move no position, and are far above subnormal numbers.
+#define MSPRINGI_TINY_SPEED 1e-30f
+
+/// Dampers, and lengths in two words, pass on a small part of a motion at once, so that ahead of a front speeds
+/// fall by a factor of a thousand from cell to cell, down to subnormal numbers, which take x86 processors 2 to 4
+/// times as long. In substeps whose number in the step is a multiple of this period, tiny speeds become 0 (a period
+/// of 4 costs 1 to 2 % less, but leaves frames that take twice as long).
+#define MSPRINGI_FLUSH_PERIOD 2u
+
 /// Features of a sweep, as bits. Kernels are compiled for each set of constant bits.
 typedef uint32_t mspringi_variant;
 enum {
@@ -95,18 +107,19 @@ static inline void mspringi_yield_save(const mspringi_yield_test *test, size_t w
             test->before[word * MSPRINGI_WIDTH + lane] = rests[lane];
 }
 
-/// Largest low word relative to its coordinate. A larger one belongs to a coordinate that was overwritten through a
-/// view, and counts as 0.
+/// Largest low word relative to its value. A larger one, unless it is within the grid of precise coordinates,
+/// belongs to a value that was overwritten through a view, and counts as 0.
 #define MSPRINGI_LARGEST_LOW 0x1p-21f
 
-static inline float mspringi_low_of(float coordinate, float low) {
-    return fabsf(low) <= fabsf(coordinate) * MSPRINGI_LARGEST_LOW ? low : 0.0f;
+static inline float mspringi_low_of(float coordinate, float low, float grid) {
+    return fabsf(low) <= fabsf(coordinate) * MSPRINGI_LARGEST_LOW || fabsf(low) <= grid ? low : 0.0f;
 }
 
 /// Arguments of a sweep: arrays by slot, and constants.
 typedef struct mspringi_sweep {
     float *x, *y, *vx, *vy;
-    float *low_x, *low_y; ///< low words of the positions
+    float *low_x, *low_y;   ///< low words of the positions
+    float *low_vx, *low_vy; ///< low words of the velocities, of precise networks; else NULL
     const float *inverse_mass;
     const float *force_x, *force_y;   ///< external forces, or NULL; read by MSPRINGI_FORCED kernels only
     float *carry_x, *carry_y;         ///< forces from the row below, by column
@@ -124,16 +137,23 @@ typedef struct mspringi_sweep {
                            ///< mspringi_gathered_half() vx, vy and padding
     uint32_t parts;        ///< number of parts in a record: 2 or, with damping, 3
     float h;               ///< substep, s
-    float decay;           ///< factor of global damping on a velocity
-    float gravity_h_x, gravity_h_y; ///< gravity times h, m/s
-    float *keep; ///< [6][slots] copy of the state before the substep, in the order x, y, vx, vy, low_x, low_y; or
-                 ///< NULL
+    float kick;            ///< change of velocity per acceleration, s
+    float loss;            ///< share of a velocity that global damping takes in a substep
+    float grid;            ///< 1.5 * 2^23 times the grid of precise coordinates: adding and subtracting it rounds
+    float gravity_h_x, gravity_h_y; ///< gravity times kick, m/s
+    float *keep; ///< [6 or 8][slots] copy of the state before the substep, in the order of mspringi_state; or NULL
     mspringi_extrema_lanes *watch; ///< maxima over the new state, or NULL
     const float *before; ///< vx before the step, followed by vy, to measure changes; equals the copy in keep if
                          ///< there is one; or NULL
+    bool flushes;        ///< tiny speeds become 0
     bool watches_coordinate, watches_speed; ///< update the maxima of coordinates and speeds
     const mspringi_yield_test *test;        ///< read by MSPRINGI_TESTED kernels only
 } mspringi_sweep;
+
+/// True if a kernel turns tiny speeds into 0.
+static inline bool mspringi_flushes(const mspringi_sweep *sweep, mspringi_variant of) {
+    return of & (MSPRINGI_DAMPED | MSPRINGI_PRECISE) && sweep->flushes;
+}
 
 /// Number of floats in four values of each node of the irregular part.
 static inline size_t mspringi_gathered_half(const mspringi_sell *irregular) {
@@ -148,13 +168,13 @@ static inline size_t mspringi_gathered_half(const mspringi_sell *irregular) {
 /// no such spring, and the force is 0.
 typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count);
 
-/// Motion of a particle without springs in n substeps. Each adds the same change c to its velocity v, multiplies
-/// the sum by d, and moves it by h times that:
-///     v_n = keep v + gain c,   x_n = x + (reach v + fall c)
-/// with keep = d^n, gain = d + d^2 + ... + d^n, reach = h gain and fall = h times the sum of the gains of 1 to n. A
-/// pinned particle keeps its velocity and moves by drift v, with drift = h n.
+/// Motion of a particle without springs in some substeps, with acceleration a by external forces:
+///     v' = keep v + (gain a + gravity),   x' = x + (reach v + (fall a + gravity_way))
+/// A pinned particle keeps its velocity and moves by drift v.
 typedef struct mspringi_free_motion {
     float keep, gain, reach, fall, drift;
+    float gravity_x, gravity_y;         ///< change of velocity, m/s
+    float gravity_way_x, gravity_way_y; ///< m
 } mspringi_free_motion;
 
 /// Move the particles of a span that have no springs, by all substeps at once.
@@ -193,6 +213,11 @@ typedef struct mspringi_line {
     double friction, restitution;
 } mspringi_line;
 
+/// Global damping in a substep: v' = keep v + a h / scale, with acceleration a.
+typedef struct mspringi_damping {
+    double keep, scale; ///< 1 and 1 without damping
+} mspringi_damping;
+
 /// A floor, and the particles it acts on, by slot.
 typedef struct mspringi_floor_args {
     const mspringi_line *lines;
@@ -212,7 +237,7 @@ typedef struct mspringi_floor_args {
     float *low_x, *low_y;
     float *before_vx, *before_vy; ///< from_vx and from_vy; NULL if these are vx and vy
     double silt_depth, silt_rate;
-    double undamped; ///< factor from a velocity to that without global damping in the substep
+    mspringi_damping damping;
     float *impulse_x, *impulse_y;
     const float *inverse_mass, *active_inverse_mass;
 } mspringi_floor_args;

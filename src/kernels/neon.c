@@ -36,6 +36,21 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return vsqrtq_f32(a);
 }
+// The leading half of the digits, whose square is exact.
+static inline vec leading(vec a) {
+    return vreinterpretq_f32_u32(vandq_u32(vreinterpretq_u32_f32(a), vdupq_n_u32(MSPRINGI_LEADING_BITS)));
+}
+// a, or 0 where it is tiny; NaN stays.
+static inline vec flush_tiny(vec a) {
+    return vreinterpretq_f32_u32(
+        vbicq_u32(vreinterpretq_u32_f32(a), vcltq_f32(vabsq_f32(a), vdupq_n_f32(MSPRINGI_TINY_SPEED))));
+}
+static inline vec maximum(vec a, vec b) {
+    return vmaxq_f32(a, b);
+}
+static inline vec minimum(vec a, vec b) {
+    return vminq_f32(a, b);
+}
 // 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     const uint32x4_t inverse = vreinterpretq_u32_f32(vdivq_f32(vdupq_n_f32(1.0f), square));

@@ -30,16 +30,62 @@ static inline vector vector_between(motion base, motion tip, mspringi_variant of
     return (vector){way.x + (base.low_x - tip.low_x), way.y + (base.low_y - tip.low_y)};
 }
 
+static inline float flush_tiny(float a) {
+    return fabsf(a) < MSPRINGI_TINY_SPEED ? 0.0f : a;
+}
+
+static inline float leading(float a) {
+    uint32_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    bits &= MSPRINGI_LEADING_BITS;
+    memcpy(&a, &bits, sizeof bits);
+    return a;
+}
+
+/// From a spring's tip to its base.
+typedef struct extent {
+    float dx, dy, square;
+    float major, minor, low; ///< see sweep.h
+} extent;
+
+static inline extent spring_extent(motion base, motion tip, mspringi_variant of) {
+    const float high_x = base.x - tip.x, high_y = base.y - tip.y;
+    if (!(of & MSPRINGI_PRECISE))
+        return (extent){high_x, high_y, high_x * high_x + high_y * high_y, 0.0f, 0.0f, 0.0f};
+    const float low_x = base.low_x - tip.low_x, low_y = base.low_y - tip.low_y;
+    const float dx = high_x + low_x, dy = high_y + low_y, lead_x = leading(dx), lead_y = leading(dy);
+    const float rest_x = (high_x - lead_x) + low_x, rest_y = (high_y - lead_y) + low_y;
+    const float square_x = lead_x * lead_x, square_y = lead_y * lead_y;
+    const float low = rest_x * (lead_x + dx) + rest_y * (lead_y + dy);
+    return (extent){dx,
+                    dy,
+                    (square_x + square_y) + low,
+                    square_x > square_y ? square_x : square_y,
+                    square_x < square_y ? square_x : square_y,
+                    low};
+}
+
+// The length times the extension; see sweep.h.
+static inline float stretch(extent e, float length, float rest_length, mspringi_variant of) {
+    const float first = length * (length - rest_length);
+    if (!(of & MSPRINGI_PRECISE))
+        return first;
+    const float lead = leading(length), rest = length - lead;
+    return first + 0.5f * (((e.major - lead * lead) + e.minor) + (e.low - rest * (lead + length)));
+}
+
 // Force of one spring on its tip; that on its base is the opposite. With d from the tip to the base
 //     F = ((L - rest_length) (k L) + c (dv . d)) / L^2 * d
 // so that root and division are independent. record points to the stiffness, followed by the damping.
 static inline vector spring_force(motion base, motion tip, float rest_length, const float *record,
                                   mspringi_variant of) {
-    const vector way = vector_between(base, tip, of);
-    const float dx = way.x, dy = way.y;
-    const float square = dx * dx + dy * dy, length = sqrtf(square);
+    const extent e = spring_extent(base, tip, of);
+    const float dx = e.dx, dy = e.dy;
+    const float square = e.square, length = sqrtf(square);
     const float inverse = square > MSPRINGI_NO_DIRECTION ? 1.0f / square : 0.0f;
-    float force = MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, length * record[0], length - rest_length);
+    float force = of & MSPRINGI_PRECISE
+                      ? MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, record[0], stretch(e, length, rest_length, of))
+                      : MSPRINGI_LAW_FORCE(MSPRINGI_TIMES, length * record[0], length - rest_length);
     if (of & MSPRINGI_DAMPED) {
         const float dvx = base.vx - tip.vx, dvy = base.vy - tip.vy;
         force = force + MSPRINGI_LAW_DAMPING_FORCE(MSPRINGI_TIMES, record[MSPRINGI_WIDTH], dvx * dx + dvy * dy);
@@ -75,6 +121,10 @@ static inline void save_motion(const mspringi_sweep *s, size_t slot) {
     s->keep[slot + 3 * slots] = s->vy[slot];
     s->keep[slot + 4 * slots] = s->low_x[slot];
     s->keep[slot + 5 * slots] = s->low_y[slot];
+    if (s->low_vx) {
+        s->keep[slot + 6 * slots] = s->low_vx[slot];
+        s->keep[slot + 7 * slots] = s->low_vy[slot];
+    }
 }
 
 static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
@@ -91,18 +141,37 @@ static inline void watch_motion(const mspringi_sweep *s, size_t slot) {
 }
 
 // Move by Kahan's compensated sum: the low word keeps the rounding error for the next move.
-static inline void add_displacement(const mspringi_sweep *s, size_t slot, float way_x, float way_y) {
+static inline void add_displacement(const mspringi_sweep *s, size_t slot, float way_x, float way_y,
+                                    mspringi_variant of) {
     way_x = way_x + s->low_x[slot];
     way_y = way_y + s->low_y[slot];
-    const float x = s->x[slot] + way_x, y = s->y[slot] + way_y;
+    float x = s->x[slot] + way_x, y = s->y[slot] + way_y;
+    if (of & MSPRINGI_PRECISE) {
+        x = (x + s->grid) - s->grid;
+        y = (y + s->grid) - s->grid;
+    }
     s->low_x[slot] = way_x - (x - s->x[slot]);
     s->low_y[slot] = way_y - (y - s->y[slot]);
     s->x[slot] = x;
     s->y[slot] = y;
 }
 
-// Symplectic Euler: v' = (F h / m + (v + g h)) d, with d the decay. A pinned particle keeps its velocity. As g h is
-// never -0, neither is v + g h, so the sign of a zero force does not matter.
+// Kick of a velocity: v' = v + (F kick / m + (g kick - loss v)), where the inner sum is never -0, so the sign of a
+// zero force does not matter. A pinned particle keeps its velocity.
+static inline float kicked(const mspringi_sweep *s, float v, float push, float gravity, mspringi_variant of) {
+    const float to = v + (push + (gravity - s->loss * v));
+    return mspringi_flushes(s, of) ? flush_tiny(to) : to;
+}
+
+// The same in two words.
+static inline void kick_precisely(const mspringi_sweep *s, float *v, float *low, float push, float gravity) {
+    const float change = (push + (*low + gravity)) - s->loss * *v, sum = *v + change;
+    const float to = s->flushes ? flush_tiny(sum) : sum, rest = change - (to - *v);
+    *low = s->flushes ? flush_tiny(rest) : rest;
+    *v = to;
+}
+
+// Leapfrog: the velocity first, then the position.
 static inline void move(const mspringi_sweep *s, size_t slot, vector force, mspringi_variant of) {
     if (of & MSPRINGI_FORCED) {
         force.x = force.x + s->force_x[slot];
@@ -110,13 +179,17 @@ static inline void move(const mspringi_sweep *s, size_t slot, vector force, mspr
     }
     if (s->keep)
         save_motion(s, slot);
-    const float inverse_mass = s->inverse_mass[slot];
-    if (inverse_mass > 0.0f) {
-        const float inverse_mass_h = inverse_mass * s->h;
-        s->vx[slot] = (force.x * inverse_mass_h + (s->vx[slot] + s->gravity_h_x)) * s->decay;
-        s->vy[slot] = (force.y * inverse_mass_h + (s->vy[slot] + s->gravity_h_y)) * s->decay;
+    const float inverse_mass = s->inverse_mass[slot], change = inverse_mass * s->kick;
+    if (of & MSPRINGI_PRECISE && inverse_mass > 0.0f) {
+        kick_precisely(s, &s->vx[slot], &s->low_vx[slot], force.x * change, s->gravity_h_x);
+        kick_precisely(s, &s->vy[slot], &s->low_vy[slot], force.y * change, s->gravity_h_y);
+    } else if (of & MSPRINGI_PRECISE) {
+        s->low_vx[slot] = s->low_vy[slot] = 0.0f;
+    } else if (inverse_mass > 0.0f) {
+        s->vx[slot] = kicked(s, s->vx[slot], force.x * change, s->gravity_h_x, of);
+        s->vy[slot] = kicked(s, s->vy[slot], force.y * change, s->gravity_h_y, of);
     }
-    add_displacement(s, slot, s->vx[slot] * s->h, s->vy[slot] * s->h);
+    add_displacement(s, slot, s->vx[slot] * s->h, s->vy[slot] * s->h, of);
     if (s->watch)
         watch_motion(s, slot);
 }
@@ -181,12 +254,7 @@ static void yield_spring(const mspringi_yield_test *t, size_t spring_slot, float
 static inline void test_spring(const mspringi_sweep *s, size_t spring_slot, motion base, motion tip, float *rest,
                                float stiffness, mspringi_variant of) {
     const mspringi_yield_test *t = s->test;
-    float dx = base.x - tip.x, dy = base.y - tip.y;
-    if (of & MSPRINGI_PRECISE) {
-        dx = dx + (base.low_x - tip.low_x);
-        dy = dy + (base.low_y - tip.low_y);
-    }
-    const float square = dx * dx + dy * dy;
+    const float square = spring_extent(base, tip, of).square;
     if (!(square > t->test_high[spring_slot] || t->test_low[spring_slot] > square))
         return;
     const float way_x = s->h * (base.vx - tip.vx), way_y = s->h * (base.vy - tip.vy);
@@ -445,22 +513,26 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-// move() for several substeps, with the particle in registers.
+// Several substeps at once: see mspringi_free_motion.
 static inline void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_free_motion *glide,
                          bool forced) {
     for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
-        const float inverse_mass = s->inverse_mass[slot], inverse_mass_h = inverse_mass * s->h;
-        float change_x = s->gravity_h_x, change_y = s->gravity_h_y;
-        if (forced) {
-            change_x = s->force_x[slot] * inverse_mass_h + change_x;
-            change_y = s->force_y[slot] * inverse_mass_h + change_y;
-        }
-        const float vx = s->vx[slot], vy = s->vy[slot];
+        const float inverse_mass = s->inverse_mass[slot], vx = s->vx[slot], vy = s->vy[slot];
         const bool is_free = inverse_mass > 0.0f;
-        add_displacement(s, slot, is_free ? vx * glide->reach + change_x * glide->fall : vx * glide->drift,
-                         is_free ? vy * glide->reach + change_y * glide->fall : vy * glide->drift);
-        s->vx[slot] = is_free ? vx * glide->keep + change_x * glide->gain : vx;
-        s->vy[slot] = is_free ? vy * glide->keep + change_y * glide->gain : vy;
+        float change_x = glide->gravity_x, change_y = glide->gravity_y;
+        float way_x = glide->gravity_way_x, way_y = glide->gravity_way_y;
+        if (forced) {
+            const float ax = s->force_x[slot] * inverse_mass, ay = s->force_y[slot] * inverse_mass;
+            change_x = ax * glide->gain + change_x;
+            change_y = ay * glide->gain + change_y;
+            way_x = ax * glide->fall + way_x;
+            way_y = ay * glide->fall + way_y;
+        }
+        add_displacement(s, slot, is_free ? vx * glide->reach + way_x : vx * glide->drift,
+                         is_free ? vy * glide->reach + way_y : vy * glide->drift,
+                         s->low_vx ? MSPRINGI_PRECISE : 0);
+        s->vx[slot] = is_free ? vx * glide->keep + change_x : vx;
+        s->vy[slot] = is_free ? vy * glide->keep + change_y : vy;
     }
 }
 

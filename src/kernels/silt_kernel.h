@@ -34,10 +34,11 @@ typedef struct brake_arrays {
 static void find_changes(const mspringi_floor_args *g, const double *restrict fractions, const brake_arrays *b,
                          float *restrict change) {
     const float *v = b->velocity, *from = b->from;
-    const double undamped = g->undamped;
+    const mspringi_damping damping = g->damping;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const double velocity = (double)v[i], w = velocity - 0.5 * (undamped * velocity - (double)from[i]);
+        const double velocity = (double)v[i],
+                     w = velocity - 0.5 * mspringi_pushed(damping, (double)from[i], velocity);
         const float braked = (float)(velocity - fractions[i] * w) - v[i];
         change[i] = fractions[i] > 0.0 ? braked : 0.0f;
     }
@@ -50,7 +51,7 @@ static void brake_along(const mspringi_floor_args *g, size_t slot, const double 
     float *restrict v = b->velocity, *restrict at = b->position, *restrict low = b->low,
                     *restrict given = b->impulse;
     float change[MSPRINGI_WIDTH];
-    const double h = g->h, undamped = g->undamped;
+    const double h = g->h, per_kept = g->damping.keep > 0.0 ? 1.0 / g->damping.keep : 0.0;
     find_changes(g, fractions, b, change);
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
@@ -66,7 +67,7 @@ static void brake_along(const mspringi_floor_args *g, size_t slot, const double 
         return;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
-        const float from = (float)((double)b->before[i] + undamped * (double)change[i]);
+        const float from = (float)((double)b->before[i] + per_kept * (double)change[i]);
         b->before[i] = change[i] != 0.0f ? from : b->before[i];
     }
 }

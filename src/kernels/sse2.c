@@ -36,6 +36,21 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return _mm_sqrt_ps(a);
 }
+// The leading half of the digits, whose square is exact.
+static inline vec leading(vec a) {
+    return _mm_and_ps(a, _mm_castsi128_ps(_mm_set1_epi32((int)MSPRINGI_LEADING_BITS)));
+}
+// a, or 0 where it is tiny; NaN stays.
+static inline vec flush_tiny(vec a) {
+    return _mm_and_ps(a, _mm_cmpnlt_ps(_mm_and_ps(a, _mm_castsi128_ps(_mm_set1_epi32(0x7fffffff))),
+                                       _mm_set1_ps(MSPRINGI_TINY_SPEED)));
+}
+static inline vec maximum(vec a, vec b) {
+    return _mm_max_ps(a, b);
+}
+static inline vec minimum(vec a, vec b) {
+    return _mm_min_ps(a, b);
+}
 // 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     return _mm_and_ps(_mm_div_ps(_mm_set1_ps(1.0f), square),

@@ -53,18 +53,42 @@ MSPRINGI_INLINE motion load_motion_unaligned(const mspringi_sweep *s, size_t slo
 /// less time with AVX2 and AVX-512; gcc's SSE2 copies a base first, which takes 3 % more.
 typedef struct extent {
     vec dx, dy, square;
+    vec major, minor,
+        low; ///< of precise kernels: squares of the leading halves of dx and dy, and the rest of square
 } extent;
 
 MSPRINGI_INLINE extent spring_extent(motion base, motion tip, mspringi_variant of) {
     extent e;
     e.dx = sub(base.x, tip.x);
     e.dy = sub(base.y, tip.y);
-    if (of & MSPRINGI_PRECISE) {
-        e.dx = add(e.dx, sub(base.low_x, tip.low_x));
-        e.dy = add(e.dy, sub(base.low_y, tip.low_y));
+    if (!(of & MSPRINGI_PRECISE)) {
+        e.square = add(mul(e.dx, e.dx), mul(e.dy, e.dy));
+        return e;
     }
-    e.square = add(mul(e.dx, e.dx), mul(e.dy, e.dy));
+    const vec high_x = e.dx, high_y = e.dy, low_x = sub(base.low_x, tip.low_x), low_y = sub(base.low_y, tip.low_y);
+    e.dx = add(high_x, low_x);
+    e.dy = add(high_y, low_y);
+    const vec lead_x = leading(e.dx), lead_y = leading(e.dy);
+    const vec rest_x = add(sub(high_x, lead_x), low_x), rest_y = add(sub(high_y, lead_y), low_y);
+    const vec square_x = mul(lead_x, lead_x), square_y = mul(lead_y, lead_y);
+    e.low = add(mul(rest_x, add(lead_x, e.dx)), mul(rest_y, add(lead_y, e.dy)));
+    e.major = maximum(square_x, square_y);
+    e.minor = minimum(square_x, square_y);
+    e.square = add(add(square_x, square_y), e.low);
     return e;
+}
+
+// The length L times the extension. In precise kernels
+//     L (L - rest_length) + (d^2 - L^2) / 2,
+// where the second term makes up for the rounding of the root: squares of leading halves and the difference of the
+// two largest are exact, and the other terms are small.
+MSPRINGI_INLINE vec stretch(vec length, vec rest_length, vec major, vec minor, vec low, mspringi_variant of) {
+    const vec first = mul(length, sub(length, rest_length));
+    if (!(of & MSPRINGI_PRECISE))
+        return first;
+    const vec lead = leading(length), rest = sub(length, lead);
+    const vec error = add(add(sub(major, mul(lead, lead)), minor), sub(low, mul(rest, add(lead, length))));
+    return add(first, mul(set(0.5f), error));
 }
 
 // Forces of springs on their tips, from the inverses of their squared lengths; those on the bases are opposite.
@@ -74,7 +98,10 @@ MSPRINGI_INLINE extent spring_extent(motion base, motion tip, mspringi_variant o
 MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion tip, const float *rest_lengths,
                                     const float *record, mspringi_variant of) {
     const vec length = square_root(e.square);
-    vec force = MSPRINGI_LAW_FORCE(mul, mul(length, load(record)), sub(length, load(rest_lengths)));
+    vec force = of & MSPRINGI_PRECISE
+                    ? MSPRINGI_LAW_FORCE(mul, load(record),
+                                         stretch(length, load(rest_lengths), e.major, e.minor, e.low, of))
+                    : MSPRINGI_LAW_FORCE(mul, mul(length, load(record)), sub(length, load(rest_lengths)));
     if (of & MSPRINGI_DAMPED) {
         const vec dvx = sub(base.vx, tip.vx), dvy = sub(base.vy, tip.vy);
         const vec rate = add(mul(dvx, e.dx), mul(dvy, e.dy));
@@ -111,6 +138,10 @@ MSPRINGI_INLINE void save_motion(const mspringi_sweep *s, size_t slot, vec x, ve
     store(to + 3 * slots, vy);
     store(to + 4 * slots, load(s->low_x + slot));
     store(to + 5 * slots, load(s->low_y + slot));
+    if (s->low_vx) {
+        store(to + 6 * slots, load(s->low_vx + slot));
+        store(to + 7 * slots, load(s->low_vy + slot));
+    }
 }
 
 // found: velocities before the substep. In the first of the step nothing is loaded again.
@@ -135,7 +166,11 @@ MSPRINGI_INLINE vector add_displacement(const mspringi_sweep *s, size_t slot, mo
                                         mspringi_variant of) {
     way_x = add(way_x, of & MSPRINGI_PRECISE ? here.low_x : load(s->low_x + slot));
     way_y = add(way_y, of & MSPRINGI_PRECISE ? here.low_y : load(s->low_y + slot));
-    const vector to = {add(here.x, way_x), add(here.y, way_y)};
+    vector to = {add(here.x, way_x), add(here.y, way_y)};
+    if (of & MSPRINGI_PRECISE) { // differences of coordinates on a grid are exact, next to 0 too
+        to.x = sub(add(to.x, set(s->grid)), set(s->grid));
+        to.y = sub(add(to.y, set(s->grid)), set(s->grid));
+    }
     store(s->low_x + slot, sub(way_x, sub(to.x, here.x)));
     store(s->low_y + slot, sub(way_y, sub(to.y, here.y)));
     store(s->x + slot, to.x);
@@ -143,24 +178,49 @@ MSPRINGI_INLINE vector add_displacement(const mspringi_sweep *s, size_t slot, mo
     return to;
 }
 
+// Kick of velocities: v' = v + (F kick / m + (g kick - loss v)), where the inner sum is never -0, so the sign of a
+// zero force does not matter. A pinned particle keeps its velocity.
+MSPRINGI_INLINE vec kicked(const mspringi_sweep *s, vec v, vec push, vec gravity, vec inverse_mass,
+                           mspringi_variant of) {
+    const vec to = add(v, add(push, sub(gravity, mul(set(s->loss), v))));
+    return choose_positive(inverse_mass, mspringi_flushes(s, of) ? flush_tiny(to) : to, v);
+}
+
+// The same in two words: low becomes the low word of the result.
+MSPRINGI_INLINE vec kicked_precisely(const mspringi_sweep *s, vec v, vec *low, vec push, vec gravity,
+                                     vec inverse_mass) {
+    const vec change = sub(add(push, add(*low, gravity)), mul(set(s->loss), v)), sum = add(v, change);
+    const vec to = choose_positive(inverse_mass, s->flushes ? flush_tiny(sum) : sum, v);
+    const vec rest = choose_positive(inverse_mass, sub(change, sub(to, v)), zero());
+    *low = s->flushes ? flush_tiny(rest) : rest;
+    return to;
+}
+
+// Leapfrog: the velocities first, then the positions.
 MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vector force, mspringi_variant of) {
     if (of & MSPRINGI_FORCED) {
         force.x = add(force.x, load(s->force_x + slot));
         force.y = add(force.y, load(s->force_y + slot));
     }
-    const vec h = set(s->h), decay = set(s->decay);
+    const vec h = set(s->h), gravity_x = set(s->gravity_h_x), gravity_y = set(s->gravity_h_y);
     const vec inverse_mass = load(s->inverse_mass + slot);
-    const vec inverse_mass_h = mul(inverse_mass, h);
+    const vec change = mul(inverse_mass, set(s->kick));
     // Without dampers, velocities are not loaded yet.
     vec vx = of & MSPRINGI_DAMPED ? here.vx : load(s->vx + slot),
         vy = of & MSPRINGI_DAMPED ? here.vy : load(s->vy + slot);
     const vector found = {vx, vy};
     if (s->keep)
         save_motion(s, slot, here.x, here.y, vx, vy);
-    vx = add(vx, set(s->gravity_h_x));
-    vy = add(vy, set(s->gravity_h_y));
-    vx = choose_positive(inverse_mass, mul(add(mul(force.x, inverse_mass_h), vx), decay), found.x);
-    vy = choose_positive(inverse_mass, mul(add(mul(force.y, inverse_mass_h), vy), decay), found.y);
+    if (of & MSPRINGI_PRECISE) {
+        vec low_vx = load(s->low_vx + slot), low_vy = load(s->low_vy + slot);
+        vx = kicked_precisely(s, vx, &low_vx, mul(force.x, change), gravity_x, inverse_mass);
+        vy = kicked_precisely(s, vy, &low_vy, mul(force.y, change), gravity_y, inverse_mass);
+        store(s->low_vx + slot, low_vx);
+        store(s->low_vy + slot, low_vy);
+    } else {
+        vx = kicked(s, vx, mul(force.x, change), gravity_x, inverse_mass, of);
+        vy = kicked(s, vy, mul(force.y, change), gravity_y, inverse_mass, of);
+    }
     store(s->vx + slot, vx);
     store(s->vy + slot, vy);
     const vector to = add_displacement(s, slot, here, mul(vx, h), mul(vy, h), of);
@@ -346,9 +406,10 @@ MSPRINGI_INLINE void chain(const mspringi_sweep *sweep, const mspringi_span *spa
 
 /// Geometry of LANES springs of the irregular part, for the forces on their tips.
 typedef struct gap {
-    vec dx, dy; ///< from the tips to the bases
-    vec square; ///< squared length
-    vec change; ///< rate of change of the length, times the length
+    vec dx, dy;            ///< from the tips to the bases
+    vec square;            ///< squared length
+    vec change;            ///< rate of change of the length, times the length
+    vec major, minor, low; ///< as in an extent
 } gap;
 
 // Load LANES nodes of the irregular part.
@@ -370,7 +431,12 @@ MSPRINGI_INLINE motion load_nodes(const mspringi_sweep *s, const uint32_t *nodes
 MSPRINGI_INLINE gap gap_to(const mspringi_sweep *s, motion tip, const uint32_t *bases, mspringi_variant of) {
     const motion base = load_nodes(s, bases, of);
     const extent from_tip = spring_extent(base, tip, of);
-    gap to = {from_tip.dx, from_tip.dy, from_tip.square, zero()};
+    gap to = {from_tip.dx, from_tip.dy, from_tip.square, zero(), zero(), zero(), zero()};
+    if (of & MSPRINGI_PRECISE) {
+        to.major = from_tip.major;
+        to.minor = from_tip.minor;
+        to.low = from_tip.low;
+    }
     if (of & MSPRINGI_DAMPED)
         to.change = add(mul(sub(base.vx, tip.vx), to.dx), mul(sub(base.vy, tip.vy), to.dy));
     return to;
@@ -378,8 +444,10 @@ MSPRINGI_INLINE gap gap_to(const mspringi_sweep *s, motion tip, const uint32_t *
 
 MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, mspringi_variant of) {
     const vec length = square_root(to.square);
-    vec force = mul(sub(length, load(record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH)),
-                    mul(length, load(record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH)));
+    const vec rest_length = load(record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH);
+    const vec stiffness = load(record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH);
+    vec force = of & MSPRINGI_PRECISE ? mul(stretch(length, rest_length, to.major, to.minor, to.low, of), stiffness)
+                                      : mul(sub(length, rest_length), mul(length, stiffness));
     if (of & MSPRINGI_DAMPED)
         force = add(force, mul(to.change, load(record + MSPRINGI_DAMPING * MSPRINGI_WIDTH)));
     force = mul(force, inverse_or_zero(to.square));
@@ -506,29 +574,6 @@ static void pack(const mspringi_sweep *s, size_t first_block, size_t block_count
     }
 }
 
-// Move by several substeps at once: see mspringi_free_motion.
-MSPRINGI_INLINE void loose(const mspringi_sweep *s, const mspringi_span *span, const mspringi_free_motion *glide,
-                           bool forced) {
-    const mspringi_variant all = MSPRINGI_DAMPED;
-    const vec h = set(s->h), keep = set(glide->keep), gain = set(glide->gain), reach = set(glide->reach),
-              fall = set(glide->fall), drift = set(glide->drift);
-    const size_t end = end_of(span);
-    for (size_t slot = first_of(span); slot < end; slot += LANES) {
-        const vec inverse_mass = load(s->inverse_mass + slot);
-        vec change_x = set(s->gravity_h_x), change_y = set(s->gravity_h_y);
-        if (forced) {
-            const vec inverse_mass_h = mul(inverse_mass, h);
-            change_x = add(mul(load(s->force_x + slot), inverse_mass_h), change_x);
-            change_y = add(mul(load(s->force_y + slot), inverse_mass_h), change_y);
-        }
-        const motion m = load_motion(s, slot, all);
-        const vec way_x = add(mul(m.vx, reach), mul(change_x, fall));
-        const vec way_y = add(mul(m.vy, reach), mul(change_y, fall));
-        add_displacement(s, slot, m, choose_positive(inverse_mass, way_x, mul(m.vx, drift)),
-                         choose_positive(inverse_mass, way_y, mul(m.vy, drift)), all);
-        store(s->vx + slot, choose_positive(inverse_mass, add(mul(m.vx, keep), mul(change_x, gain)), m.vx));
-        store(s->vy + slot, choose_positive(inverse_mass, add(mul(m.vy, keep), mul(change_y, gain)), m.vy));
-    }
-}
+#include "kernels/loose_sweep.h"
 
 #endif

@@ -200,6 +200,7 @@ typedef struct mspringi_correction {
     float *to_low, *to_first, *to_second; ///< may alias the arrays read
     float alpha;
     float h, rate;
+    float grid; ///< as in a mspringi_sweep; 0: none
 } mspringi_correction;
 
 /// History for the next substep.

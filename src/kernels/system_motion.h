@@ -164,15 +164,15 @@ static void add_outside(const mspringi_outside *o, float *residual, size_t first
 MSPRINGI_INLINE void correct(size_t count, const double *restrict predicted, const float *restrict start,
                              const float *restrict inverse_mass, const float *restrict solution,
                              const float *restrict direction, const float *from, const float *low,
-                             const float *history, float alpha, float h, float rate, float *restrict position,
-                             float *restrict velocity, float *restrict to_low, float *restrict to_first,
+                             const float *history, float alpha, float h, float rate, float grid,
+                             float *restrict position, float *restrict velocity, float *restrict to_low, float *restrict to_first,
                              float *restrict to_second, mspringi_history_kind memory) {
     const float per_h = 1.0f / h;
     for (size_t i = 0; i < count; ++i) {
         const float d = solution[i] + alpha * direction[i], v = velocity[i];
         const double straight = ((double)from[i] + (double)low[i]) + (double)h * (double)v;
         const double end = predicted[i] + (double)d;
-        const float rounded = (float)end, beyond = (float)(end - straight);
+        const float rounded = ((float)end + grid) - grid, beyond = (float)(end - straight);
         const float moved = start[i] + rate * d, after = inverse_mass[i] > 0.0f ? moved : v, change = after - v;
         position[i] = rounded;
         velocity[i] = after;
@@ -206,7 +206,7 @@ MSPRINGI_INLINE void correct(size_t count, const double *restrict predicted, con
                 history[lane] = l->first[i + lane];                                                                \
             }                                                                                                      \
             correct(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,          \
-                    l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->position + i,                \
+                    l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->grid, l->position + i,       \
                     l->velocity + i, l->to_low + i, l->to_first + i,                                               \
                     memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused, memory);                          \
         }                                                                                                          \

@@ -36,6 +36,20 @@ static inline vec mul(vec a, vec b) {
 static inline vec square_root(vec a) {
     return wasm_f32x4_sqrt(a);
 }
+// The leading half of the digits, whose square is exact.
+static inline vec leading(vec a) {
+    return wasm_v128_and(a, wasm_i32x4_splat((int)MSPRINGI_LEADING_BITS));
+}
+// a, or 0 where it is tiny; NaN stays.
+static inline vec flush_tiny(vec a) {
+    return wasm_v128_andnot(a, wasm_f32x4_lt(wasm_f32x4_abs(a), wasm_f32x4_splat(MSPRINGI_TINY_SPEED)));
+}
+static inline vec maximum(vec a, vec b) {
+    return wasm_f32x4_pmax(b, a);
+}
+static inline vec minimum(vec a, vec b) {
+    return wasm_f32x4_pmin(b, a);
+}
 // 1 / square, or 0 without a direction.
 static inline vec inverse_or_zero(vec square) {
     return wasm_v128_and(wasm_f32x4_div(wasm_f32x4_splat(1.0f), square),

@@ -28,6 +28,8 @@ static void relocate_state(const relocation *r, mspringi_state *state) {
     RELOCATE(state->vy);
     RELOCATE(state->low_x);
     RELOCATE(state->low_y);
+    RELOCATE(state->low_vx);
+    RELOCATE(state->low_vy);
 }
 
 static void relocate_floor(const relocation *r, mspringi_floor *floor) {

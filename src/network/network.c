@@ -6,6 +6,7 @@
 #include "base/cpu.h"
 #include "base/definitions.h"
 #include "base/hash.h"
+#include "base/unit.h"
 #include "network/job.h"
 #include "network/level.h"
 #include "sleep/sleep.h"
@@ -141,7 +142,7 @@ mspring_result mspringi_layout_reserve(mspring_network *network) {
                                  "no memory for a network of %u particles and %u springs",
                                  (unsigned)t->particle_count, (unsigned)t->spring_count);
     mspringi_shared_records_clear(&network->shared_records, t->lattice_blocks);
-    network->depth = mspringi_explicit_depth(t, network->parts);
+    network->depth = mspringi_explicit_depth(network);
     return mspringi_carry_reserve(network);
 }
 
@@ -202,6 +203,7 @@ static void update_fingerprints(mspring_network *network, const mspringi_spring 
 static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
     network->shortest = INFINITY;
+    double longest = 0.0;
     network->topology_fingerprint = network->parameter_fingerprint = MSPRINGI_HASH_START;
     if (t->reserve.particle_end > t->particle_count || t->reserve.spring_end > t->spring_count)
         network->topology_fingerprint = mspringi_hash(
@@ -212,6 +214,8 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
         const mspringi_spring *spring = &builder->springs[s];
         if (spring->rest_length != MSPRINGI_WELD)
             network->shortest = fmin(network->shortest, (double)spring->rest_length);
+        if (spring->rest_length != MSPRINGI_WELD)
+            longest = fmax(longest, (double)spring->rest_length);
         const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
         const bool relative = spring->flags & MSPRING_SPRING_RELATIVE;
         mspringi_spring_slot_set_rest_length(network, spring_slot, spring->rest_length);
@@ -220,6 +224,7 @@ static void fill_springs(mspring_network *network, const mspring_builder *builde
         update_fingerprints(network, spring, spring_slot);
         network->live[spring_slot / MSPRINGI_WIDTH] |= (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     }
+    network->state.grid = network->is_precise ? (float)mspringi_unit_of((float)(2.0 * longest)) : 0.0f;
 }
 
 // Mark springs whose first end has the higher id, which are few.

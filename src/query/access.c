@@ -219,8 +219,7 @@ static mspring_result set_velocities(mspring_network *network, const mspringi_se
         const uint32_t slot = network->topology.slot_of_particle[particle];
         if (!mspringi_particle_exists(network, particle))
             continue;
-        network->state.vx[slot] = vx[(size_t)i * stride];
-        network->state.vy[slot] = vy[(size_t)i * stride];
+        mspringi_set_velocity(&network->state, slot, vx[(size_t)i * stride], vy[(size_t)i * stride]);
     }
     mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
     return MSPRING_OK;
@@ -270,10 +269,15 @@ mspring_result mspring_network_state_hash(const mspring_network *network, uint64
         if (mspringi_particle_exists(network, p)) {
             sum = mspringi_hash_floats(sum, s->x[slot], s->y[slot]);
             sum = mspringi_hash_floats(sum, s->vx[slot], s->vy[slot]);
-            sum = mspringi_hash_floats(sum, mspringi_low_of(s->x[slot], s->low_x[slot]),
-                                       mspringi_low_of(s->y[slot], s->low_y[slot]));
+            sum = mspringi_hash_floats(sum, mspringi_low_of(s->x[slot], s->low_x[slot], s->grid),
+                                       mspringi_low_of(s->y[slot], s->low_y[slot], s->grid));
+            if (s->low_vx && !network->is_open)
+                sum = mspringi_hash_floats(sum, s->low_vx[slot], s->low_vy[slot]);
+            else if (s->low_vx)
+                sum = mspringi_hash_floats(sum, mspringi_low_of(s->vx[slot], s->low_vx[slot], 0.0f),
+                                           mspringi_low_of(s->vy[slot], s->low_vy[slot], 0.0f));
         } else {
-            for (int pair = 0; pair < 3; ++pair)
+            for (size_t pair = 0; pair < mspringi_state_arrays(network) / 2; ++pair)
                 sum = mspringi_hash_floats(sum, 0.0f, 0.0f);
         }
     }

@@ -16,8 +16,8 @@ typedef struct peak {
     mspringi_spring_slot first, end;
 } peak;
 
-static inline float low_of(float coordinate, float low, bool may_be_stale) {
-    return may_be_stale ? mspringi_low_of(coordinate, low) : low;
+static inline float low_of(float coordinate, float low, bool may_be_stale, float grid) {
+    return may_be_stale ? mspringi_low_of(coordinate, low, grid) : low;
 }
 
 // Raise the largest strain of each lane to those of sixteen spring slots of a lattice: as mspringi_measure(), but
@@ -32,10 +32,10 @@ MSPRINGI_ALWAYS_INLINE void raise_lanes(const mspring_network *network, mspringi
     mspringi_lattice_ends(&network->topology, first, &base, &tip);
     for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
         const size_t a = base + lane, b = tip + lane;
-        const float dx = (s.x[b] - s.x[a]) +
-                         (low_of(s.x[b], s.low_x[b], may_be_stale) - low_of(s.x[a], s.low_x[a], may_be_stale));
-        const float dy = (s.y[b] - s.y[a]) +
-                         (low_of(s.y[b], s.low_y[b], may_be_stale) - low_of(s.y[a], s.low_y[a], may_be_stale));
+        const float dx = (s.x[b] - s.x[a]) + (low_of(s.x[b], s.low_x[b], may_be_stale, s.grid) -
+                                              low_of(s.x[a], s.low_x[a], may_be_stale, s.grid));
+        const float dy = (s.y[b] - s.y[a]) + (low_of(s.y[b], s.low_y[b], may_be_stale, s.grid) -
+                                              low_of(s.y[a], s.low_y[a], may_be_stale, s.grid));
         const float length = sqrtf(dx * dx + dy * dy), rest_length = rest_lengths[lane];
         strains[lane] =
             fabsf(has_welds ? mspringi_strain_of(length, rest_length) : (length - rest_length) / rest_length);

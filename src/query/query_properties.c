@@ -11,8 +11,8 @@
 
 // Equal to mspringi_spring_slot_length() and mspringi_spring_slot_strain() up to rounding. Most springs lie in
 // lattices. Differences of low words between neighbours are small, so single precision suffices.
-static inline float low_of(float coordinate, float low, bool may_be_stale) {
-    return may_be_stale ? mspringi_low_of(coordinate, low) : low;
+static inline float low_of(float coordinate, float low, bool may_be_stale, float grid) {
+    return may_be_stale ? mspringi_low_of(coordinate, low, grid) : low;
 }
 
 static inline void measure(const mspring_network *network, mspring_property property,
@@ -31,10 +31,10 @@ static inline void measure(const mspring_network *network, mspring_property prop
             continue;
         }
         mspringi_lattice_ends(t, spring_slot, &base, &tip);
-        const float dx = (s.x[tip] - s.x[base]) + (low_of(s.x[tip], s.low_x[tip], may_be_stale) -
-                                                   low_of(s.x[base], s.low_x[base], may_be_stale));
-        const float dy = (s.y[tip] - s.y[base]) + (low_of(s.y[tip], s.low_y[tip], may_be_stale) -
-                                                   low_of(s.y[base], s.low_y[base], may_be_stale));
+        const float dx = (s.x[tip] - s.x[base]) + (low_of(s.x[tip], s.low_x[tip], may_be_stale, s.grid) -
+                                                   low_of(s.x[base], s.low_x[base], may_be_stale, s.grid));
+        const float dy = (s.y[tip] - s.y[base]) + (low_of(s.y[tip], s.low_y[tip], may_be_stale, s.grid) -
+                                                   low_of(s.y[base], s.low_y[base], may_be_stale, s.grid));
         float value = sqrtf(dx * dx + dy * dy);
         if (property == MSPRING_STRAIN) {
             const float rest_length = *mspringi_rest_lengths_at(&rests, spring_slot);

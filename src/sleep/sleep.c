@@ -35,7 +35,7 @@ void mspringi_sleep_forget(mspringi_sleep *s) {
 static bool state_differs(const mspring_network *network, size_t slot) {
     const size_t slots = mspringi_slot_count(network);
     const float *now = network->state.x + slot, *kept = network->sleep.state + slot;
-    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
         if (memcmp(now + i * slots, kept + i * slots, sizeof *now) != 0)
             return true;
     return false;
@@ -51,7 +51,7 @@ static bool block_differs(const mspring_network *network, size_t block, bool sta
     const mspringi_sleep *s = &network->sleep;
     const size_t size = MSPRINGI_WIDTH * sizeof *s->state;
     bool differs = masses && memcmp(network->inverse_mass + first, s->inverse_mass + first, size) != 0;
-    for (size_t i = 0; state && i < MSPRINGI_STATE_ARRAYS; ++i)
+    for (size_t i = 0; state && i < mspringi_state_arrays(network); ++i)
         differs |= memcmp(network->state.x + i * slots + first, s->state + i * slots + first, size) != 0;
     return differs;
 }
@@ -311,7 +311,7 @@ static void restore(mspring_network *network) {
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
     for (size_t slot = 0; s->sleeping > 0 && slot < slots; ++slot)
-        for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS && mspringi_slot_is_asleep(network, slot); ++i)
+        for (size_t i = 0; i < mspringi_state_arrays(network) && mspringi_slot_is_asleep(network, slot); ++i)
             network->state.x[i * slots + slot] = s->state[i * slots + slot];
 }
 
@@ -389,11 +389,11 @@ static void put_to_sleep(mspring_network *network, size_t slot, mspringi_field f
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
     // A block that is swept for its other slots adds 0 to the position and its low word, which would make -0 +0.
-    state->low_x[slot] = mspringi_low_of(state->x[slot], state->low_x[slot]);
-    state->low_y[slot] = mspringi_low_of(state->y[slot], state->low_y[slot]);
+    state->low_x[slot] = mspringi_low_of(state->x[slot], state->low_x[slot], state->grid);
+    state->low_y[slot] = mspringi_low_of(state->y[slot], state->low_y[slot], state->grid);
     mspringi_move_by(state, slot, 0.0f, 0.0f);
-    state->vx[slot] = state->vy[slot] = 0.0f;
-    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+    mspringi_set_velocity(state, slot, 0.0f, 0.0f);
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
         s->state[i * slots + slot] = state->x[i * slots + slot];
     s->inverse_mass[slot] = network->inverse_mass[slot];
     s->force.x[slot] = force.x && isfinite(force.x[slot]) ? force.x[slot] : 0.0f; // a hook's may be no number
@@ -506,7 +506,7 @@ void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
         const double still = had->still[had->island[before]];
         double *now = &s->still[s->island[slot]];
         *now = still >= 0.0 && still < *now ? still : *now;
-        for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+        for (size_t i = 0; i < mspringi_state_arrays(to); ++i)
             s->state[i * slots + slot] = had->state[i * had_slots + before];
         s->inverse_mass[slot] = had->inverse_mass[before];
         s->force.x[slot] = had->force.x[before];

@@ -11,14 +11,14 @@
 /// Sections in the order of loading. All depend on the existing particles and springs, ramps on the springs'
 /// values, stressed springs on the broken ones, sleep on all edits, and a solver's tiles on sleep.
 static const mspringi_section *const sections[] = {
-    &mspringi_section_growth,         &mspringi_section_settings,      &mspringi_section_steps,
-    &mspringi_section_motion,         &mspringi_section_masses,        &mspringi_section_forces,
-    &mspringi_section_broken,         &mspringi_section_values,        &mspringi_section_break_strains,
-    &mspringi_section_stress_strains, &mspringi_section_relax_strains, &mspringi_section_stressed,
-    &mspringi_section_yielding,       &mspringi_section_bent,          &mspringi_section_ramps,
-    &mspringi_section_areas,          &mspringi_section_rest_angles,   &mspringi_section_shape,
-    &mspringi_section_grips,          &mspringi_section_sleep,         &mspringi_section_implicit,
-    &mspringi_section_guard,          &mspringi_section_precision,     &mspringi_section_held,
+    &mspringi_section_growth,        &mspringi_section_settings,       &mspringi_section_steps,
+    &mspringi_section_precision,     &mspringi_section_motion,         &mspringi_section_masses,
+    &mspringi_section_forces,        &mspringi_section_broken,         &mspringi_section_values,
+    &mspringi_section_break_strains, &mspringi_section_stress_strains, &mspringi_section_relax_strains,
+    &mspringi_section_stressed,      &mspringi_section_yielding,       &mspringi_section_bent,
+    &mspringi_section_ramps,         &mspringi_section_areas,          &mspringi_section_rest_angles,
+    &mspringi_section_shape,         &mspringi_section_grips,          &mspringi_section_sleep,
+    &mspringi_section_implicit,      &mspringi_section_guard,          &mspringi_section_held,
     &mspringi_section_actuators};
 enum { SECTIONS = sizeof sections / sizeof sections[0] };
 

@@ -142,24 +142,25 @@ static bool are_same(const uint8_t *from, const float *values, size_t count) {
 /* ----------------------------------------------------------------------------------------------------- motion */
 
 static size_t motion_floats(const mspring_network *network) {
-    return MSPRINGI_STATE_ARRAYS * mspringi_slot_count(network);
+    return mspringi_state_arrays(network) * mspringi_slot_count(network);
 }
 
 static size_t motion_size(const mspring_network *network) {
     return motion_floats(network) * sizeof(float);
 }
 
-// Save the state that the host may have written to as the next step would tidy it: without stale low words, and with
-// 0 in empty slots.
+// Save the state that the host may have written to as the next step would tidy it: without stale low words, and
+// with 0 in empty slots.
 static void put_tidied(const mspring_network *network, size_t array, mspringi_writer *to) {
-    const size_t slots = mspringi_slot_count(network), positions = MSPRINGI_STATE_ARRAYS - 2;
+    const size_t slots = mspringi_slot_count(network), first_low = 4; // x, y, vx, vy, low_x, low_y, low_vx, low_vy
     const float *values = network->state.x + array * slots;
-    const float *of = network->state.x + (array < positions ? array : array - positions) * slots;
+    const float *of = network->state.x + (array < first_low ? array : array - first_low) * slots;
+    const float grid = array < first_low + 2 ? network->state.grid : 0.0f;
     for (size_t first = 0; first < slots; first += MSPRINGI_WIDTH) {
         float block[MSPRINGI_WIDTH];
         for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {
             const size_t slot = first + lane;
-            const float value = array < positions ? values[slot] : mspringi_low_of(of[slot], values[slot]);
+            const float value = array < first_low ? values[slot] : mspringi_low_of(of[slot], values[slot], grid);
             block[lane] = network->topology.particle_of_slot[slot] == MSPRING_NONE ? 0.0f : value;
         }
         mspringi_put(to, block, MSPRINGI_WIDTH, sizeof(float));
@@ -169,7 +170,7 @@ static void put_tidied(const mspring_network *network, size_t array, mspringi_wr
 static void motion_save(const mspring_network *network, mspringi_writer *to) {
     if (!network->is_open)
         mspringi_put(to, network->state.x, motion_floats(network), sizeof(float));
-    for (size_t array = 0; network->is_open && array < MSPRINGI_STATE_ARRAYS; ++array)
+    for (size_t array = 0; network->is_open && array < mspringi_state_arrays(network); ++array)
         put_tidied(network, array, to);
 }
 
@@ -188,9 +189,13 @@ static mspring_result check_motion(mspring_network *network, const uint8_t *from
 // Check all slots that particles may occupy. Another section says which of its two a spare one is in.
 static mspring_result motion_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_topology *t = &network->topology;
-    const size_t third = motion_floats(network) / MSPRINGI_STATE_ARRAYS * 2; // positions; velocities; low words
+    const size_t third = 2 * mspringi_slot_count(network); // positions, then velocities
     mspring_result result =
         mspringi_section_check_size(network, &mspringi_section_motion, size, motion_size(network));
+    if (result == MSPRING_OK && network->is_precise &&
+        !are_within(from + 3 * third * sizeof(float), third, (float)MSPRING_MAX_SPEED))
+        return mspringi_section_fail(network, &mspringi_section_motion,
+                                     "a low word of a velocity is not within 1e15 m/s");
     if (result == MSPRING_OK && are_within(from, third, (float)MSPRING_MAX_COORDINATE) &&
         are_within(from + third * sizeof(float), third, (float)MSPRING_MAX_SPEED))
         return MSPRING_OK;

@@ -86,9 +86,9 @@ static bool is_finite_in(const mspringi_state *s, uint32_t slot) {
 }
 
 // Move a coordinate within the bounds. A low word that belongs to another coordinate, or is no number, becomes 0.
-static void clamp_coordinate(float *coordinate, float *low) {
+static void clamp_coordinate(float *coordinate, float *low, float grid) {
     const float bounded = between(*coordinate, (float)MSPRING_MAX_COORDINATE);
-    *low = bounded == *coordinate ? mspringi_low_of(bounded, *low) : 0.0f;
+    *low = bounded == *coordinate ? mspringi_low_of(bounded, *low, grid) : 0.0f;
     *coordinate = bounded;
 }
 
@@ -103,10 +103,10 @@ void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *
             s->y[slot] = was_there ? before->y[slot] : 0.0f;
             s->low_x[slot] = was_there ? before->low_x[slot] : 0.0f;
             s->low_y[slot] = was_there ? before->low_y[slot] : 0.0f;
-            s->vx[slot] = s->vy[slot] = 0.0f;
+            mspringi_set_velocity(s, slot, 0.0f, 0.0f);
         }
-        clamp_coordinate(&s->x[slot], &s->low_x[slot]);
-        clamp_coordinate(&s->y[slot], &s->low_y[slot]);
+        clamp_coordinate(&s->x[slot], &s->low_x[slot], s->grid);
+        clamp_coordinate(&s->y[slot], &s->low_y[slot], s->grid);
         s->vx[slot] = between(s->vx[slot], network->settings.max_speed);
         s->vy[slot] = between(s->vy[slot], network->settings.max_speed);
     }
@@ -167,9 +167,9 @@ static int affordable_iterations(const mspring_network *network, uint32_t subste
 
 static mspring_result check_limit(mspring_network *network, const mspringi_attempt *attempt, bool from_motion) {
     const float h = attempt->h;
-    const double decay = (double)mspringi_decay(network->settings.global_damping, h);
     // Margin for the rounding of single-precision vectors.
-    const double sharp = 2.0 * (1.0 + 1.0 / decay), bound = sharp * (1.0 + 1e-4);
+    const double sharp = mspringi_stability_bound(network->settings.global_damping, h),
+                 bound = sharp * (1.0 + 1e-4);
     if (mspringi_stability_limit_is_below(network, (double)h, sharp))
         return MSPRING_OK;
     const int iterations =

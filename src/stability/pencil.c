@@ -11,8 +11,7 @@ double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping)
     double h = 0.0;
     // Global damping raises the bound with h: iterate from below to the first h that meets it.
     for (int turn = 0; turn < 100; ++turn) {
-        const double bound = 2.0 + 2.0 / (double)mspringi_decay(global_damping, (float)h),
-                     room = bound - q->relative;
+        const double bound = mspringi_stability_bound(global_damping, (float)h), room = bound - q->relative;
         if (!(room >= 0.0))
             return 0.0;
         if (room == INFINITY)

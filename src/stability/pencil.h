@@ -2,16 +2,16 @@
 /// Stability of a network at a substep, as an eigenvalue problem.
 ///
 /// Around a shape, with displacement x, mass M, tangent stiffness K and damper matrix C, a substep is
-///     v' = g (v - h M^-1 (K x + C v));   x' = x + h v';   g = exp(-global_damping h)
+///     v' = g v - w h M^-1 (K x + C v);   x' = x + h v';   g = exp(-b h),   w = (1 - g) / (b h),   b = global_damping
 /// A solution that grows by z in each substep obeys
-///     Q(z) x = 0,   Q(z) = (z - 1)(z - g) + g (z - 1) D + g z A,
+///     Q(z) x = 0,   Q(z) = (z - 1)(z - g) + w (z - 1) D + w z A,
 ///     A = h^2 M^-1/2 K M^-1/2,   D = h M^-1/2 C M^-1/2   (both symmetric and positive semidefinite).
 /// No |z| exceeds 1, so the substep is stable, if and only if the largest eigenvalue of A + 2 D is at most
-///     2 (1 + 1/g):
+///     2 (1 + g) / w (see mspringi_stability_bound()):
 ///   - If it is, take a = x* A x and d = x* D x of a solution of length 1. Then
-///     z^2 - (1 + g - g d - g a) z + g (1 - d) = 0. This real quadratic has both roots in the unit disc, since
-///     a + 2 d <= 2 (1 + 1/g) (Jury's conditions).
-///   - If it is not, Q(-1) = 2 (1 + g) - 2 g D - g A has a negative eigenvalue. Q(z) has none if z is far below -1,
+///     z^2 - (1 + g - w d - w a) z + g - w d = 0. This real quadratic has both roots in the unit disc, since
+///     a + 2 d <= 2 (1 + g) / w (Jury's conditions).
+///   - If it is not, Q(-1) = 2 (1 + g) - 2 w D - w A has a negative eigenvalue. Q(z) has none if z is far below -1,
 ///     so Q(z) is singular for some z in between. That solution changes its sign and grows in each substep.
 /// For one undamped mode this is omega h <= 2, for one mode of damping ratio zeta
 ///     omega h <= 2 (sqrt(1 + zeta^2) - zeta).

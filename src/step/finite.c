@@ -17,7 +17,7 @@ static bool are_finite(const float *values, size_t count) {
 static bool is_motion_finite(const mspring_network *network) {
     const size_t slots = mspringi_slot_count(network), used = mspringi_used_slots(network);
     bool finite = true;
-    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
         finite = finite && are_finite(network->state.x + i * slots, used) &&
                  (network->sleep.sleeping == 0 || are_finite(network->sleep.state + i * slots, used));
     return finite && isfinite(network->origin_x) && isfinite(network->origin_y) && isfinite(network->steps.time);

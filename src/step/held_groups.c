@@ -40,9 +40,12 @@ void mspringi_groups_hold(mspring_network *network, uint32_t group) {
                mspringi_slot_count(network) * sizeof *g->active_inverse_mass);
     for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
-        g->velocity[2 * (size_t)p] = s->vx[slot];
-        g->velocity[2 * (size_t)p + 1] = s->vy[slot];
-        s->vx[slot] = s->vy[slot] = 0.0f;
+        float *kept = g->velocity + 4 * (size_t)p;
+        kept[0] = s->vx[slot];
+        kept[1] = s->vy[slot];
+        kept[2] = s->low_vx ? s->low_vx[slot] : 0.0f;
+        kept[3] = s->low_vx ? s->low_vy[slot] : 0.0f;
+        mspringi_set_velocity(s, slot, 0.0f, 0.0f);
         g->active_inverse_mass[slot] = 0.0f;
     }
     g->flags[group] |= MSPRINGI_HELD;
@@ -54,8 +57,12 @@ void mspringi_groups_release(mspring_network *network, uint32_t group) {
     const mspringi_state *s = &network->state;
     for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
-        s->vx[slot] = g->velocity[2 * (size_t)p];
-        s->vy[slot] = g->velocity[2 * (size_t)p + 1];
+        const float *kept = g->velocity + 4 * (size_t)p;
+        mspringi_set_velocity(s, slot, kept[0], kept[1]);
+        if (s->low_vx) {
+            s->low_vx[slot] = kept[2];
+            s->low_vy[slot] = kept[3];
+        }
         g->active_inverse_mass[slot] = network->inverse_mass[slot];
     }
     g->flags[group] &= (uint8_t)~MSPRINGI_HELD;
@@ -73,7 +80,8 @@ void mspringi_groups_begin(mspring_network *network) {
     for (uint32_t group = 0; group < g->count; ++group)
         for (mspring_id p = g->first[group]; g->flags[group] & MSPRINGI_HELD && p < g->first[group + 1]; ++p) {
             const uint32_t slot = network->topology.slot_of_particle[p];
-            s->vx[slot] = s->vy[slot] = g->active_inverse_mass[slot] = 0.0f;
+            mspringi_set_velocity(s, slot, 0.0f, 0.0f);
+            g->active_inverse_mass[slot] = 0.0f;
         }
 }
 

@@ -16,18 +16,18 @@
 typedef struct copying {
     const float *from;
     float *to;
-    size_t slot_count;
+    size_t slot_count, arrays;
 } copying;
 
 static void copy_range(void *argument, size_t first, size_t end) {
     const copying *all = argument;
-    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+    for (size_t i = 0; i < all->arrays; ++i)
         memcpy(all->to + i * all->slot_count + first, all->from + i * all->slot_count + first,
                (end - first) * sizeof *all->to);
 }
 
 static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
-    copying all = {from->x, to->x, mspringi_slot_count(network)};
+    copying all = {from->x, to->x, mspringi_slot_count(network), mspringi_state_arrays(network)};
     mspringi_tasks_run_ranges(network->tasks, mspringi_used_slots(network), MSPRINGI_WIDTH, copy_range, &all);
 }
 
@@ -50,6 +50,7 @@ static void run_substeps(mspring_network *network, const mspringi_attempt *attem
     const mspringi_stages *stages = attempt->stages;
     for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
         count = mspringi_stages_free_substeps(network, attempt, substep);
+        network->first_substep = substep;
         mspringi_field outside;
         const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base, &outside);
         if (substep == 0 && is_cut)
@@ -69,14 +70,25 @@ void mspringi_drop_stale_lows(const mspring_network *network) {
     const float *restrict x = network->state.x, *restrict y = network->state.y;
     float *restrict low_x = network->state.low_x, *restrict low_y = network->state.low_y;
     for (size_t slot = 0; slot < slots; ++slot) {
-        low_x[slot] = mspringi_low_of(x[slot], low_x[slot]);
-        low_y[slot] = mspringi_low_of(y[slot], low_y[slot]);
+        low_x[slot] = mspringi_low_of(x[slot], low_x[slot], network->state.grid);
+        low_y[slot] = mspringi_low_of(y[slot], low_y[slot], network->state.grid);
+    }
+}
+
+// Contact may leave a velocity with the low word of another: that is no reason to drop it, but one written by a
+// host is.
+static void drop_stale_low_velocities(const mspring_network *network) {
+    const mspringi_state *s = &network->state;
+    const size_t slots = network->is_precise ? mspringi_used_slots(network) : 0;
+    for (size_t slot = 0; slot < slots; ++slot) {
+        s->low_vx[slot] = mspringi_low_of(s->vx[slot], s->low_vx[slot], 0.0f);
+        s->low_vy[slot] = mspringi_low_of(s->vy[slot], s->low_vy[slot], 0.0f);
     }
 }
 
 void mspringi_clear_unused_slots(const mspring_network *network) {
     const size_t slots = mspringi_slot_count(network), used = mspringi_used_slots(network);
-    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
         memset(network->state.x + i * slots + used, 0, (slots - used) * sizeof *network->state.x);
 }
 
@@ -88,6 +100,7 @@ static void tidy(const mspring_network *network) {
         mspringi_clear_unused_slots(network);
     mspringi_clear_empty_slots(network);
     mspringi_drop_stale_lows(network);
+    drop_stale_low_velocities(network);
 }
 
 // Keep the state in the backup, run all substeps, and look at what they have led to.
@@ -97,6 +110,7 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
     mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
+    network->first_substep = 0;
     tidy(network);
     if (ops->begin)
         ops->begin(network);
@@ -129,10 +143,11 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
 void mspringi_clear_empty_slots(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
-    float *const arrays[MSPRINGI_STATE_ARRAYS] = {s->x, s->y, s->vx, s->vy, s->low_x, s->low_y};
-    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; ++i)
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
         for (uint32_t run = 0; run < t->empty_run_count; ++run)
-            memset(arrays[i] + t->empty_runs[run].first_slot, 0, t->empty_runs[run].slot_count * sizeof *arrays[i]);
+            memset(s->x + i * slots + t->empty_runs[run].first_slot, 0,
+                   t->empty_runs[run].slot_count * sizeof *s->x);
     if (network->growth.particles)
         mspringi_id_pool_clear_slots(network);
 }

@@ -146,10 +146,9 @@ void mspringi_added_springs_pull(const mspring_network *network, const mspringi_
         }
         if (!(sweep->inverse_mass[slot] > 0.0f))
             continue;
-        const float change = sweep->inverse_mass[slot] * sweep->h * sweep->decay; // of velocity, per newton
+        const float change = sweep->inverse_mass[slot] * sweep->kick; // of velocity, per newton
         const float dvx = force_x * change, dvy = force_y * change;
-        sweep->vx[slot] = sweep->vx[slot] + dvx;
-        sweep->vy[slot] = sweep->vy[slot] + dvy;
+        mspringi_push_by(&network->state, slot, dvx, dvy);
         mspringi_move_by(&network->state, slot, dvx * sweep->h, dvy * sweep->h);
     }
 }

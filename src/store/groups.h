@@ -10,12 +10,9 @@
 
 #include <massspring/massspring_batch.h>
 
-/// Numbers that a mark has of a particle: a state's.
-#define MSPRINGI_MARKED_VALUES 6
-
 /// What groups may be put back to. Springs are in the order of mspringi_groups.springs.
 typedef struct mspringi_mark {
-    float *motion;  ///< [particles][MSPRINGI_MARKED_VALUES] as the arrays of a state follow each other
+    float *motion;  ///< [particles][mspringi_state_arrays()] as the arrays of a state follow each other
     float *lengths; ///< [springs][2] rest length, and the one before any flow, m
     uint8_t *live;  ///< [springs] 1: not broken
     double *origin; ///< [groups][2] that positions are relative to, m
@@ -38,7 +35,7 @@ typedef struct mspringi_groups {
     mspring_id *changing;       ///< [springs] room for those that a reset breaks or restores
     uint32_t *of_particle;      ///< [particles] the group, or count
     uint8_t *flags;             ///< [count]
-    float *velocity;            ///< [particles][2] of groups that are held newly, m/s
+    float *velocity;            ///< [particles][4] of groups that are held newly, with low words, m/s
     float *active_inverse_mass; ///< [slots] inverse mass, 0 of what is held
     mspringi_mark start, mark;
 } mspringi_groups;

@@ -47,7 +47,8 @@ mspring_result mspringi_id_pool_reserve(mspring_network *network) {
 /* -------------------------------------------------------------------------------------------------------- slots */
 
 static void clear_slot(const mspringi_state *s, uint32_t slot) {
-    s->x[slot] = s->y[slot] = s->vx[slot] = s->vy[slot] = s->low_x[slot] = s->low_y[slot] = 0.0f;
+    s->x[slot] = s->y[slot] = s->low_x[slot] = s->low_y[slot] = 0.0f;
+    mspringi_set_velocity(s, slot, 0.0f, 0.0f);
 }
 
 void mspringi_id_pool_clear_slots(const mspring_network *network) {

@@ -16,45 +16,8 @@
 #include "store/components.h"
 #include "store/groups.h"
 #include "store/solver.h"
+#include "store/state.h"
 #include "tasks/tasks.h"
-
-/// State that a step changes. One allocation, so that one copy saves it. Positions are x + low_x and y + low_y: a
-/// short substep moves a particle by less than a float's last place.
-typedef struct mspringi_state {
-    float *x, *y, *vx, *vy;
-    float *low_x, *low_y; ///< m, beyond single precision
-} mspringi_state;
-enum { MSPRINGI_STATE_ARRAYS = 6 };
-
-/// Local coordinates in full.
-static inline double mspringi_x_of(const mspringi_state *s, size_t slot) {
-    return (double)s->x[slot] + (double)mspringi_low_of(s->x[slot], s->low_x[slot]);
-}
-
-static inline double mspringi_y_of(const mspringi_state *s, size_t slot) {
-    return (double)s->y[slot] + (double)mspringi_low_of(s->y[slot], s->low_y[slot]);
-}
-
-/// Set local coordinates.
-static inline void mspringi_set_x(const mspringi_state *s, size_t slot, double x) {
-    s->x[slot] = (float)x;
-    s->low_x[slot] = mspringi_low_of(s->x[slot], (float)(x - (double)s->x[slot]));
-}
-
-static inline void mspringi_set_y(const mspringi_state *s, size_t slot, double y) {
-    s->y[slot] = (float)y;
-    s->low_y[slot] = mspringi_low_of(s->y[slot], (float)(y - (double)s->y[slot]));
-}
-
-/// Add to local coordinates in single precision: Kahan's sum, as the kernels have it.
-static inline void mspringi_move_by(const mspringi_state *s, size_t slot, float dx, float dy) {
-    const float way_x = dx + s->low_x[slot], way_y = dy + s->low_y[slot];
-    const float x = s->x[slot] + way_x, y = s->y[slot] + way_y;
-    s->low_x[slot] = way_x - (x - s->x[slot]);
-    s->low_y[slot] = way_y - (y - s->y[slot]);
-    s->x[slot] = x;
-    s->y[slot] = y;
-}
 
 /// Forces from outside, in N by slot. Fields that a network does not need are NULL.
 typedef struct mspringi_forces {
@@ -431,6 +394,7 @@ struct mspring_network {
 
     // State.
     mspringi_state state, backup;
+    uint32_t first_substep;    ///< number in the step of the first of the substeps that are being taken
     bool backup_is_start;      ///< since it was written, nothing but the solver has written to the state
     double origin_x, origin_y; ///< world = origin + local
     float recentre_distance;   ///< how far the network may be from its origin until that is moved along
@@ -511,6 +475,11 @@ struct mspring_network {
                   ///< the host through a view
     bool has_host_view; ///< the latter, so also to slots that no step uses
 };
+
+/// Arrays of a state, one after another: x, y, vx, vy, low_x, low_y and, in precise networks, low_vx, low_vy.
+static inline size_t mspringi_state_arrays(const mspring_network *network) {
+    return network->is_precise ? 8 : 6;
+}
 
 static inline size_t mspringi_slot_count(const mspring_network *network) {
     return (size_t)network->topology.block_count * MSPRINGI_WIDTH;

@@ -74,7 +74,7 @@ typedef struct mspringi_io {
     mspringi_writer *to; ///< NULL: they are read
     const uint8_t *from;
     size_t size, left; ///< bytes there are, and of these to be read
-    bool is_short; ///< there were too few: the rest is 0
+    bool is_short;     ///< there were too few: the rest is 0
 } mspringi_io;
 
 void mspringi_hand(mspringi_io *io, void *values, size_t count, size_t width);

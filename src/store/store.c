@@ -12,12 +12,14 @@
 #define UNKNOWN SIZE_MAX
 
 #define STATE(member)                                                                                              \
-    LANES(member.x, MSPRINGI_STATE_ARRAYS)                                                                         \
+    LANES(member.x, mspringi_state_arrays(n))                                                                      \
     VIEW(member.y, slots)                                                                                          \
     VIEW(member.vx, 2 * slots)                                                                                     \
     VIEW(member.vy, 3 * slots)                                                                                     \
     VIEW(member.low_x, 4 * slots)                                                                                  \
-    VIEW(member.low_y, 5 * slots)
+    VIEW(member.low_y, 5 * slots)                                                                                  \
+    VIEW(member.low_vx, n->is_precise ? 6 * slots : UNKNOWN)                                                       \
+    VIEW(member.low_vy, n->is_precise ? 7 * slots : UNKNOWN)
 #define PLACES(member) ARRAY(member, spring_slots)
 #define BITS(member) ARRAY(member, words)
 #define END(name)

@@ -339,7 +339,9 @@ static void bounces_lose_height(void **state) {
         check_near(top[i], height * pow(e, 2 * i), (i + 1) * substep_way + g * dt * dt / 8);
     }
     support_steps(network, 640, dt);
-    assert_true(fabs(support_velocity(network, 0).y) < 1e-6 && fabs(support_position(network, 0).y) < 1e-5);
+    // At rest but for what it falls in a substep.
+    assert_true(fabs(support_velocity(network, 0).y) < g * dt / substeps &&
+                fabs(support_position(network, 0).y) < 1e-5);
     mspring_network_destroy(network);
 }
 

@@ -125,7 +125,10 @@ static block make_block(const mspringi_floor *floor, double h) {
     return made;
 }
 
-static mspringi_floor_args ground_of(const mspringi_floor *floor, block *b, double h, double undamped,
+/// Global damping of about 1 / 3 in a substep.
+static const mspringi_damping damped = {0.8, 1.1};
+
+static mspringi_floor_args ground_of(const mspringi_floor *floor, block *b, double h, mspringi_damping damping,
                                      mspringi_bounds clear) {
     return (mspringi_floor_args){.lines = floor->lines,
                                  .line_count = floor->plane_count,
@@ -150,7 +153,7 @@ static mspringi_floor_args ground_of(const mspringi_floor *floor, block *b, doub
                                  .from_vy = b->from_vy,
                                  .low_x = b->low_x,
                                  .low_y = b->low_y,
-                                 .undamped = undamped,
+                                 .damping = damping,
                                  .impulse_x = b->impulse_x,
                                  .impulse_y = b->impulse_y,
                                  .inverse_mass = b->inverse_mass,
@@ -163,8 +166,8 @@ static void put(block *b, uint32_t i, double x, double y, double vx, double vy) 
     b->impulse_y[i] += mass * ((float)vy - b->vy[i]);
     b->x[i] = (float)x;
     b->y[i] = (float)y;
-    b->low_x[i] = mspringi_low_of(b->x[i], (float)(x - (double)b->x[i]));
-    b->low_y[i] = mspringi_low_of(b->y[i], (float)(y - (double)b->y[i]));
+    b->low_x[i] = mspringi_low_of(b->x[i], (float)(x - (double)b->x[i]), 0.0f);
+    b->low_y[i] = mspringi_low_of(b->y[i], (float)(y - (double)b->y[i]), 0.0f);
     b->vx[i] = (float)vx;
     b->vy[i] = (float)vy;
 }
@@ -174,7 +177,7 @@ static void bounce(const mspringi_floor *floor, const mspringi_floor_args *g, bl
     const double from_vx = (double)b->from_vx[i], from_vy = (double)b->from_vy[i];
     mspringi_bouncing_particle p =
         mspringi_bouncing_particle_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
-                                        from_vx, from_vy, g->undamped, g->h, g->per_length);
+                                        from_vx, from_vy, g->damping, g->h, g->per_length);
     if (mspringi_floor_bounce(floor, g->h, from_vx, from_vy, &p)) {
         put(b, i, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
     }
@@ -184,7 +187,7 @@ static void fly(const mspringi_floor *floor, const mspringi_floor_args *g, block
     const mspringi_bounce_params how = {.h = g->h, .skew = 0.5 * g->h};
     mspringi_free_particle p =
         mspringi_free_particle_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
-                                    (double)b->from_vx[i], (double)b->from_vy[i], g->undamped, g->h);
+                                    (double)b->from_vx[i], (double)b->from_vy[i], g->damping, g->h);
     double vx, vy;
     if (mspringi_floor_move_free_particle(floor, &how, &p, &vx, &vy)) {
         put(b, i, p.x, p.y, vx, vy);
@@ -212,7 +215,8 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
         const mspringi_bounds clear = {-20, 20, n % 3 == 0 ? 0.2f : 20.0f, 20};
         const block before = make_block(&floor, h);
         block found = before;
-        const mspringi_floor_args ground = ground_of(&floor, &found, h, n % 4 == 0 ? 1.25 : 1.0, clear);
+        const mspringi_floor_args ground =
+            ground_of(&floor, &found, h, n % 4 == 0 ? damped : (mspringi_damping){1, 1}, clear);
         const uint32_t left = is_loose ? kernels->bounce_free(&ground, 0) : kernels->bounce(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {
             block expected = before;
@@ -252,7 +256,7 @@ static void check_floor(uint32_t planes, bool has_heights) {
 /// One coordinate of a particle, of whose velocity in step with its position silt takes a share.
 static void brake_one(const mspringi_floor_args *g, double taken, float *v, float *at, float *low, float *impulse,
                       float *from, float inverse_mass) {
-    const double w = (double)*v - 0.5 * (g->undamped * (double)*v - (double)*from);
+    const double w = (double)*v - 0.5 * mspringi_pushed(g->damping, (double)*from, (double)*v);
     const float change = (float)((double)*v - taken * w) - *v;
     if (!(taken > 0.0) || change == 0.0f) {
         return;
@@ -262,7 +266,8 @@ static void brake_one(const mspringi_floor_args *g, double taken, float *v, floa
     *low = way - (to - *at);
     *at = to;
     *v += change;
-    *from = g->before_vx ? (float)((double)*from + g->undamped * (double)change) : *from;
+    *from = g->before_vx ? (float)((double)*from + (g->damping.keep > 0 ? 1 / g->damping.keep : 0) * (double)change)
+                         : *from;
 }
 
 static void silt(void **state) {
@@ -281,7 +286,8 @@ static void silt(void **state) {
         }
         block found = before;
         const bool is_seen = n % 2 == 0;
-        mspringi_floor_args ground = ground_of(&floor, &found, h, is_seen && n % 4 == 0 ? 1.25 : 1.0, clear);
+        mspringi_floor_args ground =
+            ground_of(&floor, &found, h, is_seen && n % 4 == 0 ? damped : (mspringi_damping){1, 1}, clear);
         ground.from_vx = is_seen ? found.from_vx : found.vx;
         ground.from_vy = is_seen ? found.from_vy : found.vy;
         ground.before_vx = is_seen ? found.from_vx : NULL;

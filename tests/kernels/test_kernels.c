@@ -44,6 +44,10 @@ typedef struct arena {
     uint32_t after_low_x[GUARD];
     float low_y[SLOTS];
     uint32_t after_low_y[GUARD];
+    float low_vx[SLOTS];
+    uint32_t after_low_vx[GUARD];
+    float low_vy[SLOTS];
+    uint32_t after_low_vy[GUARD];
     float inverse_mass[SLOTS];
     uint32_t after_inverse_mass[GUARD];
     float force_x[SLOTS];
@@ -61,7 +65,7 @@ typedef struct arena {
     uint32_t rests_of_block[ROW];
     uint32_t springs_of_block[ROW];
     uint32_t back[GUARD];
-    _Alignas(64) float kept[6 * STRIDE];
+    _Alignas(64) float kept[8 * STRIDE];
     uint32_t after_kept[GUARD];
     mspringi_extrema_lanes watch;
     mspringi_extrema extrema; ///< of the watch
@@ -89,7 +93,8 @@ static void check_canaries(const arena *a) {
     const uint32_t *guards[] = {a->front,         a->after_x,       a->after_y,       a->after_vx,
                                 a->after_vy,      a->after_carry_x, a->after_records, a->after_inverse_mass,
                                 a->after_force_x, a->after_force_y, a->after_carry_y, a->back,
-                                a->after_kept,    a->after_low_x,   a->after_low_y};
+                                a->after_kept,    a->after_low_x,   a->after_low_y,   a->after_low_vx,
+                                a->after_low_vy};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
             assert_int_equal(guards[i][j], CANARY);
@@ -128,6 +133,8 @@ static void fill(arena *a, const setup *s) {
         a->vy[i] = random_float(&seed, -5, 5);
         a->low_x[i] = random_float(&seed, -1e-7, 1e-7);
         a->low_y[i] = random_float(&seed, -1e-7, 1e-7);
+        a->low_vx[i] = random_float(&seed, -1e-7, 1e-7);
+        a->low_vy[i] = random_float(&seed, -1e-7, 1e-7);
         a->inverse_mass[i] = support_random(&seed) % 9 == 0 ? 0 : random_float(&seed, 0.1, 3);
         a->force_x[i] = random_float(&seed, -50, 50);
         a->force_y[i] = random_float(&seed, -50, 50);
@@ -135,9 +142,10 @@ static void fill(arena *a, const setup *s) {
         bool in_row_above = s->has_above && i >= ABOVE * W + s->idle && i < ABOVE * W + s->idle + s->live;
         if (!in_row && !in_row_above) {
             a->x[i] = a->y[i] = a->vx[i] = a->vy[i] = a->low_x[i] = a->low_y[i] = a->inverse_mass[i] = 0;
+            a->low_vx[i] = a->low_vy[i] = 0;
         }
     }
-    for (uint32_t i = 0; i < 6 * STRIDE; i++) {
+    for (uint32_t i = 0; i < 8 * STRIDE; i++) {
         const bool is_empty = i % STRIDE >= SLOTS || (a->x[i % STRIDE] == 0 && a->vx[i % STRIDE] == 0);
         a->kept[i] = is_empty || s->keeps ? 0 : random_float(&seed, -5, 5);
     }
@@ -189,6 +197,10 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_extre
         .vy = a->vy,
         .low_x = a->low_x,
         .low_y = a->low_y,
+        .low_vx = a->low_vx,
+        .low_vy = a->low_vy,
+        .grid = 0x1p-22f * 0x1.8p23f,
+        .flushes = s->seed % 2,
         .inverse_mass = a->inverse_mass,
         .force_x = s->forced ? a->force_x : NULL,
         .force_y = s->forced ? a->force_y : NULL,
@@ -202,7 +214,8 @@ static void run(arena *a, const setup *s, mspringi_row_fn kernel, mspringi_extre
         .chain_springs = a->records,
         .parts = s->parts,
         .h = 0.01f,
-        .decay = 0.99f,
+        .kick = 0.0075f,
+        .loss = 0.01f,
         .gravity_h_x = 0.015f,
         .gravity_h_y = -0.098f,
         .keep = s->keeps ? a->kept : NULL,
@@ -365,8 +378,15 @@ static void chain_kernels(void **state) {
 }
 
 // What three substeps do that leave nine tenths of a velocity.
-static const mspringi_free_motion glide = {
-    .keep = 0.729f, .gain = 2.439f, .reach = 0.02439f, .fall = 0.05049f, .drift = 0.03f};
+static const mspringi_free_motion glide = {.keep = 0.729f,
+                                           .gain = 2.439f,
+                                           .reach = 0.02439f,
+                                           .fall = 0.05049f,
+                                           .drift = 0.03f,
+                                           .gravity_x = 0.036f,
+                                           .gravity_y = -0.24f,
+                                           .gravity_way_x = 0.0007f,
+                                           .gravity_way_y = -0.005f};
 static int loose_forced;
 
 static void loose_of_level(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {

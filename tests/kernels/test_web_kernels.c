@@ -42,6 +42,10 @@ typedef struct arena {
     uint32_t after_low_x[GUARD];
     float low_y[SLOTS];
     uint32_t after_low_y[GUARD];
+    float low_vx[SLOTS];
+    uint32_t after_low_vx[GUARD];
+    float low_vy[SLOTS];
+    uint32_t after_low_vy[GUARD];
     float gathered[2 * GROUPS * W * 4]; ///< in halves if precise
     uint32_t after_gathered[GUARD];
     float attached_x[ATTACHED * W];
@@ -59,7 +63,7 @@ typedef struct arena {
 static void check_canaries(const arena *a) {
     const uint32_t *guards[] = {a->front,       a->after_x,        a->after_y,          a->after_vx,
                                 a->after_vy,    a->after_gathered, a->after_attached_x, a->after_attached_y,
-                                a->after_low_x, a->after_low_y};
+                                a->after_low_x, a->after_low_y,    a->after_low_vx,     a->after_low_vy};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
             assert_int_equal(guards[i][j], CANARY);
@@ -120,7 +124,7 @@ static arena *arena_new(const setup *s) {
     memset(a, 0, sizeof *a);
     uint32_t *guards[] = {a->front,       a->after_x,        a->after_y,          a->after_vx,
                           a->after_vy,    a->after_gathered, a->after_attached_x, a->after_attached_y,
-                          a->after_low_x, a->after_low_y};
+                          a->after_low_x, a->after_low_y,    a->after_low_vx,     a->after_low_vy};
     for (size_t i = 0; i < COUNT_OF(guards); i++) {
         for (size_t j = 0; j < GUARD; j++) {
             guards[i][j] = CANARY;
@@ -132,6 +136,8 @@ static arena *arena_new(const setup *s) {
         a->vx[i] = random_float(&seed, -5, 5);
         a->vy[i] = random_float(&seed, -5, 5);
         a->low_x[i] = random_float(&seed, -1e-7, 1e-7);
+        a->low_vx[i] = random_float(&seed, -1e-7, 1e-7);
+        a->low_vy[i] = random_float(&seed, -1e-7, 1e-7);
         a->low_y[i] = random_float(&seed, -1e-7, 1e-7);
         a->inverse_mass[i] = support_random(&seed) % 9 == 0 ? 0 : random_float(&seed, 0.1, 3);
         a->force_x[i] = random_float(&seed, -50, 50);
@@ -158,6 +164,9 @@ static mspringi_sweep sweep_of(arena *a, const setup *s) {
         .vy = a->vy,
         .low_x = a->low_x,
         .low_y = a->low_y,
+        .low_vx = a->low_vx,
+        .low_vy = a->low_vy,
+        .grid = 0x1p-22f * 0x1.8p23f,
         .inverse_mass = a->inverse_mass,
         .force_x = s->forced ? a->force_x : NULL,
         .force_y = s->forced ? a->force_y : NULL,
@@ -166,7 +175,8 @@ static mspringi_sweep sweep_of(arena *a, const setup *s) {
         .gathered = a->gathered,
         .parts = s->parts,
         .h = 0.01f,
-        .decay = 0.99f,
+        .kick = 0.0075f,
+        .loss = 0.01f,
         .gravity_h_x = 0.015f,
         .gravity_h_y = -0.098f,
     };

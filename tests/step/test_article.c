@@ -14,19 +14,23 @@ enum { COLUMNS = 80, ROWS = 5, PROBE = COLUMNS * ROWS - 1 };
 static const double mass = 73.3975;
 
 /// What is left of a velocity after a step, in the article's program. It brakes first and then adds F / m dt, while
-/// this library does both at once: the same motion with all forces divided by this.
+/// this library adds F / m times the integral of the braking: the same motion with all forces multiplied by scale().
 static const double retention = 0.96968;
+
+static double scale(void) {
+    return -log(retention) / (1 - retention);
+}
 
 static mspring_network *bar(double stiffness, double damping, double dt) {
     uint64_t seed = 8;
-    const double k = stiffness / retention, c = damping / retention;
+    const double k = stiffness * scale(), c = damping * scale();
     const recipe_stuff stuff = {.mass = {mass, mass}, .stiffness = {k, k}, .damping = {c, c}};
     recipe made = {0};
     recipe_lattice(&made, COLUMNS, ROWS, 0, 0, 1, &stuff, &seed);
     for (uint32_t row = 0; row < ROWS; row++) {
         made.particles[row * COLUMNS].flags = MSPRING_PARTICLE_PINNED;
     }
-    mspring_network_def def = support_def((float)(-9.8 / retention), 1);
+    mspring_network_def def = support_def((float)(-9.8 * scale()), 1);
     def.global_damping = (float)(-log(retention) / dt);
     def.guard = MSPRING_GUARD_BOUNDS; // to see what it does
     mspring_network *network = recipe_network(&made, &def);

@@ -199,21 +199,27 @@ static void snapshots_of_the_other_kind_are_refused(void **state) {
     recipe_free(&made);
 }
 
+// Precise networks keep first words on a grid, so the rounding of positions differs.
 static void to_implicit_solvers_low_words_always_count(void **state) {
     (void)state;
     recipe made = springs_of_all_kinds(5);
     for (mspring_solver solver = MSPRING_SOLVER_IMPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
-        uint64_t hashes[2];
+        mspring_network *networks[2];
         for (uint32_t i = 0; i < 2; i++) {
             mspring_network_def def = support_def(-9.8f, 2);
             def.solver = solver;
             def.flags = i == 0 ? 0 : MSPRING_NETWORK_PRECISE;
-            mspring_network *network = recipe_network(&made, &def);
-            support_steps(network, 5, 1.0 / 64);
-            hashes[i] = support_hash(network);
-            mspring_network_destroy(network);
+            networks[i] = recipe_network(&made, &def);
+            support_steps(networks[i], 5, 1.0 / 64);
         }
-        assert_int_equal(hashes[0], hashes[1]);
+        for (mspring_id p = 0; p < mspring_network_particle_count(networks[0]); p++) {
+            double x[2], y[2];
+            for (uint32_t i = 0; i < 2; i++)
+                assert_int_equal(mspring_network_get_positions_at(networks[i], &p, 1, &x[i], &y[i], 1), MSPRING_OK);
+            assert_true(hypot(x[1] - x[0], y[1] - y[0]) <= 1e-6); // rounding of forces: single precision
+        }
+        mspring_network_destroy(networks[0]);
+        mspring_network_destroy(networks[1]);
     }
     recipe_free(&made);
 }

@@ -78,12 +78,12 @@ void reference_substep(reference *net, double h) {
         b->force_x -= f * ux;
         b->force_y -= f * uy;
     }
-    double decay = exp(-net->global_damping * h);
+    double loss = -expm1(-net->global_damping * h), kick = net->global_damping > 0 ? loss / net->global_damping : h;
     for (uint32_t i = 0; i < net->particle_count; i++) {
         reference_particle *p = &net->particles[i];
         if (!p->pinned) {
-            p->vx = (p->vx + (p->force_x / p->mass + net->gravity_x) * h) * decay;
-            p->vy = (p->vy + (p->force_y / p->mass + net->gravity_y) * h) * decay;
+            p->vx += (p->force_x / p->mass + net->gravity_x) * kick - loss * p->vx;
+            p->vy += (p->force_y / p->mass + net->gravity_y) * kick - loss * p->vy;
         }
         p->x += p->vx * h;
         p->y += p->vy * h;

@@ -22,15 +22,16 @@
 static void push_from_outside(const mspring_network *network, float h, mspringi_field base) {
     const mspringi_state *s = &network->state;
     const float *inverse_mass = mspringi_active_inverse_mass(network);
-    const float decay = mspringi_decay(network->settings.global_damping, h);
-    const float gravity_h_x = network->settings.gravity_x * h, gravity_h_y = network->settings.gravity_y * h;
+    const float loss = mspringi_loss(network->settings.global_damping, h);
+    const float kick = mspringi_gain(network->settings.global_damping, h);
+    const float gravity_h_x = network->settings.gravity_x * kick, gravity_h_y = network->settings.gravity_y * kick;
     for (size_t slot = 0; slot < mspringi_slot_count(network); ++slot) {
-        const float inverse_mass_h = inverse_mass[slot] * h;
+        const float inverse_mass_h = inverse_mass[slot] * kick;
         if (!(inverse_mass[slot] > 0.0f))
             continue;
         const float force_x = base.x ? base.x[slot] : 0.0f, force_y = base.x ? base.y[slot] : 0.0f;
-        s->vx[slot] = (s->vx[slot] + (force_x * inverse_mass_h + gravity_h_x)) * decay;
-        s->vy[slot] = (s->vy[slot] + (force_y * inverse_mass_h + gravity_h_y)) * decay;
+        s->vx[slot] = s->vx[slot] + (force_x * inverse_mass_h + (gravity_h_x - loss * s->vx[slot]));
+        s->vy[slot] = s->vy[slot] + (force_y * inverse_mass_h + (gravity_h_y - loss * s->vy[slot]));
     }
 }
 

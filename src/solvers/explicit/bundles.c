@@ -76,9 +76,11 @@ static void sweep_run(const job *bundles, const mspringi_sweep *sweep, const msp
     const mspring_network *network = bundles->network;
     const mspringi_strip *strip = &network->topology.strips[network->topology.bundle_strip];
     const mspringi_row_fn sweep_bundle = mspringi_bundle_kernel(network, bundles->base.x != NULL);
+    mspringi_sweep substep = *sweep;
     for (uint32_t i = 0; i < bundles->count; ++i) {
         mspringi_floor_save_velocities(network, strip, run, 1);
-        sweep_bundle(sweep, run, 1);
+        mspringi_sweep_set_substep(network, &substep, i);
+        sweep_bundle(&substep, run, 1);
         mspringi_floor_apply(network, strip, run, 1, bundles->h);
     }
 }

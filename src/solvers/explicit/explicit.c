@@ -8,6 +8,7 @@
 #include "solvers/explicit/bundles.h"
 #include "solvers/explicit/flush.h"
 #include "solvers/explicit/halo.h"
+#include "solvers/explicit/loose.h"
 #include "solvers/explicit/partition.h"
 #include "solvers/explicit/pass_task.h"
 #include "solvers/explicit/small_network.h"
@@ -40,9 +41,11 @@ typedef struct job {
 /* ---------------------------------------------------------------------------------------------- the wavefront */
 
 // Substeps whose strips fit so much cache, at least one.
-static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, size_t cache_bytes) {
-    const size_t floats_per_slot =
-        MSPRINGI_STATE_ARRAYS + 1 + (size_t)MSPRINGI_DIRECTIONS * (parts - 1); // state, inverse mass, springs
+static uint32_t depth_within(const mspring_network *network, size_t cache_bytes) {
+    const mspringi_topology *topology = &network->topology;
+    const uint32_t parts = network->parts;
+    const size_t floats_per_slot = mspringi_state_arrays(network) + 1 +
+                                   (size_t)MSPRINGI_DIRECTIONS * (parts - 1); // state, inverse mass, springs
     const uint64_t slots = (uint64_t)topology->lattice_blocks * MSPRINGI_WIDTH;
     const uint64_t rows =
         cache_bytes / (floats_per_slot * sizeof(float)) * (uint64_t)topology->lattice_rows / slots;
@@ -51,11 +54,11 @@ static uint32_t depth_within(const mspringi_topology *topology, uint32_t parts, 
     return (uint32_t)(depth < MSPRINGI_DEEPEST_PASS ? depth : MSPRINGI_DEEPEST_PASS);
 }
 
-uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts) {
-    if (topology->wavefront_rows == 0)
+uint32_t mspringi_explicit_depth(const mspring_network *network) {
+    if (network->topology.wavefront_rows == 0)
         return 1;
-    const uint32_t near_depth = depth_within(topology, parts, NEAR_CACHE_BYTES);
-    return near_depth > FEW_SUBSTEPS ? near_depth : depth_within(topology, parts, FAR_CACHE_BYTES);
+    const uint32_t near_depth = depth_within(network, NEAR_CACHE_BYTES);
+    return near_depth > FEW_SUBSTEPS ? near_depth : depth_within(network, FAR_CACHE_BYTES);
 }
 
 uint32_t mspringi_explicit_workers(const mspring_network *network) {
@@ -276,8 +279,9 @@ static uint32_t irregular_depth_within(const job *wavefront, size_t cache_bytes)
     const uint64_t slice_columns =
         t->irregular.first_slice_column[first + groups] - t->irregular.first_slice_column[first];
     const uint64_t parts = wavefront->network->parts + 1; // and the neighbour
-    const uint64_t floats = slice_columns * parts + (uint64_t)groups * (MSPRINGI_STATE_ARRAYS + 1 +
-                                                                        2 * 4); // state, inverse mass, packed twice
+    const uint64_t floats =
+        slice_columns * parts + (uint64_t)groups * (mspringi_state_arrays(wavefront->network) + 1 +
+                                                    2 * 4); // state, inverse mass, packed twice
     const uint64_t tiers = cache_bytes * t->tier_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
     return tiers < 3 ? 1 : tiers - 2 < MSPRINGI_DEEPEST_PASS ? (uint32_t)tiers - 2 : MSPRINGI_DEEPEST_PASS;
 }
@@ -336,93 +340,22 @@ static void end_share(const job *rest, const mspringi_span *share, uint32_t work
         add_extrema(rest, worker, mspringi_span_extrema(rest->network, share));
 }
 
-// What so many substeps make of particles that nothing pulls at. (Substep by substep they took a quarter of the
-// step of a wreck that has nine particles of ten loose.)
-static mspringi_free_motion plan_glide(const mspringi_sweep *sweep, uint32_t substeps) {
-    const double h = (double)sweep->h, decay = (double)sweep->decay;
-    double keep = 1.0, gain = 0.0, fall = 0.0;
-    for (uint32_t i = 0; i < substeps; ++i) {
-        keep *= decay;
-        gain += keep;
-        fall += gain;
-    }
-    return (mspringi_free_motion){.keep = (float)keep,
-                                  .gain = (float)gain,
-                                  .reach = (float)(gain * h),
-                                  .fall = (float)(fall * h),
-                                  .drift = (float)(h * (double)substeps)};
-}
-
-/// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.
-#define LOOSE_CHUNK 16
-
-// The end of the blocks from that one on that are all near the floor, or all far. strip: NULL if no floor is near.
-static uint32_t end_of_chunk(const mspring_network *network, const mspringi_strip *strip, uint32_t block,
-                             uint32_t end, bool *is_near) {
-    *is_near = strip && mspringi_floor_is_near_block(network, strip, block);
-    const uint32_t most = end - block < LOOSE_CHUNK ? end : block + LOOSE_CHUNK;
-    uint32_t next = block + 1;
-    while (next < most && (strip && mspringi_floor_is_near_block(network, strip, next)) == *is_near)
-        ++next;
-    return next;
-}
-
-// Whether some hook acts in substeps, if it is within reach.
-static bool may_be_cut(const mspring_network *network) {
-    for (size_t i = 0; i < network->hook_count; ++i)
-        if (network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
-            return true;
-    return false;
-}
-
-// Take so many substeps of loose particles: at once, but one after the other where a floor is near. (16,384 of them
-// of which one is near: 43 instead of 345 us for 40 substeps at AVX-512 on a Zen 4.) Both differ in rounding. So
-// they are taken one after the other beside hooks that may cut a step: bits must not depend on what was thought to
-// be within reach.
-static void take_loose(const job *rest, const mspringi_substep *substep, const mspringi_strip *strip,
-                       const mspringi_span *span, uint32_t count) {
-    const mspring_network *network = rest->network;
-    const mspringi_loose_fn loose = network->kernels->loose[substep->base.x != NULL];
-    const mspringi_free_motion all = plan_glide(&substep->sweep, count), one = plan_glide(&substep->sweep, 1);
-    const bool is_floor_near = mspringi_floor_is_near(network, strip), glides = !may_be_cut(network);
-    if (!is_floor_near && glides) {
-        loose(&substep->sweep, span, &all);
-        return;
-    }
-    const uint32_t end = span->end_slot / MSPRINGI_WIDTH;
-    for (uint32_t block = span->first_slot / MSPRINGI_WIDTH, next; block < end; block = next) {
-        bool is_near;
-        next = end_of_chunk(network, is_floor_near ? strip : NULL, block, end, &is_near);
-        mspringi_span chunk = *span;
-        chunk.first_slot = block * MSPRINGI_WIDTH;
-        chunk.end_slot = next * MSPRINGI_WIDTH;
-        for (uint32_t i = 0; !is_near && !glides && i < count; ++i)
-            loose(&substep->sweep, &chunk, &one);
-        if (!is_near && glides)
-            loose(&substep->sweep, &chunk, &all);
-        for (uint32_t i = 0; is_near && i < count; ++i) {
-            mspringi_floor_save_velocities(network, strip, &chunk, 1);
-            loose(&substep->sweep, &chunk, &one);
-            mspringi_floor_apply_loose(network, strip, &chunk, rest->h);
-        }
-    }
-}
-
 // Take all substeps of a share of the loose particles: nothing else moves them but a floor that is near.
 static void sweep_loose(const job *rest, const mspringi_strip *strip, uint32_t index) {
     const mspring_network *network = rest->network;
     const mspringi_topology *t = &network->topology;
-    const mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, 0, 1, 0);
-    const mspringi_span share = share_of(&t->spans[t->rows[strip->first_row].first_span], index, rest->workers);
-    mspringi_span run[2];
     if (mspringi_sleep_state_of_strip(network, strip) == MSPRINGI_ASLEEP)
         return;
+    const mspringi_substep substep = mspringi_substep_prepare(network, rest->h, rest->base, 0, 1, 0);
+    const mspringi_loose all = mspringi_loose_prepare(network, &substep.sweep, strip, rest->count);
+    const mspringi_span share = share_of(&t->spans[t->rows[strip->first_row].first_span], index, rest->workers);
+    mspringi_span run[2];
     begin_share(rest, &share);
     if (network->sleep.sleeping == 0)
-        take_loose(rest, &substep, strip, &share, rest->count);
+        mspringi_loose_sweep(&all, &share);
     else
         for (uint32_t at = share.first_slot; mspringi_next_swept(network, &share, &at, run);)
-            take_loose(rest, &substep, strip, run, rest->count);
+            mspringi_loose_sweep(&all, run);
     end_share(rest, &share, index);
 }
 
@@ -431,23 +364,24 @@ static void sweep_grafted_loose(const job *rest, const mspringi_substep *substep
                                 uint32_t number, uint32_t count) {
     const mspring_network *network = rest->network;
     const mspringi_topology *t = &network->topology;
-    const mspringi_span *all = &t->spans[t->rows[strip->first_row].first_span];
-    const uint32_t end = all->end_slot / MSPRINGI_WIDTH;
+    const mspringi_span *row = &t->spans[t->rows[strip->first_row].first_span];
+    const uint32_t end = row->end_slot / MSPRINGI_WIDTH;
+    const mspringi_loose all = mspringi_loose_prepare(network, &substep->sweep, strip, number == 0 ? count : 0);
+    const mspringi_loose one = mspringi_loose_prepare(network, &substep->sweep, strip, 1);
     bool pulled = false;
-    for (uint32_t block = all->first_slot / MSPRINGI_WIDTH, next; block < end; block = next, pulled = !pulled) {
+    for (uint32_t block = row->first_slot / MSPRINGI_WIDTH, next; block < end; block = next, pulled = !pulled) {
         next = mspringi_added_springs_find_block(&network->added_springs, block, end, !pulled);
-        mspringi_span span = *all;
+        mspringi_span span = *row;
         span.first_slot = block * MSPRINGI_WIDTH;
         span.end_slot = next * MSPRINGI_WIDTH;
         if (next == block || (!pulled && number > 0))
             continue;
         if (!pulled) {
-            take_loose(rest, substep, strip, &span, count);
+            mspringi_loose_sweep(&all, &span);
             continue;
         }
-        const mspringi_free_motion glide = plan_glide(&substep->sweep, 1);
         mspringi_floor_save_velocities(network, strip, &span, 1);
-        network->kernels->loose[rest->base.x != NULL](&substep->sweep, &span, &glide);
+        network->kernels->loose[rest->base.x != NULL](&substep->sweep, &span, &one.all);
         mspringi_added_springs_pull(network, &substep->sweep, span.first_slot, span.end_slot);
         mspringi_floor_apply(network, strip, &span, 1, rest->h);
     }
@@ -545,10 +479,11 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
     const mspringi_topology *t = &network->topology;
     const bool has_loose = t->row_count > 0 && t->rows[t->row_count - 1].kind == MSPRINGI_ROW_LOOSE;
     const job loose = {.network = network, .base = base, .h = h};
-    const mspringi_substep substep = mspringi_substep_prepare(network, h, base, 0, 1, 0);
-    const uint32_t first = network->plastic.substep;
+    const uint32_t first = network->plastic.substep, begin = network->first_substep;
     for (uint32_t i = 0; i < count; ++i) {
         network->plastic.substep = first + i;
+        network->first_substep = begin + i;
+        const mspringi_substep substep = mspringi_substep_prepare(network, h, base, 0, 1, 0);
         mspringi_added_springs_begin(network, &substep.sweep);
         sweep_wavefront(network, h, base, 1, NULL);
         sweep_rest(network, h, base, 1, NULL);
@@ -563,14 +498,12 @@ static void sweep_all(mspring_network *network, float h, mspringi_field base, ui
     mspringi_shared_records_find(network);
     if (network->added_springs.count > 0) {
         sweep_grafted(network, h, base, count);
-        return;
+    } else if (!mspringi_small_network_step(network, h, base, count, all_extrema)) {
+        sweep_wavefront(network, h, base, count, all_extrema);
+        sweep_rest(network, h, base, count, all_extrema);
+        if (mspringi_bundles_are_apart(network))
+            mspringi_bundles_sweep(network, h, base, count, all_extrema);
     }
-    if (mspringi_small_network_step(network, h, base, count, all_extrema))
-        return;
-    sweep_wavefront(network, h, base, count, all_extrema);
-    sweep_rest(network, h, base, count, all_extrema);
-    if (mspringi_bundles_are_apart(network))
-        mspringi_bundles_sweep(network, h, base, count, all_extrema);
 }
 
 mspringi_extrema mspringi_explicit_run_step(mspring_network *network, float h, mspringi_field base,

@@ -9,7 +9,7 @@
 #include "store/network.h"
 
 /// Deepest pass over the lattice rows that is worth it for this topology.
-uint32_t mspringi_explicit_depth(const mspringi_topology *topology, uint32_t parts);
+uint32_t mspringi_explicit_depth(const mspring_network *network);
 
 /// Workers that a step of as many substeps as the last one shares the lattice rows among.
 uint32_t mspringi_explicit_workers(const mspring_network *network);

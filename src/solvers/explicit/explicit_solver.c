@@ -25,7 +25,7 @@ static bool whole(mspring_network *network, const mspringi_attempt *attempt, msp
     if (!network->floor || mspringi_floor_was_out_of_reach(network, h, mspringi_guard_bound(network, h, *extrema)))
         return true;
     memcpy(network->state.x, network->backup.x,
-           MSPRINGI_STATE_ARRAYS * mspringi_slot_count(network) * sizeof *network->state.x);
+           mspringi_state_arrays(network) * mspringi_slot_count(network) * sizeof *network->state.x);
     mspringi_explicit_reset(network);
     return false;
 }

@@ -43,7 +43,7 @@ mspring_result mspringi_halos_reserve(mspring_network *network) {
         return MSPRING_OK;
     mspringi_memory *memory = &network->memory;
     planned.values =
-        mspringi_alloc(memory, (size_t)planned.count * MSPRINGI_STATE_ARRAYS * (ABOVE + planned.substeps),
+        mspringi_alloc(memory, (size_t)planned.count * mspringi_state_arrays(network) * (ABOVE + planned.substeps),
                        planned.segment * sizeof *planned.values);
     planned.spans = mspringi_alloc(memory, (size_t)planned.count * 4 * planned.row_spans, sizeof *planned.spans);
     planned.borders =
@@ -84,8 +84,18 @@ static slots slots_of(const mspring_network *network, const mspringi_row *row) {
 static mspringi_state state_of(const mspring_network *network, uint32_t border, uint32_t row) {
     const mspringi_halos *halos = &network->halos;
     const size_t stride = (ABOVE + halos->substeps) * halos->segment;
-    float *x = halos->values + MSPRINGI_STATE_ARRAYS * border * stride + row * halos->segment;
-    return (mspringi_state){x, x + stride, x + 2 * stride, x + 3 * stride, x + 4 * stride, x + 5 * stride};
+    float *x = halos->values + mspringi_state_arrays(network) * border * stride + row * halos->segment;
+    mspringi_state state = {.x = x,
+                            .y = x + stride,
+                            .vx = x + 2 * stride,
+                            .vy = x + 3 * stride,
+                            .low_x = x + 4 * stride,
+                            .low_y = x + 5 * stride};
+    if (network->is_precise) {
+        state.low_vx = x + 6 * stride;
+        state.low_vy = x + 7 * stride;
+    }
+    return state;
 }
 
 static void copy_slots(const mspringi_state *from, size_t first, const mspringi_state *to, size_t to_first,
@@ -97,6 +107,10 @@ static void copy_slots(const mspringi_state *from, size_t first, const mspringi_
     memcpy(to->vy + to_first, from->vy + first, size);
     memcpy(to->low_x + to_first, from->low_x + first, size);
     memcpy(to->low_y + to_first, from->low_y + first, size);
+    if (!from->low_vx)
+        return;
+    memcpy(to->low_vx + to_first, from->low_vx + first, size);
+    memcpy(to->low_vy + to_first, from->low_vy + first, size);
 }
 
 /// The row below, copied to one of the halo's rows, and the way from there to the row above.
@@ -151,6 +165,8 @@ static void sweep_copy(const mspring_network *network, const mspringi_substep *s
     sweep->vy = copy->state.vy;
     sweep->low_x = copy->state.low_x;
     sweep->low_y = copy->state.low_y;
+    sweep->low_vx = copy->state.low_vx;
+    sweep->low_vy = copy->state.low_vy;
     sweep->inverse_mass += copy->below.first;
     if (forced) {
         sweep->force_x += copy->below.first;

@@ -88,6 +88,7 @@ static void sweep_irregular(const mspring_network *network, mspringi_substep *su
     if (extrema)
         mspringi_span_save_state(network, &span);
     for (uint32_t i = 0; i < count; ++i) {
+        mspringi_sweep_set_substep(network, &substep->sweep, i);
         mspringi_irregular_pack(network, substep, &span);
         irregular->sweep(&substep->sweep, &span, 1);
     }
@@ -126,6 +127,7 @@ static void sweep_rows(const mspring_network *network, mspringi_substep *substep
     for (uint32_t i = 0, carry = 0; i < count; ++i, carry = carry + 1 < carries ? carry + 1 : 0) {
         substep->sweep.carry_x = network->carry + 2 * carry * carry_slots;
         substep->sweep.carry_y = substep->sweep.carry_x + carry_slots;
+        mspringi_sweep_set_substep(network, &substep->sweep, i);
         if (substep->tests) // which substeps are looks
             mspringi_substep_reuse(network, substep, i, count, carry);
         if (extrema && i + 1 == count)

@@ -24,6 +24,9 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .vy = network->state.vy,
                 .low_x = network->state.low_x,
                 .low_y = network->state.low_y,
+                .low_vx = network->state.low_vx,
+                .low_vy = network->state.low_vy,
+                .grid = mspringi_rounding(&network->state),
                 .inverse_mass = mspringi_active_inverse_mass(network),
                 .force_x = base.x,
                 .force_y = base.y,
@@ -38,15 +41,19 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .irregular_springs = network->irregular_springs,
                 .parts = network->parts,
                 .h = h,
-                .decay = mspringi_decay(network->settings.global_damping, h),
-                // Never -0: a sum of forces may be +0 or -0, depending on what empty slots hold, and what is added
-                // to +0 does not tell.
-                .gravity_h_x = network->settings.gravity_x * h + 0.0f,
-                .gravity_h_y = network->settings.gravity_y * h + 0.0f,
+                .loss = mspringi_loss(network->settings.global_damping, h),
+                .kick = mspringi_gain(network->settings.global_damping, h),
             },
     };
+    // Never -0: what is added to +0 then does not depend on the sign of a force that is 0.
+    substep.sweep.gravity_h_x = network->settings.gravity_x * substep.sweep.kick + 0.0f;
+    substep.sweep.gravity_h_y = network->settings.gravity_y * substep.sweep.kick + 0.0f;
     mspringi_substep_reuse(network, &substep, i, count, carry_number);
     return substep;
+}
+
+void mspringi_sweep_set_substep(const mspring_network *network, mspringi_sweep *sweep, uint32_t i) {
+    sweep->flushes = (network->first_substep + i) % MSPRINGI_FLUSH_PERIOD == 0;
 }
 
 void mspringi_substep_reuse(const mspring_network *network, mspringi_substep *substep, uint32_t i, uint32_t count,
@@ -59,6 +66,7 @@ void mspringi_substep_reuse(const mspring_network *network, mspringi_substep *su
     substep->gathered = network->gathered + i % 2 * gathered_floats;
     substep->next_gathered = i + 1 < count ? network->gathered + (i + 1) % 2 * gathered_floats : NULL;
     substep->sweep.gathered = substep->gathered;
+    mspringi_sweep_set_substep(network, &substep->sweep, i);
     substep->sweep.carry_x = network->carry + 2 * carry_number * carry_slots;
     substep->sweep.carry_y = substep->sweep.carry_x + carry_slots;
 }
@@ -121,10 +129,9 @@ static void pull_attached(const mspring_network *network, const mspringi_substep
         const uint32_t slot = slots[i];
         if (!(sweep->inverse_mass[slot] > 0.0f))
             continue;
-        const float change = sweep->inverse_mass[slot] * sweep->h * sweep->decay; // of velocity, per newton
+        const float change = sweep->inverse_mass[slot] * sweep->kick; // of velocity, per newton
         const float dvx = pull_x[i] * change, dvy = pull_y[i] * change;
-        sweep->vx[slot] = sweep->vx[slot] + dvx;
-        sweep->vy[slot] = sweep->vy[slot] + dvy;
+        mspringi_push_by(&network->state, slot, dvx, dvy);
         mspringi_move_by(&network->state, slot, dvx * sweep->h, dvy * sweep->h);
     }
 }
@@ -279,6 +286,10 @@ static void keep_slots(const mspring_network *network, size_t first, size_t end)
     memcpy(to->vy + first, from->vy + first, size);
     memcpy(to->low_x + first, from->low_x + first, size);
     memcpy(to->low_y + first, from->low_y + first, size);
+    if (!from->low_vx)
+        return;
+    memcpy(to->low_vx + first, from->low_vx + first, size);
+    memcpy(to->low_vy + first, from->low_vy + first, size);
 }
 
 static mspringi_extrema look_at_slots(const mspring_network *network, size_t first, size_t end) {

@@ -21,6 +21,9 @@ typedef struct mspringi_substep {
 mspringi_substep mspringi_substep_prepare(const mspring_network *network, float h, mspringi_field base, uint32_t i,
                                           uint32_t count, uint32_t carry_number);
 
+/// Set what a sweep has of substep i of those that are swept together.
+void mspringi_sweep_set_substep(const mspring_network *network, mspringi_sweep *sweep, uint32_t i);
+
 /// Make one of these, which does not keep or watch anything, another of the count.
 void mspringi_substep_reuse(const mspring_network *network, mspringi_substep *substep, uint32_t i, uint32_t count,
                             uint32_t carry_number);

@@ -14,7 +14,7 @@ mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *
     budget->of_block = mspringi_alloc(memory, blocks, sizeof *budget->of_block);
     budget->of_springs = mspringi_alloc(memory, blocks, sizeof *budget->of_springs);
     budget->pins = mspringi_alloc(memory, slots, sizeof *budget->pins);
-    budget->state = mspringi_alloc(memory, MSPRINGI_STATE_ARRAYS * slots, sizeof *budget->state);
+    budget->state = mspringi_alloc(memory, mspringi_state_arrays(network) * slots, sizeof *budget->state);
     budget->impulse.x = mspringi_alloc(memory, 2 * slots, sizeof *budget->impulse.x);
     budget->runs = mspringi_alloc(memory, blocks, sizeof *budget->runs);
     budget->elastic = mspringi_alloc(memory, blocks, sizeof *budget->elastic);

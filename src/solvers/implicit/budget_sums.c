@@ -77,7 +77,7 @@ static bool next_run(const budget_of *budget, size_t *first, size_t end, size_t 
 static void keep_slots(const mspring_network *network, size_t first, size_t end) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const size_t slots = mspringi_slot_count(network), size = (end - first) * sizeof *budget->state;
-    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i) {
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i) {
         const size_t at = i * slots + first;
         if (!budget->is_in_backup)
             memcpy(budget->state + at, network->state.x + at, size);

@@ -242,7 +242,7 @@ static void check_free(const mspring_network *network, component *a, const centr
     // Impulses of other bodies act from the beginning of the substep.
     const double before = a->is_touched ? 0.0 : 0.5, after = 1.0 - before;
     move_centre(a, c, o->h * (before * (a->origin[2] + a->vx) + after * vx),
-        o->h * (before * (a->origin[3] + a->vy) + after * vy));
+                o->h * (before * (a->origin[3] + a->vy) + after * vy));
 }
 
 static void check_held(const mspring_network *network, component *a, const centre *c, double h) {
@@ -422,7 +422,7 @@ static void hold_place(const component *a, const centre *c, double h, double *x,
 
 // Where a slot is after its component's share of the way. Returns false if it has no part in going back.
 static bool restore_positions(const mspring_network *network, const mspringi_motion *before, double h, size_t slot,
-                       double *x, double *y) {
+                              double *x, double *y) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const budget_of *budget = &n->budget;
     if (budget->of_slot[slot] == MSPRINGI_NO_COMPONENT || !(network->inverse_mass[slot] > 0.0f))
@@ -557,11 +557,11 @@ static void remember_elastic(const mspring_network *network) {
 
 bool mspringi_budget_end(mspring_network *network, float h, mspringi_field base, bool may_halve) {
     mspringi_budget_sums all = {.network = network,
-                              .motion = motion_of(network),
-                              .before = motion_before(network),
-                              .base = base,
-                              .h = h,
-                              .is_after = true};
+                                .motion = motion_of(network),
+                                .before = motion_before(network),
+                                .base = base,
+                                .h = h,
+                                .is_after = true};
     const outside o = outside_in(network, (double)h);
     for (int step = 0;; ++step) {
         bool exceeds;
@@ -591,7 +591,7 @@ void mspringi_budget_undo(mspring_network *network) {
     const size_t slots = mspringi_slot_count(network);
     const size_t kept = budget->is_in_backup ? mspringi_used_slots(network) : slots;
     const float *before = motion_before(network).x;
-    for (size_t i = 0; i < MSPRINGI_STATE_ARRAYS; ++i)
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
         memcpy(network->state.x + i * slots, before + i * slots, kept * sizeof *before);
     if (network->floor)
         memcpy(network->floor->impulse.x, budget->impulse.x, 2 * slots * sizeof *budget->impulse.x);

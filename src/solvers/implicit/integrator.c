@@ -149,7 +149,8 @@ static void prepare_landing(mspringi_implicit_substep *substep, float rate) {
                                                    .to_first = to->first.x,
                                                    .to_second = to->second.x,
                                                    .h = substep->h,
-                                                   .rate = rate};
+                                                   .rate = rate,
+                                                   .grid = mspringi_rounding(&network->state)};
     substep->correction[1] = (mspringi_correction){.predicted = n->y,
                                                    .start = n->velocity.y,
                                                    .inverse_mass = mspringi_active_inverse_mass(network),
@@ -163,7 +164,8 @@ static void prepare_landing(mspringi_implicit_substep *substep, float rate) {
                                                    .to_first = to->first.y,
                                                    .to_second = to->second.y,
                                                    .h = substep->h,
-                                                   .rate = rate};
+                                                   .rate = rate,
+                                                   .grid = mspringi_rounding(&network->state)};
 }
 
 void mspringi_integrator_prepare(mspringi_implicit_substep *substep) {

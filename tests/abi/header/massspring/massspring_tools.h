@@ -402,8 +402,8 @@ MSPRING_API const char *MSPRING_CALL mspring_simd_name(mspring_simd level);
 /// Let lambda be the largest eigenvalue (Lanczos 1950) of
 ///     h^2 M^-1 K + 2 h M^-1 C.
 /// Here h is a substep, M the masses, K the stiffness of a shape, C the dampers. Pinned particles are left out. Small
-/// motion about the shape is stable exactly if lambda <= 2 (1 + exp(global_damping h)). For one mode of angular
-/// frequency omega and damping ratio zeta this is omega h <= 2 (sqrt(1 + zeta^2) - zeta).
+/// motion about the shape is stable exactly if lambda <= 2 x / tanh(x / 2) with x = global_damping h, or 4 if that is 0.
+/// For one mode of angular frequency omega and damping ratio zeta this is omega h <= 2 (sqrt(1 + zeta^2) - zeta).
 ///
 /// In K a compressed spring has stiffness along its direction only. mspring_guard uses the tangent stiffness, which
 /// has a negative part across it, too. So in a compressed shape now is shorter than the guard's limit, and safe.

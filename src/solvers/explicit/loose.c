@@ -1,0 +1,91 @@
+/// Particles without springs: all substeps at once, or one by one.
+#include "solvers/explicit/loose.h"
+
+#include "contact/floor.h"
+#include "solvers/explicit/strip.h"
+
+// Motion of particles without springs in so many substeps. (Substep by substep they took a quarter of the
+// step of a wreck that has nine particles of ten loose.)
+static mspringi_free_motion plan_free_motion(const mspringi_sweep *sweep, uint32_t count) {
+    const double h = (double)sweep->h, loss = (double)sweep->loss, kick = (double)sweep->kick;
+    const double gx = (double)sweep->gravity_h_x, gy = (double)sweep->gravity_h_y;
+    double keep = 1.0, reach = 0.0, gains = 0.0, falls = 0.0; // gains and falls: in kicks
+    for (uint32_t i = 0; i < count; ++i) {
+        keep -= loss * keep;
+        gains += 1.0 - loss * gains;
+        reach += keep;
+        falls += gains;
+    }
+    return (mspringi_free_motion){.keep = (float)keep,
+                                  .gain = (float)(gains * kick),
+                                  .reach = (float)(reach * h),
+                                  .fall = (float)(falls * kick * h),
+                                  .drift = (float)(h * (double)count),
+                                  .gravity_x = (float)(gains * gx),
+                                  .gravity_y = (float)(gains * gy),
+                                  .gravity_way_x = (float)(falls * gx * h),
+                                  .gravity_way_y = (float)(falls * gy * h)};
+}
+
+/// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.
+#define LOOSE_CHUNK 16
+
+// The end of the blocks from that one on that are all near the floor, or all far. strip: NULL if no floor is near.
+static uint32_t end_of_chunk(const mspring_network *network, const mspringi_strip *strip, uint32_t block,
+                             uint32_t end, bool *is_near) {
+    *is_near = strip && mspringi_floor_is_near_block(network, strip, block);
+    const uint32_t most = end - block < LOOSE_CHUNK ? end : block + LOOSE_CHUNK;
+    uint32_t next = block + 1;
+    while (next < most && (strip && mspringi_floor_is_near_block(network, strip, next)) == *is_near)
+        ++next;
+    return next;
+}
+
+// Whether some hook acts in substeps, if it is within reach.
+static bool may_be_cut(const mspring_network *network) {
+    for (size_t i = 0; i < network->hook_count; ++i)
+        if (network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
+            return true;
+    return false;
+}
+
+static void sweep_one_by_one(const mspringi_loose *l, const mspringi_span *span, bool is_floor_near) {
+    const mspring_network *network = l->network;
+    const mspringi_loose_fn loose = network->kernels->loose[l->sweep->force_x != NULL];
+    const mspringi_free_motion one = plan_free_motion(l->sweep, 1);
+    for (uint32_t i = 0; i < l->count; ++i) {
+        if (is_floor_near)
+            mspringi_floor_save_velocities(network, l->strip, span, 1);
+        loose(l->sweep, span, &one);
+        if (is_floor_near)
+            mspringi_floor_apply_loose(network, l->strip, span, l->sweep->h);
+    }
+}
+
+void mspringi_loose_sweep(const mspringi_loose *l, const mspringi_span *span) {
+    const mspring_network *network = l->network;
+    const mspringi_loose_fn loose = network->kernels->loose[l->sweep->force_x != NULL];
+    const bool is_floor_near = mspringi_floor_is_near(network, l->strip), glides = !may_be_cut(network);
+    if (!is_floor_near && glides) {
+        loose(l->sweep, span, &l->all);
+        return;
+    }
+    const uint32_t end = span->end_slot / MSPRINGI_WIDTH;
+    for (uint32_t block = span->first_slot / MSPRINGI_WIDTH, next; block < end; block = next) {
+        bool is_near;
+        next = end_of_chunk(network, is_floor_near ? l->strip : NULL, block, end, &is_near);
+        mspringi_span chunk = *span;
+        chunk.first_slot = block * MSPRINGI_WIDTH;
+        chunk.end_slot = next * MSPRINGI_WIDTH;
+        if (is_near || !glides)
+            sweep_one_by_one(l, &chunk, is_near);
+        else
+            loose(l->sweep, &chunk, &l->all);
+    }
+}
+
+mspringi_loose mspringi_loose_prepare(const mspring_network *network, const mspringi_sweep *sweep,
+                                      const mspringi_strip *strip, uint32_t count) {
+    return (mspringi_loose){
+        .network = network, .sweep = sweep, .strip = strip, .all = plan_free_motion(sweep, count), .count = count};
+}
