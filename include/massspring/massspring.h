@@ -398,7 +398,8 @@ typedef enum mspring_guard {
     MSPRING_GUARD_CLAMP = 4,
     /// Check nothing, and put back particles that end out of bounds. Speeds become at most max_speed, local
     /// coordinates at most MSPRING_MAX_COORDINATE. A particle with NaN or infinity goes back to its place before the
-    /// step, or to the local origin, and stands still. No step fails. An explosion is bounded, but not physical.
+    /// step, or to the local origin, and stands still. No step fails. An explosion is bounded, but not physical. A step
+    /// in which numbers overflow is repeated as with MSPRING_GUARD_CLAMP, so that it has the same bits everywhere.
     MSPRING_GUARD_CLAMP_BOUNDS = 5,
     MSPRING_GUARD_INT = MSPRING_ENUM_INT ///< no value
 } mspring_guard;
@@ -626,7 +627,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(m
 /// Flags of mspring_step_info: how a step was made.
 enum {
     MSPRING_STEP_FALLBACK = 1u << 0, ///< by one substep of the implicit solver (MSPRING_GUARD_IMPLICIT)
-    MSPRING_STEP_CLAMPED = 1u << 1,  ///< with clamped strain rates (MSPRING_GUARD_CLAMP)
+    MSPRING_STEP_CLAMPED = 1u << 1,  ///< with clamped strain rates (MSPRING_GUARD_CLAMP, _CLAMP_BOUNDS)
     MSPRING_STEP_PUT_BACK = 1u << 2, ///< particles were put back into the bounds (MSPRING_GUARD_CLAMP_BOUNDS)
     MSPRING_STEP_RETRIED = 1u << 3,  ///< with more substeps than were set (MSPRING_GUARD_RETRY)
     MSPRING_STEP_ASLEEP = 1u << 4    ///< all of the network slept: nothing was computed

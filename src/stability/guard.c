@@ -333,6 +333,12 @@ mspringi_extrema mspringi_guard_bound(const mspring_network *network, float h, m
     return extrema;
 }
 
+// True if numbers overflowed in a substep, or nearly did. Then 0 times infinity may have spread from springs that are
+// not there, of which wide vectors have more: such a state is not the same at all levels. All agree on this.
+static bool has_overflowed(float coordinate, float speed) {
+    return !(coordinate <= (float)MSPRING_MAX_SPEED && speed <= (float)MSPRING_MAX_SPEED);
+}
+
 mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt,
                                   mspringi_extrema extrema) {
     const float h = attempt->h;
@@ -340,7 +346,8 @@ mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attem
     const mspringi_extrema bounds = mspringi_guard_bound(network, h, extrema);
     float speed = bounds.speed, coordinate = bounds.coordinate;
     const bool is_out = !(coordinate <= (float)MSPRING_MAX_COORDINATE && speed <= network->settings.max_speed);
-    if (is_out && network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS) {
+    const bool is_last = attempt->solver == &mspringi_clamped || !has_overflowed(coordinate, speed);
+    if (is_out && network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS && is_last) {
         extrema = put_back(network);
         speed = extrema.speed;
         coordinate = extrema.coordinate;

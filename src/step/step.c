@@ -296,7 +296,7 @@ static mspring_result carry_out(mspring_network *network, const mspringi_attempt
         return try_once(network, attempt);
     mspringi_groups_begin(network);
     mspring_result result = try_once(network, attempt);
-    if (result == MSPRING_ERROR_UNSTABLE)
+    if (result == MSPRING_ERROR_UNSTABLE && network->settings.guard != MSPRING_GUARD_CLAMP_BOUNDS)
         result = try_without_some(network, attempt);
     mspringi_groups_end(network, result == MSPRING_OK);
     if (result == MSPRING_OK)
@@ -336,7 +336,7 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
 
 // The solver for steps that the chosen one cannot take, or NULL.
 static const mspringi_solver *fallback_of(const mspring_network *network) {
-    if (network->settings.guard == MSPRING_GUARD_CLAMP)
+    if (network->settings.guard == MSPRING_GUARD_CLAMP || network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS)
         return &mspringi_clamped;
     return network->settings.guard == MSPRING_GUARD_IMPLICIT && network->solver.ops->has_stability_limit
                ? &network->fallback
@@ -369,8 +369,9 @@ static mspring_result attempt_otherwise(mspring_network *network, const request 
 
 // Take the step that the solver cannot take, or will not be asked to.
 static mspring_result fall_back(mspring_network *network, const request *asked, const mspringi_solver *fallback) {
-    const uint32_t fallback_steps = network->guard.fallback_steps,
-                   next = network->solver.ops->has_stability_limit ? MSPRINGI_FALLBACK_STEPS : 0;
+    const bool is_single =
+        !network->solver.ops->has_stability_limit || network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS;
+    const uint32_t fallback_steps = network->guard.fallback_steps, next = is_single ? 0 : MSPRINGI_FALLBACK_STEPS;
     const mspring_result result = attempt_otherwise(network, asked, fallback);
     const bool took_it = result == MSPRING_OK && !is_idle(network, asked->stages);
     if (took_it)
