@@ -115,7 +115,7 @@ export interface Network {
   view(): View;
   /** A copy of world positions, m: x, y of one particle after the other. */
   positions<T extends Float64Array | Float32Array = Float64Array>(options?: Selection & { into?: T }): T;
-  /** A copy of velocities, m/s. */
+  /** A copy of velocities, m/s. Explicit steps leave those of half a substep ago. */
   velocities(options?: Selection & { into?: Float32Array }): Float32Array;
   /** x, y for each particle, or one pair for all. */
   setPositions(values: Numbers, where?: Selection): void;

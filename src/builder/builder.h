@@ -80,7 +80,13 @@ struct mspring_builder {
     size_t area_count, area_capacity;
     mspring_id *corners; ///< [corner_count] corners by area
     size_t corner_count, corner_capacity;
+    float lag; ///< of the velocities, as in mspringi_steps: that of the networks that were added, or 0
 };
+
+/// Lag of a builder to which particles with this lag are added: theirs, or 0 if others have another.
+static inline float mspringi_joint_lag(const mspring_builder *builder, float lag) {
+    return builder->particle_count == 0 || builder->lag == lag ? lag : 0.0f;
+}
 
 /// True if a velocity component is in range. Faster ones overflow strain rates, even of absent springs in records,
 /// which differ between instruction sets.

@@ -189,12 +189,12 @@ bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip
 void mspringi_floor_save_velocities(const mspring_network *network, const mspringi_strip *strip,
                                     const mspringi_span *spans, uint32_t span_count);
 
-/// Apply the floor to the particles of whole blocks after a substep of h seconds: to those with springs, or to
-/// those without.
+/// Apply the floor to the particles of whole blocks after an explicit substep: to those with springs, or to those
+/// without.
 void mspringi_floor_apply(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
-                          uint32_t span_count, float h);
+                          uint32_t span_count, const mspringi_sweep *substep);
 void mspringi_floor_apply_loose(const mspring_network *network, const mspringi_strip *strip,
-                                const mspringi_span *span, float h);
+                                const mspringi_span *span, const mspringi_sweep *substep);
 
 /// Check that the strips left out have stayed clear.
 void mspringi_floor_check_clear(const mspring_network *network);

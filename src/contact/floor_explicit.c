@@ -65,15 +65,18 @@ static void fly_slot(const mspring_network *network, const mspringi_floor_args *
         put(network, slot, p.x, p.y, vx, vy);
 }
 
-static mspringi_damping damping_of(const mspring_network *network, float h) {
+// Of velocities on which forces act for so long before they move for h.
+static mspringi_damping damping_of(const mspring_network *network, float h, float time) {
     const float rate = network->settings.global_damping;
-    return (mspringi_damping){.keep = 1.0 - (double)mspringi_loss(rate, h),
-                              .scale = (double)h / (double)mspringi_gain(rate, h)};
+    return (mspringi_damping){.keep = 1.0 - (double)mspringi_loss(rate, time),
+                              .scale = (double)h / (double)mspringi_gain(rate, time)};
 }
 
 // Arguments of the floor kernel.
-static mspringi_floor_args args_of(const mspring_network *network, const mspringi_bounds *clear, float h) {
+static mspringi_floor_args args_of(const mspring_network *network, const mspringi_bounds *clear,
+                                   const mspringi_sweep *substep) {
     const mspringi_floor *floor = network->floor;
+    const float h = substep->h;
     return (mspringi_floor_args){
         .lines = floor->lines,
         .line_count = floor->plane_count,
@@ -102,7 +105,7 @@ static mspringi_floor_args args_of(const mspring_network *network, const mspring
         .before_vy = floor->before.vy,
         .silt_depth = floor->heights.silt_depth,
         .silt_rate = floor->heights.silt_rate,
-        .damping = damping_of(network, h),
+        .damping = damping_of(network, h, substep->time),
         .impulse_x = floor->impulse.x,
         .impulse_y = floor->impulse.y,
         .inverse_mass = network->inverse_mass,
@@ -133,14 +136,14 @@ static const mspringi_bounds *clear_of(const mspring_network *network, const msp
 
 // Look at the blocks of a strip that are not clear.
 static void touch_slots(const mspring_network *network, const mspringi_strip *strip, bool is_loose,
-                        slot_range slots, float h) {
+                        slot_range slots, const mspringi_sweep *substep) {
     const mspringi_bounds *clear = clear_of(network, strip);
     const mspringi_beyond_fn beyond = network->kernels->beyond;
     const float *x = network->state.x, *y = network->state.y;
     size_t block = beyond(x, y, slots.first, slots.end, clear);
     if (block == slots.end)
         return;
-    const mspringi_floor_args args = args_of(network, clear, h);
+    const mspringi_floor_args args = args_of(network, clear, substep);
     const mspringi_bounds bare = {clear->min_x, clear->max_x,
                                   network->floor->clearances[strip - network->topology.strips].bare, clear->max_y};
     for (; block < slots.end; block = beyond(x, y, block + MSPRINGI_WIDTH, slots.end, clear))
@@ -148,15 +151,15 @@ static void touch_slots(const mspring_network *network, const mspringi_strip *st
 }
 
 void mspringi_floor_apply(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
-                          uint32_t span_count, float h) {
+                          uint32_t span_count, const mspringi_sweep *substep) {
     if (mspringi_floor_is_near(network, strip))
-        touch_slots(network, strip, false, slots_of(spans, span_count), h);
+        touch_slots(network, strip, false, slots_of(spans, span_count), substep);
 }
 
 void mspringi_floor_apply_loose(const mspring_network *network, const mspringi_strip *strip,
-                                const mspringi_span *span, float h) {
+                                const mspringi_span *span, const mspringi_sweep *substep) {
     if (mspringi_floor_is_near(network, strip))
-        touch_slots(network, strip, true, slots_of(span, 1), h);
+        touch_slots(network, strip, true, slots_of(span, 1), substep);
 }
 
 /* ------------------------------------------------------------------------------------------------ what was far */
@@ -235,7 +238,7 @@ static gliding glide(const mspring_network *network, float h) {
     return (gliding){.how = {.h = (double)h, .skew = skews ? 0.5 * (double)h : 0.0},
                      .before = half,
                      .after = half,
-                     .damping = skews ? damping_of(network, h) : (mspringi_damping){1.0, 1.0}};
+                     .damping = skews ? damping_of(network, h, h) : (mspringi_damping){1.0, 1.0}};
 }
 
 // A substep with an acceleration of (ax, ay).

@@ -137,9 +137,10 @@ typedef struct mspringi_sweep {
                            ///< mspringi_gathered_half() vx, vy and padding
     uint32_t parts;        ///< number of parts in a record: 2 or, with damping, 3
     float h;               ///< substep, s
-    float kick;            ///< change of velocity per acceleration, s
-    float loss;            ///< share of a velocity that global damping takes in a substep
-    float grid;            ///< 1.5 * 2^23 times the grid of precise coordinates: adding and subtracting it rounds
+    float time; ///< from the middle of the substep before, s: velocities go from there to the middle of h
+    float kick; ///< change of velocity per acceleration in that time, s
+    float loss; ///< share of a velocity that global damping takes in it
+    float grid; ///< 1.5 * 2^23 times the grid of precise coordinates: adding and subtracting it rounds
     float gravity_h_x, gravity_h_y; ///< gravity times kick, m/s
     float *keep; ///< [6 or 8][slots] copy of the state before the substep, in the order of mspringi_state; or NULL
     mspringi_extrema_lanes *watch; ///< maxima over the new state, or NULL

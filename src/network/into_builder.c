@@ -164,6 +164,7 @@ static void append_areas(mspring_builder *builder, const mspring_network *networ
 
 static mspring_result append(mspring_builder *builder, const mspring_network *network, const id_maps *maps) {
     const size_t before = builder->particle_count;
+    const float lag = mspringi_joint_lag(builder, network->steps.lag);
     for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
         if (maps->particles[p] == MSPRING_NONE)
             continue;
@@ -177,6 +178,7 @@ static mspring_result append(mspring_builder *builder, const mspring_network *ne
         if (maps->springs[s] != MSPRING_NONE)
             append_spring(builder, network, maps, s);
     append_areas(builder, network, maps);
+    builder->lag = lag;
     return MSPRING_OK;
 }
 

@@ -303,6 +303,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         return result;
     network->guard.speed = network->guard.coordinate = INFINITY; // unknown
     network->steps.outcome = mspringi_outcome_none();
+    network->steps.lag = builder->lag;
     fill_particles(network, builder);
     fill_springs(network, builder);
     for (mspring_id p = network->topology.particle_count; p < network->topology.reserve.particle_end; ++p)

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "kernels/spring_law.h"
+#include "query/kinetic.h"
 #include "query/measure.h"
 #include "store/areas.h"
 #include "store/one_way.h"
@@ -85,14 +86,13 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         return MSPRING_ERROR_ARGUMENT;
     const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
-    double kinetic_sum = 0.0, potential_sum = 0.0, elastic_sum = 0.0;
+    double potential_sum = 0.0, elastic_sum = 0.0;
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         const uint32_t slot = t->slot_of_particle[p];
         if (is_pinned(network, p))
             continue;
-        const double mass = (double)network->mass[p], vx = (double)s->vx[slot], vy = (double)s->vy[slot];
+        const double mass = (double)network->mass[p];
         const double x = network->origin_x + mspringi_x_of(s, slot), y = network->origin_y + mspringi_y_of(s, slot);
-        kinetic_sum += 0.5 * mass * (vx * vx + vy * vy);
         potential_sum -= mass * ((double)network->settings.gravity_x * x + (double)network->settings.gravity_y * y);
     }
     for (mspring_id i = 0; elastic && i < t->spring_count; ++i) {
@@ -110,7 +110,7 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
             elastic_sum += mspringi_area_energy(area, mspringi_area_size(network, area));
     }
     if (kinetic)
-        *kinetic = kinetic_sum;
+        *kinetic = mspringi_kinetic_energy(network);
     if (elastic)
         *elastic = elastic_sum;
     if (potential)

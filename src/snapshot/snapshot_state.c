@@ -88,6 +88,9 @@ static void hand_steps(mspringi_io *io, mspringi_steps *steps) {
     MSPRINGI_HAND(io, steps->fallback_count);
     MSPRINGI_HAND(io, steps->time);
     MSPRINGI_HAND(io, steps->substeps);
+    MSPRINGI_HAND(io, steps->lag);
+    MSPRINGI_HAND(io, steps->dt);
+    MSPRINGI_HAND(io, steps->uneven_steps);
 }
 
 static void steps_save(const mspring_network *network, mspringi_writer *to) {
@@ -106,11 +109,16 @@ static mspring_result steps_check(mspring_network *network, const uint8_t *from,
     const bool has_stepped = steps.count > 0;
     if (!(steps.time >= 0.0 && steps.time <= DBL_MAX) || (steps.time > 0.0) != has_stepped ||
         (steps.substeps > 0) != has_stepped || steps.substeps > MSPRING_MAX_SUBSTEPS ||
-        steps.fallback_count > steps.count)
+        steps.fallback_count > steps.count || !(steps.lag >= 0.0f && steps.lag <= FLT_MAX) ||
+        !(steps.dt >= 0.0 && steps.dt <= DBL_MAX) || (steps.dt > 0.0) != has_stepped ||
+        steps.uneven_steps > MSPRINGI_UNEVEN_STEPS)
         return mspringi_section_fail(network, section,
-                                     "there were %llu, %llu by the fallback, of %u substeps, in %g s",
+                                     "there were %llu, %llu by the fallback, of %u substeps, the last of %g s, in "
+                                     "%g s, the last step of %g s "
+                                     "(%u more count as uneven)",
                                      (unsigned long long)steps.count, (unsigned long long)steps.fallback_count,
-                                     (unsigned)steps.substeps, steps.time);
+                                     (unsigned)steps.substeps, (double)steps.lag, steps.time, steps.dt,
+                                     (unsigned)steps.uneven_steps);
     return MSPRING_OK;
 }
 

@@ -333,8 +333,8 @@ mspringi_extrema mspringi_guard_bound(const mspring_network *network, float h, m
     return extrema;
 }
 
-// True if numbers overflowed in a substep, or nearly did. Then 0 times infinity may have spread from springs that are
-// not there, of which wide vectors have more: such a state is not the same at all levels. All agree on this.
+// True if numbers overflowed in a substep, or nearly did. Then 0 times infinity may have spread from springs that
+// are not there, of which wide vectors have more: such a state is not the same at all levels. All agree on this.
 static bool has_overflowed(float coordinate, float speed) {
     return !(coordinate <= (float)MSPRING_MAX_SPEED && speed <= (float)MSPRING_MAX_SPEED);
 }

@@ -42,6 +42,7 @@ static void run_solver(mspring_network *network, const mspringi_attempt *attempt
         const float h = attempt->h * ((float)shares / (float)MSPRINGI_SUBSTEP_PARTS);
         network->added_substeps += shares < left;
         solver->ops->substeps(network, solver->object, h, force, count);
+        network->lag = h;
     }
 }
 
@@ -103,6 +104,19 @@ static void tidy(const mspring_network *network) {
     drop_stale_low_velocities(network);
 }
 
+// The lag with which a step begins. After an edit a step that was stable before it may be too long a time for
+// forces to act. A reset takes groups back to velocities without lag: there is none then.
+static float find_lag(mspring_network *network, const mspringi_attempt *attempt) {
+    const float h = attempt->h, lag = network->steps.lag;
+    mspring_id spring;
+    if (network->groups.count > 0)
+        return h;
+    if (!(lag > h) || !attempt->solver->ops->lags)
+        return lag;
+    const float stable = (float)fmin(mspringi_stable_in_any_shape(network, &spring), (double)FLT_MAX);
+    return lag <= stable ? lag : stable > h ? stable : h;
+}
+
 // Keep the state in the backup, run all substeps, and look at what they have led to.
 static mspringi_extrema run_once(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
@@ -111,14 +125,19 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
     network->first_substep = 0;
+    network->lag = find_lag(network, attempt);
     tidy(network);
     if (ops->begin)
         ops->begin(network);
     if (!is_cut) {
         base = mspringi_stages_forces(network, attempt);
         mspringi_stages_forces_known(network, attempt, base);
-        if (mspringi_sleep_is_whole(network) || (ops->run_step && ops->run_step(network, attempt, base, &extrema)))
+        if (mspringi_sleep_is_whole(network))
             return extrema;
+        if (ops->run_step && ops->run_step(network, attempt, base, &extrema)) {
+            network->lag = attempt->h;
+            return extrema;
+        }
         if (network->plastic.yields) // in substeps that were undone, as they met the floor
             mspringi_stage_yielding.roll_back(network);
     }
@@ -152,11 +171,33 @@ void mspringi_clear_empty_slots(const mspring_network *network) {
         mspringi_id_pool_clear_slots(network);
 }
 
+// True if dt is another one than before, but for its rounding.
+static bool changes_dt(const mspring_network *network, double dt) {
+    const double before = network->steps.dt;
+    return before > 0.0 && !(fabs(dt - before) <= 1e-6 * before);
+}
+
+// The substeps for a dt that varies: each length of a substep keeps an energy of its own, and near the limit of
+// stability those of two lengths differ most. So the length stays as close to the last one as it can, at 0.4 to 0.8
+// of the limit. An undamped rope of 20 springs gains 2.9 times its energy in a minute in which dt lies between 0.9
+// and 1 of 1/64 s, and over a millionfold with the fewest substeps.
+static uint32_t uneven_substeps(const mspring_network *network, double dt, double limit) {
+    const uint32_t most = network->max_substeps, least = mspringi_substeps_within(dt, 0.8 * limit, most);
+    if (least > most)
+        return mspringi_substeps_within(dt, limit, most);
+    const double wanted = fmin(fmax((double)network->steps.lag, 0.4 * limit), 0.8 * limit);
+    const double more = ceil(dt / wanted), fewer = fmax(more - 1.0, 1.0); // one of these has the closest length
+    const double closest = dt / fewer - wanted < wanted - dt / more ? fewer : more;
+    return closest < (double)least ? least : closest < (double)most ? (uint32_t)closest : most;
+}
+
 // Choose the substeps of a step where that is left to the library.
 static mspring_result choose_substeps(mspring_network *network, double dt) {
     mspring_id spring;
     const double limit = mspringi_stable_in_any_shape(network, &spring);
-    uint32_t substeps = mspringi_substeps_within(dt, limit, network->max_substeps);
+    const bool is_uneven = network->steps.uneven_steps > 0 || changes_dt(network, dt);
+    uint32_t substeps = is_uneven ? uneven_substeps(network, dt, limit)
+                                  : mspringi_substeps_within(dt, limit, network->max_substeps);
     if (substeps > network->max_substeps && network->fractions.values)
         substeps = mspringi_substeps_within(dt, mspringi_stable_with_relative(network), network->max_substeps);
     if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS && substeps > network->max_substeps)
@@ -290,6 +331,7 @@ static mspring_result carry_out(mspring_network *network, const mspringi_attempt
     mspringi_sleep_begin(network, attempt);
     if (is_idle(network, attempt->stages)) {
         tidy(network);
+        network->lag = network->steps.lag;
         return MSPRING_OK;
     }
     if (network->groups.count == 0)
@@ -327,6 +369,8 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
     network->running = solver;
     const mspring_result result = carry_out(network, &made);
     network->running = NULL;
+    if (result == MSPRING_OK)
+        network->steps.lag = solver->ops->lags ? network->lag : 0.0f;
     return result;
 }
 
@@ -452,6 +496,11 @@ static MSPRINGI_NOINLINE void note(mspring_network *network, double dt, mspring_
     }
     steps->substeps = (flags & MSPRING_STEP_FALLBACK ? 1 : network->substeps) + network->added_substeps;
     steps->substeps = steps->substeps < MSPRING_MAX_SUBSTEPS ? steps->substeps : MSPRING_MAX_SUBSTEPS;
+    if (changes_dt(network, dt))
+        steps->uneven_steps = MSPRINGI_UNEVEN_STEPS;
+    else if (steps->uneven_steps > 0)
+        steps->uneven_steps--;
+    steps->dt = dt;
     steps->count++;
     steps->fallback_count += (flags & (MSPRING_STEP_FALLBACK | MSPRING_STEP_CLAMPED)) != 0;
     steps->time += dt;

@@ -263,7 +263,15 @@ typedef struct mspringi_steps {
     uint32_t substeps; ///< of the last that succeeded
     uint64_t count, fallback_count;
     double time; ///< s
+    double dt;   ///< of the last that succeeded, s; 0: none did
+    uint32_t
+        uneven_steps; ///< that MSPRING_SUBSTEPS_AUTO still takes for uneven: of the last 600, dt changed in one
+    float
+        lag; ///< twice the time by which velocities are older than positions: the last substep, s; 0: they are not
 } mspringi_steps;
+
+/// Steps after a change of dt for which steps count as uneven.
+#define MSPRINGI_UNEVEN_STEPS 600u
 
 static inline mspringi_outcome mspringi_outcome_none(void) {
     return (mspringi_outcome){.particle = MSPRING_NONE, .spring = MSPRING_NONE};
@@ -395,6 +403,7 @@ struct mspring_network {
     // State.
     mspringi_state state, backup;
     uint32_t first_substep;    ///< number in the step of the first of the substeps that are being taken
+    float lag;                 ///< steps.lag at the first of these, s
     bool backup_is_start;      ///< since it was written, nothing but the solver has written to the state
     double origin_x, origin_y; ///< world = origin + local
     float recentre_distance;   ///< how far the network may be from its origin until that is moved along

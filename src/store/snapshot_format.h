@@ -18,7 +18,7 @@
 #include "kernels/kernels.h"
 
 /// Counted up with any change of what is saved, so that no library takes what another means otherwise.
-#define MSPRINGI_SNAPSHOT_VERSION 10u
+#define MSPRINGI_SNAPSHOT_VERSION 11u
 #define MSPRINGI_SNAPSHOT_CHECKSUM_BYTES 8
 
 typedef struct mspringi_snapshot_header {

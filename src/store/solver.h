@@ -50,6 +50,7 @@ struct mspringi_solver_ops {
     bool can_choose_substeps; ///< the library may choose their number (MSPRING_SUBSTEPS_AUTO)
     bool takes_one_substep;   ///< as a fallback it takes a step in one substep
     bool skips_sleepers;      ///< leaves alone blocks in which nothing is to be swept
+    bool lags;                ///< velocities lag by half a substep from step to step: see mspringi_steps.lag
     bool is_staggered; ///< velocities are those of half a substep before the positions, as of symplectic Euler
     bool has_bundles;  ///< sweeps small trees in bundles
     bool can_add;      ///< springs may be added

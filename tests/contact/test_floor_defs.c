@@ -240,7 +240,8 @@ static void impulses_are_the_change_of_momentum(void **state) {
         check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y, 1));
         // Velocities of up to 10 m/s, rounded in each of five substeps and once more in the impulse.
         check_near(x, mass * (after.x - before.x), 2e-5);
-        check_near(y, mass * (after.y - before.y + g * dt), 2e-5);
+        const double fallen = step == 0 ? dt - dt / 10 : dt; // the first of five substeps begins in its middle
+        check_near(y, mass * (after.y - before.y + g * fallen), 2e-5);
         given_x += fabs((double)x);
         given_y += (double)y;
         along_x = fmax(along_x, fabs(after.x));
@@ -265,9 +266,8 @@ static void who_leaves_is_let_go(void **state) {
     support_steps(network, 20, 1e-3);
     const double t = 0.02;
     assert_true(support_velocity(network, 0).x == (double)vx);
-    check_near(support_velocity(network, 0).y, 0.5 - 9.8 * t, 1e-5);
-    check_near(support_position(network, 0).y, 5 + 0.5 * t - 9.8 * t * (t + 1e-3) / 2,
-               1e-5); // floats of some metres
+    check_near(support_velocity(network, 0).y, 0.5 - 9.8 * (t - 0.5e-3), 1e-5); // of half a substep ago
+    check_near(support_position(network, 0).y, 5 + 0.5 * t - 9.8 * t * t / 2, 1e-5); // floats of some metres
     float x, y;
     check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y, 1));
     assert_true(x == 0 && y == 0);

@@ -24,6 +24,7 @@ static void check_step(life *it, double tolerance) {
     const double dt = 1.0 / 64;
     recipe left = life_recipe(it, ids);
     reference net = reference_of(&left, 0, (double)-9.8f, 0);
+    net.lag = support_step_info(it->network).step_count > 0 ? dt / 4 : 0; // after steps of dt
     check_ok(mspring_network_step(it->network, dt));
     for (int i = 0; i < 4; i++) {
         reference_substep(&net, dt / 4);

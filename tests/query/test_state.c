@@ -485,6 +485,7 @@ static void impulses_change_velocities_at_once(void **state) {
 static void bad_impulses_change_nothing(void **state) {
     (void)state;
     mspring_network *network = three_particles();
+    support_steps(network, 1, 0.01); // the length of the last substep is part of the state
     const uint64_t before = support_hash(network);
     const float bad[][3] = {{1, NAN, 1}, {1, 1, INFINITY}, {1, 8.1e15f, 1}, {2.1e15f, 1, 1}};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {

@@ -110,8 +110,9 @@ static void fill_inflates(void **state) {
 
 /* ------------------------------------------------------------------------------------------------------- books */
 
-// Without damping energy stays, momentum and angular momentum to rounding; at this substep the drift of symplectic
-// Euler is below 1 %.
+// Without damping energy stays, momentum and angular momentum to rounding; at this substep leapfrog's energy moves by
+// less than 1 %. 102,400 substeps round 60 velocities of up to 0.5 m/s and 0.1 kg thrice, by 8e-9 m/s each: a random
+// walk of 3.4e-6 N s, of which thrice is allowed; its lever is up to 3 m.
 static void energy_and_momentum_stay(void **state) {
     (void)state;
     for (int law = 0; law < 2; law++) {
@@ -137,7 +138,7 @@ static void energy_and_momentum_stay(void **state) {
         check_near(support_energy(network), energy, 0.01 * fabs(energy));
         check_near(end_x, x, 1e-5);
         check_near(end_y, y, 1e-5);
-        check_near(end_angular, angular, 1e-5);
+        check_near(end_angular, angular, 3 * 1e-5);
         mspring_network_destroy(network);
     }
 }

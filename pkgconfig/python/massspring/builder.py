@@ -133,7 +133,7 @@ class Builder(Handle):
         """Add particles: all of them or, on error, none. Returns their ids.
 
         positions   (n, 2), world positions, m
-        velocities  (n, 2), m/s
+        velocities  (n, 2), of now, m/s
         Keyword arguments are numbers, or arrays of n numbers. pinned takes booleans.
         """
         rows = particle_rows(positions, velocities, columns)

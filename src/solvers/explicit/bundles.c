@@ -81,7 +81,7 @@ static void sweep_run(const job *bundles, const mspringi_sweep *sweep, const msp
         mspringi_floor_save_velocities(network, strip, run, 1);
         mspringi_sweep_set_substep(network, &substep, i);
         sweep_bundle(&substep, run, 1);
-        mspringi_floor_apply(network, strip, run, 1, bundles->h);
+        mspringi_floor_apply(network, strip, run, 1, &substep);
     }
 }
 

@@ -1,4 +1,4 @@
-/// The explicit solver: symplectic Euler, in passes over strips of rows.
+/// The explicit solver: leapfrog, in passes over strips of rows.
 #include "solvers/explicit/explicit.h"
 
 #include <string.h>
@@ -116,7 +116,7 @@ static void sweep_tier(const job *wavefront, const mspringi_substep *substep, ui
     const mspringi_span span = tier_span(wavefront, tier);
     mspringi_floor_save_velocities(network, wavefront->irregular, &span, 1);
     mspringi_irregular_sweep(network, substep, &span);
-    mspringi_floor_apply(network, wavefront->irregular, &span, 1, substep->sweep.h);
+    mspringi_floor_apply(network, wavefront->irregular, &span, 1, &substep->sweep);
     if (substep->next_gathered)
         mspringi_irregular_pack_next(network, substep, &span);
     if (substep->sweep.watch)
@@ -383,7 +383,7 @@ static void sweep_grafted_loose(const job *rest, const mspringi_substep *substep
         mspringi_floor_save_velocities(network, strip, &span, 1);
         network->kernels->loose[rest->base.x != NULL](&substep->sweep, &span, &one.all);
         mspringi_added_springs_pull(network, &substep->sweep, span.first_slot, span.end_slot);
-        mspringi_floor_apply(network, strip, &span, 1, rest->h);
+        mspringi_floor_apply(network, strip, &span, 1, &substep->sweep);
     }
 }
 
@@ -409,7 +409,7 @@ static void sweep_irregular_share(const job *rest, const mspringi_substep *subst
     mspringi_irregular_sweep(network, substep, share);
     if (network->added_springs.count > 0)
         mspringi_added_springs_pull(network, &substep->sweep, share->first_slot, share->end_slot);
-    mspringi_floor_apply(network, strip, share, 1, substep->sweep.h);
+    mspringi_floor_apply(network, strip, share, 1, &substep->sweep);
     if (number + 1 == rest->count)
         end_share(rest, share, index);
 }
@@ -489,6 +489,7 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
         sweep_rest(network, h, base, 1, NULL);
         if (has_loose)
             sweep_grafted_loose(&loose, &substep, &t->strips[t->strip_count - 1], i, count);
+        network->lag = h;
     }
 }
 

@@ -50,6 +50,7 @@ const mspringi_solver_ops mspringi_explicit_ops = {
     .has_stability_limit = true,
     .can_choose_substeps = true,
     .skips_sleepers = true,
+    .lags = true,
     .is_staggered = true,
     .has_bundles = true,
     .can_add = true,

@@ -4,27 +4,30 @@
 #include "contact/floor.h"
 #include "solvers/explicit/strip.h"
 
-// Motion of particles without springs in so many substeps. (Substep by substep they took a quarter of the
-// step of a wreck that has nine particles of ten loose.)
-static mspringi_free_motion plan_free_motion(const mspringi_sweep *sweep, uint32_t count) {
-    const double h = (double)sweep->h, loss = (double)sweep->loss, kick = (double)sweep->kick;
-    const double gx = (double)sweep->gravity_h_x, gy = (double)sweep->gravity_h_y;
-    double keep = 1.0, reach = 0.0, gains = 0.0, falls = 0.0; // gains and falls: in kicks
-    for (uint32_t i = 0; i < count; ++i) {
-        keep -= loss * keep;
-        gains += 1.0 - loss * gains;
-        reach += keep;
-        falls += gains;
+// Motion of particles without springs in substeps first to end - 1 of those that are taken now. (Substep by substep
+// they took a quarter of the step of a wreck that has nine particles of ten loose.)
+static mspringi_free_motion plan_free_motion(const mspring_network *network, const mspringi_sweep *sweep,
+                                             uint32_t first, uint32_t end) {
+    mspringi_sweep s = *sweep;
+    const double h = (double)s.h, ax = (double)network->settings.gravity_x,
+                 ay = (double)network->settings.gravity_y;
+    double keep = 1.0, reach = 0.0, gain = 0.0, fall = 0.0; // of a velocity, and of an acceleration
+    for (uint32_t i = first; i < end; ++i) {
+        mspringi_sweep_set_substep(network, &s, i);
+        keep -= (double)s.loss * keep;
+        gain += (double)s.kick - (double)s.loss * gain;
+        reach += keep * h;
+        fall += gain * h;
     }
     return (mspringi_free_motion){.keep = (float)keep,
-                                  .gain = (float)(gains * kick),
-                                  .reach = (float)(reach * h),
-                                  .fall = (float)(falls * kick * h),
-                                  .drift = (float)(h * (double)count),
-                                  .gravity_x = (float)(gains * gx),
-                                  .gravity_y = (float)(gains * gy),
-                                  .gravity_way_x = (float)(falls * gx * h),
-                                  .gravity_way_y = (float)(falls * gy * h)};
+                                  .gain = (float)gain,
+                                  .reach = (float)reach,
+                                  .fall = (float)fall,
+                                  .drift = (float)(h * (double)(end - first)),
+                                  .gravity_x = (float)(gain * ax),
+                                  .gravity_y = (float)(gain * ay),
+                                  .gravity_way_x = (float)(fall * ax),
+                                  .gravity_way_y = (float)(fall * ay)};
 }
 
 /// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.
@@ -52,13 +55,15 @@ static bool may_be_cut(const mspring_network *network) {
 static void sweep_one_by_one(const mspringi_loose *l, const mspringi_span *span, bool is_floor_near) {
     const mspring_network *network = l->network;
     const mspringi_loose_fn loose = network->kernels->loose[l->sweep->force_x != NULL];
-    const mspringi_free_motion one = plan_free_motion(l->sweep, 1);
+    mspringi_sweep substep = *l->sweep;
     for (uint32_t i = 0; i < l->count; ++i) {
+        const mspringi_free_motion one = plan_free_motion(network, l->sweep, i, i + 1);
+        mspringi_sweep_set_substep(network, &substep, i);
         if (is_floor_near)
             mspringi_floor_save_velocities(network, l->strip, span, 1);
-        loose(l->sweep, span, &one);
+        loose(&substep, span, &one);
         if (is_floor_near)
-            mspringi_floor_apply_loose(network, l->strip, span, l->sweep->h);
+            mspringi_floor_apply_loose(network, l->strip, span, &substep);
     }
 }
 
@@ -86,6 +91,9 @@ void mspringi_loose_sweep(const mspringi_loose *l, const mspringi_span *span) {
 
 mspringi_loose mspringi_loose_prepare(const mspring_network *network, const mspringi_sweep *sweep,
                                       const mspringi_strip *strip, uint32_t count) {
-    return (mspringi_loose){
-        .network = network, .sweep = sweep, .strip = strip, .all = plan_free_motion(sweep, count), .count = count};
+    return (mspringi_loose){.network = network,
+                            .sweep = sweep,
+                            .strip = strip,
+                            .all = plan_free_motion(network, sweep, 0, count),
+                            .count = count};
 }

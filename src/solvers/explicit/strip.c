@@ -41,18 +41,28 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .irregular_springs = network->irregular_springs,
                 .parts = network->parts,
                 .h = h,
-                .loss = mspringi_loss(network->settings.global_damping, h),
-                .kick = mspringi_gain(network->settings.global_damping, h),
             },
     };
-    // Never -0: what is added to +0 then does not depend on the sign of a force that is 0.
-    substep.sweep.gravity_h_x = network->settings.gravity_x * substep.sweep.kick + 0.0f;
-    substep.sweep.gravity_h_y = network->settings.gravity_y * substep.sweep.kick + 0.0f;
     mspringi_substep_reuse(network, &substep, i, count, carry_number);
     return substep;
 }
 
+// The first substep takes velocities from the middle of the one before it to its own.
+static float time_of(const mspring_network *network, float h, uint32_t i) {
+    return i == 0 ? 0.5f * (network->lag + h) : h;
+}
+
 void mspringi_sweep_set_substep(const mspring_network *network, mspringi_sweep *sweep, uint32_t i) {
+    const mspring_settings *settings = &network->settings;
+    const float time = time_of(network, sweep->h, i);
+    if (time != sweep->time) {
+        sweep->time = time;
+        sweep->loss = mspringi_loss(settings->global_damping, time);
+        sweep->kick = mspringi_gain(settings->global_damping, time);
+        // Never -0: what is added to +0 then does not depend on the sign of a force that is 0.
+        sweep->gravity_h_x = settings->gravity_x * sweep->kick + 0.0f;
+        sweep->gravity_h_y = settings->gravity_y * sweep->kick + 0.0f;
+    }
     sweep->flushes = (network->first_substep + i) % MSPRINGI_FLUSH_PERIOD == 0;
 }
 
@@ -247,7 +257,7 @@ static void sweep_strip(const mspring_network *network, const mspringi_substep *
     if (network->added_springs.count > 0)
         mspringi_added_springs_pull(network, &substep->sweep, network->topology.spans[rows->first_span].first_slot,
                                     network->topology.spans[last->first_span + last->span_count - 1].end_slot);
-    mspringi_floor_apply(network, strip, spans, span_count, substep->sweep.h);
+    mspringi_floor_apply(network, strip, spans, span_count, &substep->sweep);
     if (strip->attached_count > 0 && substep->next_gathered)
         pack_attached(network, strip, substep->next_gathered);
     if (strip->assigned_span == MSPRING_NONE)
@@ -257,7 +267,7 @@ static void sweep_strip(const mspring_network *network, const mspringi_substep *
     mspringi_irregular_sweep(network, substep, span);
     if (network->added_springs.count > 0)
         mspringi_added_springs_pull(network, &substep->sweep, span->first_slot, span->end_slot);
-    mspringi_floor_apply(network, strip, span, 1, substep->sweep.h);
+    mspringi_floor_apply(network, strip, span, 1, &substep->sweep);
     if (substep->next_gathered)
         pack_span(network, &substep->sweep, span, substep->next_gathered);
 }

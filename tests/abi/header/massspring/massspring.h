@@ -55,15 +55,16 @@
 ///
 /// **Units** are SI: metres, kilograms, seconds, newtons, N/m, N s/m. The y axis points up.
 ///
-/// **Physics.** The explicit solver takes substeps of length h (semi-implicit, also called symplectic, Euler). For a
-/// spring between the particles a and b:
+/// **Physics.** The explicit solver is leapfrog in substeps of length h. For a spring between the particles a and b:
 ///
 ///     d = p_b - p_a;  L = |d|;  u = d / L
 ///     f = (L - rest_length) * stiffness + ((v_b - v_a) . u) * damping
 ///     F_a += f u;  F_b -= f u
-///     v(t+h) = v exp(-b h) + (F / m + gravity) (1 - exp(-b h)) / b;   p(t+h) = p + v(t+h) h
+///     v(t+h/2) = v exp(-b k) + (F / m + gravity) (1 - exp(-b k)) / b;   p(t+h) = p + v(t+h/2) h
 ///
-/// with b = global_damping; where that is 0, gravity and forces act for h. A spring of length 0 has no direction and
+/// with b = global_damping; where that is 0, gravity and forces act for k. Velocities given at creation are of now;
+/// those that you read or set later are half a substep old. So k = (h_previous + h) / 2, with the h of the substep
+/// before: 0 at creation and after steps of other solvers. With groups k = h. A spring of length 0 has no direction and
 /// exerts no force. A pinned particle feels no force: it keeps the velocity that the host gives it, at first zero, and
 /// moves by it. With damping, a speed below 1e-30 m/s becomes 0.
 ///
@@ -243,7 +244,7 @@ typedef struct mspring_particle_def {
     uint32_t struct_size;
     uint32_t flags;    ///< MSPRING_PARTICLE_PINNED or 0; default 0
     double x, y;       ///< world position, m, at most MSPRING_MAX_COORDINATE in size; default 0
-    float vx, vy;      ///< velocity, m/s, within MSPRING_MAX_SPEED; default 0
+    float vx, vy;      ///< velocity of now, m/s, within MSPRING_MAX_SPEED; default 0
     float mass;        ///< kg, 1e-30 to 1e30; default 1
     uint32_t reserved; ///< 0
 } mspring_particle_def;
@@ -308,7 +309,8 @@ typedef struct mspring_lattice_def {
 
 /// How a network is evolved. The guide examples/guides/solvers.md compares the solvers.
 typedef enum mspring_solver {
-    /// Symplectic Euler in equal substeps. First order; conserves momentum; cost is proportional to the substeps.
+    /// Leapfrog in equal substeps. Second order for springs, gravity and global damping; first for spring dampers.
+    /// Conserves momentum; cost is proportional to the substeps.
     /// Stable while omega_max * h < 2: on a full lattice of equal springs and masses, stiffness < mass / (2 h^2).
     MSPRING_SOLVER_EXPLICIT = 0,
     /// One linear system in each substep, solved by conjugate gradients with a fixed number of iterations. Stable for
@@ -334,8 +336,9 @@ typedef enum mspring_integrator {
 
 /// substeps for "as few as are stable in any shape that the network can reach", chosen before each step (see
 /// mspring_network_stable_dt()). For the implicit and the direct solver 1. mspring_step_info reports the number. If
-/// all springs are relative, it is 1: set a number to have them firmer. Stable is meant of equal steps and small
-/// motion; mspring_network_step() says what else makes energy.
+/// all springs are relative, it is 1: set a number to have them firmer. For 600 steps
+/// after dt has changed, those whose length is closest to the last one within 0.4 to 0.8 of what is stable: up to 2.5
+/// times as many. Stable is meant of small motion; mspring_network_step() says what else makes energy.
 #define MSPRING_SUBSTEPS_AUTO 0xffffffffu
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. A solver ignores what it does not use.
@@ -398,7 +401,8 @@ typedef enum mspring_guard {
     MSPRING_GUARD_CLAMP = 4,
     /// Check nothing, and put back particles that end out of bounds. Speeds become at most max_speed, local
     /// coordinates at most MSPRING_MAX_COORDINATE. A particle with NaN or infinity goes back to its place before the
-    /// step, or to the local origin, and stands still. No step fails. An explosion is bounded, but not physical.
+    /// step, or to the local origin, and stands still. No step fails. An explosion is bounded, but not physical. A step
+    /// in which numbers overflow is repeated as with MSPRING_GUARD_CLAMP, so that it has the same bits everywhere.
     MSPRING_GUARD_CLAMP_BOUNDS = 5,
     MSPRING_GUARD_INT = MSPRING_ENUM_INT ///< no value
 } mspring_guard;
@@ -614,10 +618,10 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_se
 /// message and mspring_step_info name a particle or a spring. Use a shorter dt, more substeps or lower stiffness.
 ///
 /// Pass equal dt. The explicit solver keeps another energy at each length of substep. A dt that differs from step to
-/// step, as a frame's time does, therefore adds energy without bound where nothing damps, by stable substeps and with
-/// MSPRING_SUBSTEPS_AUTO, too; no guard sees it. If dt must vary, damp (springs, or global_damping), or set substeps
-/// that keep h = dt / substeps below 0.7 of any_shape (mspring_network_stable_dt()): then it grows slowly. Motion so
-/// violent that neighbours pass over a third of a spring's length in a substep adds energy, too: take more substeps.
+/// step, as a frame's time does, therefore adds energy where nothing damps; no guard sees it. If dt must vary, damp
+/// (springs, or global_damping), or use MSPRING_SUBSTEPS_AUTO, or set substeps that keep h = dt / substeps below 0.7 of
+/// any_shape (mspring_network_stable_dt()): then it grows slowly. Motion so violent that neighbours pass over a third
+/// of a spring's length in a substep adds energy, too: take more substeps.
 /// @param dt  s, > 0; as a float, dt / substeps must be finite and at least 1.2e-38
 /// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork();
 ///          LIMIT if contact finds more pairs than its capacity, or compares too many (mspring_contact_def)
@@ -626,7 +630,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(m
 /// Flags of mspring_step_info: how a step was made.
 enum {
     MSPRING_STEP_FALLBACK = 1u << 0, ///< by one substep of the implicit solver (MSPRING_GUARD_IMPLICIT)
-    MSPRING_STEP_CLAMPED = 1u << 1,  ///< with clamped strain rates (MSPRING_GUARD_CLAMP)
+    MSPRING_STEP_CLAMPED = 1u << 1,  ///< with clamped strain rates (MSPRING_GUARD_CLAMP, _CLAMP_BOUNDS)
     MSPRING_STEP_PUT_BACK = 1u << 2, ///< particles were put back into the bounds (MSPRING_GUARD_CLAMP_BOUNDS)
     MSPRING_STEP_RETRIED = 1u << 3,  ///< with more substeps than were set (MSPRING_GUARD_RETRY)
     MSPRING_STEP_ASLEEP = 1u << 4    ///< all of the network slept: nothing was computed
@@ -761,7 +765,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_po
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_positions_float_at(
     const mspring_network *network, const mspring_id *particles, uint32_t count, float *x, float *y, uint32_t stride);
 
-/// Read velocities (m/s), as mspring_network_get_positions(). They are single precision.
+/// Read velocities (m/s), as mspring_network_get_positions(). They are single precision. Explicit steps leave those of
+/// half a substep ago.
 /// @threads shared   @allocates never   @errors ID, ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_velocities(
     const mspring_network *network, mspring_id first, uint32_t count, float *vx, float *vy, uint32_t stride);
@@ -786,7 +791,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_po
     mspring_network *network, const mspring_id *particles, uint32_t count, const float *x, const float *y,
     uint32_t stride);
 
-/// Set velocities (m/s, within MSPRING_MAX_SPEED), as mspring_network_set_positions().
+/// Set velocities (m/s, within MSPRING_MAX_SPEED), as mspring_network_set_positions(). After explicit steps they are
+/// taken as those of half a substep ago.
 /// A pinned particle moves by its velocity.
 /// @threads exclusive   @allocates never   @errors ID, ARGUMENT, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_velocities(
@@ -794,7 +800,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_ve
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_velocities_at(mspring_network *network,
     const mspring_id *particles, uint32_t count, const float *vx, const float *vy, uint32_t stride);
 
-/// Hash the state: positions, velocities and local origin, in id order.
+/// Hash the state: positions, velocities, their lag and local origin, in id order.
 /// Equal states have equal hashes on every machine. The hash is not cryptographic.
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_state_hash(
@@ -1048,7 +1054,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_co
 /* -------------------------------------------------------------------------------------------------- measurements */
 
 /// Compute the energies, J, in double precision. Any of them may be NULL.
-///   kinetic    sum of m v^2 / 2 over particles that are not pinned
+///   kinetic    sum of m v^2 / 2 over particles that are not pinned, with velocities of now if only springs, gravity
+///              and global damping act; else with those that you read
 ///   elastic    sum of stiffness (L - rest_length)^2 / 2 over springs; relative springs with the stiffness of the last
 ///              step, before the first 0; with what hardening, areas and angles store (massspring_laws.h)
 ///   potential  - sum of m (gravity . p) over particles that are not pinned, p in world coordinates

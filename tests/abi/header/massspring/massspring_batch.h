@@ -21,6 +21,10 @@
 /// that needs most. So with contact, and where bodies touch, the bits of a group depend on the others. A step for which
 /// the contact's capacity is too small fails for all. A hook sees all groups.
 ///
+/// **Velocities.** In explicit steps of a network with groups all velocities, given ones too, count as half a substep
+/// old. So a group that is reset repeats, bit for bit, what it did at first, whatever the others do; and its motion is
+/// off by as much as half a substep would make.
+///
 /// The guide examples/guides/batches.md has an example.
 ///
 /// SPDX-License-Identifier: MIT

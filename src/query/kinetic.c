@@ -1,0 +1,114 @@
+/// Kinetic energy: explicit velocities belong to half a substep ago, so forces take them on to now,
+///     v + lag / 2 (F / m - global_damping v).
+/// Nothing is allocated: particles are taken in chunks, whose forces lie on the stack.
+#include "query/kinetic.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "query/measure.h"
+#include "store/springs.h"
+
+enum { CHUNK = 1024, MOST_RUNS = 256 };
+
+/// Runs of springs of equal number, and the lowest and highest particle that each joins: for networks whose ids
+/// follow places, a chunk has to look at few of them.
+typedef struct spring_runs {
+    uint32_t size, count;
+    mspring_id lowest[MOST_RUNS], highest[MOST_RUNS];
+} spring_runs;
+
+static mspring_id lower(mspring_id a, mspring_id b) {
+    return a < b ? a : b;
+}
+
+static void find_runs(const mspring_network *network, spring_runs *runs) {
+    const mspringi_topology *t = &network->topology;
+    runs->size = (t->spring_count + MOST_RUNS - 1) / MOST_RUNS;
+    runs->count = 0;
+    for (mspring_id first = 0; first < t->spring_count; first += runs->size) {
+        mspring_id lowest = MSPRING_NONE, highest = 0;
+        for (mspring_id s = first; s < lower(first + runs->size, t->spring_count); ++s) {
+            const mspringi_ends ends = mspringi_spring_ends(network, s);
+            const mspring_id a = t->particle_of_slot[ends.a], b = t->particle_of_slot[ends.b];
+            lowest = lower(lowest, lower(a, b));
+            highest = a > highest ? a : highest;
+            highest = b > highest ? b : highest;
+        }
+        runs->lowest[runs->count] = lowest;
+        runs->highest[runs->count++] = highest;
+    }
+}
+
+// Add the force of a spring to those of its ends that are in the chunk from first on.
+static void add_force(const mspring_network *network, mspring_id spring, mspring_id first,
+                      double (*forces)[CHUNK]) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    const mspringi_ends ends = mspringi_spring_ends(network, spring);
+    const mspring_id a = t->particle_of_slot[ends.a] - first, b = t->particle_of_slot[ends.b] - first;
+    if (a >= CHUNK && b >= CHUNK)
+        return;
+    const double dx = mspringi_x_of(s, ends.b) - mspringi_x_of(s, ends.a);
+    const double dy = mspringi_y_of(s, ends.b) - mspringi_y_of(s, ends.a), length = sqrt(dx * dx + dy * dy);
+    const double pull = length > 0.0 ? (double)mspringi_spring_force(network, spring) / length : 0.0;
+    if (a < CHUNK) {
+        forces[0][a] += pull * dx;
+        forces[1][a] += pull * dy;
+    }
+    if (b < CHUNK) {
+        forces[0][b] -= pull * dx;
+        forces[1][b] -= pull * dy;
+    }
+}
+
+static double energy_of(const mspring_network *network, mspring_id particle, double fx, double fy) {
+    const mspringi_state *s = &network->state;
+    const uint32_t slot = network->topology.slot_of_particle[particle];
+    if (network->inverse_mass[slot] == 0.0f)
+        return 0.0;
+    const double mass = (double)network->mass[particle], per_mass = (double)network->inverse_mass[slot];
+    const double half = 0.5 * (double)network->steps.lag, rate = (double)network->settings.global_damping;
+    const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
+    const double now_x = vx + half * (fx * per_mass + (double)network->settings.gravity_x - rate * vx);
+    const double now_y = vy + half * (fy * per_mass + (double)network->settings.gravity_y - rate * vy);
+    return 0.5 * mass * (now_x * now_x + now_y * now_y);
+}
+
+// True if springs, gravity and global damping are all that acts.
+static bool is_plain(const mspring_network *network) {
+    return !network->floor && !network->contacts && network->areas.count == 0 && network->grips.count == 0 &&
+           network->hook_count == 0 && network->sleep.sleeping == 0 && network->groups.count == 0;
+}
+
+static double stored_energy(const mspring_network *network) {
+    double sum = 0.0;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        const double vx = (double)network->state.vx[slot], vy = (double)network->state.vy[slot];
+        if (network->inverse_mass[slot] != 0.0f)
+            sum += 0.5 * (double)network->mass[p] * (vx * vx + vy * vy);
+    }
+    return sum;
+}
+
+double mspringi_kinetic_energy(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    if (!(network->steps.lag > 0.0f) || !is_plain(network))
+        return stored_energy(network);
+    spring_runs runs;
+    double sum = 0.0, forces[2][CHUNK];
+    find_runs(network, &runs);
+    for (mspring_id first = 0; first < t->particle_count; first += CHUNK) {
+        memset(forces, 0, sizeof forces);
+        for (uint32_t run = 0; run < runs.count; ++run) {
+            const mspring_id begin = run * runs.size, end = lower(begin + runs.size, t->spring_count);
+            const bool is_near = runs.lowest[run] < first + CHUNK && runs.highest[run] >= first;
+            for (mspring_id s = begin; is_near && s < end; ++s)
+                add_force(network, s, first, forces);
+        }
+        for (mspring_id p = first; p < lower(first + CHUNK, t->particle_count); ++p)
+            sum += energy_of(network, p, forces[0][p - first], forces[1][p - first]);
+    }
+    return sum;
+}

@@ -1,0 +1,215 @@
+/// @file test_order.c
+/// Order of the explicit method: errors of positions against a fine run of the same network, as substeps double. And
+/// what its velocities, which are half a substep older than positions, ask for: the first substep of a step follows
+/// one of another length, in the same network or in the one that it was made from.
+///
+///   test_order [table]     table: prints the errors
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "recipe.h"
+#include "support.h"
+
+#define DT (1.0 / 60)
+
+static bool prints_errors;
+
+/// A body that is let go of in gravity, and the damping that takes its energy.
+typedef struct body {
+    const char *name;
+    bool is_chain; ///< instead of a cantilever
+    double stiffness, damping;
+    float global_damping;
+} body;
+
+static recipe recipe_of(const body *b) {
+    uint64_t seed = 1;
+    recipe made = {0};
+    const recipe_stuff stuff = {
+        .mass = {1, 1}, .stiffness = {b->stiffness, b->stiffness}, .damping = {b->damping, b->damping}};
+    if (b->is_chain) {
+        // Hangs at ease, and swings sideways.
+        const mspring_id top = recipe_particle(&made, 0, 0, 1, MSPRING_PARTICLE_PINNED);
+        const mspring_id end = recipe_particle(&made, 0, -12, 1, 0);
+        (void)recipe_rope(&made, top, end, 12, &stuff, &seed);
+        for (uint32_t p = 1; p < made.particle_count; p++)
+            made.particles[p].vx = (float)(-made.particles[p].y / 2);
+    } else {
+        (void)recipe_lattice(&made, 12, 3, 0, 0, 1, &stuff, &seed);
+        for (uint32_t p = 0; p < made.particle_count; p += 12)
+            made.particles[p].flags = MSPRING_PARTICLE_PINNED;
+    }
+    return made;
+}
+
+/// Positions, x and y in turn, after a second.
+static double *positions_of(const body *b, uint32_t flags, uint32_t substeps) {
+    recipe made = recipe_of(b);
+    mspring_network_def def = support_def(-9.8f, substeps);
+    def.global_damping = b->global_damping;
+    def.flags = flags;
+    mspring_network *network = recipe_network(&made, &def);
+    support_steps(network, 60, DT);
+    double *at = malloc(2 * (size_t)made.particle_count * sizeof *at);
+    assert_non_null(at);
+    check_ok(mspring_network_get_positions(network, 0, made.particle_count, at, at + 1, 2));
+    mspring_network_destroy(network);
+    recipe_free(&made);
+    return at;
+}
+
+static double distance(const double *a, const double *b, uint32_t count) {
+    double squares = 0;
+    for (uint32_t i = 0; i < count; i++)
+        squares += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(squares);
+}
+
+/// Errors, as shares of the motion, go down by this factor with each doubling of substeps, down to this share.
+static void check_order(const body *b, uint32_t flags, double least, double end) {
+    enum { FIRST = 2, FINE = 8192 };
+    recipe made = recipe_of(b);
+    const uint32_t count = 2 * made.particle_count;
+    double *exact = positions_of(b, MSPRING_NETWORK_PRECISE, FINE), *start = malloc(count * sizeof *start);
+    assert_non_null(start);
+    for (uint32_t p = 0; p < made.particle_count; p++) {
+        start[2 * p] = made.particles[p].x;
+        start[2 * p + 1] = made.particles[p].y;
+    }
+    const double motion = distance(exact, start, count);
+    double error = 0;
+    for (uint32_t substeps = FIRST; substeps <= FINE / 8; substeps *= 2) {
+        const double before = error;
+        double *at = positions_of(b, flags, substeps);
+        error = distance(at, exact, count) / motion;
+        free(at);
+        if (prints_errors)
+            print_message("%s, %s: %u substeps, error %.2e of the motion, %.2f times less\n", b->name,
+                          flags ? "precise" : "default", (unsigned)substeps, error, before / error);
+        if (error < end && substeps > FIRST)
+            break;
+        assert_true(substeps == FIRST || before / error > least);
+    }
+    // It got there.
+    assert_true(error < end);
+    free(exact);
+    free(start);
+    recipe_free(&made);
+}
+
+static const body undamped[] = {
+    {"cantilever", false, 2e3, 0, 0},
+    {"cantilever, global damping", false, 2e3, 0, 0.5f},
+    {"chain", true, 3e3, 0, 0},
+    {"chain, global damping", true, 3e3, 0, 0.5f},
+};
+
+/// Second order: a factor of 4, of which higher orders take some at long substeps. Single precision rounds each
+/// substep by 1e-7 of the size of a body, which a thousand of them add up to more than 1e-6 of the motion.
+static void errors_are_of_second_order(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(undamped); i++) {
+        check_order(&undamped[i], MSPRING_NETWORK_PRECISE, 3.5, 1e-6);
+        check_order(&undamped[i], 0, 3.5, 1e-5);
+    }
+}
+
+/// Dampers go by velocities of half a substep ago: first order, a factor of 2.
+static void errors_of_dampers_are_of_first_order(void **state) {
+    (void)state;
+    const body damped[] = {{"cantilever, dampers", false, 2e3, 20, 0}, {"chain, dampers", true, 3e3, 20, 0}};
+    for (size_t i = 0; i < COUNT_OF(damped); i++) {
+        check_order(&damped[i], MSPRING_NETWORK_PRECISE, 1.9, 1e-5);
+        check_order(&damped[i], 0, 1.9, 1e-4);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ uneven substeps */
+
+/// A free bar, kicked.
+static mspring_network *kicked_bar(uint32_t flags) {
+    const recipe_stuff stuff = {.mass = {10, 10}, .stiffness = {2e4, 2e4}};
+    recipe made = {0};
+    uint64_t seed = 3;
+    (void)recipe_lattice(&made, 20, 4, 0, 0, 1, &stuff, &seed);
+    recipe_disturb(&made, 0, 0.5, &seed);
+    mspring_network_def def = support_def(0, 1);
+    def.flags = flags;
+    mspring_network *network = recipe_network(&made, &def);
+    recipe_free(&made);
+    return network;
+}
+
+/// Steps of two lengths in turn, each in so many substeps. A first substep that kicked for its own length, instead of
+/// half of it and half of the one before, multiplied energy by 1e4 to 1e6. (At half of the border and above, substeps
+/// of two lengths feed whatever swings in time with them.)
+static void steps_of_two_lengths_gain_nothing(void **state) {
+    (void)state;
+    const uint32_t substeps[][2] = {{6, 3}, {12, 6}};
+    for (size_t i = 0; i < COUNT_OF(substeps); i++)
+        for (uint32_t flags = 0; flags <= MSPRING_NETWORK_PRECISE; flags += MSPRING_NETWORK_PRECISE) {
+            mspring_network *network = kicked_bar(flags);
+            mspring_solver_def solver = support_solver(network);
+            const double before = support_energy_of_motion(network);
+            double most = 0;
+            for (uint32_t pair = 0; pair < 60 * 36; pair++) { // 1/60 s and 1/90 s are 1/36 s
+                for (int half = 0; half < 2; half++) {
+                    solver.substeps = substeps[i][half];
+                    check_ok(mspring_network_set_solver(network, &solver));
+                    support_steps(network, 1, half ? 1.0 / 90 : 1.0 / 60);
+                }
+                most = fmax(most, support_energy_of_motion(network));
+            }
+            if (prints_errors)
+                print_message("%u and %u substeps in turn, %s: energy times %.3f at most\n",
+                              (unsigned)substeps[i][0], (unsigned)substeps[i][1], flags ? "precise" : "default",
+                              most / before);
+            assert_true(most < 1.5 * before);
+            mspring_network_destroy(network);
+        }
+}
+
+/// Velocities of a network that has stepped are old; those of one that is made of it are so too. Pinned particles far
+/// outside keep the local origin where it was, so that no position is rounded anew.
+static void a_network_made_of_one_that_stepped_goes_on(void **state) {
+    (void)state;
+    recipe made = recipe_of(&undamped[0]);
+    uint64_t seed = 4;
+    recipe_disturb(&made, 0.01, 0.1, &seed);
+    (void)recipe_particle(&made, -64, -64, 1, MSPRING_PARTICLE_PINNED);
+    (void)recipe_particle(&made, 64, 64, 1, MSPRING_PARTICLE_PINNED);
+    const mspring_network_def def = support_def(-9.8f, 8);
+    for (uint32_t steps = 0; steps <= 25; steps += 5) {
+        mspring_network *network = recipe_network(&made, &def), *clone = NULL;
+        for (uint32_t i = 0; i < steps; i++)
+            support_steps(network, 1, i % 2 ? DT : 0.7 * DT);
+        check_ok(mspring_network_clone(network, NULL, &clone));
+        mspring_builder *builder = support_builder();
+        check_ok(mspring_builder_add_network(builder, network, NULL, 0, NULL, NULL));
+        mspring_network *again = support_network(builder, &def);
+        for (int i = 0; i < 50; i++) {
+            assert_int_equal(support_hash(again), support_hash(clone));
+            support_steps(again, 1, 0.9 * DT);
+            support_steps(clone, 1, 0.9 * DT);
+        }
+        mspring_network_destroy(again);
+        mspring_network_destroy(clone);
+        mspring_network_destroy(network);
+    }
+    recipe_free(&made);
+}
+
+int main(int argc, char **argv) {
+    prints_errors = argc > 1 && strcmp(argv[1], "table") == 0;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_are_of_second_order),
+        cmocka_unit_test(errors_of_dampers_are_of_first_order),
+        cmocka_unit_test(steps_of_two_lengths_gain_nothing),
+        cmocka_unit_test(a_network_made_of_one_that_stepped_goes_on),
+    };
+    return cmocka_run_group_tests_name("order", tests, NULL, NULL);
+}
