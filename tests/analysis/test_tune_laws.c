@@ -33,8 +33,9 @@ static mspring_network *made(bool has_laws) {
     return network;
 }
 
-// With so many substeps that only their first order is left of the error, it halves where they double: what both
-// are compared with has the same laws. With those left out it would not.
+// The explicit method is of second order but for dampers, and of first with these: with twice the substeps the
+// error is between half and a quarter, if what both are compared with has the same laws. With those left out it
+// would not be.
 static void the_reference_has_the_laws(void **state) {
     (void)state;
     tunes_watch watch = {0};
@@ -54,8 +55,9 @@ static void the_reference_has_the_laws(void **state) {
         check_near(table.rows[i].energy_drift, 0, 0.05);
     }
     printf("errors of 32 and 64 substeps: %g, %g of the motion\n", shares[0], shares[1]);
-    check_near(shares[0] / shares[1], 2, 0.3);
-    assert_true(shares[1] < 0.02);
+    // The fine run takes 192 substeps: (1 - 1/36) / (1/4 - 1/36) is 4.4. Rounding, 1e-6, adds to both.
+    assert_true(shares[0] / shares[1] > 1.7 && shares[0] / shares[1] < 4.4);
+    assert_true(shares[1] < 1e-5);
     mspring_network_destroy(network);
 }
 

@@ -11,6 +11,9 @@
 /// Springs times fine substeps between two looks at the clock.
 #define SPRINGS_IN_BATCH 1000000u
 
+/// Substeps of the fine run, relative to the largest number of the explicit settings: both are of second order.
+#define FINE_TIMES_EXPLICIT 3.0
+
 /// Smallest scale of errors, relative to the network's size.
 #define MIN_SCALE 1e-6
 
@@ -167,7 +170,7 @@ static double *positions_at(const mspringi_tuning *tuning, uint32_t moment) {
     return tuning->positions + (size_t)2 * moment * tuning->base->topology.particle_count;
 }
 
-// Update the motion after each step: a body may be back at its start at all moments.
+// Update the motion and the energy after each step: a body may be back at its start at all moments.
 static void measure_motion(const mspringi_tuning *tuning, comparison *c) {
     const mspringi_reference *r = &c->reference;
     const mspringi_state *start = &tuning->base->state;
@@ -179,26 +182,32 @@ static void measure_motion(const mspringi_tuning *tuning, comparison *c) {
             squares += dx * dx + dy * dy;
     }
     c->motion = c->free_count > 0 ? fmax(c->motion, sqrt(squares / (double)c->free_count)) : 0.0;
-}
-
-static void save_moment(const mspringi_tuning *tuning, comparison *c, uint32_t moment) {
-    const mspringi_reference *r = &c->reference;
-    memcpy(positions_at(tuning, moment), r->x,
-           2 * (size_t)r->particle_count * sizeof *r->x); // y follows x in memory
     const mspringi_reference_energy energy = mspringi_reference_measure(r);
     c->internal = fmax(c->internal, energy.internal);
     c->total = energy.internal + energy.potential;
 }
 
-// Number of fine substeps in a step, at most 1e9.
-static double fine_substeps(const mspringi_tuning *tuning, const mspringi_reference *r) {
-    const double needed = tuning->def.dt / mspringi_reference_substep(r);
-    return needed < 1e9 ? floor(needed) + 1.0 : 1e9;
+static void save_moment(const mspringi_tuning *tuning, const comparison *c, uint32_t moment) {
+    const mspringi_reference *r = &c->reference;
+    memcpy(positions_at(tuning, moment), r->x,
+           2 * (size_t)r->particle_count * sizeof *r->x); // y follows x in memory
+}
+
+// Number of fine substeps in a step, at most 1e9, for comparison with trials of this stiffness of relative springs.
+static double fine_substeps(const mspringi_tuning *tuning, const mspringi_reference *r, float relative_h) {
+    const double stable = floor(tuning->def.dt / mspringi_reference_substep(r)) + 1.0;
+    double most = 0.0;
+    for (uint32_t i = 0; i < tuning->trial_count; ++i) {
+        const mspringi_trial *trial = &tuning->trials[i];
+        if (trial->row.solver == MSPRING_SOLVER_EXPLICIT && trial->relative_h == relative_h && !is_rejected(trial))
+            most = fmax(most, trial->row.substeps);
+    }
+    return fmin(fmax(stable, FINE_TIMES_EXPLICIT * most), 1e9);
 }
 
 // Run the reference. False if the time ran out.
-static bool make_fine_run(mspringi_tuning *tuning, comparison *c) {
-    const double substeps = fine_substeps(tuning, &c->reference), h = tuning->def.dt / substeps;
+static bool make_fine_run(mspringi_tuning *tuning, comparison *c, float relative_h) {
+    const double substeps = fine_substeps(tuning, &c->reference, relative_h), h = tuning->def.dt / substeps;
     const uint32_t batch = 1 + SPRINGS_IN_BATCH / (c->reference.spring_count + 1);
     for (uint32_t p = 0; p < c->reference.particle_count; ++p)
         c->free_count += c->reference.inverse_mass[p] > 0.0;
@@ -230,6 +239,7 @@ static void compare(mspringi_tuning *tuning, const mspring_network *clone, uint3
     mspringi_reference *r = &c->reference;
     const double *x = positions_at(tuning, moment), *y = x + r->particle_count;
     mspringi_reference_set_motion(r, clone, shift_x, shift_y);
+    mspringi_reference_kick(r, 0.5 * (double)clone->steps.lag);
     for (uint32_t p = 0; p < r->particle_count; ++p)
         if (r->inverse_mass[p] > 0.0)
             c->squares += (r->x[p] - x[p]) * (r->x[p] - x[p]) + (r->y[p] - y[p]) * (r->y[p] - y[p]);
@@ -293,7 +303,7 @@ static mspring_result trajectories_of_group(mspringi_tuning *tuning, float relat
     result = mspringi_reference_create(&c.reference, fine);
     if (result != MSPRING_OK) {
         result = forward_error(tuning, NULL, fine, result);
-    } else if (make_fine_run(tuning, &c)) {
+    } else if (make_fine_run(tuning, &c, relative_h)) {
         for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
             if (is_pending(&tuning->trials[i], relative_h))
                 result = run_trajectory(tuning, &tuning->trials[i], &c);
@@ -313,7 +323,7 @@ mspring_result mspringi_tune_time_fine_step(mspringi_tuning *tuning, float relat
         mspringi_derive_relative(fine, relative_h);
     result = mspringi_reference_create(&r, fine);
     if (result == MSPRING_OK) {
-        const double substeps = fine_substeps(tuning, &r), begun = def->clock(def->user);
+        const double substeps = fine_substeps(tuning, &r, relative_h), begun = def->clock(def->user);
         mspringi_reference_run(&r, def->dt / substeps, 1);
         *seconds = substeps * (def->clock(def->user) - begun);
     } else {

@@ -1,11 +1,13 @@
 /// mspring_network_tune(): checks, order of the measurements, and results.
 #include <math.h>
 
+#include "analysis/tune/reference.h"
 #include "analysis/tune/tuning.h"
 #include "base/clock.h"
 #include "sleep/sleep.h"
 #include "step/origin.h"
 #include "step/strain.h"
+#include "store/changed.h"
 
 #define MAX_SETTINGS 1000
 #define MAX_STEPS 100000
@@ -147,6 +149,30 @@ void mspringi_tune_make_unbreakable(mspring_network *clone) {
     clone->plastic.yields = false;
 }
 
+// Take velocities of half a substep ago on to now, where settings of all solvers and the fine run start.
+static mspring_result end_lag(mspring_network *base) {
+    const double half = 0.5 * (double)base->steps.lag;
+    mspringi_reference r;
+    if (!(half > 0.0) || base->groups.count > 0)
+        return MSPRING_OK;
+    const mspring_result result = mspringi_reference_create(&r, base);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_reference_clear_forces(&r); // they are of the step to come
+    mspringi_reference_kick(&r, half);
+    for (uint32_t p = 0; p < r.particle_count; ++p) {
+        const uint32_t slot = base->topology.slot_of_particle[p];
+        if (r.inverse_mass[p] > 0.0) {
+            base->state.vx[slot] = (float)r.vx[p];
+            base->state.vy[slot] = (float)r.vy[p];
+        }
+    }
+    mspringi_reference_destroy(&r, base);
+    base->steps.lag = 0.0f;
+    mspringi_notify_change(base, MSPRINGI_CHANGED_STATE, 0);
+    return MSPRING_OK;
+}
+
 // Make a clone with springs, gravity and external forces only: without ramps, breaking or a floor.
 static mspring_result make_base(mspringi_tuning *tuning) {
     mspring_result result = mspringi_tune_clone(tuning, tuning->network, &tuning->base);
@@ -159,6 +185,11 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     mspringi_tune_disable_fallbacks(base);
     mspringi_tune_make_unbreakable(base);
     base->ramps.count = 0;
+    result = end_lag(base);
+    if (result != MSPRING_OK) {
+        tuning->network->message = base->message;
+        return result;
+    }
     mspringi_box box = mspringi_box_empty();
     for (mspring_id p = 0; p < base->topology.particle_count; ++p) {
         const uint32_t slot = base->topology.slot_of_particle[p];
