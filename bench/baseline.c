@@ -98,7 +98,8 @@ bool bench_baseline_create(bench_network *from, bench_baseline *out, scene_error
                     .spring_count = from->spring_count,
                     .gravity_x = def.gravity_x,
                     .gravity_y = def.gravity_y,
-                    .global_damping = BENCH_GLOBAL_DAMPING},
+                    .global_damping = BENCH_GLOBAL_DAMPING,
+                    .lag = (float)(BENCH_DT / from->substeps)}, /* as that of the network, which took a step */
         .substeps = from->substeps,
     };
     naive_network *network = &baseline.network;

@@ -16,6 +16,7 @@ typedef struct rectangle {
     float *x, *y, *vx, *vy, *fx, *fy, *inverse; ///< [columns * rows]
     float *px, *py;                             ///< [4][columns + 2] forces of a row's springs
     float stiffness, damping, rest[2];          ///< of sides, of diagonals
+    float lag;                                  ///< as in naive_network
 } rectangle;
 
 static bool allocate(rectangle *r, uint32_t count) {
@@ -72,6 +73,7 @@ static bool begin(void *self, const naive_network *from, const bench_grid *grid)
 
 static void reset(void *self, const naive_network *from) {
     rectangle *r = self;
+    r->lag = from->lag;
     for (uint32_t i = 0; i < from->particle_count; i++) {
         const naive_particle *p = &from->particles[r->place[i]];
         r->x[i] = p->x;
@@ -141,13 +143,15 @@ static void move(size_t count, float *restrict x, float *restrict v, float *rest
 }
 
 static void step(void *self, const naive_network *from, double dt, uint32_t substeps) {
-    const rectangle *r = self;
+    rectangle *r = self;
     const size_t w = r->columns;
-    const float h = (float)(dt / substeps), rate = from->global_damping, loss = -expm1f(-rate * h);
-    const float kick = rate > 0.0f ? loss / rate : h;
+    const float h = (float)(dt / substeps), rate = from->global_damping;
     for (uint32_t substep = 0; substep < substeps; substep++) {
         for (size_t row = 0; row < r->rows; row++)
             pull_row(r, row);
+        const float time = 0.5f * (r->lag + h), loss = -expm1f(-rate * time);
+        const float kick = rate > 0.0f ? loss / rate : time;
+        r->lag = h;
         move(w * r->rows, r->x, r->vx, r->fx, r->inverse, from->gravity_x, loss, kick, h);
         move(w * r->rows, r->y, r->vy, r->fy, r->inverse, from->gravity_y, loss, kick, h);
     }

@@ -23,6 +23,7 @@ typedef struct squares {
     float *inverse, *weight;             ///< [particle_count][2], the same twice; 1/kg, and gravity's share
     square *list;                        ///< [square_count]
     naive_spring *others;                ///< [other_count]
+    float lag;                           ///< as in naive_network
 } squares;
 
 static void end(void *self) {
@@ -133,6 +134,7 @@ static bool begin(void *self, const naive_network *from, const bench_grid *grid)
 
 static void reset(void *self, const naive_network *from) {
     squares *s = self;
+    s->lag = from->lag;
     for (uint32_t i = 0; i < s->particle_count; i++) {
         const naive_particle *p = &from->particles[i];
         s->places[2 * i] = p->x;
@@ -220,13 +222,15 @@ static void pull_others(const squares *s) {
 }
 
 static void step(void *self, const naive_network *from, double dt, uint32_t substeps) {
-    const squares *s = self;
-    const float h = (float)(dt / substeps), rate = from->global_damping, loss = -expm1f(-rate * h);
-    const float kick = rate > 0.0f ? loss / rate : h;
+    squares *s = self;
+    const float h = (float)(dt / substeps), rate = from->global_damping;
     const size_t n = 2 * (size_t)s->particle_count;
     for (uint32_t substep = 0; substep < substeps; substep++) {
         pull_squares(s);
         pull_others(s);
+        const float time = 0.5f * (s->lag + h), loss = -expm1f(-rate * time);
+        const float kick = rate > 0.0f ? loss / rate : time;
+        s->lag = h;
         float *restrict x = s->places, *restrict v = s->velocities, *restrict f = s->forces;
         const float *restrict inverse = s->inverse, *restrict weight = s->weight;
         for (size_t i = 0; i < n; i++) {

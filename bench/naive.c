@@ -47,13 +47,15 @@ static void move_particles(naive_particle *restrict particles, uint32_t count, f
 
 void naive_step(naive_network *network, double dt, uint32_t substeps) {
     float h = (float)(dt / substeps);
-    float loss = -expm1f(-network->global_damping * h);
-    float kick = network->global_damping > 0.0f ? loss / network->global_damping : h;
     for (uint32_t i = 0; i < network->particle_count; i++) {
         network->particles[i].force_x = network->particles[i].mass * network->gravity_x;
         network->particles[i].force_y = network->particles[i].mass * network->gravity_y;
     }
     for (uint32_t substep = 0; substep < substeps; substep++) {
+        float time = 0.5f * (network->lag + h);
+        float loss = -expm1f(-network->global_damping * time);
+        float kick = network->global_damping > 0.0f ? loss / network->global_damping : time;
+        network->lag = h;
         add_spring_forces(network->particles, network->springs, network->spring_count);
         move_particles(network->particles, network->particle_count, network->gravity_x, network->gravity_y, loss,
                        kick, h);

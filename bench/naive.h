@@ -28,6 +28,7 @@ typedef struct naive_network {
     uint32_t particle_count, spring_count;
     float gravity_x, gravity_y;
     float global_damping; ///< 1/s
+    float lag;            ///< twice the time by which velocities are older than positions: the last substep, s
 } naive_network;
 
 /// Evolve by dt, in substeps of equal length.

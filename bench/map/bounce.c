@@ -15,9 +15,7 @@ static const double kept = 0.01;
 static double energy_of(const map_watch *watch, uint32_t i, bool across_only) {
     const double gravity = (double)watch->what->network.gravity_y;
     double vx = (double)watch->vx[i], vy = (double)watch->vy[i];
-    // An explicit substep leaves the velocity of half a substep ago.
-    if (watch->what->solver.solver == MSPRING_SOLVER_EXPLICIT)
-        vy += 0.5 * watch->substep * gravity;
+    vy += 0.5 * watch->lag * gravity; // explicit substeps leave the velocity of half a substep ago
     return 0.5 * ((across_only ? 0 : vx * vx) + vy * vy) - gravity * watch->y[i];
 }
 

@@ -20,10 +20,14 @@ const char *map_verdict_name(map_verdict verdict) {
 
 /* -------------------------------------------------------------------------------------------------- the start */
 
+static double time_of_velocities(const map_watch *watch) {
+    return watch->time - 0.5 * watch->lag;
+}
+
 static void start_flight(map_judge *judge, uint32_t number) {
     const map_component *of = &judge->watch->components[number];
-    judge->flights[number] =
-        (map_flight){judge->watch->time, of->px, of->py, of->spin, of->momentum_scale, of->spin_scale};
+    judge->flights[number] = (map_flight){
+        time_of_velocities(judge->watch), of->px, of->py, of->spin, of->momentum_scale, of->spin_scale};
 }
 
 void map_judge_begin(map_judge *judge, const map_watch *watch) {
@@ -120,7 +124,7 @@ static map_verdict judge_flight(map_judge *judge, uint32_t number) {
     const map_watch *watch = judge->watch;
     const map_component *of = &watch->components[number];
     const map_flight *from = &judge->flights[number];
-    const double time = watch->time - from->time, random = sqrt((double)judge->substeps) * 0x1p-24;
+    const double time = time_of_velocities(watch) - from->time, random = sqrt((double)judge->substeps) * 0x1p-24;
     const double push_x = (of->gravity_x + of->force_x) * time, push_y = (of->gravity_y + of->force_y) * time;
     const double off = hypot(of->px - from->px - push_x, of->py - from->py - push_y);
     const double scale = fmax(from->momentum_scale, of->momentum_scale) + hypot(push_x, push_y);

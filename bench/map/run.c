@@ -167,6 +167,7 @@ static map_verdict take_step(const map_case *what, mspring_network *network, map
     if (result != MSPRING_OK)
         return judge_rejection(what, result, mspring_network_error(network), text);
     watch->time += what->dt;
+    watch->lag = what->solver.solver == MSPRING_SOLVER_EXPLICIT ? watch->substep : 0;
     if (!map_watch_read(watch)) {
         snprintf(text, MAP_TEXT, "something is not finite");
         return MAP_NOT_FINITE;
@@ -219,15 +220,15 @@ static double growth_of(const map_case *what) {
     return judge.growth;
 }
 
-/// What the floor has given in a substep, J: in the energy that the scheme keeps it changes w = v' - (v_free - v) /
-/// 2 alone, where v_free is the velocity after the same substep without a floor. Only what single particles gain
-/// counts.
-static double given_by_floor(const map_watch *watch, const float *from_vx, const float *from_vy,
+/// What the floor has given in a substep, J: in the energy that the scheme keeps it changes w = v' - part *
+/// (v_free - v) alone, where v_free is the velocity after the same substep without a floor, and part what of the
+/// kick is of half a substep. Only what single particles gain counts.
+static double given_by_floor(const map_watch *watch, double part, const float *from_vx, const float *from_vy,
                              const float *free_vx, const float *free_vy) {
     double given = 0;
     for (uint32_t i = 0; i < watch->count; i++) {
-        const double half_x = 0.5 * ((double)free_vx[i] - (double)from_vx[i]);
-        const double half_y = 0.5 * ((double)free_vy[i] - (double)from_vy[i]);
+        const double half_x = part * ((double)free_vx[i] - (double)from_vx[i]);
+        const double half_y = part * ((double)free_vy[i] - (double)from_vy[i]);
         const double before = hypot((double)free_vx[i] - half_x, (double)free_vy[i] - half_y);
         const double after = hypot((double)watch->vx[i] - half_x, (double)watch->vy[i] - half_y);
         const double rounding = 0x1p-22 * after * hypot((double)watch->vx[i], (double)watch->vy[i]);
@@ -244,6 +245,7 @@ static double take_watched_step(const map_case *what, mspring_network *network, 
     char text[MAP_TEXT];
     float from_vx[MAP_PARTICLES], from_vy[MAP_PARTICLES], free_vx[MAP_PARTICLES], free_vy[MAP_PARTICLES];
     mspring_network *twin = NULL;
+    const double part = watch->substep / (watch->lag + watch->substep);
     double given = NAN;
     memcpy(from_vx, watch->vx, sizeof from_vx);
     memcpy(from_vy, watch->vy, sizeof from_vy);
@@ -252,7 +254,7 @@ static double take_watched_step(const map_case *what, mspring_network *network, 
         mspring_network_get_velocities(twin, 0, watch->count, free_vx, free_vy, 1) == MSPRING_OK) {
         const map_verdict verdict = take_step(what, network, watch, judge, text);
         if (verdict != MAP_GUARDED && verdict != MAP_NOT_FINITE && verdict != MAP_REJECTED)
-            given = given_by_floor(watch, from_vx, from_vy, free_vx, free_vy);
+            given = given_by_floor(watch, part, from_vx, from_vy, free_vx, free_vy);
     }
     mspring_network_destroy(twin);
     return given;

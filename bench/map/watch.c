@@ -138,9 +138,12 @@ static void add_particle(map_watch *watch, uint32_t i) {
     of->momentum_scale += mass * hypot((double)watch->vx[i], (double)watch->vy[i]);
     watch->speed = fmax(watch->speed, hypot(vx, vy));
     watch->kinetic += 0.5 * mass * (vx * vx + vy * vy);
-    // What symplectic Euler keeps: T(w) + V - h^2/8 F'M^-1 F with w = v + (h/2) F/m, which is T(v) + V + h/2 v.F.
-    if (what->solver.solver == MSPRING_SOLVER_EXPLICIT)
-        watch->shadow += 0.5 * watch->substep * (vx * watch->force_x[i] + vy * watch->force_y[i]);
+    // What leapfrog keeps: T(w) + V - h^2/8 F'M^-1 F with w = v + (lag/2) F/m, which with a lag of h is
+    // T(v) + V + h/2 v.F.
+    if (what->solver.solver == MSPRING_SOLVER_EXPLICIT) {
+        const double fx = watch->force_x[i], fy = watch->force_y[i], h = watch->substep, lag = watch->lag;
+        watch->shadow += 0.5 * lag * (vx * fx + vy * fy) + (lag * lag - h * h) / 8 * (fx * fx + fy * fy) / mass;
+    }
 }
 
 static void add_spins(map_watch *watch) {
@@ -208,7 +211,7 @@ bool map_watch_begin(map_watch *watch, const map_case *what, mspring_network *ne
     watch->network = network;
     watch->count = what->body.particle_count;
     watch->substep = substep;
-    watch->time = 0;
+    watch->time = watch->lag = 0;
     map_body_box(&what->body, &left, &bottom, &right, &top);
     watch->centre_x = (left + right) / 2;
     watch->centre_y = (bottom + top) / 2;

@@ -36,6 +36,7 @@ typedef struct map_watch {
     uint32_t component[MAP_PARTICLES];
     map_component components[MAP_PARTICLES];
     double substep, time;      ///< s
+    double lag;                ///< s: twice the time by which velocities are older than positions
     double centre_x, centre_y; ///< m: where the local origin was at first
     double last_place;         ///< m, that a coordinate may be off by
     double x[MAP_PARTICLES], y[MAP_PARTICLES];
