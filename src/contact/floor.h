@@ -157,7 +157,7 @@ bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_s
 /// Project a point inside the floor onto the surface. Return true if it was inside.
 bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *y);
 
-/// Bounce a particle that a substep of symplectic Euler of h seconds moves from (x, y) at (vx, vy), and that came
+/// Bounce a particle that a leapfrog substep of h seconds moves from (x, y) at (vx, vy), and that came
 /// there at (from_vx, from_vy). Return false if nothing happens; else it ends at p->x + h p->vx.
 bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx, double from_vy,
                            mspringi_bouncing_particle *p);

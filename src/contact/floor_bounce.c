@@ -1,4 +1,4 @@
-/// Bounce of one particle on the floor, in a substep of symplectic Euler or in free flight.
+/// Bounce of one particle on the floor, in a leapfrog substep or in free flight.
 #include "contact/floor.h"
 
 #include <math.h>

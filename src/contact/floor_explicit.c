@@ -229,7 +229,7 @@ typedef struct gliding {
     mspringi_damping damping; ///< within it
 } gliding;
 
-// Velocities of symplectic Euler skew by half a substep and are damped within it. After implicit substeps damping
+// Velocities of leapfrog skew by half a substep and are damped within it. After implicit substeps damping
 // acts before and after a parabola (Strang, 1968), so that it takes energy whatever bounces there are: as a part of
 // the acceleration, found before a bounce, it gave some after it.
 static gliding glide(const mspring_network *network, float h) {

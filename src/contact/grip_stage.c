@@ -1,4 +1,4 @@
-/// The stage of grips, and what they do after a substep of symplectic Euler.
+/// The stage of grips, and what they do after a leapfrog substep.
 ///
 /// Such a substep has moved the particle to p* = p + h v* with the velocity v* that all other forces give it. A
 /// grip changes the velocity to v, and the position to p* + h (v - v*), by the force that it has then:

@@ -2,7 +2,7 @@
 /// Grips: springs and dampers from a particle to a moving target of the host.
 ///
 ///   grips.c      the definition, given by the host; the law
-///   grip_stage.c    the stage; what a grip does after a substep of symplectic Euler
+///   grip_stage.c    the stage; what a grip does after a leapfrog substep
 ///
 /// The solvers with a linear system have grips in it, see solvers/implicit/implicit_grips.c. All have the force of
 /// the end of the substep, so it is stable however stiff the grip is.

@@ -2,7 +2,7 @@
 /// Action of a straight surface on one particle in a substep. Branch-free, so that blocks of particles
 /// (floor_kernel.h, free_kernel.h) and single ones (contact/floor_bounce.c) take the same operations.
 ///
-/// After a substep of symplectic Euler, velocities lag half a substep behind. For linear springs the integrator
+/// After a leapfrog substep, velocities lag half a substep behind. For linear springs the integrator
 /// conserves exactly
 ///     E~ = T(w) + V - h^2/8 F . F / m,   with w = v + h/2 F/m, the velocity in step with the positions,
 /// in which an impulse changes w only. So contact acts at x, before the move, on w = (v + v') / 2. It neither moves

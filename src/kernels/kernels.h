@@ -243,7 +243,7 @@ typedef struct mspringi_floor_args {
     const float *inverse_mass, *active_inverse_mass;
 } mspringi_floor_args;
 
-/// Let a floor act on the particles of the block that begins at slot, after a substep of symplectic Euler. One
+/// Let a floor act on the particles of the block that begins at slot, after a leapfrog substep. One
 /// kernel is for particles with springs, one for those without. Return a bit for each unmodified particle that
 /// changed from one straight part of the heights to another, or is in a corner: mspringi_floor_bounce() and
 /// mspringi_floor_move_free_particle() handle these.

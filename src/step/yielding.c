@@ -131,7 +131,7 @@ static bool is_slack(const mspring_network *network, mspringi_spring_slot spring
     return mspringi_is_slack(mspringi_side_of(network, id), (double)length - (double)spring->rest_length);
 }
 
-// Length at which the particles last felt a spring. Symplectic Euler moves them by forces of the substep's start.
+// Length at which the particles last felt a spring. Leapfrog moves them by forces of the substep's start.
 static float start_of(const mspring_network *network, const mspringi_attempt *attempt,
                       const mspringi_spring_values *spring, double dx, double dy) {
     const mspringi_state *s = &network->state;

@@ -51,7 +51,7 @@ struct mspringi_solver_ops {
     bool takes_one_substep;   ///< as a fallback it takes a step in one substep
     bool skips_sleepers;      ///< leaves alone blocks in which nothing is to be swept
     bool lags;                ///< velocities lag by half a substep from step to step: see mspringi_steps.lag
-    bool is_staggered; ///< velocities are those of half a substep before the positions, as of symplectic Euler
+    bool is_staggered; ///< velocities are those of half a substep before the positions, as of leapfrog
     bool has_bundles;  ///< sweeps small trees in bundles
     bool can_add;      ///< springs may be added
     bool has_implicit_grips;   ///< its substeps have grips in them, but for those of particles that are alone

@@ -425,7 +425,7 @@ static void disc_spins_round(void **state) {
     check_ok(mspring_network_energy(network, &kinetic, &elastic, &unused));
     support_steps(network, 600, 1.0 / 60);
     check_ok(mspring_network_energy(network, &after, &elastic, &unused));
-    check_near(after + elastic, kinetic, 0.01 * kinetic); // symplectic Euler's energy swings by its substep
+    check_near(after + elastic, kinetic, 0.01 * kinetic); // leapfrog's energy swings by its substep
     float strain;
     check_ok(mspring_network_max_strain(network, &strain, NULL));
     assert_true(strain < 0.05f); // rho w^2 r^2 / E is 5 * 9 / 1000 at the rim

@@ -549,7 +549,7 @@ static void contact_gives_no_energy(const way *how, double restitution, double d
 
 static void explicit_contact_gives_no_energy(void **state) {
     (void)state;
-    // What symplectic Euler itself lets energy swing by: about omega h / 2 of what oscillates, which is a part of
+    // What leapfrog itself lets energy swing by: about omega h / 2 of what oscillates, which is a part of
     // the whole.
     for (int i = 0; i <= 2; i++)
         contact_gives_no_energy(&(way){MSPRING_SOLVER_EXPLICIT, 0, 40}, 0.5 * i, 1.0 / 64, 0.02);

@@ -1,5 +1,5 @@
 /// @file test_long_run.c
-/// Ten million substeps of an undamped oscillator: the energy swings, as it does with symplectic Euler, but it goes
+/// Ten million substeps of an undamped oscillator: the energy swings, as it does with leapfrog, but it goes
 /// nowhere; in single precision as in double.
 ///
 /// SPDX-License-Identifier: MIT

@@ -248,7 +248,7 @@ static void momentum_is_conserved(void **state) {
 
 static void energy_has_no_trend(void **state) {
     (void)state;
-    // Symplectic Euler keeps a modified energy, so the true one swings by O(omega h) but goes nowhere.
+    // Leapfrog keeps a modified energy, so the true one swings by O(omega h) but goes nowhere.
     mspring_network *network = spinning_square(2000, 0);
     enum { WINDOWS = 10, STEPS = 6400 };
     double kinetic, elastic, mean[WINDOWS] = {0}, low = INFINITY, high = 0;
