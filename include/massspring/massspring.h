@@ -64,9 +64,10 @@
 ///
 /// with b = global_damping; where that is 0, gravity and forces act for k. Velocities given at creation are of now;
 /// those that you read or set later are half a substep old. So k = (h_previous + h) / 2, with the h of the substep
-/// before: 0 at creation and after steps of other solvers. With groups k = h. A spring of length 0 has no direction and
-/// exerts no force. A pinned particle feels no force: it keeps the velocity that the host gives it, at first zero, and
-/// moves by it. With damping, a speed below 1e-30 m/s becomes 0.
+/// before, or what is stable in any shape if an edit has made that less: 0 at creation and after steps of other
+/// solvers. With groups k = h. A spring of length 0 has no direction and exerts no force. A pinned particle feels no
+/// force: it keeps the velocity that the host gives it, at first zero, and moves by it. With damping, a speed below
+/// 1e-30 m/s becomes 0.
 ///
 /// **Precision.** Positions and velocities are single precision, relative to a local origin in double precision. The
 /// library moves the origin with the network. A network 10 km from the world's origin behaves as it does there. Each
@@ -336,9 +337,9 @@ typedef enum mspring_integrator {
 
 /// substeps for "as few as are stable in any shape that the network can reach", chosen before each step (see
 /// mspring_network_stable_dt()). For the implicit and the direct solver 1. mspring_step_info reports the number. If
-/// all springs are relative, it is 1: set a number to have them firmer. For 600 steps
-/// after dt has changed, those whose length is closest to the last one within 0.4 to 0.8 of what is stable: up to 2.5
-/// times as many. Stable is meant of small motion; mspring_network_step() says what else makes energy.
+/// all springs are relative, it is 1: set a number to have them firmer. For 600 steps after dt has changed, it is the
+/// number whose substeps are closest in length to the last ones, within 0.4 to 0.8 of what is stable: up to 2.5 times as
+/// many. Stable is meant of small motion; mspring_network_step() says what else makes energy.
 #define MSPRING_SUBSTEPS_AUTO 0xffffffffu
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. A solver ignores what it does not use.
