@@ -393,5 +393,5 @@ double extreme_border(const extreme_network *what) {
 }
 
 double extreme_border_within(extreme_shape shape) {
-    return shape == EXTREME_GRAPH ? 0.03 : shape == EXTREME_ROPE ? 0.015 : 0.01;
+    return shape == EXTREME_GRAPH ? 0.03 : 0.015;
 }

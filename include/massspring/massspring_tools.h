@@ -140,6 +140,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_di
 ///
 /// A network that is created from the builder starts where the other is, but for the rounding of positions: its local
 /// origin may differ. If the other has not moved since it was created from the same parts, both have the same bits.
+/// After explicit steps velocities are half a substep old, and so are all of the builder's then: those of particles
+/// that you add yourself afterwards, too. If it had particles with others before, all count as of now.
 /// @param particles     [count] the particles to add, in any order; NULL for all
 /// @param count         0 if particles is NULL
 /// @param particle_ids  [particle count of the network] receives the builder's id of each, MSPRING_NONE if it was not

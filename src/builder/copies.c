@@ -97,7 +97,7 @@ static MSPRINGI_NOINLINE mspring_result add_copies(mspring_builder *builder, con
     mspring_result result = check(builder, from, count, by);
     if (result == MSPRING_OK)
         result = reserve(builder, from, count);
-    const float lag = mspringi_joint_lag(builder, from->lag);
+    const float lag = from->particle_count > 0 ? mspringi_joint_lag(builder, from->lag) : builder->lag;
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
         append(builder, from, x_of(by, i), y_of(by, i));
     builder->lag = result == MSPRING_OK ? lag : builder->lag;

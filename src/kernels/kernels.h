@@ -137,11 +137,13 @@ typedef struct mspringi_sweep {
                            ///< mspringi_gathered_half() vx, vy and padding
     uint32_t parts;        ///< number of parts in a record: 2 or, with damping, 3
     float h;               ///< substep, s
-    float time; ///< from the middle of the substep before, s: velocities go from there to the middle of h
-    float kick; ///< change of velocity per acceleration in that time, s
-    float loss; ///< share of a velocity that global damping takes in it
-    float grid; ///< 1.5 * 2^23 times the grid of precise coordinates: adding and subtracting it rounds
-    float gravity_h_x, gravity_h_y; ///< gravity times kick, m/s
+    float time;         ///< from the middle of the substep before, s: velocities go from there to the middle of h
+    float kick;         ///< change of velocity per acceleration in that time, s
+    float gravity_time; ///< the same for gravity, s: longer where an edit has cut that of springs
+    float gravity_kick; ///< change of velocity per gravity, s
+    float loss;         ///< share of a velocity that global damping takes in it
+    float grid;         ///< 1.5 * 2^23 times the grid of precise coordinates: adding and subtracting it rounds
+    float gravity_h_x, gravity_h_y; ///< gravity times its kick, m/s
     float *keep; ///< [6 or 8][slots] copy of the state before the substep, in the order of mspringi_state; or NULL
     mspringi_extrema_lanes *watch; ///< maxima over the new state, or NULL
     const float *before; ///< vx before the step, followed by vy, to measure changes; equals the copy in keep if

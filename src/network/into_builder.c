@@ -178,7 +178,8 @@ static mspring_result append(mspring_builder *builder, const mspring_network *ne
         if (maps->springs[s] != MSPRING_NONE)
             append_spring(builder, network, maps, s);
     append_areas(builder, network, maps);
-    builder->lag = lag;
+    if (builder->particle_count > before)
+        builder->lag = lag;
     return MSPRING_OK;
 }
 

@@ -1,11 +1,12 @@
 /// Kinetic energy: explicit velocities belong to half a substep ago, so forces take them on to now,
-///     v + lag / 2 (F / m - global_damping v).
+///     v exp(-b t) + (F / m + gravity) (1 - exp(-b t)) / b,   t = lag / 2,   b = global_damping.
 /// Nothing is allocated: particles are taken in chunks, whose forces lie on the stack.
 #include "query/kinetic.h"
 
 #include <math.h>
 #include <string.h>
 
+#include "base/decay.h"
 #include "query/measure.h"
 #include "store/springs.h"
 
@@ -40,7 +41,7 @@ static void find_runs(const mspring_network *network, spring_runs *runs) {
     }
 }
 
-// Add the force of a spring to those of its ends that are in the chunk from first on.
+// Add the force of a spring, x and y, and its stiffness to those of its ends that are in the chunk from first on.
 static void add_force(const mspring_network *network, mspring_id spring, mspring_id first,
                       double (*forces)[CHUNK]) {
     const mspringi_topology *t = &network->topology;
@@ -52,26 +53,37 @@ static void add_force(const mspring_network *network, mspring_id spring, mspring
     const double dx = mspringi_x_of(s, ends.b) - mspringi_x_of(s, ends.a);
     const double dy = mspringi_y_of(s, ends.b) - mspringi_y_of(s, ends.a), length = sqrt(dx * dx + dy * dy);
     const double pull = length > 0.0 ? (double)mspringi_spring_force(network, spring) / length : 0.0;
+    const double stiffness = (double)mspringi_spring_get(network, spring).stiffness;
     if (a < CHUNK) {
         forces[0][a] += pull * dx;
         forces[1][a] += pull * dy;
+        forces[2][a] += stiffness;
     }
     if (b < CHUNK) {
         forces[0][b] -= pull * dx;
         forces[1][b] -= pull * dy;
+        forces[2][b] += stiffness;
     }
 }
 
-static double energy_of(const mspring_network *network, mspring_id particle, double fx, double fy) {
+// stiffness: of the particle's springs together. Where they have become too stiff for the lag, it is cut as in a
+// step.
+static double energy_of(const mspring_network *network, mspring_id particle, double fx, double fy,
+                        double stiffness) {
     const mspringi_state *s = &network->state;
     const uint32_t slot = network->topology.slot_of_particle[particle];
     if (network->inverse_mass[slot] == 0.0f)
         return 0.0;
     const double mass = (double)network->mass[particle], per_mass = (double)network->inverse_mass[slot];
-    const double half = 0.5 * (double)network->steps.lag, rate = (double)network->settings.global_damping;
     const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
-    const double now_x = vx + half * (fx * per_mass + (double)network->settings.gravity_x - rate * vx);
-    const double now_y = vy + half * (fy * per_mass + (double)network->settings.gravity_y - rate * vy);
+    const float half = 0.5f * network->steps.lag, rate = network->settings.global_damping;
+    const float cut = half > 0.0f && stiffness * per_mass > 0.0
+                          ? fminf(half, (float)fmin(1.0 / sqrt(stiffness * per_mass), (double)half))
+                          : half;
+    const double keep = (double)mspringi_decay(rate, half), gain = (double)mspringi_gain(rate, half),
+                 force_gain = (double)mspringi_gain(rate, cut);
+    const double now_x = keep * vx + force_gain * fx * per_mass + gain * (double)network->settings.gravity_x;
+    const double now_y = keep * vy + force_gain * fy * per_mass + gain * (double)network->settings.gravity_y;
     return 0.5 * mass * (now_x * now_x + now_y * now_y);
 }
 
@@ -97,7 +109,7 @@ double mspringi_kinetic_energy(const mspring_network *network) {
     if (!(network->steps.lag > 0.0f) || !is_plain(network))
         return stored_energy(network);
     spring_runs runs;
-    double sum = 0.0, forces[2][CHUNK];
+    double sum = 0.0, forces[3][CHUNK];
     find_runs(network, &runs);
     for (mspring_id first = 0; first < t->particle_count; first += CHUNK) {
         memset(forces, 0, sizeof forces);
@@ -108,7 +120,7 @@ double mspringi_kinetic_energy(const mspring_network *network) {
                 add_force(network, s, first, forces);
         }
         for (mspring_id p = first; p < lower(first + CHUNK, t->particle_count); ++p)
-            sum += energy_of(network, p, forces[0][p - first], forces[1][p - first]);
+            sum += energy_of(network, p, forces[0][p - first], forces[1][p - first], forces[2][p - first]);
     }
     return sum;
 }

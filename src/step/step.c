@@ -42,7 +42,7 @@ static void run_solver(mspring_network *network, const mspringi_attempt *attempt
         const float h = attempt->h * ((float)shares / (float)MSPRINGI_SUBSTEP_PARTS);
         network->added_substeps += shares < left;
         solver->ops->substeps(network, solver->object, h, force, count);
-        network->lag = h;
+        network->lag = network->full_lag = h;
     }
 }
 
@@ -104,17 +104,20 @@ static void tidy(const mspring_network *network) {
     drop_stale_low_velocities(network);
 }
 
-// The lag with which a step begins. After an edit a step that was stable before it may be too long a time for
-// forces to act. A reset takes groups back to velocities without lag: there is none then.
-static float find_lag(mspring_network *network, const mspringi_attempt *attempt) {
+// Set the lag with which a step begins. After an edit, the last substep may be too long a time for springs to act,
+// and relative springs are as stiff as this step's substeps allow. A reset takes groups back to velocities that
+// count as half a substep old.
+static void begin_lag(mspring_network *network, const mspringi_attempt *attempt) {
     const float h = attempt->h, lag = network->steps.lag;
     mspring_id spring;
-    if (network->groups.count > 0)
-        return h;
-    if (!(lag > h) || !attempt->solver->ops->lags)
-        return lag;
-    const float stable = (float)fmin(mspringi_stable_in_any_shape(network, &spring), (double)FLT_MAX);
-    return lag <= stable ? lag : stable > h ? stable : h;
+    network->lag = network->full_lag = network->groups.count > 0 ? h : lag;
+    if (!attempt->solver->ops->lags || network->groups.count > 0)
+        return;
+    if (network->fractions.values && lag > 0.0f)
+        network->lag = network->full_lag = h;
+    else if (lag > h)
+        network->lag =
+            fminf(lag, fmaxf((float)fmin(mspringi_stable_in_any_shape(network, &spring), (double)FLT_MAX), h));
 }
 
 // Keep the state in the backup, run all substeps, and look at what they have led to.
@@ -125,7 +128,7 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
     network->first_substep = 0;
-    network->lag = find_lag(network, attempt);
+    begin_lag(network, attempt);
     tidy(network);
     if (ops->begin)
         ops->begin(network);
@@ -135,7 +138,7 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
         if (mspringi_sleep_is_whole(network))
             return extrema;
         if (ops->run_step && ops->run_step(network, attempt, base, &extrema)) {
-            network->lag = attempt->h;
+            network->lag = network->full_lag = attempt->h;
             return extrema;
         }
         if (network->plastic.yields) // in substeps that were undone, as they met the floor
@@ -186,7 +189,7 @@ static uint32_t uneven_substeps(const mspring_network *network, double dt, doubl
     if (least > most)
         return mspringi_substeps_within(dt, limit, most);
     const double wanted = fmin(fmax((double)network->steps.lag, 0.4 * limit), 0.8 * limit);
-    const double more = ceil(dt / wanted), fewer = fmax(more - 1.0, 1.0); // one of these has the closest length
+    const double more = -floor(-dt / wanted), fewer = fmax(more - 1.0, 1.0); // one of these has the closest length
     const double closest = dt / fewer - wanted < wanted - dt / more ? fewer : more;
     return closest < (double)least ? least : closest < (double)most ? (uint32_t)closest : most;
 }
@@ -331,7 +334,7 @@ static mspring_result carry_out(mspring_network *network, const mspringi_attempt
     mspringi_sleep_begin(network, attempt);
     if (is_idle(network, attempt->stages)) {
         tidy(network);
-        network->lag = network->steps.lag;
+        network->full_lag = network->steps.lag;
         return MSPRING_OK;
     }
     if (network->groups.count == 0)
@@ -370,7 +373,7 @@ static mspring_result attempt(mspring_network *network, const request *asked, co
     const mspring_result result = carry_out(network, &made);
     network->running = NULL;
     if (result == MSPRING_OK)
-        network->steps.lag = solver->ops->lags ? network->lag : 0.0f;
+        network->steps.lag = solver->ops->lags ? network->full_lag : network->steps.lag;
     return result;
 }
 

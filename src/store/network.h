@@ -264,10 +264,11 @@ typedef struct mspringi_steps {
     uint64_t count, fallback_count;
     double time; ///< s
     double dt;   ///< of the last that succeeded, s; 0: none did
-    uint32_t
-        uneven_steps; ///< that MSPRING_SUBSTEPS_AUTO still takes for uneven: of the last 600, dt changed in one
-    float
-        lag; ///< twice the time by which velocities are older than positions: the last substep, s; 0: they are not
+    /// Steps that MSPRING_SUBSTEPS_AUTO still takes for uneven, after a change of dt.
+    uint32_t uneven_steps;
+    /// The last explicit substep, s: velocities are half of it older than positions; 0: they are not. Other solvers
+    /// leave it: what they begin with, and end with, is as old.
+    float lag;
 } mspringi_steps;
 
 /// Steps after a change of dt for which steps count as uneven.
@@ -404,6 +405,7 @@ struct mspring_network {
     mspringi_state state, backup;
     uint32_t first_substep;    ///< number in the step of the first of the substeps that are being taken
     float lag;                 ///< steps.lag at the first of these, s
+    float full_lag;            ///< the same for gravity, whatever is stable
     bool backup_is_start;      ///< since it was written, nothing but the solver has written to the state
     double origin_x, origin_y; ///< world = origin + local
     float recentre_distance;   ///< how far the network may be from its origin until that is moved along

@@ -489,7 +489,7 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
         sweep_rest(network, h, base, 1, NULL);
         if (has_loose)
             sweep_grafted_loose(&loose, &substep, &t->strips[t->strip_count - 1], i, count);
-        network->lag = h;
+        network->lag = network->full_lag = h;
     }
 }
 

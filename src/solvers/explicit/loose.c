@@ -12,22 +12,25 @@ static mspringi_free_motion plan_free_motion(const mspring_network *network, con
     const double h = (double)s.h, ax = (double)network->settings.gravity_x,
                  ay = (double)network->settings.gravity_y;
     double keep = 1.0, reach = 0.0, gain = 0.0, fall = 0.0; // of a velocity, and of an acceleration
+    double gravity_gain = 0.0, gravity_fall = 0.0;
     for (uint32_t i = first; i < end; ++i) {
         mspringi_sweep_set_substep(network, &s, i);
         keep -= (double)s.loss * keep;
         gain += (double)s.kick - (double)s.loss * gain;
         reach += keep * h;
         fall += gain * h;
+        gravity_gain += (double)s.gravity_kick - (double)s.loss * gravity_gain;
+        gravity_fall += gravity_gain * h;
     }
     return (mspringi_free_motion){.keep = (float)keep,
                                   .gain = (float)gain,
                                   .reach = (float)reach,
                                   .fall = (float)fall,
                                   .drift = (float)(h * (double)(end - first)),
-                                  .gravity_x = (float)(gain * ax),
-                                  .gravity_y = (float)(gain * ay),
-                                  .gravity_way_x = (float)(fall * ax),
-                                  .gravity_way_y = (float)(fall * ay)};
+                                  .gravity_x = (float)(gravity_gain * ax),
+                                  .gravity_y = (float)(gravity_gain * ay),
+                                  .gravity_way_x = (float)(gravity_fall * ax),
+                                  .gravity_way_y = (float)(gravity_fall * ay)};
 }
 
 /// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.

@@ -48,20 +48,22 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
 }
 
 // The first substep takes velocities from the middle of the one before it to its own.
-static float time_of(const mspring_network *network, float h, uint32_t i) {
-    return i == 0 ? 0.5f * (network->lag + h) : h;
+static float time_of(float lag, float h, uint32_t i) {
+    return i == 0 ? 0.5f * (lag + h) : h;
 }
 
 void mspringi_sweep_set_substep(const mspring_network *network, mspringi_sweep *sweep, uint32_t i) {
     const mspring_settings *settings = &network->settings;
-    const float time = time_of(network, sweep->h, i);
-    if (time != sweep->time) {
+    const float time = time_of(network->lag, sweep->h, i), full_time = time_of(network->full_lag, sweep->h, i);
+    if (time != sweep->time || full_time != sweep->gravity_time) {
+        sweep->gravity_time = full_time;
         sweep->time = time;
         sweep->loss = mspringi_loss(settings->global_damping, time);
         sweep->kick = mspringi_gain(settings->global_damping, time);
+        sweep->gravity_kick = mspringi_gain(settings->global_damping, full_time);
         // Never -0: what is added to +0 then does not depend on the sign of a force that is 0.
-        sweep->gravity_h_x = settings->gravity_x * sweep->kick + 0.0f;
-        sweep->gravity_h_y = settings->gravity_y * sweep->kick + 0.0f;
+        sweep->gravity_h_x = settings->gravity_x * sweep->gravity_kick + 0.0f;
+        sweep->gravity_h_y = settings->gravity_y * sweep->gravity_kick + 0.0f;
     }
     sweep->flushes = (network->first_substep + i) % MSPRINGI_FLUSH_PERIOD == 0;
 }

@@ -63,11 +63,11 @@
 ///     v(t+h/2) = v exp(-b k) + (F / m + gravity) (1 - exp(-b k)) / b;   p(t+h) = p + v(t+h/2) h
 ///
 /// with b = global_damping; where that is 0, gravity and forces act for k. Velocities given at creation are of now;
-/// those that you read or set later are half a substep old. So k = (h_previous + h) / 2, with the h of the substep
-/// before, or what is stable in any shape if an edit has made that less: 0 at creation and after steps of other
-/// solvers. With groups k = h. A spring of length 0 has no direction and exerts no force. A pinned particle feels no
-/// force: it keeps the velocity that the host gives it, at first zero, and moves by it. With damping, a speed below
-/// 1e-30 m/s becomes 0.
+/// those that you read or set later are half a substep old. So k = (h_previous + h) / 2, with the last explicit substep
+/// before, 0 at creation. For springs k is at most what is stable in any shape, if an edit has made that less; where
+/// springs are relative, k = h if h changes; with groups k = h. A spring of length 0 has no direction and exerts no
+/// force. A pinned particle feels no force: it keeps the velocity that the host gives it, at first zero, and moves by
+/// it. With damping, a speed below 1e-30 m/s becomes 0.
 ///
 /// **Precision.** Positions and velocities are single precision, relative to a local origin in double precision. The
 /// library moves the origin with the network. A network 10 km from the world's origin behaves as it does there. Each
@@ -621,7 +621,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_se
 /// Pass equal dt. The explicit solver keeps another energy at each length of substep. A dt that differs from step to
 /// step, as a frame's time does, therefore adds energy where nothing damps; no guard sees it. If dt must vary, damp
 /// (springs, or global_damping), or use MSPRING_SUBSTEPS_AUTO, or set substeps that keep h = dt / substeps below 0.7 of
-/// any_shape (mspring_network_stable_dt()): then it grows slowly. Motion so violent that neighbours pass over a third
+/// any_shape (mspring_network_stable_dt()): then it grows more slowly. Motion so violent that neighbours pass over a third
 /// of a spring's length in a substep adds energy, too: take more substeps.
 /// @param dt  s, > 0; as a float, dt / substeps must be finite and at least 1.2e-38
 /// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork();
@@ -937,7 +937,8 @@ MSPRING_API uint32_t MSPRING_CALL mspring_network_has_particle(const mspring_net
 MSPRING_API uint32_t MSPRING_CALL mspring_network_has_spring(const mspring_network *network, mspring_id spring);
 
 /// Add particles, as many as spare_particles has room for: all or, on error, none.
-/// They get the lowest free ids. A view stays valid, but for its particle_count.
+/// They get the lowest free ids. A view stays valid, but for its particle_count. After explicit steps their velocities,
+/// too, count as half a substep old.
 /// @param defs  [count], positions also within MSPRING_MAX_COORDINATE of the local origin
 /// @param ids   [count], receives their ids
 /// @threads exclusive   @allocates never   @errors LIMIT if there is no room (the message says how much there is);
