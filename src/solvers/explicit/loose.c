@@ -47,7 +47,7 @@ static uint32_t end_of_chunk(const mspring_network *network, const mspringi_stri
     return next;
 }
 
-// Whether some hook acts in substeps, if it is within reach.
+// True if a hook within reach would act in substeps.
 static bool may_be_cut(const mspring_network *network) {
     for (size_t i = 0; i < network->hook_count; ++i)
         if (network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
