@@ -203,9 +203,64 @@ static void a_network_made_of_one_that_stepped_goes_on(void **state) {
     recipe_free(&made);
 }
 
+/// A body falls as a stone does, whatever another's springs are set to, and whichever solver takes a step.
+static double fallen(bool edits, bool switches) {
+    mspring_builder *builder = support_builder();
+    const mspring_id a = support_particle(builder, 0, 0, 1), b = support_particle(builder, 1, 0, 1);
+    support_spring(builder, a, b, 100, 0);
+    (void)support_particle(builder, 50, 0, 1);
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.substeps = edits ? MSPRING_SUBSTEPS_AUTO : 1;
+    mspring_network *network = support_network(builder, &def);
+    for (int n = 0; n < 120; n++) {
+        const float stiffness = n % 2 == 0 ? 1e6f : 100;
+        mspring_solver_def solver;
+        check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        solver.solver = n % 2 == 0 ? MSPRING_SOLVER_EXPLICIT : MSPRING_SOLVER_IMPLICIT;
+        solver.substeps = 1;
+        if (edits) {
+            check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, 1, &stiffness, 1));
+        }
+        if (switches) {
+            check_ok(mspring_network_set_solver(network, &solver));
+        }
+        check_ok(mspring_network_step(network, 1.0 / 60));
+    }
+    const double y = support_position(network, 2).y;
+    mspring_network_destroy(network);
+    return -y;
+}
+
+static void gravity_is_not_lost(void **state) {
+    (void)state;
+    const double way = 9.8 * 4 / 2; // two seconds
+    check_near(fallen(true, false), way, 1e-3);
+    check_near(fallen(false, true), way, 0.01); // the first change has the implicit solver take it for of now
+}
+
+static void strong_damping_leaves_little_energy(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    mspring_particle_def particle;
+    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    particle.vx = 3;
+    check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+    mspring_network_def def = support_def(0, 1);
+    def.global_damping = 100;
+    mspring_network *network = support_network(builder, &def);
+    check_ok(mspring_network_step(network, 1.0 / 30));
+    double kinetic;
+    check_ok(mspring_network_energy(network, &kinetic, NULL, NULL));
+    const double v = 3 * exp(-100.0 / 30);
+    check_near(kinetic, v * v / 2, 1e-6 * v * v); // single precision
+    mspring_network_destroy(network);
+}
+
 int main(int argc, char **argv) {
     prints_errors = argc > 1 && strcmp(argv[1], "table") == 0;
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gravity_is_not_lost),
+        cmocka_unit_test(strong_damping_leaves_little_energy),
         cmocka_unit_test(errors_are_of_second_order),
         cmocka_unit_test(errors_of_dampers_are_of_first_order),
         cmocka_unit_test(steps_of_two_lengths_gain_nothing),
