@@ -256,9 +256,28 @@ static void strong_damping_leaves_little_energy(void **state) {
     mspring_network_destroy(network);
 }
 
+/// An empty part of a network that has stepped gives the builder no lag: what is added then falls as from now.
+static void an_empty_part_brings_nothing(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder(), *other = support_builder();
+    (void)support_particle(other, 0, 0, 1);
+    mspring_network_def def = support_def(-9.8f, 1);
+    mspring_network *stepped = support_network(other, &def);
+    support_steps(stepped, 1, 0.5);
+    const mspring_id none = 0;
+    check_ok(mspring_builder_add_network(builder, stepped, &none, 0, NULL, NULL));
+    (void)support_particle(builder, 0, 0, 1);
+    mspring_network *network = support_network(builder, &def);
+    support_steps(network, 1, 0.5);
+    check_near(support_position(network, 0).y, -9.8 * 0.25 / 2, 1e-6);
+    mspring_network_destroy(network);
+    mspring_network_destroy(stepped);
+}
+
 int main(int argc, char **argv) {
     prints_errors = argc > 1 && strcmp(argv[1], "table") == 0;
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_empty_part_brings_nothing),
         cmocka_unit_test(gravity_is_not_lost),
         cmocka_unit_test(strong_damping_leaves_little_energy),
         cmocka_unit_test(errors_are_of_second_order),
