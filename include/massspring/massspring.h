@@ -342,13 +342,21 @@ typedef enum mspring_integrator {
 /// many. Stable is meant of small motion; mspring_network_step() says what else makes energy.
 #define MSPRING_SUBSTEPS_AUTO 0xffffffffu
 
+/// substeps for the same number, but substeps keep their length while dt varies: a step takes the nearest whole number
+/// of them, at least one, and the rest is left to the next (mspring_step_info.time_left). What nothing damps then keeps
+/// its energy as with even dt. The price: the state is up to half a substep off the time that was asked for, and more
+/// where a dt is shorter than that; draw x + v * time_left. Hooks, ramps and sleep go by the time that a step takes;
+/// pins that move by their velocity, too. The length is chosen anew from dt if it is not stable any more; after 30 steps
+/// of one dt, or in which it takes over twice the substeps that dt needs; or if it takes over 16 times as many.
+#define MSPRING_SUBSTEPS_EVEN 0xfffffffeu
+
 /// Solver and its settings. Fill with mspring_solver_def_init() first. A solver ignores what it does not use.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
-    mspring_solver solver;         ///< default MSPRING_SOLVER_EXPLICIT
-    uint32_t substeps;             ///< of one step, 1 to MSPRING_MAX_SUBSTEPS, or MSPRING_SUBSTEPS_AUTO, the default
-    uint32_t max_substeps;         ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
-                                   ///< MSPRING_MAX_SUBSTEPS; default 1000. If a step needs more, the guard decides.
+    mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
+    uint32_t substeps;     ///< of one step, 1 to MSPRING_MAX_SUBSTEPS, MSPRING_SUBSTEPS_AUTO, the default, or _EVEN
+    uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
+                           ///< MSPRING_MAX_SUBSTEPS; default 1000. If a step needs more, the guard decides.
     mspring_integrator integrator; ///< of the implicit and the direct solver; default MSPRING_INTEGRATOR_GA0
     uint32_t iterations;    ///< of conjugate gradients in a substep, at most 10000; 1: springs hardly act; default 0: 8
     uint32_t tile_size;     ///< of the implicit solver's tiles, in rows and columns of a lattice: 8, 16, 32, 64, 128 or
@@ -647,8 +655,10 @@ typedef struct mspring_step_info {
     uint32_t substeps;       ///< of the last step that succeeded, with pieces of cut ones; 0 before
     uint64_t step_count;     ///< steps that have succeeded
     uint64_t fallback_count; ///< of these with MSPRING_STEP_FALLBACK or MSPRING_STEP_CLAMPED
-    double time;             ///< simulated time of these, s
+    double time;             ///< simulated time of these, s: that of the state
     double largest_speed;    ///< length of the fastest particle's velocity now, m/s
+    double time_left;        ///< with MSPRING_SUBSTEPS_EVEN, dt that steps were given and have not taken yet, s; < 0:
+                             ///< they are ahead
 } mspring_step_info;
 
 /// Read the report of the last step. Takes a pass over the velocities.
@@ -849,7 +859,7 @@ typedef enum mspring_property {
     MSPRING_HARDENING = 14,
     MSPRING_PLASTIC_LIMIT = 15,
     MSPRING_PLASTIC_STRAIN = 16,
-    MSPRING_ACTIVE_REST_LENGTH = 17, ///< in force, m: with its ramp and plastic strain; read only
+    MSPRING_ACTIVE_REST_LENGTH = 17,        ///< in force, m: with its ramp and plastic strain; read only
     MSPRING_PROPERTY_INT = MSPRING_ENUM_INT ///< no value
 } mspring_property;
 

@@ -31,12 +31,18 @@ static mspring_result check_implicit(const mspring_solver_def *def, mspringi_mes
     return MSPRING_OK;
 }
 
+static uint32_t auto_of(uint32_t substeps) {
+    return substeps == MSPRING_SUBSTEPS_AUTO   ? MSPRINGI_SUBSTEPS_AUTO
+           : substeps == MSPRING_SUBSTEPS_EVEN ? MSPRINGI_SUBSTEPS_EVEN
+                                               : MSPRINGI_SUBSTEPS_GIVEN;
+}
+
 mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message) {
     mspring_result result = mspringi_solver_check_name(def->solver, message);
     if (result != MSPRING_OK)
         return result;
-    const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
-    if (!automatic && (def->substeps < 1 || def->substeps > MSPRING_MAX_SUBSTEPS))
+    if (auto_of(def->substeps) == MSPRINGI_SUBSTEPS_GIVEN &&
+        (def->substeps < 1 || def->substeps > MSPRING_MAX_SUBSTEPS))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "substeps is %u, it must be 1 to %u",
                              (unsigned)def->substeps, (unsigned)MSPRING_MAX_SUBSTEPS);
     if (def->max_substeps < 1 || def->max_substeps > MSPRING_MAX_SUBSTEPS)
@@ -51,7 +57,9 @@ static mspring_solver_def def_of(const mspring_network *network) {
     (void)mspring_solver_def_init(&def, sizeof def);
     if (solver->ops->get_def)
         solver->ops->get_def(solver->object, &def);
-    def.substeps = network->auto_substeps ? MSPRING_SUBSTEPS_AUTO : network->substeps;
+    def.substeps = network->auto_substeps == MSPRINGI_SUBSTEPS_AUTO   ? MSPRING_SUBSTEPS_AUTO
+                   : network->auto_substeps == MSPRINGI_SUBSTEPS_EVEN ? MSPRING_SUBSTEPS_EVEN
+                                                                      : network->substeps;
     def.max_substeps = network->max_substeps;
     return def;
 }
@@ -104,9 +112,8 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     if (is_same && def->substeps == now.substeps && def->max_substeps == now.max_substeps)
         return MSPRING_OK;
     mspringi_notify_change(network, MSPRINGI_CHANGED_SOLVER, 0);
-    const bool automatic = def->substeps == MSPRING_SUBSTEPS_AUTO;
-    network->auto_substeps = automatic;
-    network->substeps = automatic ? 1 : def->substeps;
+    network->auto_substeps = auto_of(def->substeps);
+    network->substeps = network->auto_substeps ? 1 : def->substeps;
     network->max_substeps = def->max_substeps;
     network->guard.fallback_steps = 0;
     return MSPRING_OK;

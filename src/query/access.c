@@ -265,6 +265,8 @@ mspring_result mspring_network_state_hash(const mspring_network *network, uint64
     sum = mspringi_hash_double(sum, network->origin_x);
     sum = mspringi_hash_double(sum, network->origin_y);
     sum = mspringi_hash_double(sum, (double)network->steps.lag);
+    if (network->steps.pace.left != 0.0)
+        sum = mspringi_hash_double(sum, network->steps.pace.left);
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         const uint32_t slot = t->slot_of_particle[p];
         if (mspringi_particle_exists(network, p)) {

@@ -56,6 +56,7 @@ mspring_result mspring_network_get_step_info(const mspring_network *network, msp
         .step_count = steps->count,
         .fallback_count = steps->fallback_count,
         .time = steps->time,
+        .time_left = steps->pace.left,
         .largest_speed = largest_speed(network),
     };
     mspringi_put_step_info(info, &made);

@@ -55,7 +55,7 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
         return mspringi_section_fail(network, section, "max_speed is %g m/s, the relax fraction %g",
                                      (double)s.max_speed, (double)s.relax);
     if (s.substeps < 1 || s.substeps > MSPRING_MAX_SUBSTEPS || s.max_substeps < 1 ||
-        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > 1)
+        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > MSPRINGI_SUBSTEPS_EVEN)
         return mspringi_section_fail(network, section, "substeps is %u, max_substeps %u", (unsigned)s.substeps,
                                      (unsigned)s.max_substeps);
     return MSPRING_OK;
@@ -91,6 +91,10 @@ static void hand_steps(mspringi_io *io, mspringi_steps *steps) {
     MSPRINGI_HAND(io, steps->lag);
     MSPRINGI_HAND(io, steps->dt);
     MSPRINGI_HAND(io, steps->uneven_steps);
+    MSPRINGI_HAND(io, steps->pace.dt);
+    MSPRINGI_HAND(io, steps->pace.h);
+    MSPRINGI_HAND(io, steps->pace.left);
+    MSPRINGI_HAND(io, steps->pace.steps);
 }
 
 static void steps_save(const mspring_network *network, mspringi_writer *to) {
@@ -111,14 +115,16 @@ static mspring_result steps_check(mspring_network *network, const uint8_t *from,
         (steps.substeps > 0) != has_stepped || steps.substeps > MSPRING_MAX_SUBSTEPS ||
         steps.fallback_count > steps.count || !(steps.lag >= 0.0f && steps.lag <= FLT_MAX) ||
         !(steps.dt >= 0.0 && steps.dt <= DBL_MAX) || (steps.dt > 0.0) != has_stepped ||
-        steps.uneven_steps > MSPRINGI_UNEVEN_STEPS)
-        return mspringi_section_fail(network, section,
-                                     "there were %llu, %llu by the fallback, of %u substeps, the last of %g s, in "
-                                     "%g s, the last step of %g s "
-                                     "(%u more count as uneven)",
-                                     (unsigned long long)steps.count, (unsigned long long)steps.fallback_count,
-                                     (unsigned)steps.substeps, (double)steps.lag, steps.time, steps.dt,
-                                     (unsigned)steps.uneven_steps);
+        steps.uneven_steps > MSPRINGI_UNEVEN_STEPS || !(steps.pace.dt >= 0.0 && steps.pace.dt <= DBL_MAX) ||
+        !(steps.pace.h >= 0.0 && steps.pace.h <= DBL_MAX) || !(fabs(steps.pace.left) <= DBL_MAX) ||
+        steps.pace.steps > MSPRINGI_UNEVEN_STEPS)
+        return mspringi_section_fail(
+            network, section,
+            "there were %llu, %llu by the fallback, of %u substeps, the last of %g s, in "
+            "%g s, the last step of %g s (%u more count as uneven); substeps go by a step of "
+            "%g s, %g s are left",
+            (unsigned long long)steps.count, (unsigned long long)steps.fallback_count, (unsigned)steps.substeps,
+            (double)steps.lag, steps.time, steps.dt, (unsigned)steps.uneven_steps, steps.pace.dt, steps.pace.left);
     return MSPRING_OK;
 }
 

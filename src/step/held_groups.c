@@ -25,8 +25,8 @@ mspring_result mspringi_groups_check_solver(mspring_network *network, const mspr
         return MSPRING_OK;
     if (def->solver != MSPRING_SOLVER_EXPLICIT)
         return refuse(network, "the explicit solver: others solve for all of the network");
-    return def->substeps == MSPRING_SUBSTEPS_AUTO
-               ? refuse(network, "a number of substeps: MSPRING_SUBSTEPS_AUTO follows the stiffest of them")
+    return def->substeps == MSPRING_SUBSTEPS_AUTO || def->substeps == MSPRING_SUBSTEPS_EVEN
+               ? refuse(network, "a number of substeps: automatic ones follow the stiffest of them")
                : MSPRING_OK;
 }
 

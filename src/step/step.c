@@ -9,6 +9,7 @@
 #include "stability/stability.h"
 #include "step/finite.h"
 #include "step/held_groups.h"
+#include "step/pace.h"
 #include "store/id_pool.h"
 #include "store/network.h"
 #include "store/stages.h"
@@ -174,55 +175,6 @@ void mspringi_clear_empty_slots(const mspring_network *network) {
         mspringi_id_pool_clear_slots(network);
 }
 
-// True if dt is another one than before, but for its rounding.
-static bool changes_dt(const mspring_network *network, double dt) {
-    const double before = network->steps.dt;
-    return before > 0.0 && !(fabs(dt - before) <= 1e-6 * before);
-}
-
-// The substeps for a dt that varies: each length of a substep keeps an energy of its own, and near the limit of
-// stability those of two lengths differ most. So the length stays as close to the last one as it can, at 0.4 to 0.8
-// of the limit. An undamped rope of 20 springs gains 2.9 times its energy in a minute in which dt lies between 0.9
-// and 1 of 1/64 s, and over a millionfold with the fewest substeps.
-static uint32_t uneven_substeps(const mspring_network *network, double dt, double limit) {
-    const uint32_t most = network->max_substeps, least = mspringi_substeps_within(dt, 0.8 * limit, most);
-    if (least > most)
-        return mspringi_substeps_within(dt, limit, most);
-    const double wanted = fmin(fmax((double)network->steps.lag, 0.4 * limit), 0.8 * limit);
-    const double more = -floor(-dt / wanted), fewer = fmax(more - 1.0, 1.0); // one of these has the closest length
-    const double closest = dt / fewer - wanted < wanted - dt / more ? fewer : more;
-    return closest < (double)least ? least : closest < (double)most ? (uint32_t)closest : most;
-}
-
-// Choose the substeps of a step where that is left to the library.
-static mspring_result choose_substeps(mspring_network *network, double dt) {
-    mspring_id spring;
-    const double limit = mspringi_stable_in_any_shape(network, &spring);
-    const bool is_uneven = network->steps.uneven_steps > 0 || changes_dt(network, dt);
-    uint32_t substeps = is_uneven ? uneven_substeps(network, dt, limit)
-                                  : mspringi_substeps_within(dt, limit, network->max_substeps);
-    if (substeps > network->max_substeps && network->fractions.values)
-        substeps = mspringi_substeps_within(dt, mspringi_stable_with_relative(network), network->max_substeps);
-    if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS && substeps > network->max_substeps)
-        substeps = network->max_substeps;
-    if (substeps > network->max_substeps) {
-        const mspring_id tightest = mspringi_tightest_spring(network, dt / (double)network->max_substeps);
-        network->outcome.spring = tightest;
-        if (tightest == MSPRING_NONE)
-            return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                                 "unstable: for its areas a step of %g s needs substeps of at most %g s, which are "
-                                 "more than max_substeps, %u. Use a shorter dt, a larger max_substeps, or less "
-                                 "stiffness or pressure.",
-                                 dt, limit, (unsigned)network->max_substeps);
-        return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                             "unstable: a step of %g s needs substeps of at most %g s (spring %u), which are more "
-                             "than max_substeps, %u. Use a shorter dt, a larger max_substeps or lower stiffness.",
-                             dt, limit, (unsigned)tightest, (unsigned)network->max_substeps);
-    }
-    network->substeps = substeps;
-    return MSPRING_OK;
-}
-
 // To the state of before the step.
 static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver *solver = attempt->solver;
@@ -358,8 +310,8 @@ typedef struct request {
 // Have a solver take the step in so many substeps, or leave everything as it is.
 static mspring_result attempt(mspring_network *network, const request *asked, const mspringi_solver *solver,
                               uint32_t substeps) {
-    const mspringi_attempt made = {.dt = asked->dt,
-                                   .h = (float)(asked->dt / (double)substeps),
+    const mspringi_attempt made = {.dt = network->step_time,
+                                   .h = (float)(network->step_time / (double)substeps),
                                    .substeps = substeps,
                                    .solver = solver,
                                    .stages = asked->stages,
@@ -392,7 +344,7 @@ static const mspringi_solver *fallback_of(const mspring_network *network) {
 
 // The substeps of a fallback that takes as many as the host has chosen, or would have been given.
 static uint32_t substeps_of_fallback(mspring_network *network, double dt) {
-    if (!mspringi_can_choose_substeps(network) || choose_substeps(network, dt) == MSPRING_OK)
+    if (!mspringi_can_choose_substeps(network) || mspringi_pace_choose(network, dt) == MSPRING_OK)
         return network->substeps;
     const uint32_t fewer = network->max_substeps / COST_OF_CLAMPED_SUBSTEP;
     return fewer > 0 ? fewer : 1;
@@ -431,7 +383,7 @@ static mspring_result fall_back(mspring_network *network, const request *asked, 
 
 static mspring_result attempt_as_chosen(mspring_network *network, const request *asked) {
     const mspring_result result =
-        mspringi_can_choose_substeps(network) ? choose_substeps(network, asked->dt) : MSPRING_OK;
+        mspringi_can_choose_substeps(network) ? mspringi_pace_choose(network, asked->dt) : MSPRING_OK;
     return result == MSPRING_OK ? attempt(network, asked, &network->solver, network->substeps) : result;
 }
 
@@ -466,6 +418,8 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         return MSPRING_ERROR_UNSTABLE;
     network->sleep.has_kept = network->was_in_hook = false;
     const mspringi_stages stages = mspringi_stages_of(network);
+    network->step_time = dt;
+    network->next_pace = network->steps.pace;
     const mspring_result result = take_step(network, &(request){dt, &stages});
     if (result != MSPRING_OK) {
         network->substeps = substeps;
@@ -477,9 +431,11 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     network->has_host_view = false;
     if (is_idle(network, &stages)) {
         network->outcome.flags |= MSPRING_STEP_ASLEEP;
+        network->step_time = dt;
         return MSPRING_OK;
     }
-    mspringi_stages_after_step(network, &stages, dt);
+    network->steps.pace = network->next_pace;
+    mspringi_stages_after_step(network, &stages, network->step_time);
     if (network->forces.held_any)
         mspringi_field_clear(network, network->forces.held);
     network->forces.held_any = false;
@@ -499,14 +455,10 @@ static MSPRINGI_NOINLINE void note(mspring_network *network, double dt, mspring_
     }
     steps->substeps = (flags & MSPRING_STEP_FALLBACK ? 1 : network->substeps) + network->added_substeps;
     steps->substeps = steps->substeps < MSPRING_MAX_SUBSTEPS ? steps->substeps : MSPRING_MAX_SUBSTEPS;
-    if (changes_dt(network, dt))
-        steps->uneven_steps = MSPRINGI_UNEVEN_STEPS;
-    else if (steps->uneven_steps > 0)
-        steps->uneven_steps--;
-    steps->dt = dt;
+    mspringi_pace_note(network, dt);
     steps->count++;
     steps->fallback_count += (flags & (MSPRING_STEP_FALLBACK | MSPRING_STEP_CLAMPED)) != 0;
-    steps->time += dt;
+    steps->time += network->step_time;
     mspringi_message_clear(&network->message); // of what was tried first
 }
 

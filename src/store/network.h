@@ -256,6 +256,17 @@ typedef struct mspringi_outcome {
     uint32_t flags;
 } mspringi_outcome;
 
+/// Pace of MSPRING_SUBSTEPS_EVEN.
+typedef struct mspringi_pace {
+    double dt;      ///< from which the length of substeps was chosen, s; 0: none was
+    double h;       ///< the length, s
+    double left;    ///< that steps were asked for and have not taken yet, s; < 0: they are ahead
+    uint32_t steps; ///< in a row that ask for another length
+} mspringi_pace;
+
+/// Values of auto_substeps.
+enum { MSPRINGI_SUBSTEPS_GIVEN, MSPRINGI_SUBSTEPS_AUTO, MSPRINGI_SUBSTEPS_EVEN };
+
 /// The last step, and how many there have been.
 typedef struct mspringi_steps {
     mspring_result result;
@@ -269,6 +280,7 @@ typedef struct mspringi_steps {
     /// The last explicit substep, s: velocities are half of it older than positions; 0: they are not. Other solvers
     /// leave it: what they begin with, and end with, is as old.
     float lag;
+    mspringi_pace pace;
 } mspringi_steps;
 
 /// Steps after a change of dt for which steps count as uneven.
@@ -406,6 +418,8 @@ struct mspring_network {
     uint32_t first_substep;    ///< number in the step of the first of the substeps that are being taken
     float lag;                 ///< steps.lag at the first of these, s
     float full_lag;            ///< the same for gravity, whatever is stable
+    double step_time;          ///< that the step takes, s: dt, but for MSPRING_SUBSTEPS_EVEN
+    mspringi_pace next_pace;   ///< once it has succeeded
     bool backup_is_start;      ///< since it was written, nothing but the solver has written to the state
     double origin_x, origin_y; ///< world = origin + local
     float recentre_distance;   ///< how far the network may be from its origin until that is moved along
@@ -443,11 +457,11 @@ struct mspring_network {
     uint32_t added_substeps;  ///< by pieces of substeps in it
     uint32_t substeps;        ///< of the last step or, unless auto_substeps, of the next
     uint32_t max_substeps;
-    bool auto_substeps;                 ///< each step chooses them, if its solver can
-    mspringi_solver solver;             ///< the one that the host chose
-    mspringi_solver fallback;           ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
-    const mspringi_solver *running;     ///< the one that takes the step that is being made; else NULL
-    struct mspringi_floor *floor;       ///< NULL: there is none
+    uint32_t auto_substeps;         ///< each step chooses them, if its solver can: MSPRINGI_SUBSTEPS_AUTO, _EVEN
+    mspringi_solver solver;         ///< the one that the host chose
+    mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
+    const mspringi_solver *running; ///< the one that takes the step that is being made; else NULL
+    struct mspringi_floor *floor;   ///< NULL: there is none
     struct mspringi_contacts *contacts; ///< contact between bodies; NULL: there is none
     mspringi_guard guard;
     float

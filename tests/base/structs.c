@@ -444,9 +444,9 @@ static mspring_result fill_row_solver(subject *s, void *out) {
 }
 
 #define OUTPUT(type, fill)                                                                                         \
-    { #type, sizeof(mspring_##type), fill, true }
+    { #type, sizeof(mspring_##type), 0, fill, true }
 #define OUTPUT_ONCE(type, fill)                                                                                    \
-    { #type, sizeof(mspring_##type), fill, false }
+    { #type, sizeof(mspring_##type), 0, fill, false }
 const struct output outputs[] = {
     OUTPUT(view, fill_view),
     OUTPUT(mutable_view, fill_mutable_view),
@@ -462,7 +462,7 @@ const struct output outputs[] = {
     OUTPUT(area_info, fill_area_info),
     OUTPUT(collider_def, fill_collider),
     OUTPUT_ONCE(contact_event, fill_contact_event),
-    OUTPUT(step_info, fill_step_info),
+    {"step_info", sizeof(mspring_step_info), 8, fill_step_info, true}, // time_left
     OUTPUT(plasticity, fill_plasticity),
     OUTPUT(spring_info, fill_spring_info),
     OUTPUT(plan, fill_plan),

@@ -28,6 +28,7 @@ extern const size_t input_count;
 extern const struct output {
     const char *name;
     size_t size;
+    size_t grown; ///< bytes of it that the version that introduced it did not have
     mspring_result (*fill)(subject *s, void *out);
     bool repeats; ///< the next call gives the same
 } outputs[];

@@ -174,7 +174,7 @@ static void forged_counts_are_refused(void **state) {
     const saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     uint64_t size;
     const size_t at = (size_t)(snapshots_section_of(&good, "step", &size) - good.bytes);
-    assert_int_equal(size, 44);
+    assert_int_equal(size, 72);
     const double times[] = {-1, 0, NAN, INFINITY};
     for (size_t i = 0; i < COUNT_OF(times); i++) {
         saved bad = snapshots_copy(&good);

@@ -1,0 +1,16 @@
+/// @file pace.h
+/// Substeps of a step where they are left to the library: MSPRING_SUBSTEPS_AUTO and MSPRING_SUBSTEPS_EVEN.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_PACE_H
+#define MSPRINGI_PACE_H
+
+#include "store/network.h"
+
+/// Choose the substeps of a step, and with MSPRING_SUBSTEPS_EVEN its time. UNSTABLE if they are over max_substeps.
+mspring_result mspringi_pace_choose(mspring_network *network, double dt);
+
+/// Note that a step of dt has succeeded.
+void mspringi_pace_note(mspring_network *network, double dt);
+
+#endif
