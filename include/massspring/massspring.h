@@ -386,10 +386,11 @@ typedef enum mspring_simd {
 enum {
     MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0,  ///< springs may get damping later, though none has any now
     MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1, ///< relative springs may be added later, though there is none now
-    /// Lengths of springs and velocities have two words in explicit steps. The energy of what nothing damps then
-    /// stays, gravity is right to 1e-6 at any number of substeps, and stiff springs far from the local origin do not
-    /// tremble. A step takes 1.7 to 2.2 times as long; each particle takes 17 bytes more. In implicit and direct steps
-    /// second words of positions always count. Strains for breaking and stress use the first words.
+    /// Velocities have two words: gravity is right to 1e-6 at any number of substeps, with every solver. In explicit
+    /// steps lengths of springs have two words, too: the energy of what nothing damps then stays, and stiff springs far
+    /// from the local origin do not tremble. An explicit step takes 1.7 to 2.2 times as long; each particle takes 17
+    /// bytes more. In implicit and direct steps second words of positions always count. Strains for breaking and stress
+    /// use the first words.
     MSPRING_NETWORK_PRECISE = 1u << 2
 };
 

@@ -176,6 +176,7 @@ typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span
 /// A pinned particle keeps its velocity and moves by drift v.
 typedef struct mspringi_free_motion {
     float keep, gain, reach, fall, drift;
+    float loss;                         ///< 1 - keep, for velocities in two words
     float gravity_x, gravity_y;         ///< change of velocity, m/s
     float gravity_way_x, gravity_way_y; ///< m
 } mspringi_free_motion;

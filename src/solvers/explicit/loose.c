@@ -23,6 +23,7 @@ static mspringi_free_motion plan_free_motion(const mspring_network *network, con
         gravity_fall += gravity_gain * h;
     }
     return (mspringi_free_motion){.keep = (float)keep,
+                                  .loss = (float)(1.0 - keep),
                                   .gain = (float)gain,
                                   .reach = (float)reach,
                                   .fall = (float)fall,

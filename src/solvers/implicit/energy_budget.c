@@ -47,15 +47,17 @@ typedef mspringi_component_budget component;
 typedef mspringi_mass_centre centre;
 
 static mspringi_motion motion_of(const mspring_network *network) {
-    const mspringi_state *s = &network->state;
-    return (mspringi_motion){s->x, s->y, s->vx, s->vy, s->low_x, s->low_y, network->inverse_mass};
+    const mspringi_state s = network->state;
+    const float *weights = network->inverse_mass;
+    return (mspringi_motion){s.x, s.y, s.vx, s.vy, s.low_x, s.low_y, s.low_vx, s.low_vy, weights};
 }
 
 static mspringi_motion motion_before(const mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
-    const float *s = budget->is_in_backup ? network->backup.x : budget->state;
+    const float *s = budget->is_in_backup ? network->backup.x : budget->state, *weights = network->inverse_mass;
     const size_t n = mspringi_slot_count(network);
-    return (mspringi_motion){s, s + n, s + 2 * n, s + 3 * n, s + 4 * n, s + 5 * n, network->inverse_mass};
+    const float *x = network->is_precise ? s + 6 * n : NULL, *y = network->is_precise ? s + 7 * n : NULL;
+    return (mspringi_motion){s, s + n, s + 2 * n, s + 3 * n, s + 4 * n, s + 5 * n, x, y, weights};
 }
 
 /* ------------------------------------------------------------------------------------------------- mass centres */
@@ -350,15 +352,13 @@ static void turn_slots(mspring_network *network, const component *a, size_t firs
     const double sums_x = a->sums[MSPRINGI_MOMENT_X], sums_y = a->sums[MSPRINGI_MOMENT_Y];
     const double mass = a->sums[MSPRINGI_MOMENT_MASS], x = sums_x / mass, y = sums_y / mass;
     const double keep = a->keep, turn = a->turn, add_x = a->add_x, add_y = a->add_y;
-    float *const vx = network->state.vx, *const vy = network->state.vy;
+    const mspringi_state *s = &network->state;
     for (size_t slot = first; slot < end; ++slot) {
         const double rx = (((double)m.x[slot] - a->origin[0]) + (double)m.low_x[slot]) - x;
         const double ry = (((double)m.y[slot] - a->origin[1]) + (double)m.low_y[slot]) - y;
-        const float to_x = (float)(keep * (double)vx[slot] + (add_x - turn * ry));
-        const float to_y = (float)(keep * (double)vy[slot] + (add_y + turn * rx));
-        const bool is_free = m.inverse_mass[slot] > 0.0f;
-        vx[slot] = is_free ? to_x : vx[slot];
-        vy[slot] = is_free ? to_y : vy[slot];
+        if (m.inverse_mass[slot] > 0.0f)
+            mspringi_set_velocity_in_full(s, slot, keep * mspringi_vx_of(s, slot) + (add_x - turn * ry),
+                                          keep * mspringi_vy_of(s, slot) + (add_y + turn * rx));
     }
     if (a->shift_x != 0.0 || a->shift_y != 0.0)
         shift_slots(network, a, first, end);
