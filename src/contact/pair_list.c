@@ -29,10 +29,9 @@
 #define SPARSE_REACH 6.0
 #define SPARSE 4u
 
-/// Comparisons of points with edges that a step may add for each list: for each point, and for each pair of the
-/// capacity. (The bodies of tests/contact take 20 for a point; a crowd takes those of its pairs.)
-#define WORK_OF_POINT 256
-#define WORK_OF_PAIR 2
+/// Comparisons of points with edges that find no pair, which a step may add for each list and point. (The bodies of
+/// tests/contact take 20.)
+#define WORK_OF_POINT 32
 
 /* ----------------------------------------------------------------------------------------------------- distance */
 
@@ -220,16 +219,11 @@ static bool list_pairs_of_point(const mspring_network *network, mspringi_contact
     const uint32_t found = mspringi_edge_grid_search(network, contacts, p),
                    room = contacts->capacity - contacts->count;
     uint32_t close_count = 0;
-    contacts->work += found + cells->long_count;
     for (uint32_t k = 0; k < found && close_count <= room; ++k) {
         cells->found[close_count] = cells->found[k];
         close_count += are_near(network, contacts, p, cells->found[k]);
     }
-    for (uint32_t k = 0; k < cells->long_count && close_count <= room; ++k) {
-        cells->found[close_count] = cells->long_edges[k];
-        close_count += !mspringi_is_duplicate_pair(&contacts->outline, p, cells->long_edges[k]) &&
-                       are_near(network, contacts, p, cells->long_edges[k]);
-    }
+    contacts->work += found - close_count;
     const bool has_room = close_count <= room, is_done = contacts->work <= contacts->most_work;
     close_count = has_room ? close_count : room;
     sort(cells->found, close_count);
@@ -317,7 +311,7 @@ static bool make_list(const mspring_network *network, mspringi_contacts *contact
     contacts->stamp_of = MSPRING_NONE;
     contacts->reach = reach;
     contacts->moved = 0.0;
-    contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count + WORK_OF_PAIR * (uint64_t)contacts->capacity;
+    contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count;
     if (o->edge_count > 0) {
         mspringi_edge_grid_fill(network, contacts, reach);
         for (uint32_t i = 0; i < o->point_count; ++i) {

@@ -4,6 +4,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdio.h>
 
 #include "support.h"
 
@@ -137,6 +138,70 @@ static void comparisons_are_counted(void **state) {
     mspring_network_destroy(network);
 }
 
+// The two hubs have the same points, and their springs take turns: each pair looks at all edges of a hub once more.
+static mspring_network *two_hubs(uint32_t tips, uint32_t pebbles) {
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < 2 + tips; i++) {
+        const double angle = 2 * 3.14159265358979 * i / tips;
+        (void)support_particle(builder, i < 2 ? 0.04 * i : 10 * cos(angle), i < 2 ? 0 : 10 * sin(angle), 1);
+    }
+    for (uint32_t i = 2; i < 2 + tips; i++)
+        for (uint32_t hub = 0; hub < 2; hub++)
+            (void)support_spring(builder, hub, i, 10, 0);
+    for (uint32_t i = 0; i < pebbles; i++)
+        (void)support_particle(builder, 0.02, 0.001 * (i + 1), 1);
+    const mspring_network_def def = support_def(0, 4);
+    return support_network(builder, &def);
+}
+
+// What is refused names the hub, takes no more work than it may, and leaves the network as it was.
+static void check_refusal(mspring_network *network, mspring_id hub) {
+    char text[40];
+    const uint64_t hash = support_hash(network);
+    check_error(mspring_network_step(network, 0.001), MSPRING_ERROR_LIMIT);
+    check_contains(mspring_network_error(network), "comparisons of outline points and edges");
+    snprintf(text, sizeof text, "at particle %u)", (unsigned)hub);
+    check_contains(mspring_network_error(network), text);
+    assert_int_equal(support_step_info(network).particle, hub);
+    assert_true(network->contacts->work <= network->contacts->most_work + 30000); // the comparisons of one point
+    assert_true(support_hash(network) == hash);
+    check_error(mspring_network_step(network, 0.001), MSPRING_ERROR_LIMIT);
+    assert_true(network->contacts->work <= network->contacts->most_work + 30000); // nothing is left of the first
+    check_ok(mspring_network_set_contact(network, NULL));
+    check_ok(mspring_network_step(network, 0.001));
+    mspring_network_destroy(network);
+}
+
+static void hubs_are_counted(void **state) {
+    (void)state;
+    mspring_network *network = two_hubs(1000, 20); // 40,000 pairs at 1,000 edges each
+    check_ok(touch(network, 0.05));
+    check_refusal(network, 0);
+    network = graph(4000, joins_hub, false); // on a line: all springs pass by all points
+    check_ok(touch(network, 0.05));
+    check_refusal(network, 0);
+}
+
+// Spokes that touch nothing, or a pebble at the rim: hubs cost their springs once, and nothing is refused.
+static void hubs_at_rest_are_no_burden(void **state) {
+    (void)state;
+    static const uint32_t counts[] = {66, 100, 180, 301};
+    for (uint32_t solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++)
+        for (uint32_t i = 0; i < COUNT_OF(counts); i++) {
+            mspring_network *network = i % 2 ? graph(counts[i], joins_hub, true) : two_hubs(counts[i], i / 2);
+            mspring_solver_def def;
+            check_ok(mspring_solver_def_init(&def, sizeof def));
+            def.solver = (mspring_solver)solver;
+            check_ok(mspring_network_set_solver(network, &def));
+            check_ok(touch(network, 0.02));
+            for (uint32_t step = 0; step < 20; step++) {
+                check_ok(mspring_network_step(network, 1.0 / 60));
+                assert_true(network->contacts->work < network->contacts->most_work / 4);
+            }
+            mspring_network_destroy(network);
+        }
+}
+
 // Rods that have one end in the same place: all pairs have room, their constraints have not. From then on nothing
 // is compared or pushed. (In a star of 2,000 springs the rest of a step of the direct solver took 17 s.)
 static void refused_steps_end_their_work(void **state) {
@@ -199,7 +264,8 @@ int main(void) {
         cmocka_unit_test(cliques_take_few_tries),       cmocka_unit_test(graphs_without_triangles_are_counted),
         cmocka_unit_test(stars_are_looked_at),          cmocka_unit_test(breaks_leave_the_outline_right),
         cmocka_unit_test(comparisons_are_counted),      cmocka_unit_test(crowds_end_at_the_first_pair_too_many),
-        cmocka_unit_test(refused_steps_end_their_work),
+        cmocka_unit_test(refused_steps_end_their_work), cmocka_unit_test(hubs_are_counted),
+        cmocka_unit_test(hubs_at_rest_are_no_burden),
     };
     return cmocka_run_group_tests_name("contact_limits", tests, NULL, NULL);
 }
