@@ -71,9 +71,11 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 ///
 /// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back. It also
 /// does if more than an eighth of capacity and 1024 may touch in a substep. Then set the same contact with a larger
-/// capacity, and step again. Points of the outline and springs that are near each other are compared, pairs or not: a
-/// step fails likewise where these are over 2.6 million and 32 for each point, or where impulses take as long. The
-/// message names the particle with the most springs of the outline.
+/// capacity, and step again. A step fails likewise where it takes too much work: comparisons of points of the outline
+/// with springs near them that form no pair, visits of constraints beyond 768 for each, and iterations, solutions and
+/// factorisations of the implicit and direct solver while bodies are near. It may take what 3.1 million comparisons do,
+/// about 75 ms, and 32 for each point; with these solvers in each substep also 2.6 million, 3000 for each particle, and
+/// 16 solutions. Large scenes stay far below. The message names the particle with the most springs of the outline.
 ///
 /// Springs inside a body are told by the triangles at them. In networks where hundreds of particles are joined to
 /// hundreds each, that may take over 16 million comparisons and 32 for each spring: then the call fails.

@@ -17,7 +17,7 @@
 #define MAX_ROUNDS 8
 
 /// Work of a substep for each of its constraints that is not counted: what intervals take that are not divided.
-#define WORK_OF_CONSTRAINT 32u
+#define WORK_OF_CONSTRAINT 256u
 
 static void begin(const mspring_network *network, const mspringi_contact_nodes *k) {
     for (uint32_t i = 0; i < k->particle_count; ++i) {

@@ -13,8 +13,10 @@
 /// Points this near rest on each other, as a share of the thickness.
 #define RESTING_SHARE 0.05
 
-/// Comparisons of points and edges that a step may take beside those that each list is given (pair_list.c): 80 ms.
-#define MOST_WORK ((uint64_t)5 << 19)
+/// Comparisons of points and edges that a step may take, 75 ms, beside what it is given by the size of the network:
+/// with each list (pair_list.c), for constraints (contact_solver.c), and with an implicit substep
+/// (solvers/implicit/work.c).
+#define MOST_WORK ((uint64_t)3 << 20)
 
 static bool is_used(const mspring_network *network) {
     return network->contacts != NULL;
@@ -241,9 +243,9 @@ static mspring_result report_work(mspring_network *network) {
     const mspring_id hub = hub_of(contacts, &edges);
     network->outcome.particle = hub;
     return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
-                         "over %.3g comparisons of outline points and edges in a step, as many of %u edges are within "
-                         "%g m of many points, or at one particle (%u at particle %u): set contact with less "
-                         "thickness, take a shorter dt, or divide long springs",
+                         "over %.3g comparisons of outline points and edges in a step, or impulses and solutions that "
+                         "take as long, as many of %u edges are within %g m of many points, or at one particle (%u at "
+                         "particle %u): set contact with less thickness, take a shorter dt, or divide long springs",
                          (double)contacts->most_work, (unsigned)contacts->outline.edge_count, contacts->reach,
                          (unsigned)edges, (unsigned)hub);
 }

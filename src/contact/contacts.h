@@ -441,7 +441,8 @@ static inline double mspringi_normal_speed(const mspringi_contact_constraint *t,
     return t->nx * (v[t->p].x - t->bary_a * v[t->a].x - t->bary_b * v[t->b].x) +
            t->ny * (v[t->p].y - t->bary_a * v[t->a].y - t->bary_b * v[t->b].y);
 }
-/// Find the impulses of an interval of h seconds, and count the work. False: some constraints would still get much deeper.
+/// Find the impulses of an interval of h seconds, and count the work. False: some constraints would still get much
+/// deeper.
 bool mspringi_contact_sweep(mspringi_contacts *contacts, double h, uint32_t sweeps);
 
 /* piles.c */

@@ -96,7 +96,7 @@ static double answer_search(const mspring_network *network, double *x, double *y
             y[h->slots[i]] += h->search * h->pull_y[i];
         }
     mspringi_cholesky_double_solve(&d->twice, x, y);
-    mspringi_implicit_of(network)->solves++;
+    mspringi_implicit_count_solve(network);
     for (size_t at = 0; (h = mspringi_next_hinge(network, &at)) != NULL;) {
         h->answer = turn_by(h, x, y) + h->search;
         sum += h->search * h->answer;

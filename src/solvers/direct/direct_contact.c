@@ -107,11 +107,12 @@ void mspringi_direct_hold_bodies(mspring_network *network, mspringi_solve_fn sol
         return;
     double product = begin(network, contacts);
     const double least = LEAST_PRODUCT * product;
-    for (uint32_t iteration = 0; iteration < MOST_ITERATIONS && product > least && mspringi_may_iterate(n);
+    for (uint32_t iteration = 0; iteration < MOST_ITERATIONS && product > least && mspringi_may_iterate(n) &&
+                                   !mspringi_implicit_is_too_much(network);
          ++iteration) {
         spread_search(network, contacts);
         solve(network, n->scaled);
-        n->solves++;
+        mspringi_implicit_count_solve(network);
         const double curvature = gather_answer(network, contacts);
         if (!(curvature > 0.0))
             break;
