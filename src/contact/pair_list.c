@@ -1,8 +1,8 @@
 /// Verlet list of pairs: points near edges. From it follow the candidates, and the substeps in which nothing can
 /// touch.
 ///
-/// All motion is relative to the mean of the outline. The number of quiet substeps follows from positions and
-/// velocities alone, not from when the list was made.
+/// All motion is relative to the mean of the outline. The candidates, and the number of quiet substeps, follow from
+/// positions and velocities alone, not from when the list was made, nor from how far it reaches.
 #include <math.h>
 #include <string.h>
 
@@ -339,11 +339,10 @@ static double candidate_substeps(const mspringi_contacts *contacts) {
                                                : MIN_CANDIDATE_SUBSTEPS;
 }
 
-// Substeps until a pair may be missing from the list.
+// Substeps until a pair may be missing from the candidates.
 static uint32_t valid_substeps(const mspringi_contacts *contacts) {
-    const double way = travel_per_substep(contacts);
-    const double least = contacts->thickness + 0.5 * (required_reach(contacts) - contacts->thickness);
-    const double valid = (guaranteed_reach(contacts) - least) / (2.0 * way);
+    const double half = 0.5 * (required_reach(contacts) - contacts->thickness);
+    const double valid = half / (2.0 * travel_per_substep(contacts));
     return valid >= 1.0 ? valid < 1e6 ? (uint32_t)valid : 1000000 : 1;
 }
 
@@ -360,8 +359,9 @@ MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_contacts *contacts, const m
 // Collect the candidates, and find the nearest pair. Pairs of particles without springs may be many, so they take
 // neither roots nor branches.
 static void collect_candidates(mspringi_contacts *contacts) {
-    const double most = contacts->thickness + 2.0 * candidate_substeps(contacts) * travel_per_substep(contacts) +
-                        4.0 * MSPRINGI_SPEED_MARGIN * (double)contacts->h * contacts->speed;
+    const double wanted = contacts->thickness + 2.0 * candidate_substeps(contacts) * travel_per_substep(contacts) +
+                          4.0 * MSPRINGI_SPEED_MARGIN * (double)contacts->h * contacts->speed;
+    const double complete = required_reach(contacts), most = wanted < complete ? wanted : complete;
     double least = contacts->reach * contacts->reach, square;
     uint32_t hot = 0;
     contacts->nearest = contacts->reach;

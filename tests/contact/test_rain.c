@@ -117,6 +117,7 @@ static void run(uint32_t substeps, bool has_colliders) {
         support_steps(kept, 1, DT);
         support_steps(anew, 1, DT);
         assert_true(support_hash(kept) == support_hash(anew));
+        assert_int_equal(kept->contacts->candidate_count, anew->contacts->candidate_count);
         assert_true(deepest_of(kept) < 0.1 * THICKNESS);
         if (step % 6 == 0)
             check_list(kept);
