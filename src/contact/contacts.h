@@ -172,7 +172,9 @@ typedef struct mspringi_implicit_constraint {
     double slip;                          ///< sign of sliding, 1 or -1; 0: sticking
     double normal, braked;                ///< normal and tangential force, in units of the right-hand side
     double answer[2], left[2], search[2]; ///< of the direct solver: solution, residual, direction
-    bool is_active;                       ///< in the active set
+    uint32_t next;       ///< of the direct solver: the active constraint after this one, or MSPRING_NONE
+    uint8_t force_count; ///< of the direct solver: unknown forces, 1 or 2
+    bool is_active;      ///< in the active set
 } mspringi_implicit_constraint;
 
 /// Pose of a collider, world coordinates.
