@@ -142,7 +142,8 @@ typedef struct search {
     uint64_t *passed; ///< edges that were looked at
 } search;
 
-// Take what is near of edges that lie one behind the other: branch-free, and in a few nanoseconds, for many are not.
+// Take what is near of edges that lie one behind the other: branch-free, and in a few nanoseconds, for many are
+// not.
 static uint32_t sieve(const mspringi_edge_grid *cells, const search *s, int32_t row, uint32_t from, uint32_t to,
                       uint32_t count) {
     *s->passed += to - from;
