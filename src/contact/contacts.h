@@ -51,7 +51,7 @@ typedef struct mspringi_outline {
     bool is_found;
     bool are_bodies_found;      ///< body is up to date
     uint64_t links, growth;     ///< counters of edits at the last update
-    uint64_t tries, most_tries; ///< particles tried for a triangle in the last update; their limit
+    uint64_t tries, most_tries; ///< particles tried for a triangle, or listed, in the last update; their limit
 } mspringi_outline;
 
 /// Pair of an outline point and a near outline edge.
