@@ -29,7 +29,7 @@
 /// joule.)
 #define MUCH 1e-3
 
-/// Share of the kinetic energy below which a rigid motion is lost in the rounding of velocities.
+/// Share of the kinetic energy below which a rigid motion is lost in the rounding of velocities of one word.
 #define LOST_MOTION 1e-15
 
 /// How far a mass centre may be from where it should be, in m and as a share of its way.
@@ -172,14 +172,14 @@ static outside outside_in(const mspring_network *network, double h) {
 }
 
 // Let the scaled velocities of a free component make up for what its momenta have changed by.
-static void restore_momentum(component *a, const centre *c, double vx, double vy, double turn) {
+static void restore_momentum(component *a, const centre *c, double vx, double vy, double turn, double lost) {
     const double turns = c->inertia > 0.0 ? c->spin / c->inertia : 0.0;
     const double dvx = vx - c->vx, dvy = vy - c->vy, other = turn - turns;
     const double motion = c->mass * (dvx * dvx + dvy * dvy) + c->inertia * (other * other);
     a->turn = turn - a->keep * turns;
     a->add_x = (a->origin[2] + vx) - a->keep * (a->origin[2] + c->vx);
     a->add_y = (a->origin[3] + vy) - a->keep * (a->origin[3] + c->vy);
-    if (a->keep == 1.0 && motion <= LOST_MOTION * (c->kinetic + flight_energy(a, c)))
+    if (a->keep == 1.0 && motion <= lost * (c->kinetic + flight_energy(a, c)))
         a->turn = a->add_x = a->add_y = 0.0;
 }
 
@@ -241,7 +241,7 @@ static void check_free(const mspring_network *network, component *a, const centr
                         .rounding = mspringi_energy_rounding(a, a->internal)});
     a->turned = c->inertia > 0.0 ? 0.25 * o->h * (a->spin + spin) / c->inertia : 0.0;
     a->is_free = true;
-    restore_momentum(a, c, vx - a->origin[2], vy - a->origin[3], turn);
+    restore_momentum(a, c, vx - a->origin[2], vy - a->origin[3], turn, network->is_precise ? 0.0 : LOST_MOTION);
     // Impulses of other bodies act from the beginning of the substep.
     const double before = a->is_touched ? 0.0 : 0.5, after = 1.0 - before;
     move_centre(a, c, o->h * (before * (a->origin[2] + a->vx) + after * vx),
