@@ -26,6 +26,11 @@ typedef enum map_family {
     MAP_BEND,     ///< springs that yield, act on one side or have limits, areas and angle springs
     MAP_WALL,     ///< a heavy body presses a light one against a wall or into a corner, which may move
     MAP_GRIP,     ///< one to four grips on a particle, whose targets may move
+    MAP_FALL,     ///< a body, or loose particles, fall freely, in up to 491,520 substeps a second
+    MAP_ORDER,    ///< precise networks, with ever more substeps
+    MAP_UNEVEN,   ///< dt differs from step to step
+    MAP_BURST,    ///< a body is blown up, and the library chooses the substeps
+    MAP_REST,     ///< a precise body vibrates for long, also far from the local origin
     MAP_FAMILIES
 } map_family;
 
@@ -71,6 +76,8 @@ typedef struct map_case {
     uint32_t laws;                         ///< bits: MAP_ONE_SIDED and so on; 0: springs are linear
     uint32_t break_at;                     ///< step before which springs are broken; 0: none
     uint32_t break_every;                  ///< which of them: every so many-th
+    uint32_t pattern;                      ///< of dt, where it differs from step to step
+    double way; ///< spacings by which the fastest particle moves in a substep of calm motion
 } map_case;
 
 /// Draw a case.

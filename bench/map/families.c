@@ -2,6 +2,7 @@
 /// How the cases of each family are drawn.
 ///
 /// SPDX-License-Identifier: MIT
+#include "map/draw.h"
 #include "map/hold.h"
 #include "map/meet.h"
 
@@ -21,8 +22,7 @@ static double sign(uint64_t *seed) {
     return random_below(seed, 2) == 0 ? 1 : -1;
 }
 
-/// Whether something happens that happens once in so many cases.
-static bool one_in(uint64_t *seed, uint32_t count) {
+bool map_one_in(uint64_t *seed, uint32_t count) {
     return random_below(seed, count) == 0;
 }
 
@@ -48,7 +48,7 @@ static void draw_solver(map_case *drawn, uint64_t *seed) {
     solver->solver = turn < 5 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_DIRECT;
     solver->integrator = (turn - 2) % 3;
     solver->substeps = few[random_below(seed, sizeof few / sizeof *few)];
-    if (one_in(seed, 8))
+    if (map_one_in(seed, 8))
         solver->iterations = 2 + random_below(seed, 20);
 }
 
@@ -64,8 +64,7 @@ static map_stuff draw_stuff(uint64_t *seed) {
     return stuff;
 }
 
-/// A body, its solver, no gravity, nothing pinned.
-static map_stuff begin(map_case *drawn, uint64_t *seed) {
+map_stuff map_draw_begin(map_case *drawn, uint64_t *seed) {
     mspring_network_def_init(&drawn->network, sizeof drawn->network);
     drawn->network.gravity_y = 0;
     drawn->network.guard = MSPRING_GUARD_GROWTH;
@@ -76,7 +75,7 @@ static map_stuff begin(map_case *drawn, uint64_t *seed) {
     return stuff;
 }
 
-static void draw_velocities(map_case *drawn, double speed, uint64_t *seed) {
+void map_draw_velocities(map_case *drawn, double speed, uint64_t *seed) {
     for (uint32_t i = 0; i < drawn->body.particle_count; i++) {
         mspring_particle_def *def = &drawn->body.particles[i];
         def->vx = (float)map_between(seed, -speed, speed);
@@ -95,13 +94,13 @@ static void draw_pins(map_case *drawn, uint32_t most, uint64_t *seed) {
 }
 
 static void draw_gravity(map_case *drawn, uint64_t *seed) {
-    drawn->network.gravity_y = one_in(seed, 8) ? -50.0f : -9.8f;
-    if (one_in(seed, 8))
+    drawn->network.gravity_y = map_one_in(seed, 8) ? -50.0f : -9.8f;
+    if (map_one_in(seed, 8))
         drawn->network.gravity_x = (float)map_between(seed, -5, 5);
 }
 
 static void draw_global_damping(map_case *drawn, uint64_t *seed) {
-    if (one_in(seed, 8))
+    if (map_one_in(seed, 8))
         drawn->network.global_damping = (float)map_decades(seed, 0.1, 10);
 }
 
@@ -155,18 +154,18 @@ static void lift_body(map_case *drawn, double height) {
 /* ---------------------------------------------------------------------------------------------------- families */
 
 static void draw_blast(map_case *drawn, uint64_t *seed) {
-    begin(drawn, seed);
-    if (one_in(seed, 4))
+    map_draw_begin(drawn, seed);
+    if (map_one_in(seed, 4))
         draw_gravity(drawn, seed);
-    draw_velocities(drawn, map_decades(seed, 0.01, 100), seed);
-    if (one_in(seed, 4))
+    map_draw_velocities(drawn, map_decades(seed, 0.01, 100), seed);
+    if (map_one_in(seed, 4))
         draw_pins(drawn, 2, seed);
     draw_global_damping(drawn, seed);
 }
 
 static void draw_hit(map_case *drawn, uint64_t *seed) {
-    begin(drawn, seed);
-    if (one_in(seed, 6))
+    map_draw_begin(drawn, seed);
+    if (map_one_in(seed, 6))
         draw_gravity(drawn, seed);
     mspring_particle_def *def = &drawn->body.particles[random_below(seed, drawn->body.particle_count)];
     const double speed = map_decades(seed, 0.3, 300), angle = map_between(seed, 0, 6.3);
@@ -175,28 +174,28 @@ static void draw_hit(map_case *drawn, uint64_t *seed) {
 }
 
 static void draw_spin(map_case *drawn, uint64_t *seed) {
-    const map_stuff stuff = begin(drawn, seed);
+    const map_stuff stuff = map_draw_begin(drawn, seed);
     double left, bottom, right, top;
     map_body_box(&drawn->body, &left, &bottom, &right, &top);
     const double turn = sign(seed) * map_decades(seed, 0.1, 20), x = (left + right) / 2, y = (bottom + top) / 2;
-    const double speed = stuff.spacing * (one_in(seed, 3) ? map_between(seed, 0, 5) : 0);
+    const double speed = stuff.spacing * (map_one_in(seed, 3) ? map_between(seed, 0, 5) : 0);
     for (uint32_t i = 0; i < drawn->body.particle_count; i++) {
         mspring_particle_def *def = &drawn->body.particles[i];
         def->vx = (float)(-turn * (def->y - y) + speed);
         def->vy = (float)(turn * (def->x - x) - speed);
     }
-    if (one_in(seed, 4))
+    if (map_one_in(seed, 4))
         draw_gravity(drawn, seed);
 }
 
 static void draw_drop(map_case *drawn, uint64_t *seed) {
-    begin(drawn, seed);
+    map_draw_begin(drawn, seed);
     draw_gravity(drawn, seed);
     draw_floor(drawn, seed);
-    lift_body(drawn, one_in(seed, 3) ? 0.001 : map_decades(seed, 0.01, 40));
-    if (one_in(seed, 3))
-        draw_velocities(drawn, map_decades(seed, 0.1, 20), seed);
-    if (one_in(seed, 10))
+    lift_body(drawn, map_one_in(seed, 3) ? 0.001 : map_decades(seed, 0.01, 40));
+    if (map_one_in(seed, 3))
+        map_draw_velocities(drawn, map_decades(seed, 0.1, 20), seed);
+    if (map_one_in(seed, 10))
         draw_pins(drawn, 1, seed);
     draw_global_damping(drawn, seed);
 }
@@ -205,21 +204,21 @@ static void draw_drop(map_case *drawn, uint64_t *seed) {
 enum { DAMPED_BOUNCES = 16000 };
 
 static void draw_bounce(map_case *drawn, uint64_t *seed) {
-    begin(drawn, seed);
+    map_draw_begin(drawn, seed);
     const map_stuff stuff = {1, 1, 0, 100, 1};
     drawn->shape = MAP_LOOSE;
     drawn->share = 0;
     map_draw_body(&drawn->body, MAP_LOOSE, &stuff, seed);
     drawn->network.gravity_y = -9.8f;
     draw_floor(drawn, seed);
-    if (one_in(seed, 2))
+    if (map_one_in(seed, 2))
         drawn->floor.restitution = 1;
-    if (one_in(seed, 2))
+    if (map_one_in(seed, 2))
         drawn->floor.friction = 0;
     const double height = map_decades(seed, 0.05, 20);
     lift_body(drawn, height);
-    if (one_in(seed, 2))
-        draw_velocities(drawn, map_between(seed, 0, 5), seed);
+    if (map_one_in(seed, 2))
+        map_draw_velocities(drawn, map_between(seed, 0, 5), seed);
     if (drawn->solver.substeps > 16)
         drawn->solver.substeps = 16;
     // A hundred bounces of the lowest.
@@ -230,40 +229,40 @@ static void draw_bounce(map_case *drawn, uint64_t *seed) {
 }
 
 static void draw_hang(map_case *drawn, uint64_t *seed) {
-    begin(drawn, seed);
+    map_draw_begin(drawn, seed);
     draw_gravity(drawn, seed);
-    if (one_in(seed, 2)) {
+    if (map_one_in(seed, 2)) {
         drawn->drift_x = map_between(seed, -5, 5);
         drawn->drift_y = map_between(seed, -2, 2);
     } else {
         draw_global_damping(drawn, seed);
     }
-    if (one_in(seed, 2))
-        draw_velocities(drawn, map_decades(seed, 0.01, 20), seed);
+    if (map_one_in(seed, 2))
+        map_draw_velocities(drawn, map_decades(seed, 0.01, 20), seed);
     draw_pins(drawn, 3, seed);
-    drawn->has_forces = one_in(seed, 2);
-    drawn->by_hook = drawn->has_forces && one_in(seed, 2);
+    drawn->has_forces = map_one_in(seed, 2);
+    drawn->by_hook = drawn->has_forces && map_one_in(seed, 2);
     for (uint32_t i = 0; drawn->has_forces && i < drawn->body.particle_count; i++) {
-        const double most = one_in(seed, 3) ? 50 * (double)drawn->body.particles[i].mass : 0;
+        const double most = map_one_in(seed, 3) ? 50 * (double)drawn->body.particles[i].mass : 0;
         drawn->force_x[i] = (float)map_between(seed, -most, most);
         drawn->force_y[i] = (float)map_between(seed, -most, most);
     }
 }
 
 static void draw_wreck(map_case *drawn, uint64_t *seed) {
-    begin(drawn, seed);
-    if (one_in(seed, 2))
+    map_draw_begin(drawn, seed);
+    if (map_one_in(seed, 2))
         draw_gravity(drawn, seed);
-    if (one_in(seed, 3)) {
+    if (map_one_in(seed, 3)) {
         draw_floor(drawn, seed);
         lift_body(drawn, map_decades(seed, 0.01, 10));
     }
-    draw_velocities(drawn, map_decades(seed, 0.01, 50), seed);
-    if (one_in(seed, 4))
+    map_draw_velocities(drawn, map_decades(seed, 0.01, 50), seed);
+    if (map_one_in(seed, 4))
         draw_pins(drawn, 1, seed);
     drawn->break_at = 2 + random_below(seed, 10);
     drawn->break_every = 1 + random_below(seed, 6);
-    if (one_in(seed, 3)) {
+    if (map_one_in(seed, 3)) {
         drawn->network.sleep_speed = (float)map_decades(seed, 0.001, 1);
         drawn->network.sleep_time = 0.1f;
     }
@@ -279,42 +278,42 @@ static void add_distant_pin(map_case *drawn, double distance) {
 }
 
 static void draw_far(map_case *drawn, uint64_t *seed) {
-    begin(drawn, seed);
-    if (one_in(seed, 2))
+    map_draw_begin(drawn, seed);
+    if (map_one_in(seed, 2))
         draw_gravity(drawn, seed);
-    draw_velocities(drawn, map_decades(seed, 0.1, 30), seed);
-    if (one_in(seed, 3))
+    map_draw_velocities(drawn, map_decades(seed, 0.1, 30), seed);
+    if (map_one_in(seed, 3))
         draw_pins(drawn, 1, seed);
     const double x = sign(seed) * map_decades(seed, 10, 1e7);
     map_move_body(&drawn->body, x, sign(seed) * map_decades(seed, 1, 1e5));
-    if (one_in(seed, 2))
+    if (map_one_in(seed, 2))
         add_distant_pin(drawn, map_decades(seed, 20, 2e4));
 }
 
 // Little motion, so that it does not depend on its last digits.
 static void draw_substeps(map_case *drawn, uint64_t *seed) {
     drawn->index *= 8; // explicit
-    const map_stuff stuff = begin(drawn, seed);
+    const map_stuff stuff = map_draw_begin(drawn, seed);
     drawn->index /= 8;
     drawn->share = 0.4;
     drawn->solver.substeps = 1;
     drawn->steps = MAP_STEPS;
-    if (one_in(seed, 2))
+    if (map_one_in(seed, 2))
         draw_pins(drawn, 2, seed);
-    if (one_in(seed, 3))
+    if (map_one_in(seed, 3))
         drawn->network.gravity_y = -9.8f;
     double lightest = INFINITY;
     for (uint32_t i = 0; i < drawn->body.particle_count; i++)
         lightest = fmin(lightest, (double)drawn->body.particles[i].mass);
     // As fast as stretches a spring by a thousandth to a fiftieth.
     const double speed = stuff.spacing * sqrt(stuff.stiffness / lightest) * map_decades(seed, 1e-3, 0.02);
-    draw_velocities(drawn, speed, seed);
+    map_draw_velocities(drawn, speed, seed);
     for (uint32_t i = 0; i < drawn->body.particle_count; i++)
         if (drawn->body.particles[i].flags != 0)
             drawn->body.particles[i].vx = drawn->body.particles[i].vy = 0;
-    if (one_in(seed, 2))
+    if (map_one_in(seed, 2))
         map_move_body(&drawn->body, map_decades(seed, 1, 1e6), 0);
-    if (one_in(seed, 2))
+    if (map_one_in(seed, 2))
         add_distant_pin(drawn, map_decades(seed, 20, 2e3));
 }
 
@@ -329,8 +328,8 @@ static double draw_second(map_case *drawn, const map_stuff *stuff, uint64_t *see
     mspring_contact_def_init(&drawn->contact, sizeof drawn->contact);
     drawn->contact.thickness = 0.4 * stuff->spacing;
     drawn->contact.flags = 0;
-    drawn->contact.friction = one_in(seed, 2) ? 0 : (float)map_decades(seed, 0.1, 3);
-    drawn->contact.restitution = one_in(seed, 2) ? 0 : (float)random_unit(seed);
+    drawn->contact.friction = map_one_in(seed, 2) ? 0 : (float)map_decades(seed, 0.1, 3);
+    drawn->contact.restitution = map_one_in(seed, 2) ? 0 : (float)random_unit(seed);
     const double gap = stuff->spacing * map_between(seed, 0.5, 1.5);
     double left, bottom, right, top;
     map_body_box(&drawn->body, &left, &bottom, &right, &top);
@@ -349,7 +348,7 @@ static void let_first_fly(map_case *drawn, double speed, uint64_t *seed) {
 
 static void draw_meet(map_case *drawn, uint64_t *seed) {
     drawn->index *= 8; // explicit
-    const map_stuff stuff = begin(drawn, seed);
+    const map_stuff stuff = map_draw_begin(drawn, seed);
     drawn->index /= 8;
     const double gap = draw_second(drawn, &stuff, seed);
     // In substeps of a spring's own time, as far as it takes to meet and part.
@@ -363,7 +362,7 @@ static void draw_meet(map_case *drawn, uint64_t *seed) {
 static void draw_press(map_case *drawn, uint64_t *seed) {
     const uint32_t index = drawn->index;
     drawn->index = 2 + index % 6; // implicit or direct
-    const map_stuff stuff = begin(drawn, seed);
+    const map_stuff stuff = map_draw_begin(drawn, seed);
     drawn->index = index;
     const double gap = draw_second(drawn, &stuff, seed);
     // Up to two springs' length in a substep, and not so fast that springs are crushed.
@@ -375,21 +374,21 @@ static void draw_press(map_case *drawn, uint64_t *seed) {
 }
 
 static void draw_silt(map_case *drawn, uint64_t *seed) {
-    begin(drawn, seed);
+    map_draw_begin(drawn, seed);
     draw_gravity(drawn, seed);
     do
         draw_floor(drawn, seed);
     while (drawn->floor.height_count == 0);
     drawn->has_stretches = true;
     for (uint32_t i = 0; i < MAP_HEIGHTS; i++) {
-        drawn->frictions[i] = one_in(seed, 4) ? 0 : (float)map_decades(seed, 0.01, 10);
-        drawn->restitutions[i] = one_in(seed, 4) ? 1 : (float)random_unit(seed);
+        drawn->frictions[i] = map_one_in(seed, 4) ? 0 : (float)map_decades(seed, 0.01, 10);
+        drawn->restitutions[i] = map_one_in(seed, 4) ? 1 : (float)random_unit(seed);
     }
     drawn->floor.silt_depth = (float)map_decades(seed, 0.01, 30);
     drawn->floor.silt_rate = (float)map_decades(seed, 0.01, 1e6);
     lift_body(drawn, map_decades(seed, 0.01, 40));
-    if (one_in(seed, 3))
-        draw_velocities(drawn, map_decades(seed, 0.1, 20), seed);
+    if (map_one_in(seed, 3))
+        map_draw_velocities(drawn, map_decades(seed, 0.1, 20), seed);
 }
 
 // Each spring with a chance of its own, so that kinds lie side by side.
@@ -397,11 +396,11 @@ static void draw_spring_laws(map_case *drawn, uint64_t *seed) {
     const double strain = map_decades(seed, 1e-4, 0.3);
     for (uint32_t i = 0; i < drawn->body.spring_count; i++) {
         mspring_spring_def *def = &drawn->body.springs[i];
-        if ((drawn->laws & MAP_ONE_SIDED) != 0 && one_in(seed, 3))
-            def->flags |= one_in(seed, 4) ? MSPRING_SPRING_PUSH_ONLY : MSPRING_SPRING_PULL_ONLY;
-        if ((drawn->laws & MAP_YIELDS) != 0 && one_in(seed, 2)) {
+        if ((drawn->laws & MAP_ONE_SIDED) != 0 && map_one_in(seed, 3))
+            def->flags |= map_one_in(seed, 4) ? MSPRING_SPRING_PUSH_ONLY : MSPRING_SPRING_PULL_ONLY;
+        if ((drawn->laws & MAP_YIELDS) != 0 && map_one_in(seed, 2)) {
             def->yield_strain = (float)strain;
-            def->hardening = one_in(seed, 3) ? 0 : (float)map_decades(seed, 0.01, 2);
+            def->hardening = map_one_in(seed, 3) ? 0 : (float)map_decades(seed, 0.01, 2);
         }
     }
 }
@@ -410,7 +409,7 @@ static void draw_spring_laws(map_case *drawn, uint64_t *seed) {
 static const double longest_with_laws = 0.5, longest_at_walls = 0.5;
 
 static void draw_bend(map_case *drawn, uint64_t *seed) {
-    const map_stuff stuff = begin(drawn, seed);
+    const map_stuff stuff = map_draw_begin(drawn, seed);
     drawn->laws = 1 + random_below(seed, MAP_ALL_LAWS);
     drawn->share = fmin(drawn->share, longest_with_laws);
     if ((drawn->laws & MAP_ONE_SIDED) != 0)
@@ -425,10 +424,10 @@ static void draw_bend(map_case *drawn, uint64_t *seed) {
     if ((drawn->laws & MAP_ANGLES) != 0)
         drawn->angle_stiffness =
             (float)(stuff.stiffness * stuff.spacing * stuff.spacing * map_decades(seed, 1e-3, 1));
-    draw_velocities(drawn, map_decades(seed, 0.01, 100), seed);
-    if (one_in(seed, 3))
+    map_draw_velocities(drawn, map_decades(seed, 0.01, 100), seed);
+    if (map_one_in(seed, 3))
         draw_gravity(drawn, seed);
-    if (one_in(seed, 3))
+    if (map_one_in(seed, 3))
         draw_pins(drawn, 2, seed);
     draw_global_damping(drawn, seed);
 }
@@ -445,13 +444,13 @@ static void weigh_first(map_case *drawn, double ratio) {
 }
 
 static void draw_wall(map_case *drawn, uint64_t *seed) {
-    const map_stuff stuff = begin(drawn, seed);
+    const map_stuff stuff = map_draw_begin(drawn, seed);
     drawn->share = fmin(drawn->share, longest_at_walls);
     const double gap = draw_second(drawn, &stuff, seed), ratio = map_decades(seed, 1, 1000);
     weigh_first(drawn, ratio);
     drawn->has_wedge = true;
-    drawn->wedge_angle = one_in(seed, 2) ? 0.5 * 3.14159265358979 : map_between(seed, 0.4, 1.2);
-    drawn->wedge_radius = one_in(seed, 3) ? map_between(seed, 0, 0.4) * stuff.spacing : 0;
+    drawn->wedge_angle = map_one_in(seed, 2) ? 0.5 * 3.14159265358979 : map_between(seed, 0.4, 1.2);
+    drawn->wedge_radius = map_one_in(seed, 3) ? map_between(seed, 0, 0.4) * stuff.spacing : 0;
     map_hold_place_wedge(drawn, stuff.spacing * map_decades(seed, 0.01, 2));
     // As in press, and slow enough that the light body is not crushed.
     const double time = sqrt(stuff.mass_ratio / stuff.stiffness), light = 0.1 / (time * sqrt(ratio));
@@ -463,24 +462,24 @@ static void draw_wall(map_case *drawn, uint64_t *seed) {
                              ? light * map_decades(seed, 0.01, 1)
                              : fmin(drawn->solver.substeps / drawn->dt * map_decades(seed, 1e-3, 2), light));
     let_first_fly(drawn, speed, seed);
-    if (one_in(seed, 2)) // it comes
+    if (map_one_in(seed, 2)) // it comes
         drawn->drift_x = -speed * map_between(seed, 0.05, 1);
     drawn->steps = (uint32_t)fmin(is_explicit ? 2000 : 400, fmax(20, 6 * gap / (speed * fmin(step, 0.25))));
 }
 
 static void draw_grip(map_case *drawn, uint64_t *seed) {
-    const map_stuff stuff = begin(drawn, seed);
+    const map_stuff stuff = map_draw_begin(drawn, seed);
     drawn->share = fmin(drawn->share, longest_with_laws);
-    if (one_in(seed, 2)) {
+    if (map_one_in(seed, 2)) {
         const double speed = stuff.spacing * map_decades(seed, 0.01, 10);
         drawn->drift_x = map_between(seed, -speed, speed);
         drawn->drift_y = map_between(seed, -speed, speed);
     }
-    if (one_in(seed, 3))
+    if (map_one_in(seed, 3))
         draw_gravity(drawn, seed);
-    if (one_in(seed, 2))
-        draw_velocities(drawn, map_decades(seed, 0.01, 20), seed);
-    if (one_in(seed, 4))
+    if (map_one_in(seed, 2))
+        map_draw_velocities(drawn, map_decades(seed, 0.01, 20), seed);
+    if (map_one_in(seed, 4))
         draw_pins(drawn, 1, seed);
     const mspring_id particle = random_below(seed, drawn->body.particle_count);
     const mspring_particle_def *at = &drawn->body.particles[particle];
@@ -492,19 +491,21 @@ static void draw_grip(map_case *drawn, uint64_t *seed) {
         grip->x = at->x + stuff.spacing * map_between(seed, -1, 1);
         grip->y = at->y + stuff.spacing * map_between(seed, -1, 1);
         grip->stiffness = (float)map_decades(seed, 1, 1e10);
-        if (one_in(seed, 3))
+        if (map_one_in(seed, 3))
             grip->damping = (float)map_decades(seed, 1, 1e6);
-        if (!one_in(seed, 3))
+        if (!map_one_in(seed, 3))
             grip->max_force = (float)(stuff.spacing * map_decades(seed, 1e-2, 1e6));
     }
 }
 
 static const family families[MAP_FAMILIES] = {
-    {"blast", 60000, draw_blast}, {"hit", 45000, draw_hit},       {"spin", 20000, draw_spin},
-    {"drop", 60000, draw_drop},   {"bounce", 18000, draw_bounce}, {"hang", 30000, draw_hang},
-    {"wreck", 20000, draw_wreck}, {"far", 16000, draw_far},       {"substeps", 3000, draw_substeps},
-    {"meet", 20000, draw_meet},   {"silt", 10000, draw_silt},     {"press", 12000, draw_press},
-    {"bend", 16000, draw_bend},   {"wall", 12000, draw_wall},     {"grip", 16000, draw_grip},
+    {"blast", 60000, draw_blast},    {"hit", 45000, draw_hit},        {"spin", 20000, draw_spin},
+    {"drop", 60000, draw_drop},      {"bounce", 18000, draw_bounce},  {"hang", 30000, draw_hang},
+    {"wreck", 20000, draw_wreck},    {"far", 16000, draw_far},        {"substeps", 3000, draw_substeps},
+    {"meet", 20000, draw_meet},      {"silt", 10000, draw_silt},      {"press", 12000, draw_press},
+    {"bend", 16000, draw_bend},      {"wall", 12000, draw_wall},      {"grip", 16000, draw_grip},
+    {"fall", 4000, map_draw_fall},   {"order", 3000, map_draw_order}, {"uneven", 2000, map_draw_uneven},
+    {"burst", 6000, map_draw_burst}, {"rest", 1000, map_draw_rest},
 };
 
 const char *map_family_name(map_family of) {

@@ -14,7 +14,7 @@
 const char *map_verdict_name(map_verdict verdict) {
     static const char *const names[MAP_VERDICTS] = {"holds",    "guarded",  "violent",  "rested",  "not finite",
                                                     "rejected", "energy",   "momentum", "angular", "floor",
-                                                    "bounce",   "substeps", "crossed"};
+                                                    "bounce",   "substeps", "crossed",  "fall"};
     return names[verdict];
 }
 

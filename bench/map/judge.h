@@ -23,6 +23,7 @@ typedef enum map_verdict {
     MAP_BOUNCED,    ///< a loose particle bounced wrongly
     MAP_WORSE,      ///< more substeps were less accurate
     MAP_CROSSED,    ///< a body got into another, or too deep
+    MAP_FELL,       ///< a body fell faster or slower than gravity has it
     MAP_VERDICTS
 } map_verdict;
 

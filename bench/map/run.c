@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "map/hold.h"
+#include "map/precision.h"
 #include "map/trade.h"
 #include "scenes/internal.h"
 
@@ -126,7 +127,7 @@ bool map_choose_step(map_case *what, mspring_network *network) {
             return false;
     }
     const double work = (double)what->solver.substeps * (what->body.spring_count + 10);
-    if (work * what->steps > most_work)
+    if (work * what->steps > most_work && what->family < MAP_FALL)
         what->steps = (uint32_t)fmax(8, most_work / work);
     return true;
 }
@@ -316,8 +317,10 @@ map_verdict map_run_case(const map_case *what, char text[MAP_TEXT]) {
     mspring_network *network = map_make_network(&run, text);
     if (network != NULL && !map_choose_step(&run, network)) {
         snprintf(text, MAP_TEXT, "no step: %s", mspring_network_error(network));
-    } else if (network != NULL && run.family == MAP_SUBSTEPS) {
+    } else if (network != NULL && (run.family == MAP_SUBSTEPS || run.family == MAP_ORDER)) {
         verdict = map_run_trade(&run, network, text);
+    } else if (network != NULL && run.family >= MAP_FALL) {
+        verdict = map_run_precision(&run, network, text);
     } else if (network != NULL) {
         verdict = take_steps(&run, network, &judge, false, text);
         if (verdict == MAP_GAINED)

@@ -1,5 +1,7 @@
 /// @file trade.c
-/// The same motion with ever more substeps, next to one in double precision.
+/// The same motion with ever more substeps, next to one in double precision. In the family order the error falls
+/// by 3.5 for twice the substeps, until it is four millionths of the motion (in 371 of 376 cases one). In the other
+/// it grows by rounding only.
 ///
 /// SPDX-License-Identifier: MIT
 #include "map/trade.h"
@@ -8,6 +10,8 @@
 #include <stdio.h>
 
 #include "map/run.h"
+
+static const double until = 4e-6;
 
 enum {
     FINE = 32,     ///< substeps of the reference in a step, of fourth order
@@ -21,13 +25,19 @@ typedef struct motion {
     double x[MAP_PARTICLES], y[MAP_PARTICLES], vx[MAP_PARTICLES], vy[MAP_PARTICLES];
 } motion;
 
+/// As the library has it, 1/kg: a rounding of 6e-8 is worth 2e-6 of the motion after 40 radians.
+static double inverse_mass(const map_watch *watch, uint32_t particle) {
+    return (double)(float)(1 / watch->mass[particle]);
+}
+
 /// How fast all of it changes.
 static void rate_of(const map_watch *watch, const motion *at, motion *rate) {
     for (uint32_t i = 0; i < watch->count; i++) {
         rate->x[i] = at->vx[i];
         rate->y[i] = at->vy[i];
-        rate->vx[i] = isinf(watch->mass[i]) ? 0 : (double)watch->what->network.gravity_x;
-        rate->vy[i] = isinf(watch->mass[i]) ? 0 : (double)watch->what->network.gravity_y;
+        const mspring_network_def *def = &watch->what->network;
+        rate->vx[i] = isinf(watch->mass[i]) ? 0 : (double)def->gravity_x - (double)def->global_damping * at->vx[i];
+        rate->vy[i] = isinf(watch->mass[i]) ? 0 : (double)def->gravity_y - (double)def->global_damping * at->vy[i];
     }
     for (uint32_t i = 0; i < watch->spring_count; i++) {
         const map_spring *s = &watch->springs[i];
@@ -35,10 +45,11 @@ static void rate_of(const map_watch *watch, const motion *at, motion *rate) {
         const double length = sqrt(dx * dx + dy * dy);
         const double closing = ((at->vx[s->b] - at->vx[s->a]) * dx + (at->vy[s->b] - at->vy[s->a]) * dy) / length;
         const double force = (s->stiffness * (length - s->rest_length) + s->damping * closing) / length;
-        rate->vx[s->a] += force * dx / watch->mass[s->a];
-        rate->vy[s->a] += force * dy / watch->mass[s->a];
-        rate->vx[s->b] -= force * dx / watch->mass[s->b];
-        rate->vy[s->b] -= force * dy / watch->mass[s->b];
+        const double of_a = inverse_mass(watch, s->a), of_b = inverse_mass(watch, s->b);
+        rate->vx[s->a] += force * dx * of_a;
+        rate->vy[s->a] += force * dy * of_a;
+        rate->vx[s->b] -= force * dx * of_b;
+        rate->vy[s->b] -= force * dy * of_b;
     }
 }
 
@@ -103,7 +114,7 @@ static void find_course(const map_watch *watch, course *found) {
     }
     found->motion = found->speed = 0;
     for (uint32_t step = 0; step < watch->what->steps; step++) {
-        take_fine_step(watch, &state, watch->what->dt);
+        take_fine_step(watch, &state, (double)(float)watch->what->dt); // substeps are floats
         for (uint32_t i = 0; i < watch->count; i++) {
             found->x[step][i] = state.x[i];
             found->y[step][i] = state.y[i];
@@ -159,6 +170,11 @@ map_verdict map_run_trade(const map_case *what, mspring_network *first, char tex
             snprintf(text, MAP_TEXT,
                      "%u substeps: error %.4g m, with half as many %.4g m, the motion is %.4g m, last place %.2g m",
                      run.solver.substeps, error, last, right.motion, watch.last_place);
+            return MAP_WORSE;
+        }
+        if (what->family == MAP_ORDER && doubling > 2 && error > last / 3.5 && error > until * right.motion) {
+            snprintf(text, MAP_TEXT, "%u substeps: error %.4g m, with half as many %.4g m, the motion is %.4g m",
+                     run.solver.substeps, error, last, right.motion);
             return MAP_WORSE;
         }
         last = error;

@@ -87,9 +87,10 @@ static uint32_t count_faults(map_family family) {
 
 static void motion_keeps_what_it_must(void **state) {
     (void)state;
-    static const map_family sampled[] = {MAP_BLAST, MAP_HIT,   MAP_SPIN, MAP_DROP,     MAP_BOUNCE,
-                                         MAP_HANG,  MAP_WRECK, MAP_FAR,  MAP_SUBSTEPS, MAP_MEET,
-                                         MAP_SILT,  MAP_PRESS, MAP_BEND, MAP_WALL,     MAP_GRIP};
+    static const map_family sampled[] = {MAP_BLAST, MAP_HIT,   MAP_SPIN,   MAP_DROP,     MAP_BOUNCE,
+                                         MAP_HANG,  MAP_WRECK, MAP_FAR,    MAP_SUBSTEPS, MAP_MEET,
+                                         MAP_SILT,  MAP_PRESS, MAP_BEND,   MAP_WALL,     MAP_GRIP,
+                                         MAP_FALL,  MAP_ORDER, MAP_UNEVEN, MAP_BURST,    MAP_REST};
     uint32_t faults = 0;
     for (size_t i = 0; i < sizeof sampled / sizeof *sampled; i++) {
         const uint32_t found = count_faults(sampled[i]);
