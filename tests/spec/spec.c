@@ -1,0 +1,529 @@
+/// @file spec.c
+/// Specification of the explicit solver: a plain program that gives the library's bits at every level of
+/// instructions and for any number of workers. test_spec.c compares both.
+///
+/// **Files.** spec.h: state and input. spec.c: a step. spec_floor.c: the floor. spec_pace.c: automatic substeps.
+/// arrange.c and lattices.c: which springs are summed by rows, which is input to spec.c.
+///
+/// **Covered.** Springs, dampers and welds in lattices, chains and irregular parts; particles without springs where
+/// there is no floor; pins; gravity; forces of the host; global damping; floors;
+/// MSPRING_NETWORK_PRECISE; the first kick and uneven dt; MSPRING_SUBSTEPS_AUTO and _EVEN; the local origin;
+/// between steps edits of places, velocities, masses and springs, impulses and broken springs.
+///
+/// **Not covered.** Silt, particles without springs at a floor, hooks, areas, angles, springs
+/// that yield, break in a step, act one way or are relative, ramps, actuators, added particles and springs, new
+/// layouts, scales of inverse masses, grips, contact, sleep, groups, the guard, other solvers.
+///
+/// **Arithmetic.** IEEE 754, rounded to nearest even, subnormal numbers included. An operation of floats gives a
+/// float, one of doubles a double. Nothing is fused; parentheses say which operation comes first, else the left one
+/// does. Division and square root are correctly rounded. No function of libm is needed but fabs, floor, sqrt,
+/// minimum and maximum. A zero force may have either sign: no bit depends on it.
+///
+/// **Order.** Each substep reads the state before it, so particles may be visited in any order. Only the order of
+/// the forces on one particle matters: see add_rows() and add_others().
+///
+/// SPDX-License-Identifier: MIT
+#include "spec.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/// Squared length up to which a spring has no direction and no force, m^2.
+#define NO_DIRECTION 1e-37f
+
+/// Speed that counts as none, m/s.
+#define NO_SPEED 1e-30f
+
+/* ------------------------------------------------------------------------------------------------ small numbers */
+
+static float flushed(float speed) {
+    return fabsf(speed) < NO_SPEED ? 0.0f : speed;
+}
+
+// A float without its last 12 bits: its square is exact.
+static float lead(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits &= 0xfffff000u;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+// Difference of neighbouring floats at a value.
+static float last_place_of(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits &= 0xff800000u;
+    memcpy(&value, &bits, sizeof value);
+    return (float)((double)value * 0x1p-23);
+}
+
+// Round the first word of a coordinate to the grid of a precise network.
+static float on_grid(float grid, float coordinate) {
+    const float rounding = grid * 0x1.8p23f;
+    return grid > 0.0f ? (coordinate + rounding) - rounding : coordinate;
+}
+
+// A low word that is too large to be the rest of its value counts as 0.
+static float low_of(float value, float low, float grid) {
+    return fabsf(low) <= fabsf(value) * 0x1p-21f || fabsf(low) <= grid ? low : 0.0f;
+}
+
+// Split a coordinate into two words, the first one on a grid, if there is one.
+static void put_coordinate(double x, float grid, float *first, float *low) {
+    *first = on_grid(grid, (float)x);
+    *low = low_of(*first, (float)(x - (double)*first), grid);
+}
+
+static spec_vector add(spec_vector a, spec_vector b) {
+    return (spec_vector){a.x + b.x, a.y + b.y};
+}
+
+/* ----------------------------------------------------------------------------------------------- global damping */
+
+// 1 - exp(-x), by a series in x, or in the part x / 2^n below 1/8.
+static double loss(double x) {
+    double sum = 1.0;
+    if (x < 0.125) {
+        for (int power = 9; power >= 2; power--) {
+            sum = 1.0 - x / (double)power * sum;
+        }
+        return x * sum;
+    }
+    double part = (double)(float)x;
+    int squarings = 0;
+    for (; part >= 0.125 && part < 104.0; squarings++) {
+        part *= 0.5;
+    }
+    if (!(part < 104.0)) {
+        return 1.0;
+    }
+    for (int power = 9; power >= 1; power--) {
+        sum = 1.0 - part / (double)power * sum;
+    }
+    for (; squarings > 0; squarings--) {
+        sum *= sum;
+    }
+    return 1.0 - (double)(float)sum;
+}
+
+// Share of a velocity that global damping takes in some time.
+static float loss_in(float rate, float time) {
+    return (float)loss((double)rate * (double)time);
+}
+
+// Change of velocity per acceleration in some time, s.
+static float gain_in(float rate, float time) {
+    return rate > 0.0f ? (float)(loss((double)rate * (double)time) / (double)rate) : time;
+}
+
+/* -------------------------------------------------------------------------------------------- force of a spring */
+
+// The length L times the extension in a precise network: L (L - r) + (d^2 - L^2) / 2. The second term makes up for
+// the rounding of the root. It is exact but for its last sums: squares of leading halves are.
+static float precise_stretch(spec_vector high, spec_vector low, spec_vector d, float rest_length, float *square) {
+    const float lead_x = lead(d.x), lead_y = lead(d.y);
+    const float rest_x = (high.x - lead_x) + low.x, rest_y = (high.y - lead_y) + low.y;
+    const float square_x = lead_x * lead_x, square_y = lead_y * lead_y;
+    const float rest = rest_x * (lead_x + d.x) + rest_y * (lead_y + d.y);
+    *square = (square_x + square_y) + rest;
+    const float length = sqrtf(*square), lead_length = lead(length), rest_of_length = length - lead_length;
+    const float larger = square_x > square_y ? square_x : square_y,
+                smaller = square_x < square_y ? square_x : square_y;
+    const float error =
+        ((larger - lead_length * lead_length) + smaller) + (rest - rest_of_length * (lead_length + length));
+    return length * (length - rest_length) + 0.5f * error;
+}
+
+// Force of a spring on one of its ends, with d from here to there:
+//     F = (k (L - r) L + c (dv . d)) / L^2 d
+// That on the other is the opposite, bit for bit.
+static spec_vector pull(const spec_network *network, uint32_t spring, uint32_t particle) {
+    const spec_spring *s = &network->springs[spring];
+    const float stiffness = s->is_broken ? 0.0f : s->stiffness, damping = s->is_broken ? 0.0f : s->damping;
+    const float rest_length = s->rest_length > 0.0f ? s->rest_length : SPEC_WELD;
+    const spec_motion *here = &network->before[particle], *there = &network->before[s->a == particle ? s->b : s->a];
+    spec_vector d = {there->place.x - here->place.x, there->place.y - here->place.y};
+    float square, force;
+    if (network->is_precise) {
+        const spec_vector high = d,
+                          low = {there->low_place.x - here->low_place.x, there->low_place.y - here->low_place.y};
+        d = add(high, low);
+        force = precise_stretch(high, low, d, rest_length, &square) * stiffness;
+    } else {
+        square = d.x * d.x + d.y * d.y;
+        const float length = sqrtf(square);
+        force = (length - rest_length) * (length * stiffness);
+    }
+    const spec_vector dv = {there->velocity.x - here->velocity.x, there->velocity.y - here->velocity.y};
+    const float rate = dv.x * d.x + dv.y * d.y;
+    force = force + rate * damping;
+    force = force * (square > NO_DIRECTION ? 1.0f / square : 0.0f);
+    return (spec_vector){force * d.x, force * d.y};
+}
+
+/* ------------------------------------------------------------------------------------------------ order of sums */
+
+static bool has_springs(const spec_sums *sums) {
+    return sums->is_in_rows || sums->other_count > 0;
+}
+
+static spec_vector pull_from(const spec_network *network, uint32_t particle, spec_side side) {
+    const uint32_t spring = network->sums[particle].rows[side];
+    return spring == SPEC_NONE ? (spec_vector){0.0f, 0.0f} : pull(network, spring, particle);
+}
+
+// Sum of the springs in rows: those that lead south come first, then west, east, north. Pairs are added before they
+// enter the sum. In the top row of a lattice, and in chains, east comes before west.
+static spec_vector add_rows(const spec_network *network, uint32_t p) {
+    const spec_vector east = pull_from(network, p, SPEC_EAST), west = pull_from(network, p, SPEC_WEST);
+    const spec_vector north = pull_from(network, p, SPEC_NORTH), south = pull_from(network, p, SPEC_SOUTH);
+    const spec_vector north_east = pull_from(network, p, SPEC_NORTH_EAST);
+    const spec_vector north_west = pull_from(network, p, SPEC_NORTH_WEST);
+    const spec_vector below =
+        add(add(pull_from(network, p, SPEC_SOUTH_EAST), south), pull_from(network, p, SPEC_SOUTH_WEST));
+    if (network->sums[p].is_top) {
+        return add(add(below, east), west);
+    }
+    return add(add(add(below, add(west, north_west)), add(east, north)), north_east);
+}
+
+// Sum of the other springs, by rising number, from 0.
+static spec_vector add_others(const spec_network *network, uint32_t p) {
+    const spec_sums *sums = &network->sums[p];
+    spec_vector force = {0.0f, 0.0f};
+    for (uint32_t i = 0; i < sums->other_count; i++) {
+        force = add(force, pull(network, network->others[sums->first_other + i], p));
+    }
+    return force;
+}
+
+/* ------------------------------------------------------------------------------------------ motion in a substep */
+
+/// Constants of a step.
+typedef struct step {
+    uint32_t count;        ///< substeps
+    float h;               ///< of one, s
+    float spring_lag, lag; ///< substep before the step, s, for springs and for gravity
+} step;
+
+/// Constants of a substep.
+typedef struct substep {
+    float h;                    ///< s
+    float kick, gravity_kick;   ///< s, change of velocity per acceleration by springs and by gravity
+    float loss;                 ///< share of a velocity that global damping takes
+    float gravity_x, gravity_y; ///< change of velocity, m/s
+    bool flushes;               ///< tiny speeds become 0
+} substep;
+
+// Velocities are half a substep old: v(t - h/2) becomes v(t + h/2). So the first kick of a step lasts (lag + h) /
+// 2, with lag the last substep before it, and 0 if velocities are of now. Damped and precise networks drop tiny
+// speeds in every second substep, lest subnormal ones spread.
+static substep substep_of(const spec_network *network, const step *all, uint32_t number) {
+    const float rate = network->global_damping, h = all->h;
+    const float time = number == 0 ? 0.5f * (all->spring_lag + h) : h;
+    const float gravity_kick = gain_in(rate, number == 0 ? 0.5f * (all->lag + h) : h);
+    return (substep){.h = h,
+                     .kick = gain_in(rate, time),
+                     .gravity_kick = gravity_kick,
+                     .loss = loss_in(rate, time),
+                     .gravity_x = network->gravity_x * gravity_kick + 0.0f, // never -0
+                     .gravity_y = network->gravity_y * gravity_kick + 0.0f,
+                     .flushes = (network->is_damped || network->is_precise) && number % 2 == 0};
+}
+
+// Kick of a velocity: v' = v + (F kick / m + (g kick - loss v)), in two words if the network is precise.
+static void kick(const spec_network *network, const substep *now, float *v, float *low, float push, float gravity) {
+    if (!network->is_precise) {
+        const float to = *v + (push + (gravity - now->loss * *v));
+        *v = now->flushes ? flushed(to) : to;
+        return;
+    }
+    const float change = (push + (*low + gravity)) - now->loss * *v, sum = *v + change;
+    const float to = now->flushes ? flushed(sum) : sum, rest = change - (to - *v);
+    *low = now->flushes ? flushed(rest) : rest;
+    *v = to;
+}
+
+// Kick of a particle in rows by its other springs: it comes second, after its move.
+static void add_kick(const spec_network *network, float *v, float *low, float push) {
+    const float change = network->is_precise ? push + *low : push, to = *v + change;
+    *low = network->is_precise ? change - (to - *v) : 0.0f;
+    *v = to;
+}
+
+// Kahan's compensated sum: the low word keeps what the first word can't.
+static void move(const spec_network *network, float *x, float *low, float way) {
+    const float whole = way + *low, to = on_grid(network->grid, *x + whole);
+    *low = whole - (to - *x);
+    *x = to;
+}
+
+static void move_particle(const spec_network *network, const substep *now, uint32_t p) {
+    const spec_sums *sums = &network->sums[p];
+    const float inverse_mass = network->inverse_masses[p], per_force = inverse_mass * now->kick;
+    spec_motion *m = &network->motions[p];
+    if (inverse_mass > 0.0f) {
+        const spec_vector springs = sums->is_in_rows ? add_rows(network, p) : add_others(network, p);
+        const spec_vector force = add(springs, network->forces[p]);
+        kick(network, now, &m->velocity.x, &m->low_velocity.x, force.x * per_force, now->gravity_x);
+        kick(network, now, &m->velocity.y, &m->low_velocity.y, force.y * per_force, now->gravity_y);
+    } else {
+        m->low_velocity = (spec_vector){0.0f, 0.0f}; // a pin keeps its velocity
+    }
+    move(network, &m->place.x, &m->low_place.x, m->velocity.x * now->h);
+    move(network, &m->place.y, &m->low_place.y, m->velocity.y * now->h);
+    if (!sums->is_in_rows || sums->other_count == 0 || !(inverse_mass > 0.0f)) {
+        return;
+    }
+    const spec_vector force = add_others(network, p);
+    const float push_x = force.x * per_force, push_y = force.y * per_force;
+    add_kick(network, &m->velocity.x, &m->low_velocity.x, push_x);
+    add_kick(network, &m->velocity.y, &m->low_velocity.y, push_y);
+    move(network, &m->place.x, &m->low_place.x, push_x * now->h);
+    move(network, &m->place.y, &m->low_place.y, push_y * now->h);
+}
+
+/// Motion of particles without springs in all substeps of a step: v' = keep v + (gain a + gravity), x' = x + (reach
+/// v + (fall a + gravity_way)).
+typedef struct glide {
+    float keep, gain, reach, fall, drift;
+    spec_vector gravity, gravity_way;
+} glide;
+
+static glide glide_of(const spec_network *network, const step *all) {
+    double keep = 1.0, gain = 0.0, reach = 0.0, fall = 0.0, gravity_gain = 0.0, gravity_fall = 0.0;
+    const double h = (double)all->h, ax = (double)network->gravity_x, ay = (double)network->gravity_y;
+    for (uint32_t i = 0; i < all->count; i++) {
+        const substep now = substep_of(network, all, i);
+        keep -= (double)now.loss * keep;
+        gain += (double)now.kick - (double)now.loss * gain;
+        reach += keep * h;
+        fall += gain * h;
+        gravity_gain += (double)now.gravity_kick - (double)now.loss * gravity_gain;
+        gravity_fall += gravity_gain * h;
+    }
+    return (glide){(float)keep,
+                   (float)gain,
+                   (float)reach,
+                   (float)fall,
+                   (float)(h * (double)all->count),
+                   {(float)(gravity_gain * ax), (float)(gravity_gain * ay)},
+                   {(float)(gravity_fall * ax), (float)(gravity_fall * ay)}};
+}
+
+static void glide_along(const spec_network *network, const glide *g, uint32_t p, float *x, float *low, float *v,
+                        float force, float gravity, float gravity_way) {
+    const float a = force * network->inverse_masses[p];
+    if (network->inverse_masses[p] > 0.0f) {
+        move(network, x, low, *v * g->reach + (a * g->fall + gravity_way));
+        *v = *v * g->keep + (a * g->gain + gravity);
+    } else {
+        move(network, x, low, *v * g->drift);
+    }
+}
+
+static void glide_particle(const spec_network *network, const glide *g, uint32_t p) {
+    spec_motion *m = &network->motions[p];
+    const spec_vector force = network->forces[p];
+    glide_along(network, g, p, &m->place.x, &m->low_place.x, &m->velocity.x, force.x, g->gravity.x,
+                g->gravity_way.x);
+    glide_along(network, g, p, &m->place.y, &m->low_place.y, &m->velocity.y, force.y, g->gravity.y,
+                g->gravity_way.y);
+}
+
+// Let the floor act on a particle that has moved.
+static void bounce(spec_network *network, const substep *now, uint32_t p) {
+    const double h = (double)now->h, keep = 1.0 - (double)now->loss, scale = h / (double)now->kick;
+    if ((network->plane_count == 0 && network->heights.count == 0) || !(network->inverse_masses[p] > 0.0f)) {
+        return;
+    }
+    const spec_bounce b = spec_touch_floor(network, p, h, keep, scale);
+    if (!b.acts) {
+        return;
+    }
+    spec_motion *m = &network->motions[p];
+    const double x = (double)m->place.x - (double)network->starts[p].x;
+    const double y = (double)m->place.y - (double)network->starts[p].y;
+    network->unspecified += b.passes_ridge || fabs(x) > network->way || fabs(y) > network->way;
+    // In the common case first words leave the grid for a substep, and low words of velocities stay.
+    const float grid = b.takes_care ? network->grid : 0.0f;
+    put_coordinate(b.x, grid, &m->place.x, &m->low_place.x);
+    put_coordinate(b.y, grid, &m->place.y, &m->low_place.y);
+    m->velocity = (spec_vector){(float)b.vx, (float)b.vy};
+    if (b.takes_care) {
+        m->low_velocity = (spec_vector){0.0f, 0.0f};
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- origin */
+
+/// Smallest distance at which the origin is looked at, m.
+#define NEAREST_LOOK 64.0f
+
+static double middle(double low, double high) {
+    return floor(0.5 * (low + high) + 0.5);
+}
+
+void spec_set_origin(spec_network *network, double min_x, double min_y, double max_x, double max_y) {
+    network->origin_x = middle(min_x, max_x);
+    network->origin_y = middle(min_y, max_y);
+    network->look_distance = NEAREST_LOOK;
+}
+
+static void place_locally(const spec_network *network, uint32_t p, double x, double y) {
+    spec_motion *m = &network->motions[p];
+    put_coordinate(x, network->grid, &m->place.x, &m->low_place.x);
+    put_coordinate(y, network->grid, &m->place.y, &m->low_place.y);
+}
+
+void spec_place(spec_network *network, uint32_t particle, double x, double y) {
+    place_locally(network, particle, x - network->origin_x, y - network->origin_y);
+}
+
+void spec_set_velocity(spec_network *network, uint32_t particle, float vx, float vy) {
+    network->motions[particle].velocity = (spec_vector){vx, vy};
+    network->motions[particle].low_velocity = (spec_vector){0.0f, 0.0f};
+}
+
+void spec_hit(spec_network *network, uint32_t particle, float x, float y) {
+    spec_vector *v = &network->motions[particle].velocity;
+    const double per_impulse = (double)network->inverse_masses[particle];
+    v->x = (float)((double)v->x + (double)x * per_impulse);
+    v->y = (float)((double)v->y + (double)y * per_impulse);
+}
+
+// The middle of one coordinate, if all particles lie to one side of the origin and the shift is exact.
+static double shift_of(double origin, double low, double high) {
+    const double nearest = low > 0.0 ? low : -high, half = 0.501 * (high - low) + 1.0;
+    return nearest >= half && fabs(origin + middle(low, high)) <= 2e12 ? (double)(float)middle(low, high) : 0.0;
+}
+
+// After a step: the origin follows a network that flies away.
+static void follow(spec_network *network) {
+    const spec_motion *m = network->motions;
+    if (fabsf(m->place.x) < network->look_distance && fabsf(m->place.y) < network->look_distance) {
+        return;
+    }
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        low[0] = fmin(low[0], (double)m[p].place.x);
+        low[1] = fmin(low[1], (double)m[p].place.y);
+        high[0] = fmax(high[0], (double)m[p].place.x);
+        high[1] = fmax(high[1], (double)m[p].place.y);
+    }
+    const double shift_x = shift_of(network->origin_x, low[0], high[0]);
+    const double shift_y = shift_of(network->origin_y, low[1], high[1]);
+    if (shift_x == 0.0 && shift_y == 0.0) {
+        network->look_distance *= 2.0f;
+        return;
+    }
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        place_locally(
+            network, p,
+            ((double)m[p].place.x + (double)low_of(m[p].place.x, m[p].low_place.x, network->grid)) - shift_x,
+            ((double)m[p].place.y + (double)low_of(m[p].place.y, m[p].low_place.y, network->grid)) - shift_y);
+    }
+    network->origin_x += shift_x;
+    network->origin_y += shift_y;
+    network->look_distance = NEAREST_LOOK;
+}
+
+/* --------------------------------------------------------------------------------------------------------- step */
+
+void spec_begin(spec_network *network) {
+    double longest = 0.0;
+    network->shortest = INFINITY;
+    network->is_damped = false;
+    for (uint32_t i = 0; i < network->spring_count; i++) {
+        const spec_spring *s = &network->springs[i];
+        network->is_damped |= s->damping > 0.0f;
+        network->shortest =
+            s->rest_length > 0.0f ? fmin(network->shortest, (double)s->rest_length) : network->shortest;
+        longest = fmax(longest, (double)s->rest_length);
+    }
+    network->grid = network->is_precise ? last_place_of((float)(2.0 * longest)) : 0.0f;
+    spec_renew(network);
+    network->lag = 0.0f; // velocities are of now
+    network->dt = 0.0;
+    network->uneven = 0;
+    network->pace = (spec_pace){0};
+}
+
+// Springs see the state before the substep, whatever the order of the particles.
+static void take_substep(spec_network *network, const substep *now) {
+    memcpy(network->before, network->motions, network->particle_count * sizeof *network->motions);
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        if (has_springs(&network->sums[p])) {
+            move_particle(network, now, p);
+            bounce(network, now, p);
+        }
+    }
+}
+
+// After a step of a damped network: tiny speeds become 0. If a component of one does, -0 in the same component of
+// any other becomes 0, too.
+static void stop_creeping(const spec_network *network) {
+    bool creeps_x = false, creeps_y = false;
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        const spec_vector v = network->motions[p].velocity;
+        creeps_x |= v.x != 0.0f && flushed(v.x) == 0.0f;
+        creeps_y |= v.y != 0.0f && flushed(v.y) == 0.0f;
+    }
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        spec_vector *v = &network->motions[p].velocity;
+        v->x = creeps_x ? flushed(v->x) : v->x;
+        v->y = creeps_y ? flushed(v->y) : v->y;
+    }
+}
+
+// Surfaces in local coordinates, and the way that particles may go: see spec_floor.c.
+static void begin_floor(spec_network *network, double seconds) {
+    double fastest = 0.0;
+    for (uint32_t i = 0; i < network->plane_count; i++) {
+        spec_plane *plane = &network->planes[i];
+        plane->offset = plane->nx * (network->origin_x - plane->x) + plane->ny * (network->origin_y - plane->y);
+    }
+    network->heights.local_x = network->heights.x - network->origin_x;
+    network->heights.local_y = network->heights.y - network->origin_y;
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        const spec_motion *m = &network->motions[p];
+        network->starts[p] = m->place;
+        fastest = fmax(fastest, fmax(fabs((double)m->velocity.x), fabs((double)m->velocity.y)));
+    }
+    const double gravity = fabs((double)network->gravity_x) + fabs((double)network->gravity_y);
+    network->way = 2.0 * seconds * (fastest + gravity * seconds);
+    network->unspecified = 0;
+}
+
+uint32_t spec_step(spec_network *network, double dt) {
+    double time;
+    const uint32_t count = spec_choose_substeps(network, dt, &time);
+    if (count == 0) {
+        return 0;
+    }
+    // After an edit the last substep may have been too long a time for springs to act; gravity gets all of it.
+    const float h = (float)(time / (double)count), any_shape = (float)fmin(network->any_shape, (double)FLT_MAX);
+    const step all = {count, h, fminf(network->lag, fmaxf(any_shape, h)), network->lag};
+    begin_floor(network, (double)h * (double)count);
+    for (uint32_t i = 0; i < count; i++) {
+        const substep now = substep_of(network, &all, i);
+        take_substep(network, &now);
+    }
+    const glide g = glide_of(network, &all);
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        if (!has_springs(&network->sums[p])) {
+            glide_particle(network, &g, p);
+        }
+        network->forces[p] = (spec_vector){0.0f, 0.0f};
+    }
+    if (network->is_damped || network->global_damping > 0.0f) {
+        stop_creeping(network);
+    }
+    network->lag = h;
+    network->uneven = spec_changes_dt(network, dt) ? 600 : network->uneven > 0 ? network->uneven - 1 : 0;
+    network->dt = dt;
+    follow(network);
+    return count;
+}

@@ -1,0 +1,153 @@
+/// @file spec.h
+/// Specification of the explicit solver, as a program: see spec.c. It knows nothing of the library.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef SPEC_H
+#define SPEC_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/// No spring.
+#define SPEC_NONE UINT32_MAX
+
+/// Numbers of substeps for "as few as are stable in any shape", and for "of even length while dt varies".
+#define SPEC_AUTO UINT32_MAX
+#define SPEC_EVEN (UINT32_MAX - 1)
+
+/// Rest length of a weld, m.
+#define SPEC_WELD 0x1p-50f
+
+/// Neighbours in rows, from a particle's point of view: a row goes east, the next row lies north of it.
+typedef enum spec_side {
+    SPEC_EAST,
+    SPEC_NORTH_EAST,
+    SPEC_NORTH,
+    SPEC_NORTH_WEST,
+    SPEC_WEST,
+    SPEC_SOUTH_WEST,
+    SPEC_SOUTH,
+    SPEC_SOUTH_EAST,
+    SPEC_SIDES
+} spec_side;
+
+typedef struct spec_vector {
+    float x, y;
+} spec_vector;
+
+/// Motion of a particle in two words: its position is origin + place + low_place, its velocity velocity +
+/// low_velocity (low_velocity of precise networks only, else 0).
+typedef struct spec_motion {
+    spec_vector place, low_place, velocity, low_velocity;
+} spec_motion;
+
+typedef struct spec_spring {
+    uint32_t a, b;
+    float stiffness, damping, rest_length; ///< N/m, N s/m, m; 0: a weld
+    bool is_broken;
+} spec_spring;
+
+/// Place of a particle's springs in the sum of its forces. It is part of the input, as it decides the bits.
+typedef struct spec_sums {
+    bool is_in_rows;                   ///< in a lattice or chain: springs in rows act first, then the others
+    bool is_top;                       ///< in a chain, or in a row with none north of it
+    uint32_t rows[SPEC_SIDES];         ///< springs summed by rows, or SPEC_NONE
+    uint32_t first_other, other_count; ///< the other springs, in spec_network.others, by rising number
+} spec_sums;
+
+/// A half-plane that particles may not enter: n . p + offset < 0 in world coordinates, n of length 1.
+typedef struct spec_plane {
+    double x, y;                  ///< a point on the border
+    double nx, ny;                ///< points to the free side
+    double offset;                ///< of the border, local coordinates
+    double friction, restitution; ///< Coulomb's coefficient; speed after over speed before
+} spec_plane;
+
+/// A field of heights: straight parts from (x + i spacing, y + heights[i]) to the next, level beyond both ends.
+typedef struct spec_heights {
+    uint32_t count; ///< 0: none
+    const float *heights;
+    double x, y, spacing; ///< world coordinates
+    double local_x, local_y;
+    double friction, restitution;
+    const float *frictions, *restitutions; ///< [count - 1] of each part instead; or NULL
+} spec_heights;
+
+/// Pace of SPEC_EVEN.
+typedef struct spec_pace {
+    double dt;      ///< from which h was chosen, s; 0: none was
+    double h;       ///< substep, s
+    double left;    ///< that steps were given and have not taken, s; < 0: they are ahead
+    uint32_t steps; ///< in a row that ask for another h
+} spec_pace;
+
+typedef struct spec_network {
+    uint32_t particle_count, spring_count, plane_count;
+    spec_motion *motions;        ///< [particle_count]
+    spec_motion *before;         ///< [particle_count] scratch: before the substep
+    spec_vector *starts;         ///< [particle_count] scratch: places before the step
+    spec_vector *forces;         ///< [particle_count] of the host in the next step, N
+    const float *inverse_masses; ///< [particle_count] 1/kg, 0 if pinned
+    const spec_sums *sums;       ///< [particle_count]
+    const uint32_t *others;
+    const spec_spring *springs; ///< [spring_count]
+    spec_plane planes[8];
+    spec_heights heights;
+    float gravity_x, gravity_y, global_damping; ///< m/s^2, 1/s
+    bool is_precise;
+    uint32_t substeps;                ///< of a step, or SPEC_AUTO or SPEC_EVEN
+    uint32_t max_substeps, most_work; ///< most of those two; times as many as for calm motion, or 0: no bound
+
+    // Set by spec_begin().
+    bool is_damped;   ///< a spring has damping
+    float grid;       ///< m, of the first words of places in precise networks, else 0
+    double shortest;  ///< rest length, m
+    double any_shape; ///< longest substep that is stable in any shape, s
+    double origin_x, origin_y;
+    float look_distance; ///< m, distance of the first particle at which the origin is looked at
+    double way;          ///< m, that particles may go in a step before the library may miss a floor
+    float lag;           ///< s, length of the last substep; 0: velocities are of now
+    double dt;           ///< of the last step, s; 0: none
+    uint32_t uneven;     ///< steps for which dt counts as uneven
+    spec_pace pace;
+    uint32_t unspecified; ///< times in a step that the floor acted where it is not specified: see spec_floor.c
+} spec_network;
+
+/// Begin: set what follows from the springs, after spec_place() of all particles. Their first places are not on the
+/// grid of a precise network.
+void spec_begin(spec_network *network);
+
+/// Set any_shape, after a change of masses or springs.
+void spec_renew(spec_network *network);
+
+/// Move the origin to the middle of these places in whole metres, before spec_place() of all particles.
+void spec_set_origin(spec_network *network, double min_x, double min_y, double max_x, double max_y);
+
+/// Set a place in world coordinates, or a velocity. Neither changes lag.
+void spec_place(spec_network *network, uint32_t particle, double x, double y);
+void spec_set_velocity(spec_network *network, uint32_t particle, float vx, float vy);
+
+/// Give an impulse, N s.
+void spec_hit(spec_network *network, uint32_t particle, float x, float y);
+
+/// Step by dt seconds.
+/// @return  substeps taken, or 0 if more than max_substeps were needed
+uint32_t spec_step(spec_network *network, double dt);
+
+/// Choose the substeps of a step and its time: dt, but for SPEC_EVEN. 0: more than max_substeps. spec_pace.c
+uint32_t spec_choose_substeps(spec_network *network, double dt, double *time);
+bool spec_changes_dt(const spec_network *network, double dt);
+
+/// Outcome of a substep's floor for a particle.
+typedef struct spec_bounce {
+    bool acts;
+    bool takes_care; ///< a rare case: see spec_floor.c
+    bool passes_ridge;
+    double x, y, vx, vy;
+} spec_bounce;
+
+/// Let the floor act on a particle that a substep of h seconds has moved from network->before to network->motions.
+/// Its velocity became keep v + a h / scale, with the acceleration a. spec_floor.c
+spec_bounce spec_touch_floor(const spec_network *network, uint32_t particle, double h, double keep, double scale);
+
+#endif

@@ -1,0 +1,279 @@
+/// @file spec_floor.c
+/// Specification of the floor: half-planes and a field of heights in explicit substeps, in double precision, for
+/// particles with springs.
+///
+/// Not specified, and counted in spec_network.unspecified. Here the floor acts on both:
+/// - A particle that would end outside, but passes below a height on its way. The library leaves it alone if its
+/// survey
+///   before the step takes the place where it would end for clear. That depends on the particles swept with it.
+/// - A particle that forces drive farther than twice the way at the largest speed before the step. The library may
+/// miss
+///   that it was in the floor, if it is out again at the end of the step.
+///
+/// SPDX-License-Identifier: MIT
+#include "spec.h"
+
+#include <math.h>
+#include <stddef.h>
+
+// A particle that the floor may act on, before its move. w = v - half is its velocity in step with its position: an
+// impulse changes w alone, and contact never makes |w| grow.
+typedef struct bouncer {
+    double x, y, vx, vy;
+    double half_x, half_y;  ///< half of its change of velocity by forces in the substep
+    double max_restitution; ///< less where it moves a large part of a spring's length in a substep
+} bouncer;
+
+/// Margin for rounding where |w|^2 must not grow.
+#define GROWTH (1.0 + 1e-9)
+
+/// Restitution that counts as none.
+#define NO_RESTITUTION 0.1
+
+static double square_of(const bouncer *b) {
+    const double wx = b->vx - b->half_x, wy = b->vy - b->half_y;
+    return wx * wx + wy * wy;
+}
+
+static bouncer bouncer_of(const spec_network *network, uint32_t p, double h, double keep, double scale) {
+    const spec_motion *m = &network->motions[p], *from = &network->before[p];
+    const double vx = (double)m->velocity.x, vy = (double)m->velocity.y, per_length = 4.0 * h / network->shortest;
+    bouncer b = {.x = (double)m->place.x - h * vx,
+                 .y = (double)m->place.y - h * vy,
+                 .vx = vx,
+                 .vy = vy,
+                 .half_x = 0.5 * (scale * (vx - keep * (double)from->velocity.x)),
+                 .half_y = 0.5 * (scale * (vy - keep * (double)from->velocity.y))};
+    const double most = 1.0 - per_length * per_length * square_of(&b);
+    b.max_restitution = most > 0.0 ? most : 0.0;
+    return b;
+}
+
+static double distance_from(const spec_plane *plane, double x, double y) {
+    return plane->nx * x + plane->ny * y + plane->offset;
+}
+
+// Distance below which a particle touches a plane, m: rounding of its coordinates.
+static double slop_at(double x, double y) {
+    return 0x1p-21 * (fabs(x) + fabs(y)) + 1e-12;
+}
+
+/* ------------------------------------------------------------------------------------------------------ heights */
+
+// Number of the part below x: that of its left end. The level ones are -1 and count - 1.
+static int64_t part_below(const spec_heights *h, double x) {
+    const double place = (x - h->local_x) / h->spacing;
+    return !(place >= 0.0) ? -1 : place < (double)(h->count - 1) ? (int64_t)place : (int64_t)h->count - 1;
+}
+
+static double knot_x(const spec_heights *h, int64_t knot) {
+    return h->local_x + (double)knot * h->spacing;
+}
+
+static double knot_y(const spec_heights *h, int64_t knot) {
+    return h->local_y + (double)h->heights[knot];
+}
+
+// A part as a half-plane. The level ones have the friction and restitution of the outermost parts.
+static spec_plane plane_of(const spec_heights *h, int64_t part) {
+    const int64_t last = (int64_t)h->count - 2, sloping = part < 0 ? 0 : part < last ? part : last;
+    const double rise = (double)h->heights[sloping + 1] - (double)h->heights[sloping];
+    const double length = sqrt(h->spacing * h->spacing + rise * rise);
+    spec_plane plane = {.nx = -rise / length,
+                        .ny = h->spacing / length,
+                        .friction = h->frictions != NULL ? (double)h->frictions[sloping] : h->friction,
+                        .restitution = h->restitutions != NULL ? (double)h->restitutions[sloping] : h->restitution};
+    plane.offset = -(plane.nx * knot_x(h, sloping) + plane.ny * knot_y(h, sloping));
+    if (part != sloping) {
+        plane.nx = 0.0;
+        plane.ny = 1.0;
+        plane.offset = -knot_y(h, part < 0 ? 0 : last + 1);
+    }
+    return plane;
+}
+
+// The part that a way meets: that before the first knot which it passes below, or else the part below its end.
+static spec_plane first_hit(const spec_heights *h, double from_x, double from_y, double x, double y) {
+    const int64_t first = part_below(h, from_x), last = part_below(h, x), onward = first < last ? 1 : -1;
+    const double along_x = x - from_x, along_y = y - from_y, slop = slop_at(x, y);
+    for (int64_t edge = first; edge != last; edge += onward) {
+        const int64_t knot = onward > 0 ? edge + 1 : edge;
+        const double share = (knot_x(h, knot) - from_x) / along_x;
+        if (from_y + share * along_y < knot_y(h, knot) - slop) {
+            return plane_of(h, edge);
+        }
+    }
+    return plane_of(h, last);
+}
+
+static spec_plane plane_below(const spec_network *network, double x) {
+    return plane_of(&network->heights, part_below(&network->heights, x));
+}
+
+static double distance_from_all(const spec_network *network, double x, double y) {
+    double least = INFINITY;
+    for (uint32_t i = 0; i < network->plane_count; i++) {
+        least = fmin(least, distance_from(&network->planes[i], x, y));
+    }
+    if (network->heights.count > 0) {
+        const spec_plane below = plane_below(network, x);
+        least = fmin(least, distance_from(&below, x, y));
+    }
+    return least;
+}
+
+/* ------------------------------------------------------------------------------------------------------- bounce */
+
+// Let a surface act on a particle that would end more than `allowed` below it. If it is fast enough to leave, it
+// bounces from where it is; else it lands on the surface. Friction brakes it along the surface, by its coefficient
+// times the change across, and at most to a standstill in step.
+static bool bounce(const spec_plane *plane, double h, double allowed, bouncer *b) {
+    const double nx = plane->nx, ny = plane->ny;
+    const double distance = nx * b->x + ny * b->y + plane->offset, normal_speed = nx * b->vx + ny * b->vy;
+    if (!(distance + h * normal_speed < -allowed)) {
+        return false;
+    }
+    const double depth = distance < 0.0 ? distance : 0.0;
+    const double half = nx * b->half_x + ny * b->half_y, inward = half - normal_speed;
+    const double e = plane->restitution < b->max_restitution ? plane->restitution : b->max_restitution;
+    const double bounce_speed = e * inward + half, landing_speed = (depth - distance) / h;
+    const bool bounces = inward > 0.0 && bounce_speed > landing_speed && e > NO_RESTITUTION;
+    const double wanted = bounces ? bounce_speed : landing_speed;
+    const double normal_change = (wanted > normal_speed ? wanted : normal_speed) - normal_speed;
+    const double speed = nx * b->vy - ny * b->vx, in_step = speed - (nx * b->half_y - ny * b->half_x);
+    const double most_friction = plane->friction * normal_change, most = fabs(in_step);
+    const double friction = speed > most_friction ? most_friction : speed < -most_friction ? -most_friction : speed;
+    const double braked = in_step - friction;
+    const double end = fabs(braked) > most * GROWTH ? (braked > 0.0 ? most : -most) : braked, brake = in_step - end;
+    b->vx = b->vx + (normal_change * nx + brake * ny);
+    b->vy = b->vy + (normal_change * ny - brake * nx);
+    b->x = b->x - depth * nx;
+    b->y = b->y - depth * ny;
+    return true;
+}
+
+/// Rounds of all planes for one particle. Corners need more than one.
+#define ROUNDS_OF_PLANES 4
+
+static void put_onto(const spec_plane *plane, double *x, double *y) {
+    const double distance = distance_from(plane, *x, *y);
+    *x -= distance < 0.0 ? distance * plane->nx : 0.0;
+    *y -= distance < 0.0 ? distance * plane->ny : 0.0;
+}
+
+// Put a point that is inside the floor onto its surfaces, in one more round than a bounce takes. In the last round
+// the heights lift it straight up.
+static bool put_outside(const spec_network *network, double *x, double *y) {
+    const double slop = slop_at(*x, *y);
+    bool was_inside = false;
+    for (int round = 0; round <= ROUNDS_OF_PLANES && distance_from_all(network, *x, *y) < -slop; round++) {
+        was_inside = true;
+        for (uint32_t i = 0; i < network->plane_count; i++) {
+            put_onto(&network->planes[i], x, y);
+        }
+        if (network->heights.count > 0) {
+            const spec_plane below = plane_below(network, *x);
+            if (round < ROUNDS_OF_PLANES) {
+                put_onto(&below, x, y);
+            } else {
+                *y = fmax(*y, -(below.nx * *x + below.offset) / below.ny);
+            }
+        }
+    }
+    return was_inside;
+}
+
+// True if a particle ends outside, and passes through no part of the heights.
+static bool ends_outside(const spec_network *network, double h, const bouncer *b) {
+    const double x = b->x + h * b->vx, y = b->y + h * b->vy, slop = slop_at(x, y);
+    if (!(distance_from_all(network, x, y) >= -slop)) {
+        return false;
+    }
+    const spec_plane met =
+        network->heights.count > 0 ? first_hit(&network->heights, b->x, b->y, x, y) : (spec_plane){0};
+    return network->heights.count == 0 || distance_from(&met, x, y) >= -slop;
+}
+
+// Let all surfaces act once, of the heights the part that the particle meets on its way, or else the one below its
+// end.
+static bool bounce_at_all(const spec_network *network, double h, double allowed, bouncer *b) {
+    bool acts = false;
+    for (uint32_t i = 0; i < network->plane_count; i++) {
+        acts |= bounce(&network->planes[i], h, allowed, b);
+    }
+    if (network->heights.count > 0) {
+        const double x = b->x + h * b->vx, y = b->y + h * b->vy;
+        const spec_plane met = first_hit(&network->heights, b->x, b->y, x, y), below = plane_below(network, x);
+        acts |= bounce(&met, h, allowed, b) || bounce(&below, h, allowed, b);
+    }
+    return acts;
+}
+
+// The rare cases: a particle that was below a plane, that became faster, or that is in a corner.
+static bool bounce_with_care(const spec_network *network, double h, const spec_motion *from, bouncer *b) {
+    const double slop = slop_at(b->x, b->y), most = square_of(b);
+    const bool ends_inside = distance_from_all(network, b->x + h * b->vx, b->y + h * b->vy) < 0.0;
+    const bool was_inside = ends_inside && put_outside(network, &b->x, &b->y);
+    bool acts = was_inside, goes_on = true;
+    for (int round = 0; round < ROUNDS_OF_PLANES && goes_on; round++) {
+        goes_on = bounce_at_all(network, h, round == 0 ? 0.0 : slop, b);
+        acts |= goes_on;
+    }
+    const double square = square_of(b);
+    if (acts && !was_inside && square > most * GROWTH) {
+        const double keep = sqrt(most / square);
+        b->vx = b->half_x + keep * (b->vx - b->half_x);
+        b->vy = b->half_y + keep * (b->vy - b->half_y);
+    }
+    if (!acts || ends_outside(network, h, b)) {
+        return acts;
+    }
+    b->vx = -(double)from->velocity.x; // a corner that leads nowhere: back to where it came from, or no further
+    b->vy = -(double)from->velocity.y;
+    if (!ends_outside(network, h, b)) {
+        b->vx = b->vy = 0.0;
+    }
+    return true;
+}
+
+// True if a particle, or its end, is not above or below this part.
+static bool has_left(const spec_network *network, int64_t part, double h, const bouncer *b) {
+    return part_below(&network->heights, b->x) != part || part_below(&network->heights, b->x + h * b->vx) != part;
+}
+
+// The common case: each plane acts once, then the part of the heights below the end. Others begin anew, with care.
+spec_bounce spec_touch_floor(const spec_network *network, uint32_t p, double h, double keep, double scale) {
+    const bool has_heights = network->heights.count > 0;
+    const bouncer start = bouncer_of(network, p, h, keep, scale);
+    const double slop = slop_at(start.x, start.y);
+    bouncer b = start;
+    bool acts = false, needs_care = false;
+    const int64_t part = has_heights ? part_below(&network->heights, b.x + h * b.vx) : 0;
+    const spec_plane below = has_heights ? plane_of(&network->heights, part) : (spec_plane){0};
+    needs_care |= has_heights && has_left(network, part, h, &b);
+    for (uint32_t i = 0; i < network->plane_count; i++) {
+        needs_care |= distance_from(&network->planes[i], b.x, b.y) < -slop;
+        acts |= bounce(&network->planes[i], h, 0.0, &b);
+    }
+    if (has_heights) {
+        needs_care |= has_left(network, part, h, &b) || distance_from(&below, b.x, b.y) < -slop;
+        acts |= bounce(&below, h, 0.0, &b);
+        needs_care |= has_left(network, part, h, &b);
+    }
+    needs_care |= acts && square_of(&b) > square_of(&start) * GROWTH;
+    if (network->plane_count + has_heights > 1) {
+        const double x = b.x + h * b.vx, y = b.y + h * b.vy;
+        for (uint32_t i = 0; i < network->plane_count; i++) {
+            needs_care |= distance_from(&network->planes[i], x, y) < -0.25 * slop;
+        }
+        needs_care |= has_heights && distance_from(&below, x, y) < -0.25 * slop;
+    }
+    if (needs_care) {
+        b = start;
+        acts = bounce_with_care(network, h, &network->before[p], &b);
+    }
+    const spec_vector end = network->motions[p].place;
+    const bool passes_ridge =
+        acts && has_heights && distance_from_all(network, (double)end.x, (double)end.y) >= 0.0;
+    return (spec_bounce){acts, needs_care, passes_ridge, b.x + h * b.vx, b.y + h * b.vy, b.vx, b.vy};
+}
