@@ -233,6 +233,14 @@ static substep substep_of(const spec_network *network, const step *all, uint32_t
                      .flushes = (network->is_damped || network->is_precise) && number % 2 == 0};
 }
 
+// Kick of a velocity in two words.
+static void kick_precisely(float *v, float *low, float push, float gravity, float loss, bool flushes) {
+    const float change = (push + (*low + gravity)) - loss * *v, sum = *v + change;
+    const float to = flushes ? flushed(sum) : sum, rest = change - (to - *v);
+    *low = flushes ? flushed(rest) : rest;
+    *v = to;
+}
+
 // Kick of a velocity: v' = v + (F kick / m + (g kick - loss v)), in two words if the network is precise.
 static void kick(const spec_network *network, const substep *now, float *v, float *low, float push, float gravity) {
     if (!network->is_precise) {
@@ -240,10 +248,7 @@ static void kick(const spec_network *network, const substep *now, float *v, floa
         *v = now->flushes ? flushed(to) : to;
         return;
     }
-    const float change = (push + (*low + gravity)) - now->loss * *v, sum = *v + change;
-    const float to = now->flushes ? flushed(sum) : sum, rest = change - (to - *v);
-    *low = now->flushes ? flushed(rest) : rest;
-    *v = to;
+    kick_precisely(v, low, push, gravity, now->loss, now->flushes);
 }
 
 // Kick of a particle in rows by its other springs: it comes second, after its move.
@@ -286,9 +291,9 @@ static void move_particle(const spec_network *network, const substep *now, uint3
 }
 
 /// Motion of particles without springs in all substeps of a step: v' = keep v + (gain a + gravity), x' = x + (reach
-/// v + (fall a + gravity_way)).
+/// v + (fall a + gravity_way)). loss: 1 - keep.
 typedef struct glide {
-    float keep, gain, reach, fall, drift;
+    float keep, loss, gain, reach, fall, drift;
     spec_vector gravity, gravity_way;
 } glide;
 
@@ -305,6 +310,7 @@ static glide glide_of(const spec_network *network, const step *all) {
         gravity_fall += gravity_gain * h;
     }
     return (glide){(float)keep,
+                   (float)(1.0 - keep),
                    (float)gain,
                    (float)reach,
                    (float)fall,
@@ -313,24 +319,29 @@ static glide glide_of(const spec_network *network, const step *all) {
                    {(float)(gravity_fall * ax), (float)(gravity_fall * ay)}};
 }
 
-static void glide_along(const spec_network *network, const glide *g, uint32_t p, float *x, float *low, float *v,
-                        float force, float gravity, float gravity_way) {
+static void glide_along(const spec_network *network, const glide *g, uint32_t p, float *x, float *low_x, float *v,
+                        float *low_v, float force, float gravity, float gravity_way) {
     const float a = force * network->inverse_masses[p];
     if (network->inverse_masses[p] > 0.0f) {
-        move(network, x, low, *v * g->reach + (a * g->fall + gravity_way));
-        *v = *v * g->keep + (a * g->gain + gravity);
+        move(network, x, low_x, *v * g->reach + (a * g->fall + gravity_way));
+        if (network->is_precise) {
+            kick_precisely(v, low_v, a * g->gain, gravity, g->loss, false);
+        } else {
+            *v = *v * g->keep + (a * g->gain + gravity);
+        }
     } else {
-        move(network, x, low, *v * g->drift);
+        move(network, x, low_x, *v * g->drift);
+        *low_v = 0.0f;
     }
 }
 
 static void glide_particle(const spec_network *network, const glide *g, uint32_t p) {
     spec_motion *m = &network->motions[p];
     const spec_vector force = network->forces[p];
-    glide_along(network, g, p, &m->place.x, &m->low_place.x, &m->velocity.x, force.x, g->gravity.x,
-                g->gravity_way.x);
-    glide_along(network, g, p, &m->place.y, &m->low_place.y, &m->velocity.y, force.y, g->gravity.y,
-                g->gravity_way.y);
+    glide_along(network, g, p, &m->place.x, &m->low_place.x, &m->velocity.x, &m->low_velocity.x, force.x,
+                g->gravity.x, g->gravity_way.x);
+    glide_along(network, g, p, &m->place.y, &m->low_place.y, &m->velocity.y, &m->low_velocity.y, force.y,
+                g->gravity.y, g->gravity_way.y);
 }
 
 // Let the floor act on a particle that has moved.

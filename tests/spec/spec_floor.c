@@ -17,11 +17,16 @@
 #include <stddef.h>
 
 // A particle that the floor may act on, before its move. w = v - half is its velocity in step with its position: an
-// impulse changes w alone, and contact never makes |w| grow.
+// impulse changes w alone, and contact never makes |w| grow, but for slack.
+//
+// Slack: where the substep before was shorter, of length l, |w|^2 may grow by (1 - (l/h)^2) |half|^2, once in a
+// substep. So a particle at rest, v' = 0, may stay at rest, whose w grows with half.
 typedef struct bouncer {
     double x, y, vx, vy;
     double half_x, half_y;  ///< half of its change of velocity by forces in the substep
     double max_restitution; ///< less where it moves a large part of a spring's length in a substep
+    double slack;           ///< 1 - (l/h)^2, or 0
+    double spare;           ///< growth of |w|^2 that is left: 0 once a surface has acted
 } bouncer;
 
 /// Margin for rounding where |w|^2 must not grow.
@@ -30,9 +35,25 @@ typedef struct bouncer {
 /// Restitution that counts as none.
 #define NO_RESTITUTION 0.1
 
+// The square of w with what it may grow by.
 static double square_of(const bouncer *b) {
     const double wx = b->vx - b->half_x, wy = b->vy - b->half_y;
-    return wx * wx + wy * wy;
+    return (wx * wx + wy * wy) + b->spare;
+}
+
+// 1 - (l/h)^2 where the substep before was shorter: forces have acted for (l + h) / 2, which damping makes
+// -log(keep) / (1 - keep) h / scale. 0 if it was not by more than rounding, or if damping takes more than 5 %.
+static double slack_of(double keep, double scale) {
+    const double u = 1.0 - keep;
+    if (scale <= 1.0 || !(u < 0.05)) {
+        return 0.0;
+    }
+    double series = 1.0 / 6;
+    for (int divisor = 5; divisor >= 1; divisor--) {
+        series = 1.0 / divisor + u * series;
+    }
+    const double share = 2.0 * series / scale - 1.0;
+    return share < 1.0 - 1e-5 ? 1.0 - share * share : 0.0;
 }
 
 static bouncer bouncer_of(const spec_network *network, uint32_t p, double h, double keep, double scale) {
@@ -46,6 +67,8 @@ static bouncer bouncer_of(const spec_network *network, uint32_t p, double h, dou
                  .half_y = 0.5 * (scale * (vy - keep * (double)from->velocity.y))};
     const double most = 1.0 - per_length * per_length * square_of(&b);
     b.max_restitution = most > 0.0 ? most : 0.0;
+    b.slack = slack_of(keep, scale);
+    b.spare = b.slack * (b.half_x * b.half_x + b.half_y * b.half_y);
     return b;
 }
 
@@ -126,7 +149,7 @@ static double distance_from_all(const spec_network *network, double x, double y)
 
 // Let a surface act on a particle that would end more than `allowed` below it. If it is fast enough to leave, it
 // bounces from where it is; else it lands on the surface. Friction brakes it along the surface, by its coefficient
-// times the change across, and at most to a standstill in step.
+// times the change across, and in step not beyond the speed that it had along it, with slack.
 static bool bounce(const spec_plane *plane, double h, double allowed, bouncer *b) {
     const double nx = plane->nx, ny = plane->ny;
     const double distance = nx * b->x + ny * b->y + plane->offset, normal_speed = nx * b->vx + ny * b->vy;
@@ -140,8 +163,10 @@ static bool bounce(const spec_plane *plane, double h, double allowed, bouncer *b
     const bool bounces = inward > 0.0 && bounce_speed > landing_speed && e > NO_RESTITUTION;
     const double wanted = bounces ? bounce_speed : landing_speed;
     const double normal_change = (wanted > normal_speed ? wanted : normal_speed) - normal_speed;
-    const double speed = nx * b->vy - ny * b->vx, in_step = speed - (nx * b->half_y - ny * b->half_x);
-    const double most_friction = plane->friction * normal_change, most = fabs(in_step);
+    const double speed = nx * b->vy - ny * b->vx, half_along = nx * b->half_y - ny * b->half_x;
+    const double in_step = speed - half_along, square = in_step * in_step + b->slack * (half_along * half_along);
+    const double most_friction = plane->friction * normal_change,
+                 most = b->slack > 0.0 ? sqrt(square) : fabs(in_step);
     const double friction = speed > most_friction ? most_friction : speed < -most_friction ? -most_friction : speed;
     const double braked = in_step - friction;
     const double end = fabs(braked) > most * GROWTH ? (braked > 0.0 ? most : -most) : braked, brake = in_step - end;
@@ -149,6 +174,7 @@ static bool bounce(const spec_plane *plane, double h, double allowed, bouncer *b
     b->vy = b->vy + (normal_change * ny - brake * nx);
     b->x = b->x - depth * nx;
     b->y = b->y - depth * ny;
+    b->spare = 0.0;
     return true;
 }
 
@@ -209,7 +235,7 @@ static bool bounce_at_all(const spec_network *network, double h, double allowed,
     return acts;
 }
 
-// The rare cases: a particle that was below a plane, that became faster, or that is in a corner.
+// The rare cases: a particle that was below a plane, that has slack or became faster, or that is in a corner.
 static bool bounce_with_care(const spec_network *network, double h, const spec_motion *from, bouncer *b) {
     const double slop = slop_at(b->x, b->y), most = square_of(b);
     const bool ends_inside = distance_from_all(network, b->x + h * b->vx, b->y + h * b->vy) < 0.0;
@@ -260,7 +286,7 @@ spec_bounce spec_touch_floor(const spec_network *network, uint32_t p, double h, 
         acts |= bounce(&below, h, 0.0, &b);
         needs_care |= has_left(network, part, h, &b);
     }
-    needs_care |= acts && square_of(&b) > square_of(&start) * GROWTH;
+    needs_care |= acts && (start.slack > 0.0 || square_of(&b) >= square_of(&start) * GROWTH);
     if (network->plane_count + has_heights > 1) {
         const double x = b.x + h * b.vx, y = b.y + h * b.vy;
         for (uint32_t i = 0; i < network->plane_count; i++) {
