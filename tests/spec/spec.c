@@ -473,19 +473,12 @@ static void take_substep(spec_network *network, const substep *now) {
     }
 }
 
-// After a step of a damped network: tiny speeds become 0. If a component of one does, -0 in the same component of
-// any other becomes 0, too.
+// After a step of a damped network: tiny speeds become 0, but -0 stays.
 static void stop_creeping(const spec_network *network) {
-    bool creeps_x = false, creeps_y = false;
-    for (uint32_t p = 0; p < network->particle_count; p++) {
-        const spec_vector v = network->motions[p].velocity;
-        creeps_x |= v.x != 0.0f && flushed(v.x) == 0.0f;
-        creeps_y |= v.y != 0.0f && flushed(v.y) == 0.0f;
-    }
     for (uint32_t p = 0; p < network->particle_count; p++) {
         spec_vector *v = &network->motions[p].velocity;
-        v->x = creeps_x ? flushed(v->x) : v->x;
-        v->y = creeps_y ? flushed(v->y) : v->y;
+        v->x = v->x != 0.0f ? flushed(v->x) : v->x;
+        v->y = v->y != 0.0f ? flushed(v->y) : v->y;
     }
 }
 
