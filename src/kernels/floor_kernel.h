@@ -277,6 +277,12 @@ MSPRINGI_FLOOR_INLINE void choose(const float *restrict moved, const float *rest
         to[i] = moved[i] > 0.0f ? from[i] : to[i];
 }
 
+MSPRINGI_FLOOR_INLINE void clear_moved(const float *restrict moved, size_t lanes, float *restrict to) {
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < lanes; ++i)
+        to[i] = moved[i] > 0.0f ? 0.0f : to[i];
+}
+
 /// State of a block's particles after the floor.
 typedef struct block_end {
     double x[MSPRINGI_WIDTH], y[MSPRINGI_WIDTH], vx[MSPRINGI_WIDTH], vy[MSPRINGI_WIDTH];
@@ -289,15 +295,16 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
     float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot;
     float *restrict impulse_x = g->impulse_x + slot, *restrict impulse_y = g->impulse_y + slot;
     const float *restrict inverse_mass = g->inverse_mass + slot;
+    const float grid = g->grid;
     float to_x[MSPRINGI_WIDTH], to_y[MSPRINGI_WIDTH], to_vx[MSPRINGI_WIDTH], to_vy[MSPRINGI_WIDTH];
     float has_x[MSPRINGI_WIDTH], has_y[MSPRINGI_WIDTH], low_x[MSPRINGI_WIDTH], low_y[MSPRINGI_WIDTH];
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i) {
         const float mass = 1.0f / inverse_mass[i];
-        to_x[i] = (float)b->x[i];
-        to_y[i] = (float)b->y[i];
-        low_x[i] = mspringi_low_of(to_x[i], (float)(b->x[i] - (double)to_x[i]), 0.0f);
-        low_y[i] = mspringi_low_of(to_y[i], (float)(b->y[i] - (double)to_y[i]), 0.0f);
+        to_x[i] = mspringi_round_to_grid(grid, (float)b->x[i]);
+        to_y[i] = mspringi_round_to_grid(grid, (float)b->y[i]);
+        low_x[i] = mspringi_low_of(to_x[i], (float)(b->x[i] - (double)to_x[i]), grid);
+        low_y[i] = mspringi_low_of(to_y[i], (float)(b->y[i] - (double)to_y[i]), grid);
         to_vx[i] = (float)b->vx[i];
         to_vy[i] = (float)b->vy[i];
         has_x[i] = impulse_x[i] + mass * (to_vx[i] - vx[i]);
@@ -311,6 +318,10 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
     choose(b->is_moved, to_y, lanes, y);
     choose(b->is_moved, to_vx, lanes, vx);
     choose(b->is_moved, to_vy, lanes, vy);
+    if (!g->low_vx)
+        return;
+    clear_moved(b->is_moved, lanes, g->low_vx + slot);
+    clear_moved(b->is_moved, lanes, g->low_vy + slot);
 }
 
 // Flag the active particles that a surface has acted on and that are complete. Returns the active deferred ones, as

@@ -115,6 +115,15 @@ static inline float mspringi_low_of(float coordinate, float low, float grid) {
     return fabsf(low) <= fabsf(coordinate) * MSPRINGI_LARGEST_LOW || fabsf(low) <= grid ? low : 0.0f;
 }
 
+/// Number that rounds a coordinate to a grid when it is added and subtracted.
+#define MSPRINGI_GRID_ROUNDING 0x1.8p23f
+
+/// First word of a coordinate on the grid of a precise network, if there is one.
+static inline float mspringi_round_to_grid(float grid, float coordinate) {
+    const float rounding = grid * MSPRINGI_GRID_ROUNDING, rounded = (coordinate + rounding) - rounding;
+    return rounding > 0.0f ? rounded : coordinate;
+}
+
 /// Arguments of a sweep: arrays by slot, and constants.
 typedef struct mspringi_sweep {
     float *x, *y, *vx, *vy;
@@ -239,6 +248,8 @@ typedef struct mspringi_floor_args {
     float *x, *y, *vx, *vy;
     const float *from_vx, *from_vy; ///< before the substep
     float *low_x, *low_y;
+    float *low_vx, *low_vy;       ///< of precise networks; else NULL
+    float grid;                   ///< m, of precise networks; else 0
     float *before_vx, *before_vy; ///< from_vx and from_vy; NULL if these are vx and vy
     double silt_depth, silt_rate;
     mspringi_damping damping;

@@ -51,12 +51,14 @@ static void brake_along(const mspringi_floor_args *g, size_t slot, const double 
     float *restrict v = b->velocity, *restrict at = b->position, *restrict low = b->low,
                     *restrict given = b->impulse;
     float change[MSPRINGI_WIDTH];
+    const float grid = g->grid;
     const double h = g->h, per_kept = g->damping.keep > 0.0 ? 1.0 / g->damping.keep : 0.0;
     find_changes(g, fractions, b, change);
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const float mass = 1.0f / inverse_mass[i], impulse = given[i] + mass * change[i];
-        const float way = (float)(h * (double)change[i]) + low[i], to = at[i] + way, rest = way - (to - at[i]);
+        const float way = (float)(h * (double)change[i]) + low[i], to = mspringi_round_to_grid(grid, at[i] + way),
+                    rest = way - (to - at[i]);
         const bool is_braked = change[i] != 0.0f;
         given[i] = is_braked ? impulse : given[i];
         low[i] = is_braked ? rest : low[i];

@@ -27,13 +27,12 @@ static inline double mspringi_y_of(const mspringi_state *s, size_t slot) {
 
 /// Number that rounds a coordinate to the grid when it is added and subtracted; 0 without a grid.
 static inline float mspringi_rounding(const mspringi_state *s) {
-    return s->grid * 0x1.8p23f;
+    return s->grid * MSPRINGI_GRID_ROUNDING;
 }
 
 /// A first word on the grid, if there is one.
 static inline float mspringi_on_grid(const mspringi_state *s, float coordinate) {
-    const float round = mspringi_rounding(s);
-    return round > 0.0f ? (coordinate + round) - round : coordinate;
+    return mspringi_round_to_grid(s->grid, coordinate);
 }
 
 /// Set local coordinates.

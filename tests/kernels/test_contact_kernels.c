@@ -27,6 +27,8 @@ typedef struct block {
     _Alignas(64) float from_vy[W];
     _Alignas(64) float low_x[W];
     _Alignas(64) float low_y[W];
+    _Alignas(64) float low_vx[W];
+    _Alignas(64) float low_vy[W];
     _Alignas(64) float impulse_x[W];
     _Alignas(64) float impulse_y[W];
     _Alignas(64) float inverse_mass[W];
@@ -110,6 +112,8 @@ static block make_block(const mspringi_floor *floor, double h) {
         made.from_vy[i] = i % 4 == 0 ? 0.0f : (float)(made.vy[i] * between(0.9, 1.01));
         made.low_x[i] = made.x[i] * (float)between(-0x1p-24, 0x1p-24);
         made.low_y[i] = made.y[i] * (float)between(-0x1p-24, 0x1p-24);
+        made.low_vx[i] = made.vx[i] * 0x1p-25f;
+        made.low_vy[i] = made.vy[i] * 0x1p-25f;
         made.impulse_x[i] = (float)between(-1, 1);
         made.impulse_y[i] = (float)between(0, 1);
         made.inverse_mass[i] = i % 11 == 10 ? 0.0f : (float)between(0.1, 10);
@@ -160,16 +164,21 @@ static mspringi_floor_args ground_of(const mspringi_floor *floor, block *b, doub
                                  .active_inverse_mass = b->active_inverse_mass};
 }
 
-static void put(block *b, uint32_t i, double x, double y, double vx, double vy) {
+/// The block's particles as those of a precise network.
+static void be_precise(mspringi_floor_args *g, block *b) {
+    g->low_vx = b->low_vx;
+    g->low_vy = b->low_vy;
+    g->grid = 0x1p-20f;
+}
+
+static void put(const mspringi_floor_args *g, block *b, uint32_t i, double x, double y, double vx, double vy) {
     const float mass = 1.0f / b->inverse_mass[i];
     b->impulse_x[i] += mass * ((float)vx - b->vx[i]);
     b->impulse_y[i] += mass * ((float)vy - b->vy[i]);
-    b->x[i] = (float)x;
-    b->y[i] = (float)y;
-    b->low_x[i] = mspringi_low_of(b->x[i], (float)(x - (double)b->x[i]), 0.0f);
-    b->low_y[i] = mspringi_low_of(b->y[i], (float)(y - (double)b->y[i]), 0.0f);
-    b->vx[i] = (float)vx;
-    b->vy[i] = (float)vy;
+    const mspringi_state to = {b->x, b->y, b->vx, b->vy, b->low_x, b->low_y, g->low_vx, g->low_vy, g->grid};
+    mspringi_set_x(&to, i, x);
+    mspringi_set_y(&to, i, y);
+    mspringi_set_velocity(&to, i, (float)vx, (float)vy);
 }
 
 /// One particle after the other.
@@ -179,7 +188,7 @@ static void bounce(const mspringi_floor *floor, const mspringi_floor_args *g, bl
         mspringi_bouncing_particle_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
                                         from_vx, from_vy, g->damping, g->h, g->per_length);
     if (mspringi_floor_bounce(floor, g->h, from_vx, from_vy, &p)) {
-        put(b, i, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
+        put(g, b, i, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
     }
 }
 
@@ -190,7 +199,7 @@ static void fly(const mspringi_floor *floor, const mspringi_floor_args *g, block
                                     (double)b->from_vx[i], (double)b->from_vy[i], g->damping, g->h);
     double vx, vy;
     if (mspringi_floor_move_free_particle(floor, &how, &p, &vx, &vy)) {
-        put(b, i, p.x, p.y, vx, vy);
+        put(g, b, i, p.x, p.y, vx, vy);
     }
 }
 
@@ -215,14 +224,21 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
         const mspringi_bounds clear = {-20, 20, n % 3 == 0 ? 0.2f : 20.0f, 20};
         const block before = make_block(&floor, h);
         block found = before;
-        const mspringi_floor_args ground = ground_of(&floor, &found, h, dampings[n % 4], clear);
+        mspringi_floor_args ground = ground_of(&floor, &found, h, dampings[n % 4], clear);
+        if (n % 5 == 0) {
+            be_precise(&ground, &found);
+        }
         const uint32_t left = is_loose ? kernels->bounce_free(&ground, 0) : kernels->bounce(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {
             block expected = before;
             const bool is_left = left >> i & 1;
             left_count += is_left && mspringi_slack_of(ground.damping) == 0;
             if (!is_left && !is_clear(&before, i, &clear) && before.active_inverse_mass[i] > 0.0f) {
-                (is_loose ? fly : bounce)(&floor, &ground, &expected, i);
+                mspringi_floor_args one = ground;
+                if (n % 5 == 0) {
+                    be_precise(&one, &expected);
+                }
+                (is_loose ? fly : bounce)(&floor, &one, &expected, i);
             }
             moved_count += expected.y[i] != before.y[i];
             check_lane(found.x, expected.x, i);
@@ -231,6 +247,8 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
             check_lane(found.low_y, expected.low_y, i);
             check_lane(found.vx, expected.vx, i);
             check_lane(found.vy, expected.vy, i);
+            check_lane(found.low_vx, expected.low_vx, i);
+            check_lane(found.low_vy, expected.low_vy, i);
             check_lane(found.impulse_x, expected.impulse_x, i);
             check_lane(found.impulse_y, expected.impulse_y, i);
         }
@@ -260,7 +278,7 @@ static void brake_one(const mspringi_floor_args *g, double taken, float *v, floa
     if (!(taken > 0.0) || change == 0.0f) {
         return;
     }
-    const float way = (float)(g->h * (double)change) + *low, to = *at + way;
+    const float way = (float)(g->h * (double)change) + *low, to = mspringi_round_to_grid(g->grid, *at + way);
     *impulse += 1.0f / inverse_mass * change;
     *low = way - (to - *at);
     *at = to;
@@ -292,6 +310,7 @@ static void silt(void **state) {
         ground.before_vy = is_seen ? found.from_vy : NULL;
         ground.silt_depth = floor.heights.silt_depth;
         ground.silt_rate = floor.heights.silt_rate;
+        ground.grid = n % 5 == 0 ? 0x1p-20f : 0.0f;
         kernels->brake(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {
             block to = before;

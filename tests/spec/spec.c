@@ -358,14 +358,10 @@ static void bounce(spec_network *network, const substep *now, uint32_t p) {
     const double x = (double)m->place.x - (double)network->starts[p].x;
     const double y = (double)m->place.y - (double)network->starts[p].y;
     network->unspecified += b.passes_ridge || fabs(x) > network->way || fabs(y) > network->way;
-    // In the common case first words leave the grid for a substep, and low words of velocities stay.
-    const float grid = b.takes_care ? network->grid : 0.0f;
-    put_coordinate(b.x, grid, &m->place.x, &m->low_place.x);
-    put_coordinate(b.y, grid, &m->place.y, &m->low_place.y);
+    put_coordinate(b.x, network->grid, &m->place.x, &m->low_place.x);
+    put_coordinate(b.y, network->grid, &m->place.y, &m->low_place.y);
     m->velocity = (spec_vector){(float)b.vx, (float)b.vy};
-    if (b.takes_care) {
-        m->low_velocity = (spec_vector){0.0f, 0.0f};
-    }
+    m->low_velocity = (spec_vector){0.0f, 0.0f};
 }
 
 /* ------------------------------------------------------------------------------------------------------- origin */

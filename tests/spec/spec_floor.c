@@ -301,5 +301,5 @@ spec_bounce spec_touch_floor(const spec_network *network, uint32_t p, double h, 
     const spec_vector end = network->motions[p].place;
     const bool passes_ridge =
         acts && has_heights && distance_from_all(network, (double)end.x, (double)end.y) >= 0.0;
-    return (spec_bounce){acts, needs_care, passes_ridge, b.x + h * b.vx, b.y + h * b.vy, b.vx, b.vy};
+    return (spec_bounce){acts, passes_ridge, b.x + h * b.vx, b.y + h * b.vy, b.vx, b.vy};
 }
