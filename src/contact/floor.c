@@ -244,7 +244,8 @@ static bool reserve_field(mspringi_field *field, size_t slots, mspringi_memory *
 static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     mspringi_memory *memory = &network->memory;
     floor->slot_count = mspringi_slot_count(network);
-    floor->clearances = mspringi_alloc(memory, network->topology.strip_count, sizeof *floor->clearances);
+    const size_t marks = floor->slot_count / MSPRINGI_WIDTH / sizeof *floor->clearances + 1;
+    floor->clearances = mspringi_alloc(memory, network->topology.strip_count + marks, sizeof *floor->clearances);
     floor->contact_capacity = (uint32_t)(floor->slot_count / 4) + 64;
     floor->contact_count = 0;
     floor->contacts = mspringi_alloc(memory, floor->contact_capacity, sizeof *floor->contacts);

@@ -68,7 +68,7 @@ typedef struct mspringi_floor {
     uint32_t plane_count;
     mspringi_heights heights;
     double friction, restitution;
-    mspringi_clearance *clearances; ///< [strip_count]
+    mspringi_clearance *clearances; ///< [strip_count], and behind them the marks of blocks: floor_explicit.c
     mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
     mspringi_state before;  ///< [slot_count] before a substep: velocities, or all of particles without springs
     mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
@@ -180,6 +180,9 @@ double mspringi_silt_damping(const mspringi_heights *heights, double x, double y
 void mspringi_silt_brake(const mspring_network *network, size_t slot, double h);
 
 /* floor_explicit.c */
+
+/// Mark the blocks of a strip near heights in which a particle is not clear.
+void mspringi_floor_mark_blocks(const mspring_network *network, const mspringi_strip *strip);
 
 /// True if a strip may reach the surface in the substeps of the last survey.
 bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip);

@@ -174,6 +174,8 @@ void mspringi_floor_update_clearances(mspring_network *network, double seconds) 
         const box strip = {(double)b->min_x, (double)b->max_x, (double)b->min_y, (double)b->max_y};
         floor->clearances[i] = look_around(floor, &strip, reach);
         floor->is_near |= !floor->clearances[i].is_far;
+        if (floor->heights.count > 0 && !floor->clearances[i].is_far)
+            mspringi_floor_mark_blocks(network, &t->strips[i]);
     }
     floor->has_impulse |= floor->is_near;
 }

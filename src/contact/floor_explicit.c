@@ -116,13 +116,13 @@ static mspringi_floor_args args_of(const mspring_network *network, const mspring
     };
 }
 
-// bare: where there is no surface, but may be silt.
+// bare: where there is no surface, but may be silt. may_pass: a particle may have come from below.
 static void touch_block(const mspring_network *network, const mspringi_floor_args *args,
-                        const mspringi_bounds *bare, bool is_loose, size_t block) {
+                        const mspringi_bounds *bare, bool may_pass, bool is_loose, size_t block) {
     const mspringi_floor_fn act = is_loose ? network->kernels->bounce_free : network->kernels->bounce;
     if (mspringi_has_silt(&network->floor->heights)) {
         network->kernels->brake(args, block);
-        if (network->kernels->beyond(args->x, args->y, block, block + MSPRINGI_WIDTH, bare) != block)
+        if (!may_pass && network->kernels->beyond(args->x, args->y, block, block + MSPRINGI_WIDTH, bare) != block)
             return;
     }
     uint32_t left = act(args, block);
@@ -137,20 +137,56 @@ static const mspringi_bounds *clear_of(const mspring_network *network, const msp
     return &network->floor->clearances[strip - network->topology.strips].clear;
 }
 
+// Mark of a block: 1 if a particle was not clear after the last substep, and so may pass a ridge in the next. Of
+// strips near heights.
+static uint8_t *mark_of(const mspring_network *network, size_t slot) {
+    uint8_t *marks = (uint8_t *)(network->floor->clearances + network->topology.strip_count);
+    return marks + slot / MSPRINGI_WIDTH;
+}
+
+// The first marked block before `next`, or `next`.
+static size_t next_marked(const mspring_network *network, size_t block, size_t next) {
+    const uint8_t *first = mark_of(network, block);
+    const uint8_t *marked = memchr(first, 1, (next - block) / MSPRINGI_WIDTH);
+    return marked ? block + (size_t)(marked - first) * MSPRINGI_WIDTH : next;
+}
+
+// Look at the blocks that are not clear, or were not before the substep: heights may be in the way to a place that
+// is clear. next: the first one that is not clear.
+static void touch_marked(const mspring_network *network, const mspringi_floor_args *args,
+                         const mspringi_bounds *bare, bool is_loose, slot_range slots, size_t next) {
+    const mspringi_beyond_fn beyond = network->kernels->beyond;
+    const float *x = args->x, *y = args->y;
+    for (size_t block; (block = next_marked(network, slots.first, next)) < slots.end; slots.first = block) {
+        const bool is_beyond = block == next;
+        uint8_t *mark = mark_of(network, block);
+        touch_block(network, args, bare, *mark, is_loose, block);
+        *mark = is_beyond || beyond(x, y, block, block + MSPRINGI_WIDTH, &args->clear) == block;
+        block += MSPRINGI_WIDTH;
+        next = is_beyond ? beyond(x, y, block, slots.end, &args->clear) : next;
+    }
+}
+
 // Look at the blocks of a strip that are not clear.
 static void touch_slots(const mspring_network *network, const mspringi_strip *strip, bool is_loose,
                         slot_range slots, const mspringi_sweep *substep) {
     const mspringi_bounds *clear = clear_of(network, strip);
     const mspringi_beyond_fn beyond = network->kernels->beyond;
+    const mspringi_floor *floor = network->floor;
     const float *x = network->state.x, *y = network->state.y;
     size_t block = beyond(x, y, slots.first, slots.end, clear);
-    if (block == slots.end)
+    const bool has_heights = floor->heights.count > 0;
+    if (block == slots.end && (!has_heights || next_marked(network, slots.first, block) == slots.end))
         return;
     const mspringi_floor_args args = args_of(network, clear, substep);
     const mspringi_bounds bare = {clear->min_x, clear->max_x,
-                                  network->floor->clearances[strip - network->topology.strips].bare, clear->max_y};
+                                  floor->clearances[strip - network->topology.strips].bare, clear->max_y};
+    if (has_heights) {
+        touch_marked(network, &args, &bare, is_loose, slots, block);
+        return;
+    }
     for (; block < slots.end; block = beyond(x, y, block + MSPRINGI_WIDTH, slots.end, clear))
-        touch_block(network, &args, &bare, is_loose, block);
+        touch_block(network, &args, &bare, false, is_loose, block);
 }
 
 void mspringi_floor_apply(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
@@ -165,7 +201,14 @@ void mspringi_floor_apply_loose(const mspring_network *network, const mspringi_s
         touch_slots(network, strip, true, slots_of(span, 1), substep);
 }
 
-/* ------------------------------------------------------------------------------------------------ what was far */
+/* ------------------------------------------------------------------------------------------------ what is clear */
+
+// Slots of a strip's rows.
+static slot_range row_slots_of(const mspring_network *network, const mspringi_strip *strip) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
+    return slots_of(&t->spans[first->first_span], last->first_span + last->span_count - first->first_span);
+}
 
 static bool is_clear(const mspring_network *network, const mspringi_strip *strip, slot_range slots) {
     const mspringi_state *s = &network->state;
@@ -174,11 +217,26 @@ static bool is_clear(const mspring_network *network, const mspringi_strip *strip
 
 static bool is_strip_clear(const mspring_network *network, const mspringi_strip *strip) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_row *first = &t->rows[strip->first_row], *last = first + strip->row_count - 1;
-    const uint32_t span_count = last->first_span + last->span_count - first->first_span;
-    return is_clear(network, strip, slots_of(&t->spans[first->first_span], span_count)) &&
+    return is_clear(network, strip, row_slots_of(network, strip)) &&
            (strip->assigned_span == MSPRING_NONE ||
             is_clear(network, strip, slots_of(&t->spans[strip->assigned_span], 1)));
+}
+
+static void mark_slots(const mspring_network *network, const mspringi_strip *strip, slot_range slots) {
+    const mspringi_state *s = &network->state;
+    for (size_t block = slots.first, next; block < slots.end; block = next + MSPRINGI_WIDTH) {
+        uint8_t *mark = mark_of(network, block);
+        next = network->kernels->beyond(s->x, s->y, block, slots.end, clear_of(network, strip));
+        memset(mark, 0, (next - block) / MSPRINGI_WIDTH);
+        if (next < slots.end)
+            *mark_of(network, next) = 1;
+    }
+}
+
+void mspringi_floor_mark_blocks(const mspring_network *network, const mspringi_strip *strip) {
+    mark_slots(network, strip, row_slots_of(network, strip));
+    if (strip->assigned_span != MSPRING_NONE)
+        mark_slots(network, strip, slots_of(&network->topology.spans[strip->assigned_span], 1));
 }
 
 void mspringi_floor_check_clear(const mspring_network *network) {

@@ -71,7 +71,25 @@ MSPRINGI_FLOOR_INLINE bool is_any(const double *flags, size_t lanes) {
     return all != 0;
 }
 
-// Flag the particles that a floor may act on.
+// Flag the particles that are not clear where they start.
+MSPRINGI_FLOOR_INLINE void flag_starts(const mspringi_floor_args *g, size_t slot, size_t lanes,
+                                       double *restrict is_active) {
+    const float *restrict x = g->x + slot, *restrict y = g->y + slot;
+    const float *restrict vx = g->vx + slot, *restrict vy = g->vy + slot,
+                          *restrict active_inverse_mass = g->active_inverse_mass + slot;
+    const mspringi_bounds clear = g->clear;
+    const float h = (float)g->h;
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < lanes; ++i) {
+        const float from_x = x[i] - h * vx[i], from_y = y[i] - h * vy[i];
+        const bool is_clear =
+            (from_x >= clear.min_x) & (from_x <= clear.max_x) & (from_y >= clear.min_y) & (from_y <= clear.max_y);
+        is_active[i] = ((active_inverse_mass[i] > 0.0f) & !is_clear) ? 1.0 : is_active[i];
+    }
+}
+
+// Flag the particles that a floor may act on: those that are not clear where they end. Heights may be in the way to
+// a place that is clear, so with them also those that are not clear where they start.
 MSPRINGI_FLOOR_INLINE void find_active(const mspringi_floor_args *g, size_t slot, size_t lanes,
                                        double *restrict is_active) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot,
@@ -83,6 +101,8 @@ MSPRINGI_FLOOR_INLINE void find_active(const mspringi_floor_args *g, size_t slot
             (x[i] >= clear.min_x) & (x[i] <= clear.max_x) & (y[i] >= clear.min_y) & (y[i] <= clear.max_y);
         is_active[i] = ((active_inverse_mass[i] > 0.0f) & !is_clear) ? 1.0 : 0.0;
     }
+    if (g->height_count > 0)
+        flag_starts(g, slot, lanes, is_active);
 }
 
 static void load_bounce_block(const mspringi_floor_args *g, size_t slot, bounce_block *restrict b) {
@@ -277,6 +297,12 @@ MSPRINGI_FLOOR_INLINE void choose(const float *restrict moved, const float *rest
         to[i] = moved[i] > 0.0f ? from[i] : to[i];
 }
 
+static void put_on_grid(float grid, size_t lanes, float *restrict to) {
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < lanes; ++i)
+        to[i] = mspringi_round_to_grid(grid, to[i]);
+}
+
 MSPRINGI_FLOOR_INLINE void clear_moved(const float *restrict moved, size_t lanes, float *restrict to) {
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i)
@@ -300,9 +326,16 @@ MSPRINGI_FLOOR_INLINE void store_block(const mspringi_floor_args *g, size_t slot
     float has_x[MSPRINGI_WIDTH], has_y[MSPRINGI_WIDTH], low_x[MSPRINGI_WIDTH], low_y[MSPRINGI_WIDTH];
     MSPRINGI_ROLLED
     for (size_t i = 0; i < lanes; ++i) {
+        to_x[i] = (float)b->x[i];
+        to_y[i] = (float)b->y[i];
+    }
+    if (grid > 0.0f) {
+        put_on_grid(grid, lanes, to_x);
+        put_on_grid(grid, lanes, to_y);
+    }
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < lanes; ++i) {
         const float mass = 1.0f / inverse_mass[i];
-        to_x[i] = mspringi_round_to_grid(grid, (float)b->x[i]);
-        to_y[i] = mspringi_round_to_grid(grid, (float)b->y[i]);
         low_x[i] = mspringi_low_of(to_x[i], (float)(b->x[i] - (double)to_x[i]), grid);
         low_y[i] = mspringi_low_of(to_y[i], (float)(b->y[i] - (double)to_y[i]), grid);
         to_vx[i] = (float)b->vx[i];

@@ -261,6 +261,51 @@ static void what_is_loaded_flies_the_same_way(void **state) {
     }
 }
 
+/// Where a body that passes below a ridge comes to. has_other: another one lies at the foot of a higher hill.
+static support_point pass_ridge(bool has_other) {
+    const float heights[] = {0, 0, 1, 0, 0, 0, 0, 9, 0, 0};
+    recipe made = {0};
+    mspring_floor_def floor;
+    for (uint32_t i = 0; i < 2; i++) { // they rise from the foot of the ridge to above its top, 1 m wide
+        recipe_particle(&made, -0.7 + 0.1 * i, 0.5, 1, 0);
+        made.particles[i].vx = 60;
+        made.particles[i].vy = 36;
+    }
+    recipe_spring(&made, 0, 1, 1e3, 0, 0);
+    for (uint32_t i = 0; has_other && i < 2; i++) {
+        recipe_particle(&made, 3.5 + 0.1 * i, 0.1, 1, 0);
+    }
+    if (has_other) {
+        recipe_spring(&made, 2, 3, 1e3, 0, 0);
+    }
+    const mspring_network_def def = support_def(0, 1);
+    mspring_network *network = recipe_network(&made, &def);
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.heights = heights;
+    floor.height_count = COUNT_OF(heights);
+    floor.heights_x = -2;
+    floor.spacing = 1;
+    check_ok(mspring_network_set_floor(network, &floor));
+    mspring_network *clone; // has memory of its own
+    check_ok(mspring_network_clone(network, NULL, &clone));
+    support_steps(network, 1, 1.0 / 60);
+    const support_point end = support_position(network, 0);
+    mspring_network_destroy(network);
+    support_steps(clone, 1, 1.0 / 60);
+    assert_true(support_position(clone, 0).x == end.x && support_position(clone, 0).y == end.y);
+    mspring_network_destroy(clone);
+    recipe_free(&made);
+    return end;
+}
+
+/// A body meets a ridge whatever else is in the network, and so in the same strip.
+static void a_ridge_is_met_beside_any_other_body(void **state) {
+    (void)state;
+    const support_point alone = pass_ridge(false), beside = pass_ridge(true);
+    assert_true(alone.x == beside.x && alone.y == beside.y);
+    assert_true(alone.x < 0.25); // 0.3 m without the ridge
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_begun_anew_takes_flow_back),
@@ -268,6 +313,7 @@ int main(void) {
         cmocka_unit_test(is_taken_again_if_it_was_not_out_of_reach),
         cmocka_unit_test(is_met_after_a_long_fall),
         cmocka_unit_test(what_is_loaded_flies_the_same_way),
+        cmocka_unit_test(a_ridge_is_met_beside_any_other_body),
     };
     return cmocka_run_group_tests_name("floor_reach", tests, NULL, NULL);
 }

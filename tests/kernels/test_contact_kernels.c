@@ -212,8 +212,15 @@ static void check_lane(const float *found, const float *expected, uint32_t lane)
     }
 }
 
-static bool is_clear(const block *b, uint32_t i, const mspringi_bounds *clear) {
-    return b->x[i] >= clear->min_x && b->x[i] <= clear->max_x && b->y[i] >= clear->min_y && b->y[i] <= clear->max_y;
+static bool is_in(float x, float y, const mspringi_bounds *clear) {
+    return x >= clear->min_x && x <= clear->max_x && y >= clear->min_y && y <= clear->max_y;
+}
+
+/// True if a floor passes over a particle: it ends where it is clear and, with heights, starts there, too.
+static bool is_clear(const mspringi_floor_args *g, const block *b, uint32_t i) {
+    const float h = (float)g->h;
+    return is_in(b->x[i], b->y[i], &g->clear) &&
+           (g->height_count == 0 || is_in(b->x[i] - h * b->vx[i], b->y[i] - h * b->vy[i], &g->clear));
 }
 
 static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
@@ -233,7 +240,7 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
             block expected = before;
             const bool is_left = left >> i & 1;
             left_count += is_left && mspringi_slack_of(ground.damping) == 0;
-            if (!is_left && !is_clear(&before, i, &clear) && before.active_inverse_mass[i] > 0.0f) {
+            if (!is_left && !is_clear(&ground, &before, i) && before.active_inverse_mass[i] > 0.0f) {
                 mspringi_floor_args one = ground;
                 if (n % 5 == 0) {
                     be_precise(&one, &expected);
@@ -316,7 +323,7 @@ static void silt(void **state) {
             block to = before;
             const double taken = mspringi_silt_damping(&floor.heights, (double)before.x[i], (double)before.y[i], h);
             float stays_vx = to.vx[i], stays_vy = to.vy[i];
-            if (!is_clear(&before, i, &clear) && before.active_inverse_mass[i] > 0.0f) {
+            if (!is_clear(&ground, &before, i) && before.active_inverse_mass[i] > 0.0f) {
                 brake_one(&ground, taken, &to.vx[i], &to.x[i], &to.low_x[i], &to.impulse_x[i],
                           is_seen ? &to.from_vx[i] : &stays_vx, before.inverse_mass[i]);
                 brake_one(&ground, taken, &to.vy[i], &to.y[i], &to.low_y[i], &to.impulse_y[i],

@@ -357,7 +357,7 @@ static void bounce(spec_network *network, const substep *now, uint32_t p) {
     spec_motion *m = &network->motions[p];
     const double x = (double)m->place.x - (double)network->starts[p].x;
     const double y = (double)m->place.y - (double)network->starts[p].y;
-    network->unspecified += b.passes_ridge || fabs(x) > network->way || fabs(y) > network->way;
+    network->unspecified += fabs(x) > network->way || fabs(y) > network->way;
     put_coordinate(b.x, network->grid, &m->place.x, &m->low_place.x);
     put_coordinate(b.y, network->grid, &m->place.y, &m->low_place.y);
     m->velocity = (spec_vector){(float)b.vx, (float)b.vy};

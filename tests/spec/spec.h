@@ -141,7 +141,6 @@ bool spec_changes_dt(const spec_network *network, double dt);
 /// Outcome of a substep's floor for a particle.
 typedef struct spec_bounce {
     bool acts;
-    bool passes_ridge;
     double x, y, vx, vy;
 } spec_bounce;
 

@@ -2,13 +2,9 @@
 /// Specification of the floor: half-planes and a field of heights in explicit substeps, in double precision, for
 /// particles with springs.
 ///
-/// Not specified, and counted in spec_network.unspecified. Here the floor acts on both:
-/// - A particle that would end outside, but passes below a height on its way. The library leaves it alone if its
-/// survey
-///   before the step takes the place where it would end for clear. That depends on the particles swept with it.
-/// - A particle that forces drive farther than twice the way at the largest speed before the step. The library may
-/// miss
-///   that it was in the floor, if it is out again at the end of the step.
+/// Not specified, and counted in spec_network.unspecified: a particle that forces drive farther than twice the way
+/// at the largest speed before the step. Here the floor acts on it. The library may miss that it was in the floor,
+/// if it is out again at the end of the step.
 ///
 /// SPDX-License-Identifier: MIT
 #include "spec.h"
@@ -298,8 +294,5 @@ spec_bounce spec_touch_floor(const spec_network *network, uint32_t p, double h, 
         b = start;
         acts = bounce_with_care(network, h, &network->before[p], &b);
     }
-    const spec_vector end = network->motions[p].place;
-    const bool passes_ridge =
-        acts && has_heights && distance_from_all(network, (double)end.x, (double)end.y) >= 0.0;
-    return (spec_bounce){acts, passes_ridge, b.x + h * b.vx, b.y + h * b.vy, b.vx, b.vy};
+    return (spec_bounce){acts, b.x + h * b.vx, b.y + h * b.vy, b.vx, b.vy};
 }
