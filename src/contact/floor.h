@@ -74,6 +74,7 @@ typedef struct mspringi_floor {
     mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
     mspringi_field previous_impulse; ///< [slot_count] in the step before, while a step is taken
     size_t slot_count;
+    double seconds;                   ///< length of the substeps of the last survey or of the step out of reach, s
     double reach;                     ///< twice the longest way in the substeps of the last survey, m
     bool is_near;                     ///< a strip may reach the surface in them, or there was no survey yet
     bool is_missed;                   ///< forces moved a strip farther than the survey assumed: repeat the step
@@ -142,7 +143,9 @@ bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi
 /// hold for each strip, too.
 bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds);
 
-/// True if no particle did reach it in that step of substeps of h, by bounds from the outcome.
+/// True if no particle did reach it in that step of substeps of h, by bounds from the outcome. A particle is missed
+/// that forces drive in and out of it in between, if all are as slow before and after the step as the survey
+/// assumed.
 bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen);
 
 /// The same test for other surfaces in local coordinates, with their own safe box. way: longest way at the largest

@@ -166,6 +166,7 @@ void mspringi_floor_update_clearances(mspring_network *network, double seconds) 
     }
     const double reach = reach_of(network, fastest, seconds);
     floor->reach = reach;
+    floor->seconds = seconds;
     floor->is_near = network->sleep.sleeping > 0; // these strips are left out
     for (uint32_t i = 0; i < t->strip_count; ++i) {
         if (mspringi_sleep_state_of_strip(network, &t->strips[i]) == MSPRINGI_ASLEEP)
@@ -259,10 +260,13 @@ bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds) {
     mspringi_floor *floor = network->floor;
     if (floor->is_near || network->sleep.sleeping > 0)
         return false;
+    floor->seconds = seconds;
     mspringi_floor_set_origin(floor, network->origin_x, network->origin_y);
     return mspringi_safe_box_suffices(network, floor, &floor->room, seconds);
 }
 
 bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen) {
-    return mspringi_safe_box_sufficed(network, &network->floor->room, (double)h * (double)seen.speed, seen);
+    const mspringi_floor *floor = network->floor;
+    const double way = fmax((double)h, floor->seconds) * (double)seen.speed;
+    return mspringi_safe_box_sufficed(network, &floor->room, way, seen);
 }

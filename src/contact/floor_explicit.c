@@ -210,9 +210,15 @@ static slot_range row_slots_of(const mspring_network *network, const mspringi_st
     return slots_of(&t->spans[first->first_span], last->first_span + last->span_count - first->first_span);
 }
 
+// True if slots are clear, and so slow that they were throughout the substeps, if they were never faster.
 static bool is_clear(const mspring_network *network, const mspringi_strip *strip, slot_range slots) {
     const mspringi_state *s = &network->state;
-    return network->kernels->beyond(s->x, s->y, slots.first, slots.end, clear_of(network, strip)) == slots.end;
+    const mspringi_largest_fn largest = network->kernels->largest;
+    const size_t count = slots.end - slots.first;
+    const double way = 0.5 * network->floor->reach, seconds = network->floor->seconds;
+    return network->kernels->beyond(s->x, s->y, slots.first, slots.end, clear_of(network, strip)) == slots.end &&
+           seconds * (double)largest(s->vx + slots.first, NULL, count).value <= way &&
+           seconds * (double)largest(s->vy + slots.first, NULL, count).value <= way;
 }
 
 static bool is_strip_clear(const mspring_network *network, const mspringi_strip *strip) {

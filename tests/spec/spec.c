@@ -355,9 +355,6 @@ static void bounce(spec_network *network, const substep *now, uint32_t p) {
         return;
     }
     spec_motion *m = &network->motions[p];
-    const double x = (double)m->place.x - (double)network->starts[p].x;
-    const double y = (double)m->place.y - (double)network->starts[p].y;
-    network->unspecified += fabs(x) > network->way || fabs(y) > network->way;
     put_coordinate(b.x, network->grid, &m->place.x, &m->low_place.x);
     put_coordinate(b.y, network->grid, &m->place.y, &m->low_place.y);
     m->velocity = (spec_vector){(float)b.vx, (float)b.vy};
@@ -478,23 +475,14 @@ static void stop_creeping(const spec_network *network) {
     }
 }
 
-// Surfaces in local coordinates, and the way that particles may go: see spec_floor.c.
-static void begin_floor(spec_network *network, double seconds) {
-    double fastest = 0.0;
+// Move surfaces to local coordinates.
+static void begin_floor(spec_network *network) {
     for (uint32_t i = 0; i < network->plane_count; i++) {
         spec_plane *plane = &network->planes[i];
         plane->offset = plane->nx * (network->origin_x - plane->x) + plane->ny * (network->origin_y - plane->y);
     }
     network->heights.local_x = network->heights.x - network->origin_x;
     network->heights.local_y = network->heights.y - network->origin_y;
-    for (uint32_t p = 0; p < network->particle_count; p++) {
-        const spec_motion *m = &network->motions[p];
-        network->starts[p] = m->place;
-        fastest = fmax(fastest, fmax(fabs((double)m->velocity.x), fabs((double)m->velocity.y)));
-    }
-    const double gravity = fabs((double)network->gravity_x) + fabs((double)network->gravity_y);
-    network->way = 2.0 * seconds * (fastest + gravity * seconds);
-    network->unspecified = 0;
 }
 
 uint32_t spec_step(spec_network *network, double dt) {
@@ -506,7 +494,7 @@ uint32_t spec_step(spec_network *network, double dt) {
     // After an edit the last substep may have been too long a time for springs to act; gravity gets all of it.
     const float h = (float)(time / (double)count), any_shape = (float)fmin(network->any_shape, (double)FLT_MAX);
     const step all = {count, h, fminf(network->lag, fmaxf(any_shape, h)), network->lag};
-    begin_floor(network, (double)h * (double)count);
+    begin_floor(network);
     for (uint32_t i = 0; i < count; i++) {
         const substep now = substep_of(network, &all, i);
         take_substep(network, &now);

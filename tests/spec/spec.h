@@ -85,7 +85,6 @@ typedef struct spec_network {
     uint32_t particle_count, spring_count, plane_count;
     spec_motion *motions;        ///< [particle_count]
     spec_motion *before;         ///< [particle_count] scratch: before the substep
-    spec_vector *starts;         ///< [particle_count] scratch: places before the step
     spec_vector *forces;         ///< [particle_count] of the host in the next step, N
     const float *inverse_masses; ///< [particle_count] 1/kg, 0 if pinned
     const spec_sums *sums;       ///< [particle_count]
@@ -105,12 +104,10 @@ typedef struct spec_network {
     double any_shape; ///< longest substep that is stable in any shape, s
     double origin_x, origin_y;
     float look_distance; ///< m, distance of the first particle at which the origin is looked at
-    double way;          ///< m, that particles may go in a step before the library may miss a floor
     float lag;           ///< s, length of the last substep; 0: velocities are of now
     double dt;           ///< of the last step, s; 0: none
     uint32_t uneven;     ///< steps for which dt counts as uneven
     spec_pace pace;
-    uint32_t unspecified; ///< times in a step that the floor acted where it is not specified: see spec_floor.c
 } spec_network;
 
 /// Begin: set what follows from the springs, after spec_place() of all particles. Their first places are not on the
