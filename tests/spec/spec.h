@@ -110,8 +110,7 @@ typedef struct spec_network {
     spec_pace pace;
 } spec_network;
 
-/// Begin: set what follows from the springs, after spec_place() of all particles. Their first places are not on the
-/// grid of a precise network.
+/// Begin: set what follows from the springs, before spec_place() of all particles.
 void spec_begin(spec_network *network);
 
 /// Set any_shape, after a change of masses or springs.

@@ -155,8 +155,8 @@ static void make_specification(specification *to, const scene *s, uint32_t subst
         to->x[p] = s->particles[p].x;
         to->y[p] = s->particles[p].y;
     }
-    place_all(to);
     spec_begin(n);
+    place_all(to);
     for (uint32_t p = 0; p < s->particle_count; p++) {
         spec_set_velocity(n, p, s->particles[p].vx, s->particles[p].vy);
     }
