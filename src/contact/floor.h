@@ -82,9 +82,8 @@ typedef struct mspringi_floor {
     mspringi_bounds clear;            ///< box without surface around the network before an implicit substep
     mspringi_floor_contact *contacts; ///< of an implicit substep
     uint32_t contact_count, contact_capacity;
-    bool is_in_coarse; ///< contacts are in the coarse matrix
-    bool has_impulse;  ///< impulse is not all zero
-    bool had_impulse;  ///< previous_impulse is not all zero
+    bool has_impulse; ///< impulse is not all zero
+    bool had_impulse; ///< previous_impulse is not all zero
 } mspringi_floor;
 
 /// Particle with its start and its end of a substep, local coordinates.

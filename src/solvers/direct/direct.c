@@ -431,6 +431,7 @@ static void fill_twice(const mspring_network *network, double added) {
             add_any_edges(n, (uint32_t)first);
     }
     mspringi_holds_add_nodes(network, node.xx, node.xy, node.yy);
+    mspringi_constraints_add_nodes(&network->constraints, node.xx, node.xy, node.yy);
     for (size_t i = 0; i < slots; ++i) {
         const double mass = n->mass[i] > 0.0f ? (double)n->mass[i] : PINNED_MASS;
         const double on_top = mass + added * (node.xx[i] + node.yy[i]);
@@ -454,7 +455,7 @@ static bool solve_in_double(mspring_network *network) {
         fill_twice(network, added);
         if (mspringi_cholesky_double_factor_solve(&d->twice, &matrix, x, y) != MSPRING_NONE)
             continue;
-        mspringi_direct_hold_angles(network, x, y);
+        mspringi_direct_solve_elements(network, x, y, true);
         for (size_t i = 0; i < slots; ++i) {
             n->displacement.x[i] = (float)x[i];
             n->displacement.y[i] = (float)y[i];
@@ -473,7 +474,7 @@ static void solve_more_in_double(const mspring_network *network, mspringi_field 
         y[i] = (double)field.y[i];
     }
     mspringi_cholesky_double_solve(&d->twice, x, y);
-    mspringi_direct_hold_angles(network, x, y);
+    mspringi_direct_solve_elements(network, x, y, false);
     for (size_t i = 0; i < slots; ++i) {
         field.x[i] = (float)x[i];
         field.y[i] = (float)y[i];
@@ -493,8 +494,8 @@ void mspringi_direct_solve(mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t slots = mspringi_slot_count(network);
     const bool is_soft = finish_diagonal(&n->system, slots);
-    // Without angles particles go far, and nearly all of that is taken back.
-    const bool in_single = is_soft && network->areas.hinge_count == 0 && solve_in_single(network);
+    // Without elements particles go far, and nearly all of that is taken back.
+    const bool in_single = is_soft && network->constraints.element_count == 0 && solve_in_single(network);
     if (!in_single && !solve_in_double(network)) {
         // Numbers overflowed: see to it that the step is refused.
         mspring_id named = 0;

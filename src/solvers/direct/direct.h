@@ -34,7 +34,7 @@ typedef struct mspringi_direct {
     mspringi_blocks_float edges;        ///< [place_count]
     mspringi_blocks_double edges_twice; ///< [place_count, rounded up to whole blocks]
     mspringi_blocks_double nodes_twice; ///< [slots + 1 + MSPRINGI_WIDTH]
-    double *solution, *answer;          ///< [slots + 1] x, then y; and what angles do to it
+    double *solution, *answer;          ///< [slots + 1] x, then y; and what constraints do to it
 } mspringi_direct;
 
 /// Solve with the factor that there is: what was the right-hand side is the solution.
@@ -65,8 +65,9 @@ void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *fr
 void mspringi_direct_solve(mspring_network *network);
 /// Add to its solution what rows between bodies do; see direct_contact.c.
 void mspringi_direct_hold_bodies(mspring_network *network, mspringi_solve_fn solve);
-/// Add to a solution without angles what these do; see direct_angles.c.
-void mspringi_direct_hold_angles(const mspring_network *network, double *x, double *y);
+/// Add the forces of elements to a solution without them (constraints/direct_constraints.c). is_whole: it is the
+/// system's, not the response to forces of others.
+void mspringi_direct_solve_elements(const mspring_network *network, double *x, double *y, bool is_whole);
 #else // no table of solvers leads here
 static inline void mspringi_direct_begin(mspringi_direct_builder *making, mspringi_direct *direct,
                                          mspring_network *network) {

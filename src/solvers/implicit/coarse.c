@@ -238,7 +238,7 @@ void mspringi_coarse_add_rank_one(mspringi_coarse *coarse, const mspringi_coarse
     for (uint32_t i = 0; i < pulls->count; ++i)
         for (uint32_t j = 0; j < i; ++j)
             is_whole &= has_place(coarse, pulls->tiles[i], pulls->tiles[j]);
-    // (a + b + c)^2 is at most three times the sum of the squares.
+    // The square of a sum of n is at most n times the sum of the squares.
     for (uint32_t i = 0; i < pulls->count; ++i)
         add_outer(coarse, pulls, i, i, is_whole ? 1.0 : (double)pulls->count);
     for (uint32_t i = 0; is_whole && i < pulls->count; ++i)

@@ -80,7 +80,7 @@ static void factor_coarse(const mspring_network *network) {
         return;
     mspringi_coarse_complete(&n->coarse, &n->tiles, &parts);
     mspringi_holds_stiffen(network);
-    mspringi_angles_add_to_coarse(network);
+    mspringi_constraints_stiffen(network);
     mspringi_coarse_factor(&n->coarse);
 }
 

@@ -1,17 +1,8 @@
-/// Stiffness of floor contacts and grips in the linear system: a diagonal block for each particle.
+/// Stiffness of floor contacts in the linear system: a diagonal block for each particle.
 #include "solvers/implicit/implicit_terms.h"
 
-// The next, from number at on: the floor's, then the grips'.
 static bool next_hold(const mspring_network *network, uint32_t *at, mspringi_slot_stiffness *hold) {
-    const uint32_t floor = network->floor ? network->floor->contact_count : 0;
-    while (*at < floor + network->grips.count) {
-        const uint32_t i = (*at)++;
-        const bool holds =
-            i < floor ? mspringi_floor_hold(network, i, hold) : mspringi_grip_hold(network, i - floor, hold);
-        if (holds)
-            return true;
-    }
-    return false;
+    return network->floor && *at < network->floor->contact_count && mspringi_floor_hold(network, (*at)++, hold);
 }
 
 double mspringi_holds_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {

@@ -157,9 +157,7 @@ bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass) 
     if (pass == 0 && find_contacts(network, (double)h, fall) && !n->uses_euler &&
         n->integrator != MSPRING_INTEGRATOR_EULER)
         return false;
-    if (floor->contact_count > 0 || floor->is_in_coarse)
-        n->age = 0;
-    floor->is_in_coarse = floor->contact_count > 0;
+    n->has_constraints_in_coarse |= floor->contact_count > 0;
     for (uint32_t i = 0; pass == 0 && i < floor->contact_count; ++i) {
         mspringi_floor_contact *c = &floor->contacts[i];
         const double own = (double)n->mass[c->slot] + (double)n->system.xx[c->slot] + (double)n->system.yy[c->slot];

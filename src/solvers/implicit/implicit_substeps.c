@@ -46,7 +46,7 @@ static bool add_terms(const mspringi_implicit_substep *substep, uint32_t pass) {
     mspring_network *network = substep->network;
     if (network->floor && !mspringi_floor_add_terms(network, substep->h, pass))
         return false;
-    mspringi_grips_add_terms(network, substep->h, pass);
+    mspringi_constraints_add_terms(network, substep->h, pass);
     mspringi_implicit_contact_add_terms(network, substep->h);
     return true;
 }
@@ -61,8 +61,10 @@ static bool review_terms(mspring_network *network, float alpha, uint32_t pass) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const bool by_floor = network->floor && mspringi_floor_update_active_set(network, alpha, pass);
     const bool by_bodies = mspringi_implicit_contact_update_active_set(network, alpha, pass);
+    const bool by_others = mspringi_constraints_update_active_set(&network->constraints, n->displacement,
+                                                                  n->direction, n->is_direct ? 0.0f : alpha) != 0;
     n->restarts_with_euler = by_bodies && must_begin_anew(n) && mspringi_implicit_contact_is_active(network);
-    return mspringi_grips_update_active_set(network, alpha) || by_floor || by_bodies;
+    return by_floor || by_bodies || by_others;
 }
 
 // Solve with the terms of floor, grips and contact. Return false if the substep must begin again.
@@ -91,8 +93,10 @@ static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_
         if (!n->must_solve_again)
             break;
     }
-    if (member->index == 0)
+    if (member->index == 0) {
+        mspringi_grips_store_forces(network);
         mspringi_implicit_contact_store_impulses(network, substep->h);
+    }
     mspringi_team_barrier(member);
     return true;
 }
@@ -135,6 +139,10 @@ static void judge_team(mspringi_implicit *n, uint32_t sleeps) {
 
 static void run_team(mspringi_implicit_substep *substep) {
     mspringi_tasks *tasks = substep->progress ? substep->network->tasks : NULL;
+    mspringi_implicit *n = mspringi_implicit_of(substep->network);
+    mspringi_constraints_begin(&substep->network->constraints);
+    n->age = n->has_constraints_in_coarse ? 0 : n->age;
+    n->has_constraints_in_coarse = false;
     mspringi_integrator_prepare(substep);
     mspringi_tasks_run(tasks, substep->workers, run_share, substep);
 }

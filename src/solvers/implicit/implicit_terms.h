@@ -2,8 +2,8 @@
 /// Further terms of an implicit substep's linear system: floor, grips, contact, areas, angle springs.
 ///
 ///   implicit_floor.c    floor
+///   holds.c             its stiffness, by particle
 ///   implicit_grips.c    grips
-///   holds.c             stiffness of both, by particle
 ///   implicit_contact.c  contact between bodies
 ///   implicit_areas.c    areas
 ///   implicit_angles.c   angle springs
@@ -18,6 +18,7 @@
 
 #include "contact/contacts.h"
 #include "contact/floor.h"
+#include "solvers/constraints/constraint_services.h"
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
 
@@ -26,9 +27,8 @@ typedef struct mspringi_slot_stiffness {
     uint32_t slot;
     double xx, xy, yy;
 } mspringi_slot_stiffness;
-/// Find that of floor contact or grip i. False: inactive, or not in the system.
+/// Find that of floor contact i. False: inactive.
 bool mspringi_floor_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold);
-bool mspringi_grip_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold);
 
 /// Add all of them to a product, to the coarse matrix, or to the diagonal blocks in double precision. @return
 /// mspringi_holds_multiply(): their share in from . to
@@ -49,9 +49,9 @@ bool mspringi_floor_update_active_set(mspring_network *network, float alpha, uin
 /// Add the contact forces of a substep of h to the floor's impulses.
 void mspringi_floor_record_impulses(const mspring_network *network, float h);
 
-/// Add grips of particles with springs to the system, and clamp those whose force exceeds their limit.
-void mspringi_grips_add_terms(mspring_network *network, float h, uint32_t pass);
-bool mspringi_grips_update_active_set(mspring_network *network, float alpha);
+/// List the constraints of grips of particles with springs, as predicted. Accept the forces of the last solution.
+void mspringi_grips_list_constraints(mspring_network *network, float h);
+void mspringi_grips_store_forces(mspring_network *network);
 /// Record the impulses of grips in an accepted interval of h.
 void mspringi_grips_count_impulses(mspring_network *network, float h);
 /// Add the impulses of grips to the components' sums after a substep.
@@ -61,13 +61,13 @@ void mspringi_grips_add_impulses(const mspringi_budget_sums *all);
 void mspringi_areas_add_terms(const mspring_network *network);
 void mspringi_areas_add_energy(const mspring_network *network);
 
-/// Add angles with springs along both arms to the system, a product or the coarse matrix. Their energies count with
-/// the areas'.
-void mspringi_angles_add_terms(const mspring_network *network);
-/// Find the next such angle from *at on; NULL at the end.
-mspringi_hinge *mspringi_next_hinge(const mspring_network *network, size_t *at);
-double mspringi_angles_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-void mspringi_angles_add_to_coarse(const mspring_network *network);
+/// List the constraints of angles with springs along both arms, as predicted. Their energies count with the areas'.
+void mspringi_angles_list_constraints(mspring_network *network);
+
+/// Add the constraints of elements to an assembled system, those of others in the pass-th solution of a substep of
+/// h. The first calls in a substep list them.
+void mspringi_elements_add_terms(mspring_network *network);
+void mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass);
 
 /// Correct the components' energies by one-way springs that were assumed on the wrong side.
 void mspringi_one_way_correct_energy(const mspringi_budget_sums *all);

@@ -1,0 +1,192 @@
+#include "solvers/constraints/constraint_services.h"
+
+#include <math.h>
+
+#include "solvers/implicit/implicit.h"
+#include "solvers/implicit/implicit_terms.h"
+#include "store/areas.h"
+
+typedef mspringi_constraint constraint;
+typedef mspringi_jacobian_entry entry;
+
+/* ---------------------------------------------------------------------------------------------------- products */
+
+// J u. A closed constraint takes differences from its first entry, so rigid motion gives exactly 0.
+static inline double gather(const constraint *c, const entry *e, mspringi_field from) {
+    const uint32_t count = c->count;
+    double sum = 0.0;
+    if (!c->is_closed) {
+        for (uint32_t i = 0; i < count; ++i) {
+            sum += e[i].x * (double)from.x[e[i].slot];
+            sum += e[i].y * (double)from.y[e[i].slot];
+        }
+        return sum;
+    }
+    const double x = (double)from.x[e->slot], y = (double)from.y[e->slot];
+    for (uint32_t i = 1; i < count; ++i) {
+        sum += e[i].x * ((double)from.x[e[i].slot] - x);
+        sum += e[i].y * ((double)from.y[e[i].slot] - y);
+    }
+    return sum;
+}
+
+// to += J' f. The first entry of a closed constraint gets minus the sum of what the others got, after rounding.
+// Forces of an angle with short arms may exceed single precision, those that iterations find do not.
+static inline void scatter(const constraint *c, const entry *e, double force, mspringi_field to, bool is_clamped) {
+    const uint32_t count = c->count;
+    double x = 0.0, y = 0.0;
+    for (uint32_t i = c->is_closed; i < count; ++i) {
+        const float fx = is_clamped ? mspringi_bounded(force * e[i].x) : (float)(force * e[i].x);
+        const float fy = is_clamped ? mspringi_bounded(force * e[i].y) : (float)(force * e[i].y);
+        to.x[e[i].slot] += fx;
+        to.y[e[i].slot] += fy;
+        x += (double)fx;
+        y += (double)fy;
+    }
+    if (!c->is_closed)
+        return;
+    to.x[e->slot] -= is_clamped ? mspringi_bounded(x) : (float)x;
+    to.y[e->slot] -= is_clamped ? mspringi_bounded(y) : (float)y;
+}
+
+double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to) {
+    double sum = 0.0;
+    for (const constraint *c = all->list; c < all->list + all->count; ++c) {
+        const entry *e = all->entries + c->first;
+        if (!mspringi_constraint_is_stiff(c))
+            continue;
+        const double way = gather(c, e, from), force = c->stiffness * way;
+        scatter(c, e, force, to, false);
+        sum += way * force;
+    }
+    return sum;
+}
+
+/* ---------------------------------------------------------------------------------------------------- assembly */
+
+void mspringi_constraints_assemble(const mspringi_constraints *all, uint32_t first, uint32_t end,
+                                   const mspringi_system *to, bool is_factored) {
+    for (uint32_t i = first; i < end; ++i) {
+        const constraint *c = &all->list[i];
+        const entry *entries = all->entries + c->first;
+        if (!mspringi_constraint_is_active(c) || (is_factored && mspringi_constraint_is_unknown(c)))
+            continue;
+        const bool is_stiff = mspringi_constraint_is_stiff(c);
+        scatter(c, entries, is_stiff ? c->effort : c->bound_force, (mspringi_field){to->force_x, to->force_y},
+                true);
+        for (const entry *e = entries; e < entries + c->count && is_stiff; ++e) {
+            to->xx[e->slot] += mspringi_bounded(c->stiffness * e->x * e->x);
+            to->xy[e->slot] += mspringi_bounded(c->stiffness * e->x * e->y);
+            to->yy[e->slot] += mspringi_bounded(c->stiffness * e->y * e->y);
+        }
+    }
+}
+
+void mspringi_constraints_add_nodes(const mspringi_constraints *all, double *xx, double *xy, double *yy) {
+    for (uint32_t i = all->element_count; i < all->count; ++i) {
+        const constraint *c = &all->list[i];
+        const entry *e = &all->entries[c->first];
+        if (c->count != 1 || !mspringi_constraint_is_stiff(c))
+            continue;
+        xx[e->slot] += c->stiffness * e->x * e->x;
+        xy[e->slot] += c->stiffness * e->x * e->y;
+        yy[e->slot] += c->stiffness * e->y * e->y;
+    }
+}
+
+// Let a constraint act on the tiles of its particles. False: these are too many.
+static bool pull_tiles(const mspringi_implicit *n, const constraint *c, const entry *entries,
+                       mspringi_coarse_rank_one *pulls) {
+    const double root = sqrt(c->stiffness);
+    for (const entry *e = entries; e < entries + c->count; ++e) {
+        const uint32_t tile = n->tiles.of_slot[e->slot];
+        const double x = root * e->x, y = root * e->y;
+        uint32_t i = 0;
+        if (tile == MSPRING_NONE)
+            continue;
+        while (i < pulls->count && pulls->tiles[i] != tile)
+            ++i;
+        if (i == MSPRINGI_COARSE_PULLS)
+            return false;
+        if (i == pulls->count) {
+            pulls->count++;
+            pulls->tiles[i] = tile;
+            pulls->rows[i][0] = pulls->rows[i][1] = pulls->rows[i][2] = 0.0;
+        }
+        pulls->rows[i][0] += x;
+        pulls->rows[i][1] += y;
+        pulls->rows[i][2] += (double)n->arm.x[e->slot] * y - (double)n->arm.y[e->slot] * x;
+    }
+    return true;
+}
+
+void mspringi_constraints_stiffen(const mspring_network *network) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_constraints *all = &network->constraints;
+    for (const constraint *c = all->list; c < all->list + all->count; ++c) {
+        mspringi_coarse_rank_one pulls;
+        pulls.count = 0;
+        if (mspringi_constraint_is_stiff(c) && pull_tiles(n, c, all->entries + c->first, &pulls))
+            mspringi_coarse_add_rank_one(&n->coarse, &pulls);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- active set */
+
+// Update a pair from the forces that it would have if it were stiff. Return true if it acts otherwise from now on.
+static bool update_pair(constraint *c, double force, double other) {
+    const double size = sqrt(force * force + other * other);
+    if (c->activity == MSPRINGI_AT_BOUND)
+        return false;
+    const bool is_more = size > c->bound;
+    c[0].force = c[0].bound_force = is_more ? force * (c->bound / size) : force;
+    c[1].force = c[1].bound_force = is_more ? other * (c->bound / size) : other;
+    c[0].activity = c[1].activity = is_more ? MSPRINGI_AT_BOUND : MSPRINGI_STIFF;
+    return is_more;
+}
+
+uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspringi_field u,
+                                                mspringi_field direction, float alpha) {
+    uint32_t changed = 0;
+    for (uint32_t i = all->element_count; i < all->count; ++i) {
+        constraint *c = &all->list[i];
+        double force[2];
+        for (uint32_t k = 0; k < (c->bounded == MSPRINGI_BOUND_OF_PAIR ? 2u : 1u); ++k) {
+            const entry *entries = all->entries + c[k].first;
+            double way = gather(c + k, entries, u);
+            if (alpha != 0.0f)
+                way += (double)alpha * gather(c + k, entries, direction);
+            force[k] = c[k].effort - c[k].stiffness * way;
+        }
+        bool has_changed = false;
+        if (c->bounded == MSPRINGI_BOUND_OF_PAIR)
+            has_changed = update_pair(c, force[0], force[1]);
+        changed |= (uint32_t)has_changed << c->kind;
+    }
+    return changed;
+}
+
+/* ------------------------------------------------------------------------------------------- terms of a substep */
+
+void mspringi_elements_add_terms(mspring_network *network) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    mspringi_constraints *all = &network->constraints;
+    if (!all->has_elements) {
+        mspringi_angles_list_constraints(network);
+        all->element_count = all->count;
+        all->element_entry_count = all->entry_count;
+        all->has_elements = true;
+    }
+    mspringi_constraints_assemble(all, 0, all->element_count, &n->system, n->is_direct);
+}
+
+void mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    mspringi_constraints *all = &network->constraints;
+    if (pass == 0)
+        mspringi_grips_list_constraints(network, h);
+    // They come and go: the coarse matrix is factored in each substep with them, and in the one after the last.
+    n->has_constraints_in_coarse |= all->count > all->element_count;
+    n->age = n->has_constraints_in_coarse ? 0 : n->age;
+    mspringi_constraints_assemble(all, all->element_count, all->count, &n->system, n->is_direct);
+}

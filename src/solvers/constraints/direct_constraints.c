@@ -1,0 +1,173 @@
+/// Constraints for the factored system.
+///
+/// A constraint joins particles that no spring need join, so the factor has no entry for it, unless it has one
+/// particle: then it is on the diagonal. The forces of the others are unknowns. With G = root(stiffness) J, and d
+/// without these constraints, the forces root(stiffness) t follow from
+///
+///     (G A^-1 G' + 1) t = effort / root(stiffness) - G d,
+///
+/// solved by conjugate gradients, each of which takes one solution with the factor.
+///
+/// In a straight beam springs do not resist what angles do, and A is the masses M there. So the preconditioner of
+/// elements is G M^-1 G' + 1, of which each knows those two before it: the band of a beam whose angles were added
+/// in their order.
+#include <math.h>
+#include <string.h>
+
+#include "solvers/direct/direct.h"
+#include "solvers/implicit/implicit.h"
+
+/// Most iterations; and the product of residuals at which they end, as a part of the first one. What only masses
+/// hold gives way by 10^10 times as much as it does with its elements.
+#define MOST_ITERATIONS 1000u
+#define LEAST_PRODUCT 1e-24
+
+/// Most entries of a constraint in the preconditioner's band.
+#define MOST_SHARED 4u
+
+typedef mspringi_multiplier multiplier;
+
+/* -------------------------------------------------------------------------------------------- the preconditioner
+ */
+
+static const mspringi_constraint *constraint_of(const mspringi_constraints *all, const multiplier *m) {
+    return &all->list[m->constraint];
+}
+
+// Response of one to a unit force of the other, if particles are free.
+static double shared(const mspring_network *network, const multiplier *one, const multiplier *other) {
+    const mspringi_constraints *all = &network->constraints;
+    const float *mass = mspringi_implicit_of(network)->mass;
+    const mspringi_constraint *c = constraint_of(all, one), *o = constraint_of(all, other);
+    const mspringi_jacobian_entry *a = all->entries + c->first, *b = all->entries + o->first;
+    double sum = 0.0;
+    for (uint32_t i = 0; i < c->count; ++i)
+        for (uint32_t j = 0; j < o->count; ++j)
+            if (a[i].slot == b[j].slot && mass[a[i].slot] > 0.0f)
+                sum += (a[i].x * b[j].x + a[i].y * b[j].y) / (double)mass[a[i].slot];
+    return one->root * other->root * sum;
+}
+
+static bool is_in_band(const mspring_network *network, const multiplier *m) {
+    const mspringi_constraint *c = constraint_of(&network->constraints, m);
+    return c->bounded == MSPRINGI_UNBOUNDED && c->count <= MOST_SHARED;
+}
+
+// Factor it, as L D L'. No pivot is below 1, if what the band lacks would not make it so.
+static void factor(const mspring_network *network, multiplier *list, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i) {
+        multiplier *m = &list[i];
+        m->beside[0] = m->beside[1] = 0.0;
+        m->pivot = 1.0;
+        if (!is_in_band(network, m))
+            continue;
+        double pivot = 1.0 + shared(network, m, m);
+        if (i > 1 && is_in_band(network, &list[i - 2])) {
+            const double product = shared(network, m, &list[i - 2]);
+            m->beside[1] = product / list[i - 2].pivot;
+            pivot -= product * m->beside[1];
+        }
+        if (i > 0 && is_in_band(network, &list[i - 1])) {
+            const double product = shared(network, m, &list[i - 1]) -
+                                   (i > 1 ? m->beside[1] * list[i - 2].pivot * list[i - 1].beside[0] : 0.0);
+            m->beside[0] = product / list[i - 1].pivot;
+            pivot -= product * m->beside[0];
+        }
+        m->pivot = pivot > 1.0 ? pivot : 1.0;
+    }
+}
+
+// Apply it to the residuals. Return residual . solution.
+static double precondition(multiplier *list, uint32_t count) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < count; ++i) {
+        list[i].solution = list[i].residual;
+        for (uint32_t k = 0; k < 2 && k < i; ++k)
+            list[i].solution -= list[i].beside[k] * list[i - 1 - k].solution;
+    }
+    for (uint32_t i = count; i-- > 0;) {
+        list[i].solution /= list[i].pivot;
+        for (uint32_t k = 0; k < 2 && i + 1 + k < count; ++k)
+            list[i].solution -= list[i + 1 + k].beside[k] * list[i + 1 + k].solution;
+        sum += list[i].residual * list[i].solution;
+    }
+    return sum;
+}
+
+/* ----------------------------------------------------------------------------------------------------- iteration
+ */
+
+// List the unknowns. Return their number.
+static uint32_t list_unknowns(const mspringi_constraints *all) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < all->element_count; ++i)
+        if (mspringi_constraint_is_unknown(&all->list[i]))
+            all->multipliers[count++] = (multiplier){.constraint = i, .root = sqrt(all->list[i].stiffness)};
+    return count;
+}
+
+// G u, of differences where the constraint is closed.
+static double gather(const mspringi_constraints *all, const multiplier *m, const double *x, const double *y) {
+    const mspringi_constraint *c = constraint_of(all, m);
+    const mspringi_jacobian_entry *e = all->entries + c->first, *end = e + c->count;
+    const double from_x = c->is_closed ? x[e->slot] : 0.0, from_y = c->is_closed ? y[e->slot] : 0.0;
+    double sum = 0.0;
+    for (e += c->is_closed; e < end; ++e)
+        sum += e->x * (x[e->slot] - from_x) + e->y * (y[e->slot] - from_y);
+    return m->root * sum;
+}
+
+// Find the response of particles and constraints to the forces of the search. Return search . answer.
+static double answer_search(const mspring_network *network, multiplier *list, uint32_t count, double *x,
+                            double *y) {
+    const mspringi_constraints *all = &network->constraints;
+    double sum = 0.0;
+    memset(x, 0, 2 * (mspringi_slot_count(network) + 1) * sizeof *x);
+    for (const multiplier *m = list; m < list + count; ++m) {
+        const mspringi_jacobian_entry *e = all->entries + constraint_of(all, m)->first;
+        const mspringi_jacobian_entry *end = e + constraint_of(all, m)->count;
+        for (; e < end; ++e) {
+            x[e->slot] += m->search * m->root * e->x;
+            y[e->slot] += m->search * m->root * e->y;
+        }
+    }
+    mspringi_cholesky_double_solve(&mspringi_implicit_of(network)->direct.twice, x, y);
+    mspringi_implicit_of(network)->solves++;
+    for (multiplier *m = list; m < list + count; ++m) {
+        m->answer = gather(all, m, x, y) + m->search;
+        sum += m->search * m->answer;
+    }
+    return sum;
+}
+
+void mspringi_direct_solve_elements(const mspring_network *network, double *x, double *y, bool is_whole) {
+    const mspringi_constraints *all = &network->constraints;
+    const size_t nodes = mspringi_slot_count(network) + 1;
+    double *const to_x = mspringi_implicit_of(network)->direct.answer, *const to_y = to_x + nodes;
+    multiplier *const list = all->multipliers;
+    const uint32_t count = list_unknowns(all);
+    if (count == 0)
+        return;
+    factor(network, list, count);
+    for (multiplier *m = list; m < list + count; ++m)
+        m->residual = (is_whole ? constraint_of(all, m)->effort / m->root : 0.0) - gather(all, m, x, y);
+    double product = precondition(list, count);
+    const double least = LEAST_PRODUCT * product;
+    for (multiplier *m = list; m < list + count; ++m)
+        m->search = m->solution;
+    for (uint32_t iteration = 0; iteration < MOST_ITERATIONS && product > least; ++iteration) {
+        const double alpha = product / answer_search(network, list, count, to_x, to_y);
+        if (!(alpha > 0.0))
+            break;
+        for (size_t i = 0; i < nodes; ++i) {
+            x[i] += alpha * to_x[i];
+            y[i] += alpha * to_y[i];
+        }
+        for (multiplier *m = list; m < list + count; ++m)
+            m->residual -= alpha * m->answer;
+        const double next = precondition(list, count), beta = next / product;
+        for (multiplier *m = list; m < list + count; ++m)
+            m->search = m->solution + beta * m->search;
+        product = next;
+    }
+}
