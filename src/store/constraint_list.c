@@ -5,6 +5,7 @@
 bool mspringi_constraints_allocate(mspring_network *network) {
     mspringi_constraints *all = &network->constraints;
     void *list = all->list, *entries = all->entries, *multipliers = all->multipliers;
+    const size_t elements = all->reserved[MSPRINGI_ANGLE_CONSTRAINT];
     size_t count = 0, entry_count = 0;
     for (int kind = 0; kind < MSPRINGI_CONSTRAINT_KINDS; ++kind) {
         count += all->reserved[kind];
@@ -15,7 +16,7 @@ bool mspringi_constraints_allocate(mspring_network *network) {
     whole =
         whole && mspringi_grow(&network->memory, &entries, &all->entry_capacity, entry_count, sizeof *all->entries);
     all->entries = entries;
-    whole = whole && mspringi_grow(&network->memory, &multipliers, &all->multiplier_capacity, count,
+    whole = whole && mspringi_grow(&network->memory, &multipliers, &all->multiplier_capacity, elements,
                                    sizeof *all->multipliers);
     all->multipliers = multipliers;
     return whole;
@@ -49,4 +50,15 @@ mspringi_constraint *mspringi_constraint_add(mspringi_constraints *all, mspringi
     *c = (mspringi_constraint){
         .first = all->entry_count, .source = source, .kind = (uint8_t)kind, .activity = MSPRINGI_STIFF};
     return c;
+}
+
+const mspringi_constraint *mspringi_next_floor_push(const mspringi_constraints *all,
+                                                    const mspringi_constraint *after) {
+    if (all->count == all->element_count)
+        return NULL;
+    const mspringi_constraint *c = after ? after + 1 : all->list + all->element_count;
+    while (c < all->list + all->count &&
+           (c->kind != MSPRINGI_FLOOR_CONSTRAINT || c->bounded != MSPRINGI_BOUND_PUSH))
+        ++c;
+    return c < all->list + all->count ? c : NULL;
 }

@@ -25,6 +25,7 @@
 /// Owner of a constraint: `source` is an index into its list.
 typedef enum mspringi_constraint_kind {
     MSPRINGI_ANGLE_CONSTRAINT,
+    MSPRINGI_FLOOR_CONSTRAINT,
     MSPRINGI_GRIP_CONSTRAINT,
     MSPRINGI_CONSTRAINT_KINDS
 } mspringi_constraint_kind;
@@ -32,6 +33,8 @@ typedef enum mspringi_constraint_kind {
 /// Bound of a constraint's force.
 typedef enum mspringi_constraint_bound {
     MSPRINGI_UNBOUNDED,
+    MSPRINGI_BOUND_PUSH,     ///< f >= 0; an idle one becomes active where it would push by more than `bound`
+    MSPRINGI_BOUND_FRICTION, ///< |f| is at most `bound` times the force of the constraint before, a push
     MSPRINGI_BOUND_OF_PAIR,  ///< together with the next constraint: a vector of length `bound` at most
     MSPRINGI_SECOND_OF_PAIR, ///< ... and this is the next one
 } mspringi_constraint_bound;
@@ -47,6 +50,7 @@ typedef struct mspringi_constraint {
     uint32_t first, count; ///< of its entries
     uint32_t source;
     uint8_t kind, bounded, activity;
+    bool was_active; ///< in the last solution
     bool
         is_closed; ///< its entries add up to 0: products take differences from the first one, and momentum is exact
     double stiffness, effort; ///< in units of the matrix and of the right-hand side
@@ -92,18 +96,30 @@ static inline void mspringi_constraint_add_entry(mspringi_constraints *all, uint
     all->list[all->count - 1].count++;
 }
 
-/// True if it has a force; if it resists motion in the matrix.
+/// True if it has a force; if it resists motion in the matrix. Friction is idle with its push.
 static inline bool mspringi_constraint_is_active(const mspringi_constraint *c) {
-    return c->activity != MSPRINGI_IDLE;
+    return c->activity != MSPRINGI_IDLE &&
+           (c->bounded != MSPRINGI_BOUND_FRICTION || c[-1].activity != MSPRINGI_IDLE);
 }
 static inline bool mspringi_constraint_is_stiff(const mspringi_constraint *c) {
-    return c->activity == MSPRINGI_STIFF;
+    return c->activity == MSPRINGI_STIFF && mspringi_constraint_is_active(c);
 }
 
 /// True if its force is an unknown beside a factored matrix, which has no entry for it: one particle's stiffness is
 /// on the diagonal.
 static inline bool mspringi_constraint_is_unknown(const mspringi_constraint *c) {
     return c->count > 1 && c->stiffness > 0.0 && mspringi_constraint_is_stiff(c);
+}
+
+/// Find the next push of the floor after one, or the first after NULL; NULL at the end.
+const mspringi_constraint *mspringi_next_floor_push(const mspringi_constraints *all,
+                                                    const mspringi_constraint *after);
+/// Force of a push's friction, which follows it; 0 without.
+static inline double mspringi_friction_of(const mspringi_constraints *all, const mspringi_constraint *push) {
+    const mspringi_constraint *next = push + 1;
+    return next < all->list + all->count && next->bounded == MSPRINGI_BOUND_FRICTION && push->was_active
+               ? next->force
+               : 0.0;
 }
 
 #endif

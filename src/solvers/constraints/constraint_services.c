@@ -1,15 +1,29 @@
 #include "solvers/constraints/constraint_services.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
-#include "store/areas.h"
+
+/// Solutions of a substep that may release constraints of a kind or let them slide; later ones only add constraints
+/// or make them stick. And the change of a bound, as a part of it, that is worth another solution.
+static const struct {
+    uint32_t free_passes;
+    double same_force;
+} kinds[MSPRINGI_CONSTRAINT_KINDS] = {
+    [MSPRINGI_FLOOR_CONSTRAINT] = {2, 0.02},
+};
 
 typedef mspringi_constraint constraint;
 typedef mspringi_jacobian_entry entry;
 
 /* ---------------------------------------------------------------------------------------------------- products */
+
+// Clamp to single precision: the guard finds what is that large. (fmin and fmax are calls.)
+static inline float clamped(double value) {
+    return value > (double)FLT_MAX ? FLT_MAX : value < -(double)FLT_MAX ? -FLT_MAX : (float)value;
+}
 
 // J u. A closed constraint takes differences from its first entry, so rigid motion gives exactly 0.
 static inline double gather(const constraint *c, const entry *e, mspringi_field from) {
@@ -36,8 +50,8 @@ static inline void scatter(const constraint *c, const entry *e, double force, ms
     const uint32_t count = c->count;
     double x = 0.0, y = 0.0;
     for (uint32_t i = c->is_closed; i < count; ++i) {
-        const float fx = is_clamped ? mspringi_bounded(force * e[i].x) : (float)(force * e[i].x);
-        const float fy = is_clamped ? mspringi_bounded(force * e[i].y) : (float)(force * e[i].y);
+        const float fx = is_clamped ? clamped(force * e[i].x) : (float)(force * e[i].x);
+        const float fy = is_clamped ? clamped(force * e[i].y) : (float)(force * e[i].y);
         to.x[e[i].slot] += fx;
         to.y[e[i].slot] += fy;
         x += (double)fx;
@@ -45,13 +59,14 @@ static inline void scatter(const constraint *c, const entry *e, double force, ms
     }
     if (!c->is_closed)
         return;
-    to.x[e->slot] -= is_clamped ? mspringi_bounded(x) : (float)x;
-    to.y[e->slot] -= is_clamped ? mspringi_bounded(y) : (float)y;
+    to.x[e->slot] -= is_clamped ? clamped(x) : (float)x;
+    to.y[e->slot] -= is_clamped ? clamped(y) : (float)y;
 }
 
 double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to) {
     double sum = 0.0;
-    for (const constraint *c = all->list; c < all->list + all->count; ++c) {
+    for (uint32_t i = 0; i < all->count; ++i) {
+        const constraint *c = &all->list[i];
         const entry *e = all->entries + c->first;
         if (!mspringi_constraint_is_stiff(c))
             continue;
@@ -75,9 +90,9 @@ void mspringi_constraints_assemble(const mspringi_constraints *all, uint32_t fir
         scatter(c, entries, is_stiff ? c->effort : c->bound_force, (mspringi_field){to->force_x, to->force_y},
                 true);
         for (const entry *e = entries; e < entries + c->count && is_stiff; ++e) {
-            to->xx[e->slot] += mspringi_bounded(c->stiffness * e->x * e->x);
-            to->xy[e->slot] += mspringi_bounded(c->stiffness * e->x * e->y);
-            to->yy[e->slot] += mspringi_bounded(c->stiffness * e->y * e->y);
+            to->xx[e->slot] += clamped(c->stiffness * e->x * e->x);
+            to->xy[e->slot] += clamped(c->stiffness * e->x * e->y);
+            to->yy[e->slot] += clamped(c->stiffness * e->y * e->y);
         }
     }
 }
@@ -123,7 +138,8 @@ static bool pull_tiles(const mspringi_implicit *n, const constraint *c, const en
 void mspringi_constraints_stiffen(const mspring_network *network) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_constraints *all = &network->constraints;
-    for (const constraint *c = all->list; c < all->list + all->count; ++c) {
+    for (uint32_t i = 0; i < all->count; ++i) {
+        const constraint *c = &all->list[i];
         mspringi_coarse_rank_one pulls;
         pulls.count = 0;
         if (mspringi_constraint_is_stiff(c) && pull_tiles(n, c, all->entries + c->first, &pulls))
@@ -133,7 +149,34 @@ void mspringi_constraints_stiffen(const mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- active set */
 
-// Update a pair from the forces that it would have if it were stiff. Return true if it acts otherwise from now on.
+// These update a constraint from the force that it would have if it were stiff. They return true if it acts
+// otherwise from now on.
+static bool update_push(constraint *c, double force, bool is_free) {
+    const bool was_stiff = c->activity == MSPRINGI_STIFF;
+    const bool is_stiff = was_stiff ? force >= 0.0 || !is_free : force > c->bound;
+    c->force = was_stiff ? force : 0.0;
+    c->activity = is_stiff ? MSPRINGI_STIFF : MSPRINGI_IDLE;
+    return is_stiff != was_stiff;
+}
+
+// Friction of a push that was idle stays as it is: its bound would be 0, and it would begin by sliding.
+static bool update_friction(constraint *c, double force, bool is_free) {
+    const double most = c->bound * fmax(c[-1].force, 0.0), before = c->bound_force;
+    if (!c[-1].was_active)
+        return false;
+    const bool slid = c->activity == MSPRINGI_AT_BOUND, is_forwards = slid ? !signbit(before) : force >= 0.0;
+    bool slides = slid;
+    if (is_free && !slid)
+        slides = fabs(force) > most;
+    else if (slid && (is_forwards ? force < 0.0 : force > 0.0))
+        slides = false;
+    c->force = slid ? before : force;
+    c->bound_force = is_forwards ? most : -most;
+    c->activity = slides ? MSPRINGI_AT_BOUND : MSPRINGI_STIFF;
+    const bool has_other_force = fabs(c->bound_force - before) > kinds[c->kind].same_force * most;
+    return c[-1].activity != MSPRINGI_IDLE && (slides != slid || (slides && is_free && has_other_force));
+}
+
 static bool update_pair(constraint *c, double force, double other) {
     const double size = sqrt(force * force + other * other);
     if (c->activity == MSPRINGI_AT_BOUND)
@@ -145,22 +188,31 @@ static bool update_pair(constraint *c, double force, double other) {
     return is_more;
 }
 
+// Force of a constraint at the solution, if it were stiff.
+static double force_at(const mspringi_constraints *all, const constraint *c, mspringi_field u,
+                       mspringi_field direction, float alpha) {
+    const entry *entries = all->entries + c->first;
+    double way = gather(c, entries, u);
+    if (alpha != 0.0f)
+        way += (double)alpha * gather(c, entries, direction);
+    return c->effort - c->stiffness * way;
+}
+
 uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspringi_field u,
-                                                mspringi_field direction, float alpha) {
+                                                mspringi_field direction, float alpha, uint32_t pass) {
     uint32_t changed = 0;
     for (uint32_t i = all->element_count; i < all->count; ++i) {
         constraint *c = &all->list[i];
-        double force[2];
-        for (uint32_t k = 0; k < (c->bounded == MSPRINGI_BOUND_OF_PAIR ? 2u : 1u); ++k) {
-            const entry *entries = all->entries + c[k].first;
-            double way = gather(c + k, entries, u);
-            if (alpha != 0.0f)
-                way += (double)alpha * gather(c + k, entries, direction);
-            force[k] = c[k].effort - c[k].stiffness * way;
-        }
+        const bool is_free = pass < kinds[c->kind].free_passes;
         bool has_changed = false;
-        if (c->bounded == MSPRINGI_BOUND_OF_PAIR)
-            has_changed = update_pair(c, force[0], force[1]);
+        c->was_active = mspringi_constraint_is_active(c);
+        if (c->bounded == MSPRINGI_BOUND_PUSH)
+            has_changed = update_push(c, force_at(all, c, u, direction, alpha), is_free);
+        else if (c->bounded == MSPRINGI_BOUND_FRICTION)
+            has_changed = update_friction(c, force_at(all, c, u, direction, alpha), is_free);
+        else if (c->bounded == MSPRINGI_BOUND_OF_PAIR)
+            has_changed =
+                update_pair(c, force_at(all, c, u, direction, alpha), force_at(all, c + 1, u, direction, alpha));
         changed |= (uint32_t)has_changed << c->kind;
     }
     return changed;
@@ -180,13 +232,17 @@ void mspringi_elements_add_terms(mspring_network *network) {
     mspringi_constraints_assemble(all, 0, all->element_count, &n->system, n->is_direct);
 }
 
-void mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass) {
+bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_constraints *all = &network->constraints;
-    if (pass == 0)
+    if (pass == 0) {
+        if (network->floor && !mspringi_floor_list_constraints(network, h))
+            return false;
         mspringi_grips_list_constraints(network, h);
+    }
     // They come and go: the coarse matrix is factored in each substep with them, and in the one after the last.
     n->has_constraints_in_coarse |= all->count > all->element_count;
     n->age = n->has_constraints_in_coarse ? 0 : n->age;
     mspringi_constraints_assemble(all, all->element_count, all->count, &n->system, n->is_direct);
+    return true;
 }

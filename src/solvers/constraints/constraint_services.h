@@ -1,9 +1,9 @@
 /// @file constraint_services.h
 /// Services for the constraints of a linear system (store/constraint_list.h), each once for all kinds.
 ///
-///   implicit_angles.c, implicit_grips.c   list the constraints of a kind
-///   constraint_services.c                 assembly, product, coarse matrix, active set
-///   direct_constraints.c                  forces as unknowns beside the direct solver's factor
+///   implicit_angles.c, implicit_floor.c, implicit_grips.c   list the constraints of a kind
+///   constraint_services.c                                   assembly, product, coarse matrix, active set
+///   direct_constraints.c                                    forces as unknowns beside the direct solver's factor
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CONSTRAINT_SERVICES_H
@@ -23,9 +23,9 @@ void mspringi_constraints_stiffen(const mspring_network *network);
 /// Add those of one particle to diagonal blocks in double precision.
 void mspringi_constraints_add_nodes(const mspringi_constraints *all, double *xx, double *xy, double *yy);
 
-/// Find the forces of the solution u + alpha direction, and update the active set. Return the kinds, as bits, whose
-/// active set has changed.
+/// Find the forces of the pass-th solution of a substep, u + alpha direction, and update the active set. Return the
+/// kinds, as bits, whose active set has changed.
 uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspringi_field u,
-                                                mspringi_field direction, float alpha);
+                                                mspringi_field direction, float alpha, uint32_t pass);
 
 #endif

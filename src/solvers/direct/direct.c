@@ -430,7 +430,6 @@ static void fill_twice(const mspring_network *network, double added) {
         else
             add_any_edges(n, (uint32_t)first);
     }
-    mspringi_holds_add_nodes(network, node.xx, node.xy, node.yy);
     mspringi_constraints_add_nodes(&network->constraints, node.xx, node.xy, node.yy);
     for (size_t i = 0; i < slots; ++i) {
         const double mass = n->mass[i] > 0.0f ? (double)n->mass[i] : PINNED_MASS;

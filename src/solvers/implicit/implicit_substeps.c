@@ -44,9 +44,8 @@ static float solve(const mspringi_implicit_substep *substep, mspringi_team_membe
 // Add the terms of floor, grips and contact. Return false if particles hit the floor.
 static bool add_terms(const mspringi_implicit_substep *substep, uint32_t pass) {
     mspring_network *network = substep->network;
-    if (network->floor && !mspringi_floor_add_terms(network, substep->h, pass))
+    if (!mspringi_constraints_add_terms(network, substep->h, pass))
         return false;
-    mspringi_constraints_add_terms(network, substep->h, pass);
     mspringi_implicit_contact_add_terms(network, substep->h);
     return true;
 }
@@ -59,12 +58,12 @@ static bool must_begin_anew(const mspringi_implicit *n) {
 // Update the active sets. Return true if one changed.
 static bool review_terms(mspring_network *network, float alpha, uint32_t pass) {
     mspringi_implicit *n = mspringi_implicit_of(network);
-    const bool by_floor = network->floor && mspringi_floor_update_active_set(network, alpha, pass);
     const bool by_bodies = mspringi_implicit_contact_update_active_set(network, alpha, pass);
-    const bool by_others = mspringi_constraints_update_active_set(&network->constraints, n->displacement,
-                                                                  n->direction, n->is_direct ? 0.0f : alpha) != 0;
+    const bool by_others =
+        mspringi_constraints_update_active_set(&network->constraints, n->displacement, n->direction,
+                                               n->is_direct ? 0.0f : alpha, pass) != 0;
     n->restarts_with_euler = by_bodies && must_begin_anew(n) && mspringi_implicit_contact_is_active(network);
-    return by_floor || by_bodies || by_others;
+    return by_bodies || by_others;
 }
 
 // Solve with the terms of floor, grips and contact. Return false if the substep must begin again.

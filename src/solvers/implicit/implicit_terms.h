@@ -2,7 +2,6 @@
 /// Further terms of an implicit substep's linear system: floor, grips, contact, areas, angle springs.
 ///
 ///   implicit_floor.c    floor
-///   holds.c             its stiffness, by particle
 ///   implicit_grips.c    grips
 ///   implicit_contact.c  contact between bodies
 ///   implicit_areas.c    areas
@@ -22,29 +21,12 @@
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
 
-/// Stiffness that holds a particle: a 2 x 2 block on the diagonal of the matrix.
-typedef struct mspringi_slot_stiffness {
-    uint32_t slot;
-    double xx, xy, yy;
-} mspringi_slot_stiffness;
-/// Find that of floor contact i. False: inactive.
-bool mspringi_floor_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold);
-
-/// Add all of them to a product, to the coarse matrix, or to the diagonal blocks in double precision. @return
-/// mspringi_holds_multiply(): their share in from . to
-double mspringi_holds_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-void mspringi_holds_stiffen(const mspring_network *network);
-void mspringi_holds_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy);
-
 /// Intervals that an implicit substep of h should have. Call mspringi_floor_save_positions() first.
 uint32_t mspringi_floor_count_intervals(const mspring_network *network, float h);
 
-/// Add floor contacts to the matrix and the right-hand side of a substep of h, assembled for the pass-th time.
-/// Return false if particles hit the floor and the substep should be one of implicit Euler.
-bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass);
-
-/// Update the active set from the solution, displacement + alpha direction. Return true if it changed.
-bool mspringi_floor_update_active_set(mspring_network *network, float alpha, uint32_t pass);
+/// List the floor's constraints as predicted. Return false if particles hit the floor and the substep should be one
+/// of implicit Euler.
+bool mspringi_floor_list_constraints(mspring_network *network, float h);
 
 /// Add the contact forces of a substep of h to the floor's impulses.
 void mspringi_floor_record_impulses(const mspring_network *network, float h);
@@ -67,7 +49,7 @@ void mspringi_angles_list_constraints(mspring_network *network);
 /// Add the constraints of elements to an assembled system, those of others in the pass-th solution of a substep of
 /// h. The first calls in a substep list them.
 void mspringi_elements_add_terms(mspring_network *network);
-void mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass);
+bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass);
 
 /// Correct the components' energies by one-way springs that were assumed on the wrong side.
 void mspringi_one_way_correct_energy(const mspringi_budget_sums *all);
