@@ -5,7 +5,7 @@
 bool mspringi_constraints_allocate(mspring_network *network) {
     mspringi_constraints *all = &network->constraints;
     void *list = all->list, *entries = all->entries, *multipliers = all->multipliers;
-    const size_t elements = all->reserved[MSPRINGI_ANGLE_CONSTRAINT];
+    const size_t unknowns = all->reserved[MSPRINGI_ANGLE_CONSTRAINT] + all->reserved[MSPRINGI_CONTACT_CONSTRAINT];
     size_t count = 0, entry_count = 0;
     for (int kind = 0; kind < MSPRINGI_CONSTRAINT_KINDS; ++kind) {
         count += all->reserved[kind];
@@ -16,7 +16,7 @@ bool mspringi_constraints_allocate(mspring_network *network) {
     whole =
         whole && mspringi_grow(&network->memory, &entries, &all->entry_capacity, entry_count, sizeof *all->entries);
     all->entries = entries;
-    whole = whole && mspringi_grow(&network->memory, &multipliers, &all->multiplier_capacity, elements,
+    whole = whole && mspringi_grow(&network->memory, &multipliers, &all->multiplier_capacity, unknowns,
                                    sizeof *all->multipliers);
     all->multipliers = multipliers;
     return whole;

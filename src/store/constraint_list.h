@@ -27,6 +27,7 @@ typedef enum mspringi_constraint_kind {
     MSPRINGI_ANGLE_CONSTRAINT,
     MSPRINGI_FLOOR_CONSTRAINT,
     MSPRINGI_GRIP_CONSTRAINT,
+    MSPRINGI_CONTACT_CONSTRAINT, ///< between bodies, or with a collider
     MSPRINGI_CONSTRAINT_KINDS
 } mspringi_constraint_kind;
 
@@ -70,7 +71,7 @@ typedef struct mspringi_multiplier {
 typedef struct mspringi_constraints {
     mspringi_constraint *list;        ///< [count]
     mspringi_jacobian_entry *entries; ///< [entry_count] of the first constraint, of the second, and so on
-    mspringi_multiplier *multipliers; ///< [capacity] of the direct solver
+    mspringi_multiplier *multipliers; ///< [multiplier_capacity] of the direct solver: elements', then others'
     size_t capacity, entry_capacity, multiplier_capacity;
     size_t reserved[MSPRINGI_CONSTRAINT_KINDS];         ///< most constraints of a kind
     size_t reserved_entries[MSPRINGI_CONSTRAINT_KINDS]; ///< and their entries
@@ -105,10 +106,14 @@ static inline bool mspringi_constraint_is_stiff(const mspringi_constraint *c) {
     return c->activity == MSPRINGI_STIFF && mspringi_constraint_is_active(c);
 }
 
-/// True if its force is an unknown beside a factored matrix, which has no entry for it: one particle's stiffness is
-/// on the diagonal.
+/// True if it is on the diagonal of the matrix. A collider's contact is not: in a factor of single precision a
+/// stack on pinned ground trembled at 0.055 m/s instead of 0.002, in double precision at 0.015.
+static inline bool mspringi_constraint_is_diagonal(const mspringi_constraint *c) {
+    return c->count == 1 && c->kind != MSPRINGI_CONTACT_CONSTRAINT;
+}
+/// True if its force is an unknown beside a factored matrix, which has no entry for it.
 static inline bool mspringi_constraint_is_unknown(const mspringi_constraint *c) {
-    return c->count > 1 && c->stiffness > 0.0 && mspringi_constraint_is_stiff(c);
+    return !mspringi_constraint_is_diagonal(c) && c->stiffness > 0.0 && mspringi_constraint_is_stiff(c);
 }
 
 /// Find the next push of the floor after one, or the first after NULL; NULL at the end.

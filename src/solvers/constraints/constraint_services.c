@@ -13,6 +13,7 @@ static const struct {
     double same_force;
 } kinds[MSPRINGI_CONSTRAINT_KINDS] = {
     [MSPRINGI_FLOOR_CONSTRAINT] = {2, 0.02},
+    [MSPRINGI_CONTACT_CONSTRAINT] = {12, 0.1},
 };
 
 typedef mspringi_constraint constraint;
@@ -101,7 +102,7 @@ void mspringi_constraints_add_nodes(const mspringi_constraints *all, double *xx,
     for (uint32_t i = all->element_count; i < all->count; ++i) {
         const constraint *c = &all->list[i];
         const entry *e = &all->entries[c->first];
-        if (c->count != 1 || !mspringi_constraint_is_stiff(c))
+        if (!mspringi_constraint_is_diagonal(c) || !mspringi_constraint_is_stiff(c))
             continue;
         xx[e->slot] += c->stiffness * e->x * e->x;
         xy[e->slot] += c->stiffness * e->x * e->y;
@@ -135,6 +136,7 @@ static bool pull_tiles(const mspringi_implicit *n, const constraint *c, const en
     return true;
 }
 
+// With those between bodies: each of them took an iteration or two, and stacks twice as long.
 void mspringi_constraints_stiffen(const mspring_network *network) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_constraints *all = &network->constraints;
@@ -218,6 +220,13 @@ uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspri
     return changed;
 }
 
+bool mspringi_contact_constraint_is_active(const mspringi_constraints *all) {
+    for (uint32_t i = all->count; i-- > all->element_count && all->list[i].kind == MSPRINGI_CONTACT_CONSTRAINT;)
+        if (mspringi_constraint_is_active(&all->list[i]))
+            return true;
+    return false;
+}
+
 /* ------------------------------------------------------------------------------------------- terms of a substep */
 
 void mspringi_elements_add_terms(mspring_network *network) {
@@ -232,6 +241,13 @@ void mspringi_elements_add_terms(mspring_network *network) {
     mspringi_constraints_assemble(all, 0, all->element_count, &n->system, n->is_direct);
 }
 
+static bool is_any_active(const mspringi_constraints *all) {
+    for (uint32_t i = all->element_count; i < all->count; ++i)
+        if (mspringi_constraint_is_active(&all->list[i]))
+            return true;
+    return false;
+}
+
 bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_constraints *all = &network->constraints;
@@ -239,10 +255,12 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
         if (network->floor && !mspringi_floor_list_constraints(network, h))
             return false;
         mspringi_grips_list_constraints(network, h);
+        mspringi_implicit_contact_list_constraints(network, h);
     }
-    // They come and go: the coarse matrix is factored in each substep with them, and in the one after the last.
-    n->has_constraints_in_coarse |= all->count > all->element_count;
-    n->age = n->has_constraints_in_coarse ? 0 : n->age;
+    // They come and go: the coarse matrix is factored in each solution with active ones, and in the one after that.
+    const bool are_active = is_any_active(all);
+    n->age = are_active || n->has_constraints_in_coarse ? 0 : n->age;
+    n->has_constraints_in_coarse = are_active;
     mspringi_constraints_assemble(all, all->element_count, all->count, &n->system, n->is_direct);
     return true;
 }

@@ -1,9 +1,10 @@
 /// @file constraint_services.h
 /// Services for the constraints of a linear system (store/constraint_list.h), each once for all kinds.
 ///
-///   implicit_angles.c, implicit_floor.c, implicit_grips.c   list the constraints of a kind
-///   constraint_services.c                                   assembly, product, coarse matrix, active set
-///   direct_constraints.c                                    forces as unknowns beside the direct solver's factor
+///   implicit_angles.c, implicit_floor.c,     list the constraints of a kind
+///   implicit_grips.c, implicit_contact.c
+///   constraint_services.c                    assembly, product, coarse matrix, active set
+///   direct_constraints.c                     forces as unknowns beside the direct solver's factor
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CONSTRAINT_SERVICES_H
@@ -27,5 +28,7 @@ void mspringi_constraints_add_nodes(const mspringi_constraints *all, double *xx,
 /// kinds, as bits, whose active set has changed.
 uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspringi_field u,
                                                 mspringi_field direction, float alpha, uint32_t pass);
+/// True if a contact between bodies, or with a collider, is active.
+bool mspringi_contact_constraint_is_active(const mspringi_constraints *all);
 
 #endif

@@ -214,12 +214,6 @@ void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *til
     }
 }
 
-void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, double xy, double yy, double x,
-                         double y) {
-    const double turn_x = x * xy - y * xx, turn_y = x * yy - y * xy;
-    add_diagonal(rows_of(coarse, tile, tile), xx, xy, yy, turn_x, turn_y, x * turn_y - y * turn_x);
-}
-
 static bool has_place(const mspringi_coarse *coarse, uint32_t tile, uint32_t other) {
     return tile >= other ? other >= coarse->first[tile] : tile >= coarse->first[other];
 }

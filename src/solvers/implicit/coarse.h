@@ -50,10 +50,6 @@ void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *til
 void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *tiles,
                               const mspringi_coarse_parts *parts);
 
-/// Add the stiffness that holds a particle at (x, y) from its tile's mass centre to the tile's diagonal block.
-void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, double xy, double yy, double x,
-                         double y);
-
 /// Vector over the rigid motions of a few tiles, at most so many.
 #define MSPRINGI_COARSE_PULLS 8u
 typedef struct mspringi_coarse_rank_one {

@@ -62,11 +62,8 @@ static inline bool mspringi_implicit_contact_is_near(const mspring_network *netw
 /// substep should have.
 bool mspringi_implicit_contact_begin(mspring_network *network, float h);
 uint32_t mspringi_implicit_contact_count_intervals(mspring_network *network, float h);
-/// Add active constraints to the system or a product, test for active ones, and update the active set.
-void mspringi_implicit_contact_add_terms(mspring_network *network, float h);
-double mspringi_implicit_contact_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-bool mspringi_implicit_contact_is_active(const mspring_network *network);
-bool mspringi_implicit_contact_update_active_set(mspring_network *network, float alpha, uint32_t pass);
+/// List their constraints as predicted.
+void mspringi_implicit_contact_list_constraints(mspring_network *network, float h);
 /// Accept the last solution: store impulses, and apply them to particles without springs.
 void mspringi_implicit_contact_store_impulses(mspring_network *network, float h);
 /// Push deep overlaps apart after a substep.
@@ -80,12 +77,5 @@ void mspringi_implicit_contact_count_impulses(mspring_network *network, float h)
 void mspringi_implicit_contact_push_free_particles(const mspring_network *network);
 /// Add contact impulses to the components' sums after a substep.
 void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all);
-
-/// True if a constraint sticks; displacement of a field along the shares; a force along them, added to a field.
-bool mspringi_implicit_constraint_sticks(const mspringi_implicit_constraint *hold);
-double mspringi_implicit_contact_gather(const mspring_network *network, mspringi_implicit_constraint *hold,
-                                        double (*shares)[2], mspringi_field field);
-void mspringi_implicit_contact_scatter(const mspring_network *network, mspringi_implicit_constraint *hold,
-                                       double (*shares)[2], double force, mspringi_field to);
 
 #endif
