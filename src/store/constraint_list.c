@@ -4,7 +4,7 @@
 
 bool mspringi_constraints_allocate(mspring_network *network) {
     mspringi_constraints *all = &network->constraints;
-    void *list = all->list, *entries = all->entries, *multipliers = all->multipliers;
+    void *list = all->list, *entries = all->entries, *multipliers = all->multipliers, *active = all->active;
     const size_t unknowns = all->reserved[MSPRINGI_ANGLE_CONSTRAINT] + all->reserved[MSPRINGI_CONTACT_CONSTRAINT];
     size_t count = 0, entry_count = 0;
     for (int kind = 0; kind < MSPRINGI_CONSTRAINT_KINDS; ++kind) {
@@ -19,6 +19,8 @@ bool mspringi_constraints_allocate(mspring_network *network) {
     whole = whole && mspringi_grow(&network->memory, &multipliers, &all->multiplier_capacity, unknowns,
                                    sizeof *all->multipliers);
     all->multipliers = multipliers;
+    whole = whole && mspringi_grow(&network->memory, &active, &all->active_capacity, count, sizeof *all->active);
+    all->active = active;
     return whole;
 }
 
@@ -38,7 +40,7 @@ bool mspringi_constraints_reserve(mspring_network *network, mspringi_constraint_
 }
 
 void mspringi_constraints_begin(mspringi_constraints *all) {
-    all->count = all->entry_count = all->element_count = all->element_entry_count = 0;
+    all->count = all->entry_count = all->active_count = all->element_count = all->element_entry_count = 0;
     all->has_elements = false;
 }
 

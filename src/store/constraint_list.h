@@ -68,14 +68,22 @@ typedef struct mspringi_multiplier {
     double beside[2], pivot, solution; ///< factor of the preconditioner's band, and its solution for the residual
 } mspringi_multiplier;
 
+/// Constraint that is in the matrix, as its product needs it: most of the listed ones are idle.
+typedef struct mspringi_active_constraint {
+    double stiffness;
+    uint32_t first; ///< of its entries
+    uint32_t shape; ///< twice their number; 1 more: it is closed
+} mspringi_active_constraint;
+
 typedef struct mspringi_constraints {
-    mspringi_constraint *list;        ///< [count]
-    mspringi_jacobian_entry *entries; ///< [entry_count] of the first constraint, of the second, and so on
-    mspringi_multiplier *multipliers; ///< [multiplier_capacity] of the direct solver: elements', then others'
-    size_t capacity, entry_capacity, multiplier_capacity;
+    mspringi_constraint *list;          ///< [count]
+    mspringi_jacobian_entry *entries;   ///< [entry_count] of the first constraint, of the second, and so on
+    mspringi_multiplier *multipliers;   ///< [multiplier_capacity] of the direct solver: elements', then others'
+    mspringi_active_constraint *active; ///< [active_count] in the order of the list
+    size_t capacity, entry_capacity, multiplier_capacity, active_capacity;
     size_t reserved[MSPRINGI_CONSTRAINT_KINDS];         ///< most constraints of a kind
     size_t reserved_entries[MSPRINGI_CONSTRAINT_KINDS]; ///< and their entries
-    uint32_t count, entry_count;
+    uint32_t count, entry_count, active_count;
     uint32_t element_count, element_entry_count; ///< those without bounds, at the beginning
     bool has_elements;                           ///< these are listed for this substep
 } mspringi_constraints;

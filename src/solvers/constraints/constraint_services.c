@@ -64,16 +64,55 @@ static inline void scatter(const constraint *c, const entry *e, double force, ms
     to.y[e->slot] -= is_clamped ? clamped(y) : (float)y;
 }
 
-double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to) {
-    double sum = 0.0;
+void mspringi_constraints_activate(mspringi_constraints *all) {
+    all->active_count = 0;
     for (uint32_t i = 0; i < all->count; ++i) {
         const constraint *c = &all->list[i];
-        const entry *e = all->entries + c->first;
-        if (!mspringi_constraint_is_stiff(c))
-            continue;
-        const double way = gather(c, e, from), force = c->stiffness * way;
-        scatter(c, e, force, to, false);
-        sum += way * force;
+        if (c->count > 0 && mspringi_constraint_is_stiff(c))
+            all->active[all->active_count++] =
+                (mspringi_active_constraint){c->stiffness, c->first, c->count << 1 | c->is_closed};
+    }
+}
+
+// One particle: the floor, grips, colliders.
+static inline double multiply_one(const entry *e, double stiffness, mspringi_field from, mspringi_field to) {
+    const double way = e->x * (double)from.x[e->slot] + e->y * (double)from.y[e->slot], force = stiffness * way;
+    to.x[e->slot] += (float)(force * e->x);
+    to.y[e->slot] += (float)(force * e->y);
+    return way * force;
+}
+
+// A point and the ends of an edge.
+static inline double multiply_three(const entry *e, double stiffness, mspringi_field from, mspringi_field to) {
+    const uint32_t a = e[0].slot, b = e[1].slot, c = e[2].slot;
+    const double way = e[0].x * (double)from.x[a] + e[0].y * (double)from.y[a] + e[1].x * (double)from.x[b] +
+                       e[1].y * (double)from.y[b] + e[2].x * (double)from.x[c] + e[2].y * (double)from.y[c];
+    const double force = stiffness * way;
+    to.x[a] += (float)(force * e[0].x);
+    to.y[a] += (float)(force * e[0].y);
+    to.x[b] += (float)(force * e[1].x);
+    to.y[b] += (float)(force * e[1].y);
+    to.x[c] += (float)(force * e[2].x);
+    to.y[c] += (float)(force * e[2].y);
+    return way * force;
+}
+
+// With the active ones only, and loops for one and for three particles, contact takes 0.80 to 0.90 of the time.
+double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < all->active_count; ++i) {
+        const mspringi_active_constraint *a = &all->active[i];
+        const entry *e = all->entries + a->first;
+        if (a->shape == 2 * 1) {
+            sum += multiply_one(e, a->stiffness, from, to);
+        } else if (a->shape == 2 * 3) {
+            sum += multiply_three(e, a->stiffness, from, to);
+        } else {
+            const constraint c = {.count = a->shape >> 1, .is_closed = a->shape & 1};
+            const double way = gather(&c, e, from), force = a->stiffness * way;
+            scatter(&c, e, force, to, false);
+            sum += way * force;
+        }
     }
     return sum;
 }
@@ -111,10 +150,10 @@ void mspringi_constraints_add_nodes(const mspringi_constraints *all, double *xx,
 }
 
 // Let a constraint act on the tiles of its particles. False: these are too many.
-static bool pull_tiles(const mspringi_implicit *n, const constraint *c, const entry *entries,
+static bool pull_tiles(const mspringi_implicit *n, const mspringi_active_constraint *a, const entry *entries,
                        mspringi_coarse_rank_one *pulls) {
-    const double root = sqrt(c->stiffness);
-    for (const entry *e = entries; e < entries + c->count; ++e) {
+    const double root = sqrt(a->stiffness);
+    for (const entry *e = entries; e < entries + (a->shape >> 1); ++e) {
         const uint32_t tile = n->tiles.of_slot[e->slot];
         const double x = root * e->x, y = root * e->y;
         uint32_t i = 0;
@@ -140,11 +179,10 @@ static bool pull_tiles(const mspringi_implicit *n, const constraint *c, const en
 void mspringi_constraints_stiffen(const mspring_network *network) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_constraints *all = &network->constraints;
-    for (uint32_t i = 0; i < all->count; ++i) {
-        const constraint *c = &all->list[i];
+    for (uint32_t i = 0; i < all->active_count; ++i) {
         mspringi_coarse_rank_one pulls;
         pulls.count = 0;
-        if (mspringi_constraint_is_stiff(c) && pull_tiles(n, c, all->entries + c->first, &pulls))
+        if (pull_tiles(n, &all->active[i], all->entries + all->active[i].first, &pulls))
             mspringi_coarse_add_rank_one(&n->coarse, &pulls);
     }
 }
@@ -237,6 +275,7 @@ void mspringi_elements_add_terms(mspring_network *network) {
         all->element_count = all->count;
         all->element_entry_count = all->entry_count;
         all->has_elements = true;
+        mspringi_constraints_activate(all);
     }
     mspringi_constraints_assemble(all, 0, all->element_count, &n->system, n->is_direct);
 }
@@ -259,6 +298,7 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
     }
     // They come and go: the coarse matrix is factored in each solution with active ones, and in the one after that.
     const bool are_active = is_any_active(all);
+    mspringi_constraints_activate(all);
     n->age = are_active || n->has_constraints_in_coarse ? 0 : n->age;
     n->has_constraints_in_coarse = are_active;
     mspringi_constraints_assemble(all, all->element_count, all->count, &n->system, n->is_direct);

@@ -17,6 +17,8 @@
 /// whose forces are unknowns.
 void mspringi_constraints_assemble(const mspringi_constraints *all, uint32_t first, uint32_t end,
                                    const mspringi_system *to, bool is_factored);
+/// List those that are in the matrix: after each change of the list or of the active set.
+void mspringi_constraints_activate(mspringi_constraints *all);
 /// to += J' stiffness J from. Return from . J' stiffness J from.
 double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to);
 /// Add them to the coarse matrix of the network's implicit solver.

@@ -251,9 +251,8 @@ double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team
     mspringi_implicit *n = mspringi_implicit_of(network);
     multiply_panels(network, member);
     mspringi_team_barrier(member);
-    const bool has_terms = network->constraints.count > 0;
-    const bool has_others =
-        network->topology.irregular_blocks > 0 || network->topology.irregular_count > 0 || has_terms;
+    const bool has_others = network->topology.irregular_blocks > 0 || network->topology.irregular_count > 0 ||
+                            network->constraints.active_count > 0;
     if (has_others) {
         if (member->index == 0)
             n->irregular_product = multiply_irregular(network, n->direction, n->product) +
