@@ -339,7 +339,9 @@ typedef enum mspring_integrator {
 /// mspring_network_stable_dt()). For the implicit and the direct solver 1. mspring_step_info reports the number. If
 /// all springs are relative, it is 1: set a number to have them firmer. For 600 steps after dt has changed, it is the
 /// number whose substeps are closest in length to the last ones, within 0.4 to 0.8 of what is stable: up to 2.5 times as
-/// many. Stable is meant of small motion; mspring_network_step() says what else makes energy.
+/// many. Stable is meant of small motion. In violent motion, in which the ends of a spring pass by a quarter of its length
+/// in a substep, it takes more, up to most_work times as many; a step that needs even more has MSPRING_STEP_FEWER. (Not
+/// with relative springs, which would become firmer.)
 #define MSPRING_SUBSTEPS_AUTO 0xffffffffu
 
 /// substeps for the same number, but substeps keep their length while dt varies: a step takes the nearest whole number
@@ -363,6 +365,8 @@ typedef struct mspring_solver_def {
                             ///< 256; 0, the default: chosen by the plan
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
                             ///< if the network turns little in them; 0, the default: 1
+    uint32_t most_work; ///< times the substeps of calm motion that MSPRING_SUBSTEPS_AUTO and _EVEN may take in violent
+                        ///< motion, at most MSPRING_MAX_SUBSTEPS; default 4; 0: up to max_substeps
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
@@ -382,10 +386,11 @@ typedef enum mspring_simd {
 enum {
     MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0,  ///< springs may get damping later, though none has any now
     MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1, ///< relative springs may be added later, though there is none now
-    /// Lengths of springs and velocities have two words in explicit steps. The energy of what nothing damps then
-    /// stays, gravity is right to 1e-6 at any number of substeps, and stiff springs far from the local origin do not
-    /// tremble. A step takes 1.7 to 2.2 times as long; each particle takes 17 bytes more. In implicit and direct steps
-    /// second words of positions always count. Strains for breaking and stress use the first words.
+    /// Velocities have two words: gravity is right to 1e-6 at any number of substeps, with every solver. In explicit
+    /// steps lengths of springs have two words, too: the energy of what nothing damps then stays, and stiff springs far
+    /// from the local origin do not tremble. An explicit step takes 1.7 to 2.2 times as long; each particle takes 17
+    /// bytes more. In implicit and direct steps second words of positions always count. Strains for breaking and stress
+    /// use the first words.
     MSPRING_NETWORK_PRECISE = 1u << 2
 };
 
@@ -434,7 +439,8 @@ typedef struct mspring_settings {
 
 /// A network at the start. Fill with mspring_network_def_init() first.
 ///
-/// It has all fields of mspring_settings and of mspring_solver_def, with the same meanings and defaults.
+/// It has the fields of mspring_settings and of mspring_solver_def, with the same meanings and defaults. Of most_work
+/// the network has the default; mspring_network_set_solver() sets it.
 typedef struct mspring_network_def {
     uint32_t struct_size;
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks is no
@@ -628,9 +634,14 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_se
 ///
 /// Pass equal dt. The explicit solver keeps another energy at each length of substep. A dt that differs from step to
 /// step, as a frame's time does, therefore adds energy where nothing damps; no guard sees it. If dt must vary, damp
-/// (springs, or global_damping), or use MSPRING_SUBSTEPS_AUTO, or set substeps that keep h = dt / substeps below 0.7 of
+/// (springs, or global_damping), or use MSPRING_SUBSTEPS_EVEN, or set substeps that keep h = dt / substeps below 0.7 of
 /// any_shape (mspring_network_stable_dt()): then it grows more slowly. Motion so violent that neighbours pass over a third
-/// of a spring's length in a substep adds energy, too: take more substeps.
+/// of a spring's length in a substep adds energy, too: MSPRING_SUBSTEPS_AUTO takes more substeps for it, a number of
+/// your own should.
+///
+/// The first kick of an explicit step lasts for half of the substep before, too. So a dt that falls to a hundredth may
+/// set bodies at rest on a floor moving at gravity times that half (4 cm/s from 1/30 to 1e-6 s with four substeps
+/// before).
 /// @param dt  s, > 0; as a float, dt / substeps must be finite and at least 1.2e-38
 /// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork();
 ///          LIMIT if contact finds more pairs than its capacity, or compares too many (mspring_contact_def)
@@ -642,7 +653,8 @@ enum {
     MSPRING_STEP_CLAMPED = 1u << 1,  ///< with clamped strain rates (MSPRING_GUARD_CLAMP, _CLAMP_BOUNDS)
     MSPRING_STEP_PUT_BACK = 1u << 2, ///< particles were put back into the bounds (MSPRING_GUARD_CLAMP_BOUNDS)
     MSPRING_STEP_RETRIED = 1u << 3,  ///< with more substeps than were set (MSPRING_GUARD_RETRY)
-    MSPRING_STEP_ASLEEP = 1u << 4    ///< all of the network slept: nothing was computed
+    MSPRING_STEP_ASLEEP = 1u << 4,   ///< all of the network slept: nothing was computed
+    MSPRING_STEP_FEWER = 1u << 5 ///< with fewer substeps than its violent motion needs (mspring_solver_def.most_work)
 };
 
 /// Report of the last step, and of all steps so far. Set struct_size first.
@@ -729,7 +741,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_fl
     const mspring_network *network, mspring_floor_def *def);
 
 /// Read the impulses (N s) that the floor gave to particles in the last step.
-/// Divided by dt they are mean forces. Without a floor they are 0.
+/// Divided by dt they are mean forces, but not in an explicit step after one of another dt: its first impulses last for
+/// half of the substep before and half of their own. Without a floor they are 0.
 /// @param x, y, stride  as of mspring_network_get_positions()
 /// @threads shared   @allocates never   @errors ID, ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_floor_impulses(

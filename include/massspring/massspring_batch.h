@@ -146,7 +146,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_observ
 /// Signal i is that of springs[i]. Signal 1 is the MSPRING_REST_LENGTH of now. An actuator that is no more
 /// keeps the rest length that it has. Clones have actuators, and snapshots hold their rest lengths and signals. Before
 /// you load a snapshot, set the same actuators.
-/// @param springs  [count], each once, no welds
+/// @param springs  [count], each once, no welds; rest lengths of 1e-12 to 4e10 m
 /// @param count    0: no actuators; then springs may be NULL
 /// @param changes  in how many even parts a step takes a rest length to its signal, 1 to 256; at most one in a substep.
 ///                 1: at once, as the step begins. More are smoother, and cost as hooks before so many substeps do.

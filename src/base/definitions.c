@@ -1,6 +1,7 @@
 /// Defaults of all public definitions, and the table of all public structs.
 #include <math.h>
 
+#include "base/definitions.h"
 #include "base/structs.h"
 
 // Springs that never break, yield or count as stressed.
@@ -25,7 +26,7 @@ static const mspring_rope_def default_rope_def = {
     .from = MSPRING_NONE, .to = MSPRING_NONE, .segment_count = 1, .mass = 1.0f, .slack = 1.0f, NO_LIMITS};
 static const mspring_mesh_def default_mesh_def = {.area_density = 1.0f, NO_LIMITS};
 static const mspring_disc_def default_disc_def = {.ring_count = 1, .radius = 1.0, .area_density = 1.0f, NO_LIMITS};
-static const mspring_solver_def default_solver_def = {SOLVER};
+static const mspring_solver_def default_solver_def = {SOLVER, .most_work = MSPRINGI_MOST_WORK};
 static const mspring_settings default_settings = {SETTINGS};
 static const mspring_network_def default_network_def = {
     .simd_level = MSPRING_SIMD_AUTO, .worker_count = 1, SETTINGS, SOLVER};

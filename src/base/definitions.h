@@ -7,6 +7,9 @@
 
 #include <massspring/massspring.h>
 
+/// Default of mspring_solver_def.most_work.
+#define MSPRINGI_MOST_WORK 4u
+
 /// Initial settings of a network.
 static inline mspring_settings mspringi_settings_of(const mspring_network_def *def) {
     return (mspring_settings){.struct_size = sizeof(mspring_settings),
@@ -29,7 +32,8 @@ static inline mspring_solver_def mspringi_solver_of(const mspring_network_def *d
                                 .integrator = def->integrator,
                                 .iterations = def->iterations,
                                 .tile_size = def->tile_size,
-                                .coarse_period = def->coarse_period};
+                                .coarse_period = def->coarse_period,
+                                .most_work = MSPRINGI_MOST_WORK};
 }
 
 #endif

@@ -16,6 +16,9 @@
 /// Most rounds of added constraints and further sweeps in an interval.
 #define MAX_ROUNDS 8
 
+/// Work of a substep for each of its constraints that is not counted: what intervals take that are not divided.
+#define WORK_OF_CONSTRAINT 256u
+
 static void begin(const mspring_network *network, const mspringi_contact_nodes *k) {
     for (uint32_t i = 0; i < k->particle_count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
@@ -127,7 +130,10 @@ static void solve_in_intervals(const mspring_network *network, mspringi_contacts
             (void)mspringi_contact_make_constraints(network, contacts, piece, 0.0, MSPRINGI_MAX_PENDING);
         is_made = false;
         keep_velocities(k);
-        if (!solve(network, contacts, piece) && cuts < MAX_CUTS && left < MAX_INTERVALS) {
+        const bool is_solved = solve(network, contacts, piece);
+        if (mspringi_contact_is_too_much(contacts))
+            return;
+        if (!is_solved && cuts < MAX_CUTS && left < MAX_INTERVALS) {
             restore_velocities(k);
             left = 2 * left < MAX_INTERVALS ? 2 * left : MAX_INTERVALS;
             ++cuts;
@@ -158,6 +164,7 @@ bool mspringi_contact_solve_nodes(const mspring_network *network, mspringi_conta
     const double fastest = mspringi_contact_make_constraints(network, contacts, h, 0.0, MSPRINGI_MAX_PENDING);
     if (contacts->constraint_count == 0)
         return false;
+    contacts->most_work += WORK_OF_CONSTRAINT * (uint64_t)contacts->constraint_count;
     mspringi_floor_support_find(network, contacts);
     const double thicknesses = h * fastest / contacts->thickness;
     solve_in_intervals(network, contacts, h,

@@ -98,13 +98,9 @@ static const mspringi_array_entry members[] = {
     VIEW(outline.at),
     VIEW(outline.body),
     ARRAY(cells.first),
-    ARRAY(cells.sorted),
-    VIEW(cells.below),
-    VIEW(cells.long_edges),
+    ARRAY(cells.long_edges),
     VIEW(cells.found),
-    ARRAY(cells.row),
-    ARRAY(cells.middle_x),
-    VIEW(cells.middle_y),
+    ARRAY(cells.edges),
     ARRAY(list),
     ARRAY(seen_x),
     VIEW(seen_y),
@@ -198,7 +194,6 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
 static bool reserve_edges(mspringi_contacts *made, mspringi_memory *memory, size_t nodes, size_t springs) {
     mspringi_outline *o = &made->outline;
     mspringi_edge_grid *c = &made->cells;
-    double **const middle[] = {&c->middle_x, &c->middle_y};
     const size_t edges = nodes + springs;
     made->edge_capacity = edges;
     c->bucket_capacity = 1;
@@ -207,17 +202,15 @@ static bool reserve_edges(mspringi_contacts *made, mspringi_memory *memory, size
     o->is_edge = mspringi_alloc(memory, springs, sizeof *o->is_edge);
     o->a = mspringi_alloc(memory, 4 * edges + 3 * nodes + 1, sizeof *o->a);
     c->first = mspringi_alloc(memory, (size_t)c->bucket_capacity + 1, sizeof *c->first);
-    c->sorted = mspringi_alloc(memory, 4 * edges + 1, sizeof *c->sorted);
-    c->row = mspringi_alloc(memory, edges, sizeof *c->row);
-    if (!o->is_edge || !o->a || !c->first || !c->sorted || !c->row || !reserve_doubles(memory, edges, middle, 2))
+    c->edges = mspringi_alloc(memory, edges, sizeof *c->edges);
+    c->long_edges = mspringi_alloc(memory, 2 * edges + 1, sizeof *c->long_edges);
+    if (!o->is_edge || !o->a || !c->first || !c->edges || !c->long_edges)
         return false;
     o->b = o->a + edges;
     o->at = o->b + edges;
     o->points = o->at + 2 * edges;
     o->body = o->points + nodes;
     o->first = o->body + nodes;
-    c->below = c->sorted + edges;
-    c->long_edges = c->below + edges;
     c->found = c->long_edges + edges;
     return true;
 }

@@ -51,7 +51,7 @@ typedef struct mspringi_outline {
     bool is_found;
     bool are_bodies_found;      ///< body is up to date
     uint64_t links, growth;     ///< counters of edits at the last update
-    uint64_t tries, most_tries; ///< particles tried for a triangle in the last update; their limit
+    uint64_t tries, most_tries; ///< particles tried for a triangle, or listed, in the last update; their limit
 } mspringi_outline;
 
 /// Pair of an outline point and a near outline edge.
@@ -66,13 +66,21 @@ typedef struct mspringi_candidate {
     uint32_t pair, p, a, b;
 } mspringi_candidate;
 
-/// Edges by grid cell, in hash buckets (edge_grid.c). Arrays lie in the order of their reading.
+/// Edge as a search reads it: a cache line.
+typedef struct mspringi_sought_edge {
+    double x, y;             ///< one end, m
+    double along_x, along_y; ///< direction from there, of length 1, or 0
+    double length, slack;    ///< m; radius of a collider's side, with rounding, m
+    uint32_t edge;
+    uint32_t below; ///< only points below this number form a pair with the edge
+    int32_t row;    ///< of its cell
+    uint32_t reserved;
+} mspringi_sought_edge;
+
+/// Edges by grid cell, in hash buckets (edge_grid.c).
 typedef struct mspringi_edge_grid {
     uint32_t *first;             ///< [bucket_count + 1]
-    uint32_t *sorted;            ///< [edges] by bucket
-    uint32_t *below;             ///< [edges] sorted: only points below this number form a pair with the edge
-    int32_t *row;                ///< [edges] sorted: row of the cell
-    double *middle_x, *middle_y; ///< [edges] sorted: midpoint, m
+    mspringi_sought_edge *edges; ///< [edges] by bucket; then those too long for a cell
     uint32_t *long_edges;        ///< [edges] edges too long for a cell
     uint32_t *found; ///< [edges + 1] results of the last search; while the grid is filled, bucket of each edge
     double size;     ///< side of a cell, m
@@ -253,7 +261,7 @@ struct mspringi_contacts {
     mspringi_candidate *candidates; ///< [capacity] pairs that may touch before the next scan
     uint32_t candidate_count;
     bool is_listed, is_pair_list_full;
-    uint64_t work, most_work; ///< comparisons of points with edges in this step, and their limit
+    uint64_t work, most_work; ///< comparisons of points with edges in this step, or what takes as long; their limit
     double reach;             ///< the list held all pairs nearer than this when it was made, m
     double *seen_x, *seen_y;  ///< [nodes] positions when the list was made, m
     uint32_t *stamp;          ///< [particles] springs between the particle and stamp_of (outline.c)
@@ -313,6 +321,15 @@ typedef struct mspringi_contacts mspringi_contacts;
 /// square.
 #define MSPRINGI_FREE_EDGES 64u
 
+/// True if the step has taken too much work. Then it will be rejected, and nothing more is done for it.
+static inline bool mspringi_contact_is_too_much(mspringi_contacts *contacts) {
+    if (contacts->work <= contacts->most_work)
+        return false;
+    contacts->is_out_of_room = true;
+    contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
+    return true;
+}
+
 /// Count visits of outline edges at one particle.
 static inline void mspringi_contact_count_visits(mspringi_contacts *contacts, uint32_t visits) {
     if (visits <= MSPRINGI_FREE_EDGES)
@@ -342,9 +359,6 @@ bool mspringi_outline_are_neighbours(const mspring_network *network, mspringi_co
 void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *contacts, double reach);
 /// Find edges that may form a pair with a point. Return their number.
 uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_contacts *contacts, mspring_id p);
-/// True if the pair exists in the other order, too: two particles without springs, or one of them with a corner,
-/// which pairs by its edges.
-bool mspringi_is_duplicate_pair(const mspringi_outline *o, mspring_id p, uint32_t edge);
 
 /* pair_list.c */
 
@@ -422,8 +436,9 @@ static inline double mspringi_normal_speed(const mspringi_contact_constraint *t,
     return t->nx * (v[t->p].x - t->bary_a * v[t->a].x - t->bary_b * v[t->b].x) +
            t->ny * (v[t->p].y - t->bary_a * v[t->a].y - t->bary_b * v[t->b].y);
 }
-/// Find the impulses of an interval of h seconds. False: some constraints would still get much deeper.
-bool mspringi_contact_sweep(const mspringi_contacts *contacts, double h, uint32_t sweeps);
+/// Find the impulses of an interval of h seconds, and count the work. False: some constraints would still get much
+/// deeper.
+bool mspringi_contact_sweep(mspringi_contacts *contacts, double h, uint32_t sweeps);
 
 /* piles.c */
 

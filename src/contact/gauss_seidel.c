@@ -32,6 +32,9 @@
 /// Depth at the end of a constraint that makes the interval too long, as a share of the thickness.
 #define MOST_SHARE 0.1
 
+/// Visits of constraints that take as long as a comparison of a point with an edge.
+#define VISITS_OF_WORK 3u
+
 /* --------------------------------------------------------------------------------------------------- one row */
 
 // True if a constraint without an impulse needs none.
@@ -120,10 +123,11 @@ MSPRINGI_ALWAYS_INLINE bool is_penetrating(const mspringi_contacts *contacts, co
 }
 
 // Return true if any constraint penetrated.
-static bool sweep_penetrating(const mspringi_contacts *contacts, double h, bool of_colliders) {
+static bool sweep_penetrating(mspringi_contacts *contacts, double h, bool of_colliders) {
     const penetration of_bodies = penetration_limit(contacts, h, GIVEN_SHARE),
                       of_others = penetration_limit(contacts, h, 0.0);
     bool any = false;
+    contacts->work += contacts->constraint_count / VISITS_OF_WORK;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         mspringi_contact_constraint *t = &contacts->constraints[i];
         const bool is_of_collider = t->collider != MSPRING_NONE;
@@ -137,7 +141,7 @@ static bool sweep_penetrating(const mspringi_contacts *contacts, double h, bool 
 }
 
 // Sweep penetrating constraints until there are none. False: too many sweeps.
-static bool resolve_penetration(const mspringi_contacts *contacts, double h) {
+static bool resolve_penetration(mspringi_contacts *contacts, double h) {
     const uint32_t by_looks = LEAST_GIVEN_SWEEPS + MOST_LOOKS / (contacts->constraint_count + 1);
     const uint32_t most = by_looks < MOST_GIVEN_SWEEPS ? by_looks : MOST_GIVEN_SWEEPS;
     for (uint32_t n = 0; n < most; ++n) {
@@ -150,8 +154,9 @@ static bool resolve_penetration(const mspringi_contacts *contacts, double h) {
     return false;
 }
 
-static void sweep_all(const mspringi_contacts *contacts, uint32_t sweeps) {
+static void sweep_all(mspringi_contacts *contacts, uint32_t sweeps) {
     const mspringi_contact_nodes k = contacts->nodes;
+    contacts->work += (uint64_t)sweeps * contacts->constraint_count / VISITS_OF_WORK;
     for (uint32_t n = 0; n < sweeps; ++n) {
         for (uint32_t i = 0; i < contacts->constraint_count; ++i)
             solve_constraint(&k, &contacts->constraints[i]);
@@ -183,7 +188,7 @@ static void reduce_restitution(const mspringi_contacts *contacts, double share) 
         contacts->constraints[i].target_speed *= contacts->constraints[i].is_bounce ? share : 1.0;
 }
 
-bool mspringi_contact_sweep(const mspringi_contacts *contacts, double h, uint32_t sweeps) {
+bool mspringi_contact_sweep(mspringi_contacts *contacts, double h, uint32_t sweeps) {
     sweep_all(contacts, sweeps);
     for (uint32_t n = 1; n <= MOST_BOUNCES && gained_energy(contacts); ++n) {
         reduce_restitution(contacts, n < MOST_BOUNCES ? BOUNCE_SHARE : 0.0);

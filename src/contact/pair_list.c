@@ -1,8 +1,8 @@
 /// Verlet list of pairs: points near edges. From it follow the candidates, and the substeps in which nothing can
 /// touch.
 ///
-/// All motion is relative to the mean of the outline. The number of quiet substeps follows from positions and
-/// velocities alone, not from when the list was made.
+/// All motion is relative to the mean of the outline. The candidates, and the number of quiet substeps, follow from
+/// positions and velocities alone, not from when the list was made, nor from how far it reaches.
 #include <math.h>
 #include <string.h>
 
@@ -29,10 +29,9 @@
 #define SPARSE_REACH 6.0
 #define SPARSE 4u
 
-/// Comparisons of points with edges that a step may add for each list: for each point, and for each pair of the
-/// capacity. (The bodies of tests/contact take 20 for a point; a crowd takes those of its pairs.)
-#define WORK_OF_POINT 256
-#define WORK_OF_PAIR 2
+/// Comparisons of points with edges that find no pair, which a step may add for each list and point. (The bodies of
+/// tests/contact take 20.)
+#define WORK_OF_POINT 32
 
 /* ----------------------------------------------------------------------------------------------------- distance */
 
@@ -220,16 +219,11 @@ static bool list_pairs_of_point(const mspring_network *network, mspringi_contact
     const uint32_t found = mspringi_edge_grid_search(network, contacts, p),
                    room = contacts->capacity - contacts->count;
     uint32_t close_count = 0;
-    contacts->work += found + cells->long_count;
     for (uint32_t k = 0; k < found && close_count <= room; ++k) {
         cells->found[close_count] = cells->found[k];
         close_count += are_near(network, contacts, p, cells->found[k]);
     }
-    for (uint32_t k = 0; k < cells->long_count && close_count <= room; ++k) {
-        cells->found[close_count] = cells->long_edges[k];
-        close_count += !mspringi_is_duplicate_pair(&contacts->outline, p, cells->long_edges[k]) &&
-                       are_near(network, contacts, p, cells->long_edges[k]);
-    }
+    contacts->work += found - close_count;
     const bool has_room = close_count <= room, is_done = contacts->work <= contacts->most_work;
     close_count = has_room ? close_count : room;
     sort(cells->found, close_count);
@@ -317,7 +311,7 @@ static bool make_list(const mspring_network *network, mspringi_contacts *contact
     contacts->stamp_of = MSPRING_NONE;
     contacts->reach = reach;
     contacts->moved = 0.0;
-    contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count + WORK_OF_PAIR * (uint64_t)contacts->capacity;
+    contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count;
     if (o->edge_count > 0) {
         mspringi_edge_grid_fill(network, contacts, reach);
         for (uint32_t i = 0; i < o->point_count; ++i) {
@@ -345,11 +339,10 @@ static double candidate_substeps(const mspringi_contacts *contacts) {
                                                : MIN_CANDIDATE_SUBSTEPS;
 }
 
-// Substeps until a pair may be missing from the list.
+// Substeps until a pair may be missing from the candidates.
 static uint32_t valid_substeps(const mspringi_contacts *contacts) {
-    const double way = travel_per_substep(contacts);
-    const double least = contacts->thickness + 0.5 * (required_reach(contacts) - contacts->thickness);
-    const double valid = (guaranteed_reach(contacts) - least) / (2.0 * way);
+    const double half = 0.5 * (required_reach(contacts) - contacts->thickness);
+    const double valid = half / (2.0 * travel_per_substep(contacts));
     return valid >= 1.0 ? valid < 1e6 ? (uint32_t)valid : 1000000 : 1;
 }
 
@@ -366,8 +359,9 @@ MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_contacts *contacts, const m
 // Collect the candidates, and find the nearest pair. Pairs of particles without springs may be many, so they take
 // neither roots nor branches.
 static void collect_candidates(mspringi_contacts *contacts) {
-    const double most = contacts->thickness + 2.0 * candidate_substeps(contacts) * travel_per_substep(contacts) +
-                        4.0 * MSPRINGI_SPEED_MARGIN * (double)contacts->h * contacts->speed;
+    const double wanted = contacts->thickness + 2.0 * candidate_substeps(contacts) * travel_per_substep(contacts) +
+                          4.0 * MSPRINGI_SPEED_MARGIN * (double)contacts->h * contacts->speed;
+    const double complete = required_reach(contacts), most = wanted < complete ? wanted : complete;
     double least = contacts->reach * contacts->reach, square;
     uint32_t hot = 0;
     contacts->nearest = contacts->reach;

@@ -15,8 +15,9 @@
 #define MAX_SIGNAL 100.0f
 #define MAX_CHANGES 256u
 
-/// Shortest rest length of an actuator, m: the smallest signals do not make it a weld.
+/// Shortest and longest rest length of an actuator, m: no signal makes it a weld, or longer than springs may be.
 #define SHORTEST 1e-12f
+#define LONGEST (MSPRINGI_MAX_LENGTH / MAX_SIGNAL)
 
 static mspring_result check(mspring_network *network, const mspring_id *springs, uint32_t count, uint32_t changes) {
     const uint32_t all = network->topology.spring_count;
@@ -33,9 +34,9 @@ static mspring_result check(mspring_network *network, const mspring_id *springs,
             return mspringi_fail(&network->message, MSPRING_ERROR_ID, "actuator %u: there is no spring %s",
                                  (unsigned)i, MSPRINGI_ID(springs[i]));
         const float length = mspringi_spring_property(network, MSPRING_REST_LENGTH, springs[i]);
-        if (!(length >= SHORTEST))
+        if (!(length >= SHORTEST && length <= LONGEST))
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "actuator %u: spring %u has rest length %g m, it must be at least 1e-12",
+                                 "actuator %u: spring %u has rest length %g m, it must be 1e-12 to 4e10",
                                  (unsigned)i, (unsigned)springs[i], (double)mspringi_read_length(length));
     }
     return MSPRING_OK;

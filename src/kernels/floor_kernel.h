@@ -94,8 +94,8 @@ static void load_bounce_block(const mspringi_floor_args *g, size_t slot, bounce_
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
         const mspringi_bouncing_particle p =
-            mspringi_bouncing_particle_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i],
-                                            (double)from_vx[i], (double)from_vy[i], damping, h, per_length);
+            mspringi_taut_particle_from((double)x[i], (double)y[i], (double)vx[i], (double)vy[i],
+                                        (double)from_vx[i], (double)from_vy[i], damping, h, per_length);
         b->x[i] = p.x;
         b->y[i] = p.y;
         b->vx[i] = p.vx;
@@ -260,13 +260,13 @@ MSPRINGI_FLOOR_INLINE void defer_stuck(const mspringi_floor_args *g, const parts
         defer_below(surfaces_of_parts(parts), x, y, slop, lanes, is_deferred);
 }
 
-// Defer particles that became faster.
-static void defer_faster(bounce_block *restrict b) {
+// Defer particles that became faster; with slack all that a surface has acted on.
+static void defer_faster(const mspringi_floor_args *g, bounce_block *restrict b) {
+    const double margin = mspringi_slack_of(g->damping) > 0.0 ? -1.0 : MSPRINGI_GROWTH_MARGIN;
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
         const mspringi_bouncing_particle p = bouncing_at(b, i);
-        b->is_deferred[i] +=
-            mspringi_bouncing_particle_square(&p) > b->square[i] * MSPRINGI_GROWTH_MARGIN ? b->is_hit[i] : 0.0;
+        b->is_deferred[i] += mspringi_bouncing_particle_square(&p) >= b->square[i] * margin ? b->is_hit[i] : 0.0;
     }
 }
 
@@ -351,7 +351,7 @@ static uint32_t bounce_half(const mspringi_floor_args *g, size_t slot, const dou
             bounce_off(g, surfaces_of_line(&g->lines[i]), &b);
     if (g->height_count > 0)
         bounce_heights(g, &parts, is_active, &b);
-    defer_faster(&b);
+    defer_faster(g, &b);
     find_end(g, &b, &end);
     if (g->line_count + (g->height_count > 0) > 1)
         defer_stuck(g, &parts, end.x, end.y, b.slop, MSPRINGI_HALF, b.is_deferred);

@@ -1,8 +1,8 @@
 /// @file kernel_table.h
 /// Table of an instruction set, and the variants of its kernels: lattice(), chain(), irregular(), bundle(),
 /// loose(), attached(), pack(), largest(), extrema_of(), bounce(), bounce_free(), brake(), lattice_strain(),
-/// chain_strain(), lattice_yield(), chain_yield(), bound_ and image_lattice() and _chain(), take_checksum().
-/// Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// chain_strain(), lattice_yield(), chain_yield(), lattice_violence(), bound_ and image_lattice() and _chain(),
+/// take_checksum(). Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
@@ -14,6 +14,7 @@
 #include "kernels/silt_kernel.h"
 #include "kernels/strain_kernel.h"
 #include "kernels/system_table.h"
+#include "kernels/violence_kernel.h"
 #include "kernels/yield_kernel.h"
 
 static inline mspringi_variant variant_found(const mspringi_sweep *sweep) {
@@ -138,6 +139,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .chain_strain = chain_strain,
     .lattice_yield = lattice_yield,
     .chain_yield = chain_yield,
+    .lattice_violence = lattice_violence,
     .bound_lattice = bound_lattice,
     .bound_chain = bound_chain,
     .image_lattice = image_lattice,

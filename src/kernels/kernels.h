@@ -176,6 +176,7 @@ typedef void (*mspringi_row_fn)(const mspringi_sweep *sweep, const mspringi_span
 /// A pinned particle keeps its velocity and moves by drift v.
 typedef struct mspringi_free_motion {
     float keep, gain, reach, fall, drift;
+    float loss;                         ///< 1 - keep, for velocities in two words
     float gravity_x, gravity_y;         ///< change of velocity, m/s
     float gravity_way_x, gravity_way_y; ///< m
 } mspringi_free_motion;
@@ -296,6 +297,19 @@ typedef struct mspringi_yield_sweep {
 typedef uint32_t (*mspringi_yield_fn)(const mspringi_yield_sweep *sweep, uint32_t first, uint32_t end,
                                       mspringi_strain_hit *hits);
 
+/// Arguments of a search for violent motion.
+typedef struct mspringi_violence_sweep {
+    const float *vx, *vy;
+    const uint32_t *up_of_block; ///< as in mspringi_strain_sweep, like the next two
+    uint32_t lattice_first;
+    const uint16_t *live;
+    float square; ///< of a difference of velocities
+} mspringi_violence_sweep;
+
+/// The first of the lattice blocks first ... end - 1 with a live spring whose ends' velocities differ by more; or
+/// end.
+typedef uint32_t (*mspringi_violence_fn)(const mspringi_violence_sweep *sweep, uint32_t first, uint32_t end);
+
 /// Arguments of the stability limit's passes: see limit_kernel.h. Arrays by slot, and springs as in mspringi_sweep.
 typedef struct mspringi_stability_limit {
     const float *x, *y, *inverse_mass;
@@ -348,6 +362,7 @@ typedef struct mspringi_kernels {
     mspringi_silt_fn brake;
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_yield_fn lattice_yield, chain_yield;
+    mspringi_violence_fn lattice_violence;
     mspringi_stability_limit_fn bound_lattice, bound_chain, image_lattice, image_chain;
     mspringi_checksum_fn checksum;
     mspringi_system_kernels system;

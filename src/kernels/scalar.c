@@ -164,10 +164,10 @@ static inline float kicked(const mspringi_sweep *s, float v, float push, float g
 }
 
 // The same in two words.
-static inline void kick_precisely(const mspringi_sweep *s, float *v, float *low, float push, float gravity) {
-    const float change = (push + (*low + gravity)) - s->loss * *v, sum = *v + change;
-    const float to = s->flushes ? flush_tiny(sum) : sum, rest = change - (to - *v);
-    *low = s->flushes ? flush_tiny(rest) : rest;
+static inline void kick_precisely(float *v, float *low, float push, float gravity, float loss, bool flushes) {
+    const float change = (push + (*low + gravity)) - loss * *v, sum = *v + change;
+    const float to = flushes ? flush_tiny(sum) : sum, rest = change - (to - *v);
+    *low = flushes ? flush_tiny(rest) : rest;
     *v = to;
 }
 
@@ -181,8 +181,8 @@ static inline void move(const mspringi_sweep *s, size_t slot, vector force, mspr
         save_motion(s, slot);
     const float inverse_mass = s->inverse_mass[slot], change = inverse_mass * s->kick;
     if (of & MSPRINGI_PRECISE && inverse_mass > 0.0f) {
-        kick_precisely(s, &s->vx[slot], &s->low_vx[slot], force.x * change, s->gravity_h_x);
-        kick_precisely(s, &s->vy[slot], &s->low_vy[slot], force.y * change, s->gravity_h_y);
+        kick_precisely(&s->vx[slot], &s->low_vx[slot], force.x * change, s->gravity_h_x, s->loss, s->flushes);
+        kick_precisely(&s->vy[slot], &s->low_vy[slot], force.y * change, s->gravity_h_y, s->loss, s->flushes);
     } else if (of & MSPRINGI_PRECISE) {
         s->low_vx[slot] = s->low_vy[slot] = 0.0f;
     } else if (inverse_mass > 0.0f) {
@@ -519,20 +519,26 @@ static inline void loose(const mspringi_sweep *s, const mspringi_span *span, con
     for (size_t slot = span->first_slot; slot < span->end_slot; ++slot) {
         const float inverse_mass = s->inverse_mass[slot], vx = s->vx[slot], vy = s->vy[slot];
         const bool is_free = inverse_mass > 0.0f;
-        float change_x = glide->gravity_x, change_y = glide->gravity_y;
+        float push_x = 0.0f, push_y = 0.0f;
         float way_x = glide->gravity_way_x, way_y = glide->gravity_way_y;
         if (forced) {
             const float ax = s->force_x[slot] * inverse_mass, ay = s->force_y[slot] * inverse_mass;
-            change_x = ax * glide->gain + change_x;
-            change_y = ay * glide->gain + change_y;
+            push_x = ax * glide->gain;
+            push_y = ay * glide->gain;
             way_x = ax * glide->fall + way_x;
             way_y = ay * glide->fall + way_y;
         }
         add_displacement(s, slot, is_free ? vx * glide->reach + way_x : vx * glide->drift,
-                         is_free ? vy * glide->reach + way_y : vy * glide->drift,
-                         s->low_vx ? MSPRINGI_PRECISE : 0);
-        s->vx[slot] = is_free ? vx * glide->keep + change_x : vx;
-        s->vy[slot] = is_free ? vy * glide->keep + change_y : vy;
+                         is_free ? vy * glide->reach + way_y : vy * glide->drift, s->low_vx ? MSPRINGI_PRECISE : 0);
+        if (s->low_vx && is_free) {
+            kick_precisely(&s->vx[slot], &s->low_vx[slot], push_x, glide->gravity_x, glide->loss, false);
+            kick_precisely(&s->vy[slot], &s->low_vy[slot], push_y, glide->gravity_y, glide->loss, false);
+        } else if (s->low_vx) {
+            s->low_vx[slot] = s->low_vy[slot] = 0.0f;
+        } else if (is_free) {
+            s->vx[slot] = vx * glide->keep + (forced ? push_x + glide->gravity_x : glide->gravity_x);
+            s->vy[slot] = vy * glide->keep + (forced ? push_y + glide->gravity_y : glide->gravity_y);
+        }
     }
 }
 

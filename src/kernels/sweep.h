@@ -187,12 +187,12 @@ MSPRINGI_INLINE vec kicked(const mspringi_sweep *s, vec v, vec push, vec gravity
 }
 
 // The same in two words: low becomes the low word of the result.
-MSPRINGI_INLINE vec kicked_precisely(const mspringi_sweep *s, vec v, vec *low, vec push, vec gravity,
+MSPRINGI_INLINE vec kicked_precisely(vec v, vec *low, vec push, vec gravity, float loss, bool flushes,
                                      vec inverse_mass) {
-    const vec change = sub(add(push, add(*low, gravity)), mul(set(s->loss), v)), sum = add(v, change);
-    const vec to = choose_positive(inverse_mass, s->flushes ? flush_tiny(sum) : sum, v);
+    const vec change = sub(add(push, add(*low, gravity)), mul(set(loss), v)), sum = add(v, change);
+    const vec to = choose_positive(inverse_mass, flushes ? flush_tiny(sum) : sum, v);
     const vec rest = choose_positive(inverse_mass, sub(change, sub(to, v)), zero());
-    *low = s->flushes ? flush_tiny(rest) : rest;
+    *low = flushes ? flush_tiny(rest) : rest;
     return to;
 }
 
@@ -213,8 +213,8 @@ MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vec
         save_motion(s, slot, here.x, here.y, vx, vy);
     if (of & MSPRINGI_PRECISE) {
         vec low_vx = load(s->low_vx + slot), low_vy = load(s->low_vy + slot);
-        vx = kicked_precisely(s, vx, &low_vx, mul(force.x, change), gravity_x, inverse_mass);
-        vy = kicked_precisely(s, vy, &low_vy, mul(force.y, change), gravity_y, inverse_mass);
+        vx = kicked_precisely(vx, &low_vx, mul(force.x, change), gravity_x, s->loss, s->flushes, inverse_mass);
+        vy = kicked_precisely(vy, &low_vy, mul(force.y, change), gravity_y, s->loss, s->flushes, inverse_mass);
         store(s->low_vx + slot, low_vx);
         store(s->low_vy + slot, low_vy);
     } else {

@@ -191,16 +191,17 @@ typedef void (*mspringi_outside_fn)(const mspringi_outside *outside, float *resi
 /// Correction at the end of a substep, one coordinate.
 typedef struct mspringi_correction {
     const double *predicted;
-    const float *start; ///< velocity for d = 0
     const float *inverse_mass;
     const float *solution, *direction; ///< d = solution + alpha direction
     const float *low;                  ///< low words of the positions
     const float *first;                ///< history
     float *position, *velocity;
+    float *low_velocity;                  ///< low words of the velocities; NULL: none
     float *to_low, *to_first, *to_second; ///< may alias the arrays read
     float alpha;
-    float h, rate;
-    float grid; ///< as in a mspringi_sweep; 0: none
+    float h;
+    float first_share, rate; ///< as in the prediction
+    float grid;              ///< as in a mspringi_sweep; 0: none
 } mspringi_correction;
 
 /// History for the next substep.
@@ -219,7 +220,8 @@ typedef void (*mspringi_correct_fn)(const mspringi_correction *landing, size_t f
 /// Positions, velocities and masses by slot.
 typedef struct mspringi_motion {
     const float *x, *y, *vx, *vy;
-    const float *low_x, *low_y; ///< low words of the positions
+    const float *low_x, *low_y;   ///< low words of the positions
+    const float *low_vx, *low_vy; ///< of the velocities; NULL: none
     const float *inverse_mass;
 } mspringi_motion;
 

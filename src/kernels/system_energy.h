@@ -49,6 +49,22 @@ add_moments_of_block(const float *restrict place_x, const float *restrict place_
     }
 }
 
+// Add to them what the low words of the velocities of precise networks amount to.
+static MSPRINGI_NOINLINE void add_low_moments_of_block(const mspringi_motion *m, size_t slot, const double *origin,
+                                                       double (*sums)[MSPRINGI_WIDTH]) {
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i, ++slot) {
+        const double mass = m->inverse_mass[slot] > 0.0f ? (double)(1.0f / m->inverse_mass[slot]) : 0.0;
+        const double x = ((double)m->x[slot] - origin[0]) + (double)m->low_x[slot];
+        const double y = ((double)m->y[slot] - origin[1]) + (double)m->low_y[slot];
+        const double low_vx = (double)m->low_vx[slot], low_vy = (double)m->low_vy[slot];
+        const double vx = (double)m->vx[slot] - origin[2], vy = (double)m->vy[slot] - origin[3];
+        sums[MSPRINGI_MOMENT_PX][i] += mass * low_vx;
+        sums[MSPRINGI_MOMENT_PY][i] += mass * low_vy;
+        sums[MSPRINGI_MOMENT_SPIN][i] += mass * (x * low_vy - y * low_vx);
+        sums[MSPRINGI_MOMENT_KINETIC][i] += mass * (low_vx * (2.0 * vx + low_vx) + low_vy * (2.0 * vy + low_vy));
+    }
+}
+
 static void sum_moments(const mspringi_motion *m, size_t first, size_t end, const double *origin, double *to) {
     double sums[MSPRINGI_MOMENTS][MSPRINGI_WIDTH] = {{0.0}};
     for (size_t slot = first; slot < end; slot += MSPRINGI_WIDTH)
@@ -57,6 +73,8 @@ static void sum_moments(const mspringi_motion *m, size_t first, size_t end, cons
                              sums[MSPRINGI_MOMENT_Y], sums[MSPRINGI_MOMENT_PX], sums[MSPRINGI_MOMENT_PY],
                              sums[MSPRINGI_MOMENT_INERTIA], sums[MSPRINGI_MOMENT_SPIN],
                              sums[MSPRINGI_MOMENT_KINETIC]);
+    for (size_t slot = first; m->low_vx && slot < end; slot += MSPRINGI_WIDTH)
+        add_low_moments_of_block(m, slot, origin, sums);
     for (size_t i = 0; i < MSPRINGI_MOMENTS; ++i)
         to[i] = sum_wide_lanes(sums[i]);
 }

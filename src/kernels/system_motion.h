@@ -160,23 +160,27 @@ static void add_outside(const mspringi_outside *o, float *residual, size_t first
         add_outside_terms(o, residual, first, end, false, false);
 }
 
-// Correct one coordinate. A pinned particle has d = 0.
-MSPRINGI_INLINE void correct(size_t count, const double *restrict predicted, const float *restrict start,
-                             const float *restrict inverse_mass, const float *restrict solution,
-                             const float *restrict direction, const float *from, const float *low,
-                             const float *history, float alpha, float h, float rate, float grid,
-                             float *restrict position, float *restrict velocity, float *restrict to_low, float *restrict to_first,
-                             float *restrict to_second, mspringi_history_kind memory) {
+// Correct one coordinate. A pinned particle has d = 0. The way beyond h v and the change of velocity are sums of
+// small terms: as differences of positions and of velocities they would be lost in short substeps.
+MSPRINGI_INLINE void correct(size_t count, const double *restrict predicted, const float *restrict inverse_mass,
+                             const float *restrict solution, const float *restrict direction, const float *from,
+                             const float *low, const float *low_velocity, const float *history, float alpha,
+                             float h, float first_share, float rate, float grid, float *restrict position,
+                             float *restrict velocity, float *restrict to_low, float *restrict to_low_velocity,
+                             float *restrict to_first, float *restrict to_second, mspringi_history_kind memory) {
     const float per_h = 1.0f / h;
     for (size_t i = 0; i < count; ++i) {
         const float d = solution[i] + alpha * direction[i], v = velocity[i];
         const double straight = ((double)from[i] + (double)low[i]) + (double)h * (double)v;
         const double end = predicted[i] + (double)d;
-        const float rounded = ((float)end + grid) - grid, beyond = (float)(end - straight);
-        const float moved = start[i] + rate * d, after = inverse_mass[i] > 0.0f ? moved : v, change = after - v;
+        const float rounded = ((float)end + grid) - grid, beyond = (float)((predicted[i] - straight) + (double)d);
+        const float given = first_share * history[i] + rate * beyond;
+        const float change = inverse_mass[i] > 0.0f ? given : 0.0f, by = change + low_velocity[i], sum = v + by;
+        const float after = inverse_mass[i] > 0.0f ? sum : v;
         position[i] = rounded;
         velocity[i] = after;
         to_low[i] = (float)(end - (double)rounded);
+        to_low_velocity[i] = by - (after - v);
         switch (memory) {
         case MSPRINGI_HISTORY_VELOCITY_CHANGE:
             to_first[i] = change * per_h;
@@ -198,17 +202,23 @@ MSPRINGI_INLINE void correct(size_t count, const double *restrict predicted, con
 // since V8 11.3 (node 20) reads one for a conversion to double after it has been written.
 #define MSPRINGI_CORRECT(name, memory)                                                                             \
     static void correct_##name(const mspringi_correction *l, size_t first, size_t end) {                           \
+        float low_velocity[MSPRINGI_WIDTH] = {0.0f};                                                               \
         for (size_t i = first; i < end; i += MSPRINGI_WIDTH) {                                                     \
             float from[MSPRINGI_WIDTH], low[MSPRINGI_WIDTH], history[MSPRINGI_WIDTH], unused[MSPRINGI_WIDTH];      \
+            float rest[MSPRINGI_WIDTH];                                                                            \
+            if (l->low_velocity)                                                                                   \
+                memcpy(low_velocity, l->low_velocity + i, sizeof low_velocity);                                    \
             for (size_t lane = 0; lane < MSPRINGI_WIDTH; ++lane) {                                                 \
                 from[lane] = l->position[i + lane];                                                                \
                 low[lane] = l->low[i + lane];                                                                      \
                 history[lane] = l->first[i + lane];                                                                \
             }                                                                                                      \
-            correct(MSPRINGI_WIDTH, l->predicted + i, l->start + i, l->inverse_mass + i, l->solution + i,          \
-                    l->direction + i, from, low, history, l->alpha, l->h, l->rate, l->grid, l->position + i,       \
-                    l->velocity + i, l->to_low + i, l->to_first + i,                                               \
+            correct(MSPRINGI_WIDTH, l->predicted + i, l->inverse_mass + i, l->solution + i, l->direction + i,      \
+                    from, low, low_velocity, history, l->alpha, l->h, l->first_share, l->rate, l->grid,            \
+                    l->position + i, l->velocity + i, l->to_low + i, rest, l->to_first + i,                        \
                     memory == MSPRINGI_HISTORY_BDF2 ? l->to_second + i : unused, memory);                          \
+            if (l->low_velocity)                                                                                   \
+                memcpy(l->low_velocity + i, rest, sizeof rest);                                                    \
         }                                                                                                          \
     }
 

@@ -304,8 +304,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     network->guard.speed = network->guard.coordinate = INFINITY; // unknown
     network->steps.outcome = mspringi_outcome_none();
     network->steps.lag = builder->lag;
+    fill_springs(network, builder); // before places, which are rounded to the grid that rest lengths give
     fill_particles(network, builder);
-    fill_springs(network, builder);
     for (mspring_id p = network->topology.particle_count; p < network->topology.reserve.particle_end; ++p)
         network->mass[p] = 1.0f;
     if (def->spare_particles > 0 || def->spare_springs > 0)

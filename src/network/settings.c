@@ -45,6 +45,9 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
         (def->substeps < 1 || def->substeps > MSPRING_MAX_SUBSTEPS))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "substeps is %u, it must be 1 to %u",
                              (unsigned)def->substeps, (unsigned)MSPRING_MAX_SUBSTEPS);
+    if (def->most_work > MSPRING_MAX_SUBSTEPS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "most_work is %u, it must be at most %u",
+                             (unsigned)def->most_work, (unsigned)MSPRING_MAX_SUBSTEPS);
     if (def->max_substeps < 1 || def->max_substeps > MSPRING_MAX_SUBSTEPS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_substeps is %u, it must be 1 to %u",
                              (unsigned)def->max_substeps, (unsigned)MSPRING_MAX_SUBSTEPS);
@@ -61,6 +64,7 @@ static mspring_solver_def def_of(const mspring_network *network) {
                    : network->auto_substeps == MSPRINGI_SUBSTEPS_EVEN ? MSPRING_SUBSTEPS_EVEN
                                                                       : network->substeps;
     def.max_substeps = network->max_substeps;
+    def.most_work = network->most_work;
     return def;
 }
 
@@ -109,12 +113,14 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
         return result;
     const mspring_solver_def now = def_of(network);
     const bool is_same = object == network->solver.object && memcmp(&before, &now, sizeof now) == 0;
-    if (is_same && def->substeps == now.substeps && def->max_substeps == now.max_substeps)
+    if (is_same && def->substeps == now.substeps && def->max_substeps == now.max_substeps &&
+        def->most_work == now.most_work)
         return MSPRING_OK;
     mspringi_notify_change(network, MSPRINGI_CHANGED_SOLVER, 0);
     network->auto_substeps = auto_of(def->substeps);
     network->substeps = network->auto_substeps ? 1 : def->substeps;
     network->max_substeps = def->max_substeps;
+    network->most_work = def->most_work;
     network->guard.fallback_steps = 0;
     return MSPRING_OK;
 }

@@ -75,7 +75,7 @@ static double energy_of(const mspring_network *network, mspring_id particle, dou
     if (network->inverse_mass[slot] == 0.0f)
         return 0.0;
     const double mass = (double)network->mass[particle], per_mass = (double)network->inverse_mass[slot];
-    const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
+    const double vx = mspringi_vx_of(s, slot), vy = mspringi_vy_of(s, slot);
     const float half = 0.5f * network->steps.lag, rate = network->settings.global_damping;
     const float cut = half > 0.0f && stiffness * per_mass > 0.0
                           ? fminf(half, (float)fmin(1.0 / sqrt(stiffness * per_mass), (double)half))
@@ -97,7 +97,7 @@ static double stored_energy(const mspring_network *network) {
     double sum = 0.0;
     for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
-        const double vx = (double)network->state.vx[slot], vy = (double)network->state.vy[slot];
+        const double vx = mspringi_vx_of(&network->state, slot), vy = mspringi_vy_of(&network->state, slot);
         if (network->inverse_mass[slot] != 0.0f)
             sum += 0.5 * (double)network->mass[p] * (vx * vx + vy * vy);
     }

@@ -1,6 +1,7 @@
 /// Snapshot of held groups and of actuators.
 #include "step/actuators.h"
 #include "step/plastic.h"
+#include "store/properties.h"
 #include "store/sections.h"
 #include "store/springs.h"
 
@@ -55,8 +56,10 @@ static void actuators_save(const mspring_network *network, mspringi_writer *to) 
     }
 }
 
+// Signals keep within this range, and so does the host, who may set the rest length of an actuator as of any
+// spring.
 static bool is_length(float value) {
-    return value >= 1e-14f && value <= 1e15f;
+    return mspringi_is_spring_value(MSPRINGI_REST_LENGTH, value);
 }
 
 static mspring_result actuators_check(mspring_network *network, const uint8_t *from, size_t size) {

@@ -15,14 +15,14 @@
 typedef struct settings {
     double origin_x, origin_y;
     float recentre_distance, relative_h, gravity_x, gravity_y, global_damping, max_speed, relax;
-    uint32_t substeps, max_substeps, auto_substeps;
+    uint32_t substeps, max_substeps, auto_substeps, most_work;
 } settings;
 
 static void hand_settings(mspringi_io *io, settings *s) {
     MSPRINGI_HAND(io, s->origin_x);
     MSPRINGI_HAND(io, s->origin_y);
     mspringi_hand(io, &s->recentre_distance, 7, sizeof(float)); // and the next six
-    mspringi_hand(io, &s->substeps, 3, sizeof(uint32_t));
+    mspringi_hand(io, &s->substeps, 4, sizeof(uint32_t));
 }
 
 static void settings_save(const mspring_network *network, mspringi_writer *to) {
@@ -31,7 +31,7 @@ static void settings_save(const mspring_network *network, mspringi_writer *to) {
                                    network->relative_h, network->settings.gravity_x, network->settings.gravity_y,
                                    network->settings.global_damping, network->settings.max_speed,
                                    network->settings.relax_fraction, network->substeps, network->max_substeps,
-                                   network->auto_substeps});
+                                   network->auto_substeps, network->most_work});
 }
 
 static mspring_result settings_check(mspring_network *network, const uint8_t *from, size_t size) {
@@ -55,9 +55,10 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
         return mspringi_section_fail(network, section, "max_speed is %g m/s, the relax fraction %g",
                                      (double)s.max_speed, (double)s.relax);
     if (s.substeps < 1 || s.substeps > MSPRING_MAX_SUBSTEPS || s.max_substeps < 1 ||
-        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > MSPRINGI_SUBSTEPS_EVEN)
-        return mspringi_section_fail(network, section, "substeps is %u, max_substeps %u", (unsigned)s.substeps,
-                                     (unsigned)s.max_substeps);
+        s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > MSPRINGI_SUBSTEPS_EVEN ||
+        s.most_work > MSPRING_MAX_SUBSTEPS)
+        return mspringi_section_fail(network, section, "substeps is %u, max_substeps %u, most_work %u",
+                                     (unsigned)s.substeps, (unsigned)s.max_substeps, (unsigned)s.most_work);
     return MSPRING_OK;
 }
 
@@ -75,6 +76,7 @@ static void settings_load(mspring_network *network, const uint8_t *from, size_t 
     network->substeps = s.substeps;
     network->max_substeps = s.max_substeps;
     network->auto_substeps = s.auto_substeps;
+    network->most_work = s.most_work;
     mspringi_derive_relative(network, s.relative_h);
 }
 

@@ -26,6 +26,8 @@ mspring_result mspringi_solver_check_name(mspring_solver name, mspringi_message 
 mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *network,
                                     const mspring_solver_def *def, uint32_t tile_size) {
     const mspringi_solver_ops *ops = solver->ops;
+    const uint32_t sleeping = network->sleep.sleeping;
+    network->sleep.sleeping = 0; // as if nothing slept: snapshots do not have sleepers that the next step wakes
     mspring_result result = ops->create ? ops->create(network, def, tile_size, &solver->object) : MSPRING_OK;
     if (result == MSPRING_OK && ops->has_implicit_contact)
         result = mspringi_contacts_reserve_implicit(network);
@@ -33,6 +35,7 @@ mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *ne
         result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the solver's constraints");
     for (bool is_done = !ops->build; result == MSPRING_OK && !is_done;)
         result = ops->build(solver->object, &is_done);
+    network->sleep.sleeping = sleeping;
     if (result != MSPRING_OK && solver->object)
         mspringi_solver_destroy(solver, &network->memory);
     return result;

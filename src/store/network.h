@@ -447,6 +447,7 @@ struct mspring_network {
     uint32_t added_substeps;  ///< by pieces of substeps in it
     uint32_t substeps;        ///< of the last step or, unless auto_substeps, of the next
     uint32_t max_substeps;
+    uint32_t most_work;             ///< see mspring_solver_def
     uint32_t auto_substeps;         ///< each step chooses them, if its solver can: MSPRINGI_SUBSTEPS_AUTO, _EVEN
     mspringi_solver solver;         ///< the one that the host chose
     mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT

@@ -65,6 +65,25 @@ static inline void mspringi_set_velocity(const mspringi_state *s, size_t slot, f
         s->low_vx[slot] = s->low_vy[slot] = 0.0f;
 }
 
+/// A velocity in full.
+static inline double mspringi_vx_of(const mspringi_state *s, size_t slot) {
+    return (double)s->vx[slot] + (s->low_vx ? (double)mspringi_low_of(s->vx[slot], s->low_vx[slot], 0.0f) : 0.0);
+}
+
+static inline double mspringi_vy_of(const mspringi_state *s, size_t slot) {
+    return (double)s->vy[slot] + (s->low_vy ? (double)mspringi_low_of(s->vy[slot], s->low_vy[slot], 0.0f) : 0.0);
+}
+
+/// Set a velocity and its low word, if it has one.
+static inline void mspringi_set_velocity_in_full(const mspringi_state *s, size_t slot, double vx, double vy) {
+    s->vx[slot] = (float)vx;
+    s->vy[slot] = (float)vy;
+    if (s->low_vx) {
+        s->low_vx[slot] = (float)(vx - (double)s->vx[slot]);
+        s->low_vy[slot] = (float)(vy - (double)s->vy[slot]);
+    }
+}
+
 /// Add to a velocity, with a compensated sum if it has a low word.
 static inline void mspringi_push_by(const mspringi_state *s, size_t slot, float dvx, float dvy) {
     const float by_x = s->low_vx ? dvx + s->low_vx[slot] : dvx, by_y = s->low_vy ? dvy + s->low_vy[slot] : dvy;

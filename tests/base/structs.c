@@ -265,7 +265,7 @@ INIT(tune_scene)
 
 #define NO_FIELD 0
 #define INPUT(type, name, give)                                                                                    \
-    { #type, sizeof(mspring_##type), init_##type, give, name }
+    { #type, sizeof(mspring_##type), 0, init_##type, give, name }
 const struct input inputs[] = {
     INPUT(allocator, offsetof(mspring_allocator, reserved), give_allocator),
     INPUT(tasks, offsetof(mspring_tasks, reserved), give_tasks),
@@ -278,7 +278,7 @@ const struct input inputs[] = {
     INPUT(disc_def, NO_FIELD, give_disc),
     INPUT(network_def, NO_FIELD, give_network_def),
     INPUT(clone_def, offsetof(mspring_clone_def, reserved), give_clone_def),
-    INPUT(solver_def, NO_FIELD, give_solver),
+    {"solver_def", sizeof(mspring_solver_def), 4, init_solver_def, give_solver, NO_FIELD}, // most_work
     INPUT(settings, NO_FIELD, give_settings),
     INPUT(hook_def, offsetof(mspring_hook_def, reserved), give_hook),
     INPUT(floor_def, offsetof(mspring_floor_def, reserved), give_floor),
@@ -450,7 +450,7 @@ static mspring_result fill_row_solver(subject *s, void *out) {
 const struct output outputs[] = {
     OUTPUT(view, fill_view),
     OUTPUT(mutable_view, fill_mutable_view),
-    OUTPUT(solver_def, fill_solver),
+    {"solver_def", sizeof(mspring_solver_def), 4, fill_solver, true}, // most_work
     OUTPUT(settings, fill_settings),
     OUTPUT(floor_def, fill_floor),
     OUTPUT(contact_def, fill_contact),
@@ -469,6 +469,6 @@ const struct output outputs[] = {
     OUTPUT_ONCE(settle_result, fill_settled),
     OUTPUT(component, fill_component),
     OUTPUT_ONCE(tune_row, fill_row),
-    OUTPUT(solver_def, fill_row_solver),
+    {"solver_def", sizeof(mspring_solver_def), 4, fill_row_solver, true},
 };
 const size_t output_count = COUNT_OF(outputs);

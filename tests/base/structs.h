@@ -19,6 +19,7 @@ void free_subject(subject *s);
 extern const struct input {
     const char *name; ///< without mspring_
     size_t size;      ///< as this program's header has it
+    size_t grown;     ///< bytes of it that the version that introduced it did not have
     mspring_result (*init)(void *out, size_t size);
     mspring_result (*give)(subject *s, void *given); ///< sets what init leaves unset, and makes the call
     size_t reserved;                                 ///< where a reserved field is; 0: there is none

@@ -126,7 +126,7 @@ static void impossible_sizes_are_refused(void **state) {
     (void)state;
     for (const struct input *input = inputs; input < inputs + input_count; input++) {
         uint32_t sizes[IMPOSSIBLE_COUNT];
-        list_impossible(sizes, input->size, 0);
+        list_impossible(sizes, input->size, input->grown);
         for (size_t i = 0; i < IMPOSSIBLE_COUNT; i++) {
             subject s = make_subject();
             unsigned char *bytes = fenced(input->size);

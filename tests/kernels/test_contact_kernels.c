@@ -125,8 +125,8 @@ static block make_block(const mspringi_floor *floor, double h) {
     return made;
 }
 
-/// Global damping of about 1 / 3 in a substep.
-static const mspringi_damping damped = {0.8, 1.1};
+/// Global damping of about 1 / 3 in a substep, and none, after one of the same length and after one half as long.
+static const mspringi_damping dampings[] = {{0.8, 1.1}, {1, 1}, {1, 4.0 / 3}, {1, 1}};
 
 static mspringi_floor_args ground_of(const mspringi_floor *floor, block *b, double h, mspringi_damping damping,
                                      mspringi_bounds clear) {
@@ -215,13 +215,12 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
         const mspringi_bounds clear = {-20, 20, n % 3 == 0 ? 0.2f : 20.0f, 20};
         const block before = make_block(&floor, h);
         block found = before;
-        const mspringi_floor_args ground =
-            ground_of(&floor, &found, h, n % 4 == 0 ? damped : (mspringi_damping){1, 1}, clear);
+        const mspringi_floor_args ground = ground_of(&floor, &found, h, dampings[n % 4], clear);
         const uint32_t left = is_loose ? kernels->bounce_free(&ground, 0) : kernels->bounce(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {
             block expected = before;
             const bool is_left = left >> i & 1;
-            left_count += is_left;
+            left_count += is_left && mspringi_slack_of(ground.damping) == 0;
             if (!is_left && !is_clear(&before, i, &clear) && before.active_inverse_mass[i] > 0.0f) {
                 (is_loose ? fly : bounce)(&floor, &ground, &expected, i);
             }
@@ -237,7 +236,7 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
         }
     }
     // It is for most: of those with a way of up to 0.3 m, few come from another part; but with a wall and a lid
-    // many begin in corners.
+    // many begin in corners. With slack it leaves all.
     assert_in_range(moved_count, BLOCKS * W / 8, BLOCKS * W);
     assert_in_range(left_count, 0, BLOCKS * W / 6);
 }
@@ -286,8 +285,7 @@ static void silt(void **state) {
         }
         block found = before;
         const bool is_seen = n % 2 == 0;
-        mspringi_floor_args ground =
-            ground_of(&floor, &found, h, is_seen && n % 4 == 0 ? damped : (mspringi_damping){1, 1}, clear);
+        mspringi_floor_args ground = ground_of(&floor, &found, h, dampings[is_seen ? n % 4 : 1], clear);
         ground.from_vx = is_seen ? found.from_vx : found.vx;
         ground.from_vy = is_seen ? found.from_vy : found.vy;
         ground.before_vx = is_seen ? found.from_vx : NULL;

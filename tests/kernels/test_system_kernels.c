@@ -440,7 +440,6 @@ static void run_by_slot(arena *a, const setup *s, const mspringi_system_kernels 
     const bool apart = s->variant & 4;
     mspringi_correction landing = {
         .predicted = a->predicted_x,
-        .start = a->by_slot[VX],
         .inverse_mass = a->by_slot[INVERSE_MASS],
         .solution = a->by_slot[SOLUTION_X],
         .direction = a->by_slot[DIRECTION_X],
@@ -451,8 +450,10 @@ static void run_by_slot(arena *a, const setup *s, const mspringi_system_kernels 
         .to_low = a->by_slot[apart ? ARM_X : LOW],
         .to_first = a->by_slot[apart ? ARM_Y : FIRST],
         .to_second = a->by_slot[SECOND],
+        .low_velocity = s->variant & 1 ? a->by_slot[FORCE_X] : NULL,
         .alpha = 0.7f,
         .h = 0.015f,
+        .first_share = 0.004f,
         .rate = 90,
     };
     k->scale_masses(a->by_slot[INVERSE_MASS], 3, a->by_slot[MASS], first, end);
@@ -513,18 +514,20 @@ static void advances(void **state) {
 
 /* ------------------------------------------------------------------------------------------------------ energy */
 
-static mspringi_motion motion_of(arena *a) {
+static mspringi_motion motion_of(arena *a, bool is_precise) {
     return (mspringi_motion){.x = a->by_slot[ARM_X],
                              .y = a->by_slot[ARM_Y],
                              .vx = a->by_slot[VX],
                              .vy = a->by_slot[VY],
                              .low_x = a->by_slot[LOW],
                              .low_y = a->by_slot[FIRST],
+                             .low_vx = is_precise ? a->by_slot[SECOND] : NULL,
+                             .low_vy = is_precise ? a->by_slot[RESIDUAL_X] : NULL,
                              .inverse_mass = a->by_slot[MASS]};
 }
 
 static void run_moments(arena *a, const setup *s, const mspringi_system_kernels *k) {
-    const mspringi_motion motion = motion_of(a);
+    const mspringi_motion motion = motion_of(a, s->variant != 0);
     const double origin[] = {0.3, -2, 1.5, 7};
     const size_t first = s->first * W;
     k->moments(&motion, first, first + s->blocks * W, origin, a->results);
@@ -533,8 +536,13 @@ static void run_moments(arena *a, const setup *s, const mspringi_system_kernels 
 static void moments(void **state) {
     (void)state;
     for (uint32_t blocks = 0; blocks <= 5; blocks++) {
-        for (uint32_t first = 0; first < 3; first++) {
-            const setup s = {.blocks = blocks, .first = first, .parts = 2, .live = W, .seed = blocks * 10 + first};
+        for (uint32_t first = 0; first < 6; first++) {
+            const setup s = {.blocks = blocks,
+                             .first = first % 3,
+                             .variant = first / 3,
+                             .parts = 2,
+                             .live = W,
+                             .seed = blocks * 10 + first};
             compare("moments", &s, run_moments, true);
         }
     }
@@ -554,7 +562,7 @@ static void run_elastic(arena *a, const setup *s, const mspringi_system_kernels 
     mspringi_span spans[3];
     mspringi_elastic of_block[MANY / W] = {{0}};
     const mspringi_system system = system_of(a, s->parts);
-    const mspringi_motion motion = motion_of(a);
+    const mspringi_motion motion = motion_of(a, false);
     const uint32_t count = spans_of(s, spans);
     lay_upon_others(a);
     k->elastic(&system, &motion, spans, count, s->has_above, of_block);

@@ -273,6 +273,25 @@ static void plan_counts_what_is_there(void **state) {
     mspring_network_destroy(network);
 }
 
+/// First words are multiples of the last place of twice the longest rest length, 2^-22 here, from the start.
+static void precise_places_begin_on_the_grid(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    const mspring_id a = support_particle(builder, 0.1, 0.3, 1), b = support_particle(builder, 1.1, 0.3, 1);
+    support_spring(builder, a, b, 100, 0);
+    mspring_network_def def = support_def(0, 1);
+    def.flags = MSPRING_NETWORK_PRECISE;
+    mspring_network *network = support_network(builder, &def);
+    mspring_view view = {.struct_size = sizeof view};
+    check_ok(mspring_network_view(network, &view));
+    for (mspring_id p = a; p <= b; p++) {
+        const double x = ldexp((double)view.x[view.slot_of_particle[p]], 22);
+        assert_true(x == floor(x));
+        check_near(support_position(network, p).x, p == a ? 0.1 : 1.1, 1e-12); // both words
+    }
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(defaults_make_a_network),
@@ -285,6 +304,7 @@ int main(void) {
         cmocka_unit_test(bad_gravity_and_damping_are_refused),
         cmocka_unit_test(null_network_has_nothing),
         cmocka_unit_test(plan_counts_what_is_there),
+        cmocka_unit_test(precise_places_begin_on_the_grid),
     };
     return cmocka_run_group_tests_name("network", tests, NULL, NULL);
 }

@@ -223,8 +223,8 @@ static void disturb(mspring_network *network, uint32_t way, mspring_id p) {
     }
 }
 
-/// Sleepers that the host disturbs wake in the next step. Snapshots before it are those after a load, and both go on
-/// alike, with the pile of the disturbed island.
+/// Sleepers that the host disturbs wake in the next step. Snapshots before it are those after a load, and both go
+/// on alike, with the pile of the disturbed island.
 static void disturbed_sleepers_save_the_same_bytes(void **state) {
     (void)state;
     const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT};
@@ -252,6 +252,66 @@ static void disturbed_sleepers_save_the_same_bytes(void **state) {
         free(start.bytes);
         mspring_network_destroy(asleep);
     }
+}
+
+// Tiles are cut alike whether those that the next step wakes still sleep, or were loaded awake.
+static void sleepers_do_not_count_in_tiles(void **state) {
+    (void)state;
+    const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {20, 30}};
+    const float push = 1;
+    mspring_network *networks[2];
+    for (int i = 0; i < 2; i++) {
+        uint64_t seed = 5;
+        recipe made = {0};
+        for (uint32_t p = 0; p < 400; p++)
+            recipe_particle(&made, support_random_between(&seed, -9, 9), support_random_between(&seed, -9, 9), 1,
+                            0);
+        recipe_random_springs(&made, 600, &stuff, &seed);
+        mspring_network_def def = support_def(0, 4);
+        def.sleep_speed = 100;
+        def.sleep_time = 0.05f;
+        networks[i] = recipe_network(&made, &def);
+        recipe_free(&made);
+    }
+    support_fall_asleep(networks[0], 1.0 / 64);
+    check_ok(mspring_network_set_velocities(networks[0], 0, 400, &push, &push, 0)); // the next step wakes them
+    saved now = snapshots_save(networks[0], MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_load(networks[1], now.bytes, now.size));
+    free(now.bytes);
+    for (int i = 0; i < 2; i++)
+        snapshots_use_solver(networks[i], MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 1);
+    now = snapshots_save(networks[0], MSPRING_SNAPSHOT_ALL);
+    check_ok(mspring_network_load(networks[1], now.bytes, now.size));
+    check_same(networks[1], &now);
+    free(now.bytes);
+    support_steps(networks[0], 4, 1.0 / 64);
+    support_steps(networks[1], 4, 1.0 / 64);
+    assert_true(support_hash(networks[0]) == support_hash(networks[1]));
+    for (int i = 0; i < 2; i++)
+        mspring_network_destroy(networks[i]);
+}
+
+// Hosts set the rest lengths of actuators, too: to all that springs may have. Signals keep within that.
+static void lengths_of_actuators_are_those_of_springs(void **state) {
+    (void)state;
+    static const float lengths[] = {1e-40f, 1e-20f, 4e12f}, most = 100;
+    const mspring_id spring = 0;
+    mspring_network *network = make(MSPRING_SOLVER_EXPLICIT, 3);
+    for (size_t i = 0; i < sizeof lengths / sizeof lengths[0]; i++) {
+        float length = 4e10f;
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 0, 1, &length, 1));
+        check_ok(mspring_network_set_actuators(network, &spring, 1, 1));
+        check_ok(mspring_network_set_signals(network, 0, 1, &most, 1));
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 0, 1, &lengths[i], 1));
+        const saved now = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
+        check_ok(mspring_network_load(network, now.bytes, now.size));
+        check_same(network, &now);
+        free(now.bytes);
+    }
+    check_error(mspring_network_set_actuators(network, &spring, 1, 1),
+                MSPRING_ERROR_ARGUMENT); // 4e14 m by a signal
+    check_contains(mspring_network_error(network), "it must be 1e-12 to 4e10");
+    mspring_network_destroy(network);
 }
 
 /// A scale of -0 pins as one of 0 does.
@@ -341,6 +401,8 @@ int main(void) {
         cmocka_unit_test(questions_change_nothing),
         cmocka_unit_test(disturbed_sleepers_save_the_same_bytes),
         cmocka_unit_test(a_scale_has_no_sign),
+        cmocka_unit_test(sleepers_do_not_count_in_tiles),
+        cmocka_unit_test(lengths_of_actuators_are_those_of_springs),
         cmocka_unit_test(a_refused_flow_leaves_no_trace),
 #if defined(FE_UPWARD) && !defined(__wasm__)
         cmocka_unit_test(the_callers_rounding_does_not_count),

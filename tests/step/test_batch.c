@@ -224,6 +224,37 @@ static void resets_repeat_the_bits(void **state) {
     mspring_network_destroy(again);
 }
 
+// Particles without springs fall onto a slope and slide. The second time, others are there already.
+static void loose_particles_repeat_the_bits(void **state) {
+    enum { STEPS = 150 };
+    const double slope[] = {0, 0, -0.3, 1};
+    static support_point places[2][STEPS];
+    (void)state;
+    mspring_builder *builder = support_builder();
+    for (int i = 0; i < 3; i++)
+        (void)support_particle(builder, 10 * i, 3 * i + 12, 1);
+    mspring_network_def def = support_def(-9.8f, 8);
+    def.guard = MSPRING_GUARD_BOUNDS;
+    mspring_network *network = support_network(builder, &def);
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.planes = slope;
+    floor.plane_count = 1;
+    floor.friction = 0.1f;
+    check_ok(mspring_network_set_floor(network, &floor));
+    const mspring_id firsts[] = {0, 1, 2, 3};
+    check_ok(mspring_network_set_groups(network, firsts, 3));
+    for (int round = 0; round < 2; round++) {
+        for (int i = 0; i < STEPS; i++) {
+            check_ok(mspring_network_step(network, DT));
+            places[round][i] = support_position(network, 1);
+        }
+        check_ok(mspring_network_reset_groups(network, &(uint32_t){1}, 1, MSPRING_RESET_START));
+    }
+    assert_memory_equal(places[0], places[1], sizeof places[0]);
+    mspring_network_destroy(network);
+}
+
 // Steel that has bent, and a spring whose mark has it broken.
 static void resets_take_back_all(void **state) {
     mspring_network *network = equal_robots();
@@ -420,6 +451,7 @@ int main(void) {
         cmocka_unit_test(held_where_it_was),
         cmocka_unit_test(particles_in_no_group_fail_the_step),
         cmocka_unit_test(resets_repeat_the_bits),
+        cmocka_unit_test(loose_particles_repeat_the_bits),
         cmocka_unit_test(resets_take_back_all),
         cmocka_unit_test(origin_stays),
         cmocka_unit_test(observes),

@@ -23,6 +23,7 @@ static mspringi_free_motion plan_free_motion(const mspring_network *network, con
         gravity_fall += gravity_gain * h;
     }
     return (mspringi_free_motion){.keep = (float)keep,
+                                  .loss = (float)(1.0 - keep),
                                   .gain = (float)gain,
                                   .reach = (float)reach,
                                   .fall = (float)fall,
@@ -47,8 +48,11 @@ static uint32_t end_of_chunk(const mspring_network *network, const mspringi_stri
     return next;
 }
 
-// True if a hook within reach would act in substeps.
+// True if a hook within reach would act in substeps; with groups always, as a floor that only others are near cuts
+// a step. All substeps at once round differently, so the bits of a group would depend on the others.
 static bool may_be_cut(const mspring_network *network) {
+    if (network->groups.count > 0)
+        return true;
     for (size_t i = 0; i < network->hook_count; ++i)
         if (network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
             return true;

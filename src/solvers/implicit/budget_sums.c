@@ -23,6 +23,14 @@ static double y_at(const mspringi_motion *m, size_t slot) {
     return (double)m->y[slot] + (double)m->low_y[slot];
 }
 
+static double vx_at(const mspringi_motion *m, size_t slot) {
+    return (double)m->vx[slot] + (m->low_vx ? (double)m->low_vx[slot] : 0.0);
+}
+
+static double vy_at(const mspringi_motion *m, size_t slot) {
+    return (double)m->vy[slot] + (m->low_vy ? (double)m->low_vy[slot] : 0.0);
+}
+
 /* ----------------------------------------------------------------------------------------------------- by block */
 
 static void add_effect(const measuring *all, const component *a, size_t slot, double *to) {
@@ -134,7 +142,7 @@ static void add_particles(const measuring *all) {
             component *a = &budget->components[budget->of_slot[slot]];
             const double mass = (double)(1.0f / network->inverse_mass[slot]);
             const double x = x_at(m, slot) - a->origin[0], y = y_at(m, slot) - a->origin[1];
-            const double vx = (double)m->vx[slot] - a->origin[2], vy = (double)m->vy[slot] - a->origin[3];
+            const double vx = vx_at(m, slot) - a->origin[2], vy = vy_at(m, slot) - a->origin[3];
             const double moments[] = {mass,
                                       mass * x,
                                       mass * y,

@@ -29,7 +29,7 @@
 /// joule.)
 #define MUCH 1e-3
 
-/// Share of the kinetic energy below which a rigid motion is lost in the rounding of velocities.
+/// Share of the kinetic energy below which a rigid motion is lost in the rounding of velocities of one word.
 #define LOST_MOTION 1e-15
 
 /// How far a mass centre may be from where it should be, in m and as a share of its way.
@@ -47,15 +47,17 @@ typedef mspringi_component_budget component;
 typedef mspringi_mass_centre centre;
 
 static mspringi_motion motion_of(const mspring_network *network) {
-    const mspringi_state *s = &network->state;
-    return (mspringi_motion){s->x, s->y, s->vx, s->vy, s->low_x, s->low_y, network->inverse_mass};
+    const mspringi_state s = network->state;
+    const float *weights = network->inverse_mass;
+    return (mspringi_motion){s.x, s.y, s.vx, s.vy, s.low_x, s.low_y, s.low_vx, s.low_vy, weights};
 }
 
 static mspringi_motion motion_before(const mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
-    const float *s = budget->is_in_backup ? network->backup.x : budget->state;
+    const float *s = budget->is_in_backup ? network->backup.x : budget->state, *weights = network->inverse_mass;
     const size_t n = mspringi_slot_count(network);
-    return (mspringi_motion){s, s + n, s + 2 * n, s + 3 * n, s + 4 * n, s + 5 * n, network->inverse_mass};
+    const float *x = network->is_precise ? s + 6 * n : NULL, *y = network->is_precise ? s + 7 * n : NULL;
+    return (mspringi_motion){s, s + n, s + 2 * n, s + 3 * n, s + 4 * n, s + 5 * n, x, y, weights};
 }
 
 /* ------------------------------------------------------------------------------------------------- mass centres */
@@ -137,6 +139,7 @@ void mspringi_budget_begin(mspring_network *network) {
     for (uint32_t i = 0; i < budget->count; ++i)
         begin_component_budget(network, &budget->components[i]);
     find_frames(network, budget);
+    mspringi_grips_find_frames(network);
     mspringi_budget_sums all = {
         .network = network, .motion = motion_of(network), .knows_elastic = knows_elastic(network)};
     budget->knows_elastic = false;
@@ -169,14 +172,14 @@ static outside outside_in(const mspring_network *network, double h) {
 }
 
 // Let the scaled velocities of a free component make up for what its momenta have changed by.
-static void restore_momentum(component *a, const centre *c, double vx, double vy, double turn) {
+static void restore_momentum(component *a, const centre *c, double vx, double vy, double turn, double lost) {
     const double turns = c->inertia > 0.0 ? c->spin / c->inertia : 0.0;
     const double dvx = vx - c->vx, dvy = vy - c->vy, other = turn - turns;
     const double motion = c->mass * (dvx * dvx + dvy * dvy) + c->inertia * (other * other);
     a->turn = turn - a->keep * turns;
     a->add_x = (a->origin[2] + vx) - a->keep * (a->origin[2] + c->vx);
     a->add_y = (a->origin[3] + vy) - a->keep * (a->origin[3] + c->vy);
-    if (a->keep == 1.0 && motion <= LOST_MOTION * (c->kinetic + flight_energy(a, c)))
+    if (a->keep == 1.0 && motion <= lost * (c->kinetic + flight_energy(a, c)))
         a->turn = a->add_x = a->add_y = 0.0;
 }
 
@@ -238,7 +241,7 @@ static void check_free(const mspring_network *network, component *a, const centr
                         .rounding = mspringi_energy_rounding(a, a->internal)});
     a->turned = c->inertia > 0.0 ? 0.25 * o->h * (a->spin + spin) / c->inertia : 0.0;
     a->is_free = true;
-    restore_momentum(a, c, vx - a->origin[2], vy - a->origin[3], turn);
+    restore_momentum(a, c, vx - a->origin[2], vy - a->origin[3], turn, network->is_precise ? 0.0 : LOST_MOTION);
     // Impulses of other bodies act from the beginning of the substep.
     const double before = a->is_touched ? 0.0 : 0.5, after = 1.0 - before;
     move_centre(a, c, o->h * (before * (a->origin[2] + a->vx) + after * vx),
@@ -350,15 +353,13 @@ static void turn_slots(mspring_network *network, const component *a, size_t firs
     const double sums_x = a->sums[MSPRINGI_MOMENT_X], sums_y = a->sums[MSPRINGI_MOMENT_Y];
     const double mass = a->sums[MSPRINGI_MOMENT_MASS], x = sums_x / mass, y = sums_y / mass;
     const double keep = a->keep, turn = a->turn, add_x = a->add_x, add_y = a->add_y;
-    float *const vx = network->state.vx, *const vy = network->state.vy;
+    const mspringi_state *s = &network->state;
     for (size_t slot = first; slot < end; ++slot) {
         const double rx = (((double)m.x[slot] - a->origin[0]) + (double)m.low_x[slot]) - x;
         const double ry = (((double)m.y[slot] - a->origin[1]) + (double)m.low_y[slot]) - y;
-        const float to_x = (float)(keep * (double)vx[slot] + (add_x - turn * ry));
-        const float to_y = (float)(keep * (double)vy[slot] + (add_y + turn * rx));
-        const bool is_free = m.inverse_mass[slot] > 0.0f;
-        vx[slot] = is_free ? to_x : vx[slot];
-        vy[slot] = is_free ? to_y : vy[slot];
+        if (m.inverse_mass[slot] > 0.0f)
+            mspringi_set_velocity_in_full(s, slot, keep * mspringi_vx_of(s, slot) + (add_x - turn * ry),
+                                          keep * mspringi_vy_of(s, slot) + (add_y + turn * rx));
     }
     if (a->shift_x != 0.0 || a->shift_y != 0.0)
         shift_slots(network, a, first, end);

@@ -65,6 +65,7 @@ static mspring_result no_memory(mspring_network *network) {
 static mspring_result begin(making *m) {
     m->made->scale = choose_scale(m->network);
     m->made->seen = m->network->edits;
+    m->made->seen.sleep_changes = ~m->network->edits.sleep_changes; // it is made as if nothing slept
     return mspringi_panels_create(&m->made->panels, &m->network->topology, &m->network->memory,
                                   &m->network->message);
 }

@@ -225,6 +225,16 @@ static inline bool mspringi_may_iterate(const mspringi_implicit *n) {
     return n->solves < MSPRINGI_MOST_SOLVES + MSPRINGI_TIMES_SOLVED * n->iterations;
 }
 
+/* work.c */
+
+/// Allow a substep with contact the work that one of its size takes.
+void mspringi_implicit_allow_work(const mspring_network *network);
+/// Count an iteration, or a solution with the factor; a factorisation.
+void mspringi_implicit_count_solve(const mspring_network *network);
+void mspringi_implicit_count_factorisation(const mspring_network *network);
+/// True if contact has taken too much work. The step will be rejected, so nothing more is done for it.
+bool mspringi_implicit_is_too_much(const mspring_network *network);
+
 /* integrator.c */
 
 /// Coefficients of an integrator: A = M + c K + s C with c = force_fraction h^2 and s = c velocity_fraction / h.

@@ -301,8 +301,7 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
         const double vy = k->v[i].y - (mspringi_y_of(s, slot) - k->y[i]) / h;
         if (vx == 0.0 && vy == 0.0)
             continue;
-        s->vx[slot] = (float)((double)s->vx[slot] + vx);
-        s->vy[slot] = (float)((double)s->vy[slot] + vy);
+        mspringi_set_velocity_in_full(s, slot, mspringi_vx_of(s, slot) + vx, mspringi_vy_of(s, slot) + vy);
         mspringi_move_by(s, slot, (float)(h * vx), (float)(h * vy));
     }
 }
@@ -444,8 +443,8 @@ void mspringi_implicit_contact_push_free_particles(const mspring_network *networ
         const uint32_t slot = slot_of(network, i);
         if (k->extra_vx[i] == 0.0 && k->extra_vy[i] == 0.0)
             continue;
-        s->vx[slot] = (float)((double)s->vx[slot] + k->extra_vx[i]);
-        s->vy[slot] = (float)((double)s->vy[slot] + k->extra_vy[i]);
+        mspringi_set_velocity_in_full(s, slot, mspringi_vx_of(s, slot) + k->extra_vx[i],
+                                      mspringi_vy_of(s, slot) + k->extra_vy[i]);
         mspringi_move_by(s, slot, (float)k->shift_x[i], (float)k->shift_y[i]);
         k->extra_vx[i] = k->extra_vy[i] = k->shift_x[i] = k->shift_y[i] = 0.0;
     }

@@ -121,30 +121,48 @@ static double loss_of(const mspringi_budget_sums *all, const mspringi_grip *grip
            energy_of(grip, to->x - place_x(after, slot), to->y - place_y(after, slot));
 }
 
-// Work of a grip whose force is its largest: in the frame of the target at most the energy that its spring loses,
-// as a particle that passes the target is pulled back from there on.
-static double work_of_bounded(const mspringi_budget_sums *all, const mspringi_grip *grip, uint32_t slot, double x,
-                              double y) {
-    const mspringi_grip_target from = aim_of(all->network, grip, 0.0f), to = aim_of(all->network, grip, all->h);
-    const double of_target = grip->force_x * (to.x - from.x) + grip->force_y * (to.y - from.y);
-    const double by_end = grip->force_x * x + grip->force_y * y;
-    return fmin(by_end, of_target + loss_of(all, grip, slot, &from, &to));
-}
-
-// Work of a grip on the way of its particle, (x, y): of the damper, and what the spring loses. Where the target
-// moves, that is measured from the middle of its way, or as force times way if that is more.
+// Work of a grip: what its target does on its way, and, in the frame of the target, what the spring loses and the
+// damper does.
 static double work_of(const mspringi_budget_sums *all, const mspringi_grip *grip, uint32_t slot, double x,
                       double y) {
-    if (grip->is_bounded)
-        return work_of_bounded(all, grip, slot, x, y);
-    const double by_end = grip->force_x * x + grip->force_y * y;
     const mspringi_grip_target from = aim_of(all->network, grip, 0.0f), to = aim_of(all->network, grip, all->h);
-    const mspringi_grip_target middle = {.x = 0.5 * (from.x + to.x), .y = 0.5 * (from.y + to.y)};
-    const double c = (double)grip->damping, lost = loss_of(all, grip, slot, &middle, &middle);
-    const double braked =
-        grip->share * c * ((to.vx - (double)all->motion.vx[slot]) * x + (to.vy - (double)all->motion.vy[slot]) * y);
-    const bool moves = to.vx != 0.0 || to.vy != 0.0;
-    return moves ? fmax(by_end, lost + braked) : lost + braked;
+    const double way_x = to.x - from.x, way_y = to.y - from.y, c = grip->is_bounded ? 0.0 : (double)grip->damping;
+    const double of_target = grip->force_x * way_x + grip->force_y * way_y;
+    const double braked = grip->share * c *
+                          ((to.vx - (double)all->motion.vx[slot]) * (x - way_x) +
+                           (to.vy - (double)all->motion.vy[slot]) * (y - way_y));
+    return of_target + loss_of(all, grip, slot, &from, &to) + braked;
+}
+
+// True if the targets of all grips on a component move as one does.
+static bool do_targets_move_alike(const mspring_network *network, uint32_t component, mspringi_grip_target as) {
+    const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    uint32_t slot;
+    bool alike = true;
+    for (uint32_t i = 0; i < network->grips.count; ++i) {
+        const mspringi_grip *grip = &network->grips.list[i];
+        const mspringi_grip_target to = aim_of(network, grip, 0.0f);
+        if (is_held(network, grip, &slot) && budget->of_slot[slot] == component)
+            alike &= to.vx == as.vx && to.vy == as.vy;
+    }
+    return alike;
+}
+
+// Not with a floor or contact: they do work in the frame of targets that move.
+void mspringi_grips_find_frames(const mspring_network *network) {
+    const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    uint32_t slot;
+    for (uint32_t i = 0; i < network->grips.count && !network->floor && !network->contacts; ++i) {
+        const mspringi_grip *grip = &network->grips.list[i];
+        if (!is_held(network, grip, &slot) || budget->of_slot[slot] == MSPRINGI_NO_COMPONENT)
+            continue;
+        mspringi_component_budget *a = &budget->components[budget->of_slot[slot]];
+        const mspringi_grip_target to = aim_of(network, grip, 0.0f);
+        if (a->frame_pin == MSPRING_NONE && do_targets_move_alike(network, budget->of_slot[slot], to)) {
+            a->frame_x = to.vx;
+            a->frame_y = to.vy;
+        }
+    }
 }
 
 void mspringi_grips_add_impulses(const mspringi_budget_sums *all) {

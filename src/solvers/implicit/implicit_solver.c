@@ -74,7 +74,6 @@ static void take_over(const mspring_network *to, void *object, const mspring_net
     n->history.h = had->history.h;
     n->history.restarts = had->history.restarts;
     n->seen.motion = had->seen.motion;
-    n->seen.sleep_changes = ~to->edits.sleep_changes; // it was made as if nothing slept
     for (size_t i = 0; i < had->history_size / slots; ++i)
         for (mspring_id p = 0; p < from->topology.particle_count; ++p)
             n->history.first.x[i * made_slots + there[p]] = had->history.first.x[i * slots + here[p]];

@@ -76,7 +76,8 @@ static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_
         *alpha = solve(substep, member);
         mspringi_team_barrier(member);
         if (member->index == 0)
-            n->must_solve_again = update_active_set(network, *alpha, pass) && mspringi_may_iterate(n);
+            n->must_solve_again = update_active_set(network, *alpha, pass) && mspringi_may_iterate(n) &&
+                                  !mspringi_implicit_is_too_much(network);
         mspringi_team_barrier(member);
         if (n->restarts_with_euler)
             return false;
@@ -177,6 +178,8 @@ static void take_halves(mspringi_implicit_substep *substep, uint32_t halvings);
 static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
+    if (mspringi_implicit_is_too_much(network))
+        return;
     const bool are_near = mspringi_implicit_contact_is_near(network), watches = substep->watches || are_near;
     const bool may_halve = tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS) &&
                            n->retry_count < MOST_RETAKEN && mspringi_may_iterate(n);
@@ -255,6 +258,7 @@ void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_
         .network = network, .base = base, .h = h, .watches = mspringi_guard_checks_limit(network->settings.guard)};
     for (uint32_t i = 0; i < count; ++i) {
         mspringi_implicit_of(network)->retry_count = 0;
+        mspringi_implicit_allow_work(network);
         if (network->floor || mspringi_implicit_contact_is_near(network))
             take_pieces(&substep);
         else

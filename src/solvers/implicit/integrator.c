@@ -130,14 +130,13 @@ static mspringi_history_kind choose_memory(const mspringi_implicit *n) {
     }
 }
 
-static void prepare_landing(mspringi_implicit_substep *substep, float rate) {
+static void prepare_landing(mspringi_implicit_substep *substep) {
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_history *from = &n->history, *to = &n->previous;
     const mspringi_field direction = n->is_direct ? n->product : n->direction; // nothing, or what is left of d
     substep->history = choose_memory(n);
     substep->correction[0] = (mspringi_correction){.predicted = n->x,
-                                                   .start = n->velocity.x,
                                                    .inverse_mass = mspringi_active_inverse_mass(network),
                                                    .solution = n->displacement.x,
                                                    .direction = direction.x,
@@ -145,14 +144,15 @@ static void prepare_landing(mspringi_implicit_substep *substep, float rate) {
                                                    .first = from->first.x,
                                                    .position = network->state.x,
                                                    .velocity = network->state.vx,
+                                                   .low_velocity = network->state.low_vx,
                                                    .to_low = network->state.low_x,
                                                    .to_first = to->first.x,
                                                    .to_second = to->second.x,
                                                    .h = substep->h,
-                                                   .rate = rate,
+                                                   .first_share = substep->prediction.first_share,
+                                                   .rate = substep->prediction.rate,
                                                    .grid = mspringi_rounding(&network->state)};
     substep->correction[1] = (mspringi_correction){.predicted = n->y,
-                                                   .start = n->velocity.y,
                                                    .inverse_mass = mspringi_active_inverse_mass(network),
                                                    .solution = n->displacement.y,
                                                    .direction = direction.y,
@@ -160,11 +160,13 @@ static void prepare_landing(mspringi_implicit_substep *substep, float rate) {
                                                    .first = from->first.y,
                                                    .position = network->state.y,
                                                    .velocity = network->state.vy,
+                                                   .low_velocity = network->state.low_vy,
                                                    .to_low = network->state.low_y,
                                                    .to_first = to->first.y,
                                                    .to_second = to->second.y,
                                                    .h = substep->h,
-                                                   .rate = rate,
+                                                   .first_share = substep->prediction.first_share,
+                                                   .rate = substep->prediction.rate,
                                                    .grid = mspringi_rounding(&network->state)};
 }
 
@@ -182,7 +184,7 @@ void mspringi_integrator_prepare(mspringi_implicit_substep *substep) {
     substep->mass_scale = (float)(n->scale * heavier);
     substep->prediction = prepare_flight(substep, integrator);
     prepare_outside(substep, c, heavier);
-    prepare_landing(substep, substep->prediction.rate);
+    prepare_landing(substep);
 }
 
 /* -------------------------------------------------------------------------------------------------- the flight */

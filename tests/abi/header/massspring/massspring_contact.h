@@ -71,13 +71,16 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 ///
 /// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back. It also
 /// does if more than an eighth of capacity and 1024 may touch in a substep. Then set the same contact with a larger
-/// capacity, and step again. Points of the outline and springs that are near each other are compared, pairs or not: a
-/// step fails likewise where these are many millions, as among springs that are far longer than their distance.
+/// capacity, and step again. A step fails likewise where it takes too much work: comparisons of points of the outline
+/// with springs near them that form no pair, visits of constraints beyond 768 for each, and iterations, solutions and
+/// factorisations of the implicit and direct solver while bodies are near. It may take what 3.1 million comparisons do,
+/// about 75 ms, and 32 for each point; with these solvers in each substep also 2.6 million, 3000 for each particle, and
+/// 16 solutions. Large scenes stay far below. The message names the particle with the most springs of the outline.
 ///
 /// Springs inside a body are told by the triangles at them. In networks where hundreds of particles are joined to
 /// hundreds each, that may take over 16 million comparisons and 32 for each spring: then the call fails.
 /// @param def  copied; NULL: no contact, the default. Groups, surfaces, colliders and events are forgotten.
-/// @threads exclusive   @allocates yes; about 560 bytes for a particle, 3400 more for one of the outline, 60 for a
+/// @threads exclusive   @allocates yes; about 600 bytes for a particle, 3400 more for one of the outline, 100 for a
 ///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1900 more.
 /// @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY; LIMIT (the message names a particle)
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
