@@ -357,7 +357,9 @@ static mspring_result make(mspring_network *network, const mspring_contact_def *
         take_over(made, had, springs);
     mspring_result result = ok ? find_outline(network, made, !had) : MSPRING_ERROR_MEMORY;
     if (result == MSPRING_OK &&
-        (!reserve_pairs(made, memory, particles) || (needs_holds(network) && !reserve_holds(made, memory))))
+        (!reserve_pairs(made, memory, particles) || (needs_holds(network) && !reserve_holds(made, memory)) ||
+         !mspringi_constraints_reserve(network, MSPRINGI_CONTACT_CONSTRAINT, (size_t)2 * made->constraint_capacity,
+                                       (size_t)6 * made->constraint_capacity)))
         result = MSPRING_ERROR_MEMORY;
     if (result == MSPRING_OK) {
         *contacts = made;

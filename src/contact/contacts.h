@@ -159,22 +159,15 @@ typedef struct mspringi_floor_support {
 /// Most supports of a particle: two where surfaces meet.
 #define MSPRINGI_MAX_SUPPORTS 2u
 
-/// Contact constraint as a stiff spring in the linear system (solvers/implicit/implicit_contact.c). Index 0 is the
-/// point, 1 and 2 are the ends of the edge.
+/// Contact constraint in the linear system (solvers/implicit/implicit_contact.c). Index 0 is the point, 1 and 2 are
+/// the ends of the edge.
 typedef struct mspringi_implicit_constraint {
     uint32_t slots[3];                ///< MSPRING_NONE: not an unknown of the system
+    uint32_t listed;                  ///< its push in the list of constraints; MSPRING_NONE: it acts by impulses
     double across[3][2], along[3][2]; ///< Jacobians of the normal and the tangential displacement
-    double gap;                       ///< gap at the prediction, less the wanted one, m
     double spare;                     ///< slack before a bouncing constraint becomes active, m
-    double ahead;                     ///< tangential displacement at the prediction, m
-    double stiffness, grip;           ///< normal and tangential stiffness, in units of the matrix
-    double friction;
-    double slip;                          ///< sign of sliding, 1 or -1; 0: sticking
-    double normal, braked;                ///< normal and tangential force, in units of the right-hand side
-    double answer[2], left[2], search[2]; ///< of the direct solver: solution, residual, direction
-    uint32_t next;       ///< of the direct solver: the active constraint after this one, or MSPRING_NONE
-    uint8_t force_count; ///< of the direct solver: unknown forces, 1 or 2
-    bool is_active;      ///< in the active set
+    double friction;                  ///< 0: it has no friction in the system
+    bool is_active;                   ///< in the active set at the prediction
 } mspringi_implicit_constraint;
 
 /// Pose of a collider, world coordinates.

@@ -213,7 +213,6 @@ void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory) 
     if (!floor)
         return;
     mspringi_free(memory, floor->clearances);
-    mspringi_free(memory, floor->contacts);
     mspringi_free(memory, floor->start.x);
     mspringi_free(memory, floor->before.x);
     mspringi_free(memory, floor->impulse.x);
@@ -246,9 +245,6 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     floor->slot_count = mspringi_slot_count(network);
     const size_t marks = floor->slot_count / MSPRINGI_WIDTH / sizeof *floor->clearances + 1;
     floor->clearances = mspringi_alloc(memory, network->topology.strip_count + marks, sizeof *floor->clearances);
-    floor->contact_capacity = (uint32_t)(floor->slot_count / 4) + 64;
-    floor->contact_count = 0;
-    floor->contacts = mspringi_alloc(memory, floor->contact_capacity, sizeof *floor->contacts);
     floor->impulse = floor->previous_impulse = floor->start = (mspringi_field){NULL, NULL};
     floor->before = (mspringi_state){
         .x = mspringi_alloc(memory, mspringi_state_arrays(network) * floor->slot_count, sizeof *floor->before.x)};
@@ -266,8 +262,7 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     floor->had_impulse = false;
     floor->is_near = true;
     floor->room.reach = 0.0;
-    return floor->clearances && floor->contacts && floor->before.x &&
-           reserve_field(&floor->impulse, floor->slot_count, memory) &&
+    return floor->clearances && floor->before.x && reserve_field(&floor->impulse, floor->slot_count, memory) &&
            reserve_field(&floor->previous_impulse, floor->slot_count, memory) &&
            reserve_field(&floor->start, floor->slot_count, memory);
 }
@@ -289,12 +284,21 @@ mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *
     return made;
 }
 
+// Reserve the constraints of an implicit substep: with friction, for each particle.
+static bool reserve_constraints(const mspringi_floor *floor, mspring_network *network) {
+    const uint32_t surfaces = floor->plane_count + (floor->heights.count > 0);
+    const uint32_t contacts = surfaces < MSPRINGI_MAX_FLOOR_CONTACTS ? surfaces : MSPRINGI_MAX_FLOOR_CONTACTS;
+    const size_t count = (size_t)2 * contacts * network->topology.reserve.particle_end;
+    return mspringi_constraints_reserve(network, MSPRINGI_FLOOR_CONSTRAINT, count, count);
+}
+
 // NULL if there is no memory.
 static MSPRINGI_NOINLINE mspringi_floor *make_floor(mspring_network *network, const mspring_floor_def *def) {
     mspringi_floor *made = mspringi_alloc(&network->memory, 1, sizeof *made);
     if (!made)
         return NULL;
-    if (!reserve_layout(made, network) || !copy_floor(made, def, &network->memory)) {
+    if (!reserve_layout(made, network) || !copy_floor(made, def, &network->memory) ||
+        !reserve_constraints(made, network)) {
         mspringi_floor_destroy(made, &network->memory);
         return NULL;
     }

@@ -46,19 +46,8 @@ typedef struct mspringi_clearance {
     bool is_far;           ///< the strip stays in it for the substeps of the last survey
 } mspringi_clearance;
 
-/// Floor contact of an implicit substep: a particle and a straight surface that it touches, or may touch.
-typedef struct mspringi_floor_contact {
-    uint32_t slot;
-    bool is_active;   ///< in the active set
-    double slip;      ///< sign of sliding along the surface, 1 or -1; 0: sticking
-    double nx, ny;    ///< normal
-    double friction;  ///< of it
-    double gap;       ///< distance at the prediction, m
-    double ahead;     ///< tangential displacement at the prediction, m
-    double stiffness; ///< of the contact's spring, in units of the matrix
-    double normal;    ///< normal force, in units of the right-hand side
-    double along;     ///< tangential force, likewise
-} mspringi_floor_contact;
+/// Most surfaces that hold a particle in an implicit substep, the nearest ones: where these meet it has one place.
+#define MSPRINGI_MAX_FLOOR_CONTACTS 2u
 
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
@@ -74,18 +63,15 @@ typedef struct mspringi_floor {
     mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
     mspringi_field previous_impulse; ///< [slot_count] in the step before, while a step is taken
     size_t slot_count;
-    double seconds;                   ///< length of the substeps of the last survey or of the step out of reach, s
-    double reach;                     ///< twice the longest way in the substeps of the last survey, m
-    bool is_near;                     ///< a strip may reach the surface in them, or there was no survey yet
-    bool is_missed;                   ///< forces moved a strip farther than the survey assumed: repeat the step
-    bool is_second_try;               ///< repeated step: no strip is left out
-    mspringi_safe_box room;           ///< safe box of the whole network
-    mspringi_bounds clear;            ///< box without surface around the network before an implicit substep
-    mspringi_floor_contact *contacts; ///< of an implicit substep
-    uint32_t contact_count, contact_capacity;
-    bool is_in_coarse; ///< contacts are in the coarse matrix
-    bool has_impulse;  ///< impulse is not all zero
-    bool had_impulse;  ///< previous_impulse is not all zero
+    double seconds;         ///< length of the substeps of the last survey or of the step out of reach, s
+    double reach;           ///< twice the longest way in the substeps of the last survey, m
+    bool is_near;           ///< a strip may reach the surface in them, or there was no survey yet
+    bool is_missed;         ///< forces moved a strip farther than the survey assumed: repeat the step
+    bool is_second_try;     ///< repeated step: no strip is left out
+    mspringi_safe_box room; ///< safe box of the whole network
+    mspringi_bounds clear;  ///< box without surface around the network before an implicit substep
+    bool has_impulse;       ///< impulse is not all zero
+    bool had_impulse;       ///< previous_impulse is not all zero
 } mspringi_floor;
 
 /// Particle with its start and its end of a substep, local coordinates.

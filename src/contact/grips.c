@@ -68,7 +68,9 @@ void mspringi_grips_clear(mspringi_grips *grips) {
 }
 
 mspring_result mspringi_grips_reserve(mspring_network *network) {
-    return mspringi_store_reserve(network, MSPRINGI_STORE_GRIPS)
+    return mspringi_store_reserve(network, MSPRINGI_STORE_GRIPS) &&
+                   mspringi_constraints_reserve(network, MSPRINGI_GRIP_CONSTRAINT, 2 * MSPRING_MAX_GRIPS,
+                                                2 * MSPRING_MAX_GRIPS)
                ? MSPRING_OK
                : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u grips",
                                (unsigned)MSPRING_MAX_GRIPS);

@@ -42,7 +42,6 @@ static void relocate_floor(const relocation *r, mspringi_floor *floor) {
     for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)
         RELOCATE(floor->heights.highest[i]);
     RELOCATE(floor->clearances);
-    RELOCATE(floor->contacts);
     relocate_field(r, &floor->start);
     relocate_state(r, &floor->before);
     relocate_field(r, &floor->impulse);

@@ -31,6 +31,8 @@ mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *ne
     mspring_result result = ops->create ? ops->create(network, def, tile_size, &solver->object) : MSPRING_OK;
     if (result == MSPRING_OK && ops->has_implicit_contact)
         result = mspringi_contacts_reserve_implicit(network);
+    if (result == MSPRING_OK && ops->has_implicit_grips && !mspringi_constraints_allocate(network))
+        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the solver's constraints");
     for (bool is_done = !ops->build; result == MSPRING_OK && !is_done;)
         result = ops->build(solver->object, &is_done);
     network->sleep.sleeping = sleeping;

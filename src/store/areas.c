@@ -220,7 +220,7 @@ double mspringi_area_largest(const mspring_network *network, const mspringi_area
 
 mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners, size_t angles) {
     mspringi_areas *a = &network->areas;
-    void *list = a->list, *all = a->corners, *hinges = a->hinges;
+    void *list = a->list, *all = a->corners;
     const mspring_result result = mspringi_incidence_reserve(network);
     if (result != MSPRING_OK)
         return result;
@@ -229,9 +229,9 @@ mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, si
     whole = whole && mspringi_grow(&network->memory, &all, &a->corner_capacity, a->corner_count + corners,
                                    sizeof *a->corners);
     a->corners = all;
-    whole = whole && (angles == 0 || mspringi_grow(&network->memory, &hinges, &a->hinge_capacity,
-                                                   a->angle_count + angles, sizeof *a->hinges));
-    a->hinges = hinges;
+    whole = whole &&
+            (angles == 0 || mspringi_constraints_reserve(network, MSPRINGI_ANGLE_CONSTRAINT,
+                                                         a->angle_count + angles, 3 * (a->angle_count + angles)));
     if (whole && mspringi_store_reserve(network, MSPRINGI_STORE_AREAS))
         return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %zu areas", a->count + areas);
@@ -375,13 +375,6 @@ static double find_longest(mspring_network *network, bool of_all) {
     return largest + damped > 0.0 ? 4.0 / (damped + sqrt(damped * damped + 4.0 * largest)) : INFINITY;
 }
 
-static void add_hinge(mspringi_areas *a, const mspringi_area *angle) {
-    const mspringi_corner *corners = a->corners + angle->first;
-    MSPRINGI_ASSERT(a->hinge_count < a->hinge_capacity);
-    a->hinges[a->hinge_count++] = (mspringi_hinge){.angle = (uint32_t)(angle - a->list),
-                                                   .slots = {corners[0].slot, corners[1].slot, corners[2].slot}};
-}
-
 void mspringi_areas_refresh(mspring_network *network) {
     mspringi_areas *a = &network->areas;
     const mspringi_edits *e = &network->edits;
@@ -407,8 +400,7 @@ void mspringi_areas_refresh(mspring_network *network) {
         if (area->is_open)
             continue;
         a->unringed += !area->is_ringed;
-        if (area->is_angle && area->is_ringed)
-            add_hinge(a, area);
+        a->hinge_count += area->is_angle && area->is_ringed;
         if (enter_cell(network, area))
             a->swept++;
         else

@@ -14,6 +14,7 @@
 #include "layout/topology.h"
 #include "store/added_springs.h"
 #include "store/components.h"
+#include "store/constraint_list.h"
 #include "store/groups.h"
 #include "store/solver.h"
 #include "store/state.h"
@@ -218,16 +219,6 @@ typedef struct mspringi_areas_seen {
     uint64_t changes, links, growth, layouts, masses;
 } mspringi_areas_seen;
 
-/// A closed angle with springs along both arms, in the linear system of a substep.
-typedef struct mspringi_hinge {
-    uint32_t angle;              ///< in the list
-    uint32_t slots[3];           ///< of its corners
-    double pull_x[3], pull_y[3]; ///< the gradient, times the root of the stiffness
-    // The direct solver iterates for the torque.
-    double left, search, answer;    ///< residual, direction, what comes of that
-    double beside[2], pivot, given; ///< factor of what is near their matrix, and what it gives for the residual
-} mspringi_hinge;
-
 /// All of them.
 typedef struct mspringi_areas {
     mspringi_area *list; ///< [count] in the order of ids
@@ -242,12 +233,11 @@ typedef struct mspringi_areas {
     mspringi_areas_seen seen;
     uint32_t swept, unswept; ///< closed areas that the explicit solver's sweeps have in them, and others
     uint32_t unringed;       ///< and those without springs all around
-    mspringi_hinge *hinges;  ///< [hinge_count] in the order of ids
-    size_t hinge_count, hinge_capacity;
-    double longest;        ///< substep that is stable with forces of these alone, s
-    double longest_of_all; ///< and with those of all
-    float *cells;          ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
-    mspringi_field force;  ///< from outside and of areas, in a substep
+    uint32_t hinge_count;    ///< closed angles with springs along both arms
+    double longest;          ///< substep that is stable with forces of these alone, s
+    double longest_of_all;   ///< and with those of all
+    float *cells;            ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
+    mspringi_field force;    ///< from outside and of areas, in a substep
 } mspringi_areas;
 
 /// What came of a step beside its result: see mspring_step_info.
@@ -477,6 +467,7 @@ struct mspring_network {
     mspringi_plastic plastic;
     mspringi_one_way one_way;
     mspringi_areas areas;
+    mspringi_constraints constraints; ///< of the last substep with a linear system
     mspringi_events events;
     mspringi_components components;
     mspringi_extents extents;

@@ -55,6 +55,8 @@ static mspring_network *thrown(mspring_solver solver, uint64_t *seed) {
     mspring_contact_def contact;
     check_ok(mspring_contact_def_init(&contact, sizeof contact));
     contact.thickness = 0.3;
+    contact.capacity =
+        40000; // a particle that two bodies throw at 130 m/s is near all edges, and its neighbours are
     check_ok(mspring_network_set_contact(network, &contact));
     return network;
 }

@@ -167,12 +167,46 @@ static void what_is_thrown_bounces_on_its_way(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Each particle of a rope lies on the floor, and the linear system holds all of them. With room for a quarter and
+/// 64, particles around the last one held differed from the due speed by up to 3.6 %; with all of them, ends do
+/// by 1.1 %: their springs take turns with friction.
+static void a_long_rope_slides_evenly(void **state) {
+    (void)state;
+    const double level[4] = {0, 0, 0, 1}, dt = 1.0 / 64;
+    const uint32_t count = 400, steps = 8;
+    for (int direct = 0; direct < 2; direct++) {
+        mspring_builder *builder = support_builder();
+        for (uint32_t i = 0; i < count; i++) {
+            (void)support_particle(builder, i, 0, 1);
+            if (i > 0)
+                support_spring(builder, i - 1, i, 1e5f, 10);
+        }
+        mspring_network_def def = support_def(-9.8f, 2);
+        def.solver = direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+        mspring_network *network = support_network(builder, &def);
+        mspring_floor_def floor;
+        check_ok(mspring_floor_def_init(&floor, sizeof floor));
+        floor.planes = level;
+        floor.plane_count = 1;
+        floor.friction = 0.5f;
+        check_ok(mspring_network_set_floor(network, &floor));
+        const float vx = 1, vy = 0;
+        check_ok(mspring_network_set_velocities(network, 0, count, &vx, &vy, 0));
+        support_steps(network, steps, dt);
+        const double due = 1 - 0.5 * 9.8 * steps * dt;
+        for (mspring_id id = 0; id < count; id++)
+            check_near(support_velocity(network, id).x, due, 0.015 * due);
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_begins_deep_in_a_corner_is_lifted),
         cmocka_unit_test(what_begins_to_fall_meets_the_floor_on_its_way),
         cmocka_unit_test(what_is_thrown_bounces_on_its_way),
         cmocka_unit_test(the_floor_leaves_alone_what_sleeps),
+        cmocka_unit_test(a_long_rope_slides_evenly),
     };
     return cmocka_run_group_tests_name("floor_edges", tests, NULL, NULL);
 }

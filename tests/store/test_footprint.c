@@ -40,13 +40,13 @@ static void full_lattices_are_small(void **state) {
     check_full_lattices(&stuff, "absolute");
 }
 
-/// The struct itself takes 3.7 kB, and each of some 30 arrays 64 bytes or more.
+/// The struct itself takes 3.8 kB, and each of some 30 arrays 64 bytes or more.
 static void small_networks_are_small(void **state) {
     (void)state;
     const struct {
         uint32_t width, height;
         double most;
-    } cases[] = {{2, 1, 10550}, {4, 4, 15400}, {7, 5, 19150}};
+    } cases[] = {{2, 1, 10700}, {4, 4, 15500}, {7, 5, 19300}};
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         uint64_t seed = 5;
         recipe made = {0};

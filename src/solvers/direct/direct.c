@@ -194,7 +194,7 @@ static mspring_result reserve_system(making *m) {
     d->edges_twice.xx = mspringi_alloc_unset(memory, 3 * whole, sizeof *d->edges_twice.xx);
     d->nodes_twice.xx = mspringi_alloc_unset(memory, 3 * all_nodes, sizeof *d->nodes_twice.xx);
     d->solution = mspringi_alloc(memory, 2 * nodes, sizeof *d->solution);
-    d->answer = mspringi_alloc_unset(memory, 2 * nodes, sizeof *d->answer);
+    d->answer = mspringi_alloc_unset(memory, 4 * nodes, sizeof *d->answer);
     if (!d->edges.xx || !d->edges_twice.xx || !d->nodes_twice.xx || !d->solution || !d->answer)
         return no_memory(m);
     d->edges.xy = d->edges.xx + spring_slots;
@@ -382,8 +382,35 @@ static bool solve_in_single(mspring_network *network) {
            MSPRING_NONE;
 }
 
-static void solve_more_in_single(const mspring_network *network, mspringi_field field) {
-    mspringi_cholesky_float_solve(&mspringi_implicit_of(network)->direct.single, field.x, field.y);
+static void solve_more_in_single(const mspring_network *network, double *x, double *y) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t i = 0; i < slots; ++i) {
+        n->scaled.x[i] = (float)x[i];
+        n->scaled.y[i] = (float)y[i];
+    }
+    mspringi_cholesky_float_solve(&n->direct.single, n->scaled.x, n->scaled.y);
+    for (size_t i = 0; i < slots; ++i) {
+        x[i] = (double)n->scaled.x[i];
+        y[i] = (double)n->scaled.y[i];
+    }
+}
+
+static void add_constraints_in_single(mspring_network *network) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const size_t slots = mspringi_slot_count(network);
+    double *const x = n->direct.solution, *const y = x + slots + 1;
+    for (size_t i = 0; i < slots; ++i) {
+        x[i] = (double)n->displacement.x[i];
+        y[i] = (double)n->displacement.y[i];
+    }
+    mspringi_direct_solve_constraints(network, solve_more_in_single, x, y);
+    for (size_t i = 0; i < slots; ++i) {
+        n->displacement.x[i] = (float)x[i];
+        n->displacement.y[i] = (float)y[i];
+    }
+    // The direct solver has no tiles that would turn what is predicted.
+    memset(n->scaled.x, 0, 2 * slots * sizeof *n->scaled.x);
 }
 
 /* ------------------------------------------------------------------------------------------- double precision */
@@ -431,13 +458,17 @@ static void fill_twice(const mspring_network *network, double added) {
         else
             add_any_edges(n, (uint32_t)first);
     }
-    mspringi_holds_add_nodes(network, node.xx, node.xy, node.yy);
+    mspringi_constraints_add_nodes(&network->constraints, node.xx, node.xy, node.yy);
     for (size_t i = 0; i < slots; ++i) {
         const double mass = n->mass[i] > 0.0f ? (double)n->mass[i] : PINNED_MASS;
         const double on_top = mass + added * (node.xx[i] + node.yy[i]);
         node.xx[i] += on_top;
         node.yy[i] += on_top;
     }
+}
+
+static void solve_more_in_double(const mspring_network *network, double *x, double *y) {
+    mspringi_cholesky_double_solve(&mspringi_implicit_of(network)->direct.twice, x, y);
 }
 
 static bool solve_in_double(mspring_network *network) {
@@ -456,7 +487,7 @@ static bool solve_in_double(mspring_network *network) {
         mspringi_implicit_count_factorisation(network);
         if (mspringi_cholesky_double_factor_solve(&d->twice, &matrix, x, y) != MSPRING_NONE)
             continue;
-        mspringi_direct_hold_angles(network, x, y);
+        mspringi_direct_solve_constraints(network, solve_more_in_double, x, y);
         for (size_t i = 0; i < slots; ++i) {
             n->displacement.x[i] = (float)x[i];
             n->displacement.y[i] = (float)y[i];
@@ -464,22 +495,6 @@ static bool solve_in_double(mspring_network *network) {
         return true;
     }
     return false;
-}
-
-static void solve_more_in_double(const mspring_network *network, mspringi_field field) {
-    mspringi_direct *d = &mspringi_implicit_of(network)->direct;
-    const size_t slots = mspringi_slot_count(network);
-    double *const x = d->solution, *const y = x + slots + 1;
-    for (size_t i = 0; i < slots; ++i) {
-        x[i] = (double)field.x[i];
-        y[i] = (double)field.y[i];
-    }
-    mspringi_cholesky_double_solve(&d->twice, x, y);
-    mspringi_direct_hold_angles(network, x, y);
-    for (size_t i = 0; i < slots; ++i) {
-        field.x[i] = (float)x[i];
-        field.y[i] = (float)y[i];
-    }
 }
 
 /* --------------------------------------------------------------------------------------------------- the whole */
@@ -495,8 +510,8 @@ void mspringi_direct_solve(mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const size_t slots = mspringi_slot_count(network);
     const bool is_soft = finish_diagonal(&n->system, slots);
-    // Without angles particles go far, and nearly all of that is taken back.
-    const bool in_single = is_soft && network->areas.hinge_count == 0 && solve_in_single(network);
+    // Without elements particles go far, and nearly all of that is taken back.
+    const bool in_single = is_soft && network->constraints.element_count == 0 && solve_in_single(network);
     if (!in_single && !solve_in_double(network)) {
         // Numbers overflowed: see to it that the step is refused.
         mspring_id named = 0;
@@ -506,5 +521,6 @@ void mspringi_direct_solve(mspring_network *network) {
         return;
     }
     hold_pinned(n, slots);
-    mspringi_direct_hold_bodies(network, in_single ? solve_more_in_single : solve_more_in_double);
+    if (in_single && mspringi_contact_constraint_is_active(&network->constraints))
+        add_constraints_in_single(network);
 }

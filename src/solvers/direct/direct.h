@@ -34,11 +34,11 @@ typedef struct mspringi_direct {
     mspringi_blocks_float edges;        ///< [place_count]
     mspringi_blocks_double edges_twice; ///< [place_count, rounded up to whole blocks]
     mspringi_blocks_double nodes_twice; ///< [slots + 1 + MSPRINGI_WIDTH]
-    double *solution, *answer;          ///< [slots + 1] x, then y; and what angles do to it
+    double *solution, *answer;          ///< [slots + 1] x, then y; and [2] responses to constraints
 } mspringi_direct;
 
-/// Solve with the factor that there is: what was the right-hand side is the solution.
-typedef void (*mspringi_solve_fn)(const mspring_network *network, mspringi_field field);
+/// Solve with the present factor, in place. [slots + 1]
+typedef void (*mspringi_solve_fn)(const mspring_network *network, double *x, double *y);
 
 /// One that is being made.
 typedef struct mspringi_direct_builder {
@@ -63,10 +63,8 @@ void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *fr
 
 /// Solve the system that mspringi_assemble() has left in the network's implicit solver.
 void mspringi_direct_solve(mspring_network *network);
-/// Add to its solution what rows between bodies do; see direct_contact.c.
-void mspringi_direct_hold_bodies(mspring_network *network, mspringi_solve_fn solve);
-/// Add to a solution without angles what these do; see direct_angles.c.
-void mspringi_direct_hold_angles(const mspring_network *network, double *x, double *y);
+/// Add to a solution the response to constraints whose forces are unknowns (constraints/direct_constraints.c).
+void mspringi_direct_solve_constraints(mspring_network *network, mspringi_solve_fn solve, double *x, double *y);
 #else // no table of solvers leads here
 static inline void mspringi_direct_begin(mspringi_direct_builder *making, mspringi_direct *direct,
                                          mspring_network *network) {

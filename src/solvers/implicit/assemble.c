@@ -236,7 +236,7 @@ void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_m
         if (member->index == 0) {
             assemble_irregular(network);
             mspringi_areas_add_terms(network);
-            mspringi_angles_add_terms(network);
+            mspringi_elements_add_terms(substep->network);
         }
         mspringi_team_barrier(member);
     }
@@ -251,16 +251,12 @@ double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team
     mspringi_implicit *n = mspringi_implicit_of(network);
     multiply_panels(network, member);
     mspringi_team_barrier(member);
-    const bool has_terms = (network->floor && network->floor->contact_count > 0) || network->grips.count > 0 ||
-                           network->areas.hinge_count > 0 || mspringi_implicit_contact_is_near(network);
-    const bool has_others =
-        network->topology.irregular_blocks > 0 || network->topology.irregular_count > 0 || has_terms;
+    const bool has_others = network->topology.irregular_blocks > 0 || network->topology.irregular_count > 0 ||
+                            network->constraints.active_count > 0;
     if (has_others) {
         if (member->index == 0)
             n->irregular_product = multiply_irregular(network, n->direction, n->product) +
-                                   mspringi_holds_multiply(network, n->direction, n->product) +
-                                   mspringi_angles_multiply(network, n->direction, n->product) +
-                                   mspringi_implicit_contact_multiply(network, n->direction, n->product);
+                                   mspringi_constraints_multiply(&network->constraints, n->direction, n->product);
         mspringi_team_barrier(member);
     }
     double sum = has_others ? n->irregular_product : 0.0;

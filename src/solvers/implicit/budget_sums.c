@@ -216,10 +216,10 @@ static void add_springs(const measuring *all) {
 // The impulse of an active contact may be too small for single precision.
 static void add_contacts(const mspring_network *network) {
     budget_of *budget = &mspringi_implicit_of(network)->budget;
-    const mspringi_floor *floor = network->floor;
-    for (uint32_t i = 0; floor && i < floor->contact_count; ++i) {
-        const uint32_t number = budget->of_slot[floor->contacts[i].slot];
-        if (floor->contacts[i].is_active && number != MSPRINGI_NO_COMPONENT)
+    const mspringi_constraints *all = &network->constraints;
+    for (const mspringi_constraint *c = NULL; (c = mspringi_next_floor_push(all, c)) != NULL;) {
+        const uint32_t number = budget->of_slot[all->entries[c->first].slot];
+        if (mspringi_constraint_is_active(c) && number != MSPRINGI_NO_COMPONENT)
             budget->components[number].sums[MSPRINGI_EFFECT_TOUCH] += 1.0;
     }
 }

@@ -214,12 +214,6 @@ void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *til
     }
 }
 
-void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, double xy, double yy, double x,
-                         double y) {
-    const double turn_x = x * xy - y * xx, turn_y = x * yy - y * xy;
-    add_diagonal(rows_of(coarse, tile, tile), xx, xy, yy, turn_x, turn_y, x * turn_y - y * turn_x);
-}
-
 static bool has_place(const mspringi_coarse *coarse, uint32_t tile, uint32_t other) {
     return tile >= other ? other >= coarse->first[tile] : tile >= coarse->first[other];
 }
@@ -238,7 +232,7 @@ void mspringi_coarse_add_rank_one(mspringi_coarse *coarse, const mspringi_coarse
     for (uint32_t i = 0; i < pulls->count; ++i)
         for (uint32_t j = 0; j < i; ++j)
             is_whole &= has_place(coarse, pulls->tiles[i], pulls->tiles[j]);
-    // (a + b + c)^2 is at most three times the sum of the squares.
+    // The square of a sum of n is at most n times the sum of the squares.
     for (uint32_t i = 0; i < pulls->count; ++i)
         add_outer(coarse, pulls, i, i, is_whole ? 1.0 : (double)pulls->count);
     for (uint32_t i = 0; is_whole && i < pulls->count; ++i)

@@ -50,14 +50,11 @@ void mspringi_coarse_assemble(mspringi_coarse *coarse, const mspringi_tiles *til
 void mspringi_coarse_complete(mspringi_coarse *coarse, const mspringi_tiles *tiles,
                               const mspringi_coarse_parts *parts);
 
-/// Add the stiffness that holds a particle at (x, y) from its tile's mass centre to the tile's diagonal block.
-void mspringi_coarse_add(mspringi_coarse *coarse, uint32_t tile, double xx, double xy, double yy, double x,
-                         double y);
-
-/// Vector over the rigid motions of a few tiles.
+/// Vector over the rigid motions of a few tiles, at most so many.
+#define MSPRINGI_COARSE_PULLS 8u
 typedef struct mspringi_coarse_rank_one {
-    uint32_t count, tiles[3];
-    double rows[3][MSPRINGI_RIGID];
+    uint32_t count, tiles[MSPRINGI_COARSE_PULLS];
+    double rows[MSPRINGI_COARSE_PULLS][MSPRINGI_RIGID];
 } mspringi_coarse_rank_one;
 
 /// Add its product with itself, a matrix of rank one. If the envelope lacks an entry for two tiles, an upper bound

@@ -79,8 +79,7 @@ static void factor_coarse(const mspring_network *network) {
     if (n->age > 0)
         return;
     mspringi_coarse_complete(&n->coarse, &n->tiles, &parts);
-    mspringi_holds_stiffen(network);
-    mspringi_angles_add_to_coarse(network);
+    mspringi_constraints_stiffen(network);
     mspringi_coarse_factor(&n->coarse);
 }
 
@@ -167,9 +166,9 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     // Contacts are far stiffer than springs: with the usual iterations a bar on the floor trembles at 0.01 m/s.
     // Halves of a substep need more, too, because iterations that ended early may have caused the halving.
-    const bool has_contacts = network->floor && network->floor->contact_count > 0;
-    // Constraints between bodies are not in the coarse matrix: each takes an iteration or two.
-    const bool has_rows = mspringi_implicit_contact_is_active(network);
+    const bool has_contacts = mspringi_next_floor_push(&network->constraints, NULL) != NULL;
+    // The coarse matrix may lack entries for the tiles of bodies that touch.
+    const bool has_rows = mspringi_contact_constraint_is_active(&network->constraints);
     const uint32_t times = has_rows ? TIMES_WITH_ROWS : has_contacts || n->is_piece ? 2 : 1;
     uint32_t left = times * n->iterations;
     invert(network, mspringi_slots_of(network, member));

@@ -486,19 +486,18 @@ static void find_floor_impulse(const mspring_network *network, component *a, con
 }
 
 // Component of an active contact's particle. NULL: none, or pinned.
-static component *component_of(const mspring_network *network, const mspringi_floor_contact *contact) {
+static component *component_of(const mspring_network *network, const mspringi_constraint *contact) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
-    const uint32_t number = budget->of_slot[contact->slot];
-    if (!contact->is_active || number == MSPRINGI_NO_COMPONENT || budget->components[number].is_pinned)
-        return NULL;
-    return &budget->components[number];
+    const uint32_t number = budget->of_slot[network->constraints.entries[contact->first].slot];
+    component *a = number == MSPRINGI_NO_COMPONENT ? NULL : &budget->components[number];
+    return a && mspringi_constraint_is_active(contact) && !a->is_pinned ? a : NULL;
 }
 
 static void count_supports(const mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const mspringi_floor *floor = network->floor;
-    for (uint32_t i = 0; i < floor->contact_count; ++i) {
-        component *a = component_of(network, &floor->contacts[i]);
+    for (const mspringi_constraint *c = NULL; (c = mspringi_next_floor_push(&network->constraints, c)) != NULL;) {
+        component *a = component_of(network, c);
         if (a)
             a->support_count++;
     }
@@ -529,12 +528,13 @@ static void balance_floor(const mspring_network *network, const outside *o) {
     if (!any)
         return;
     count_supports(network);
-    for (uint32_t i = 0; i < floor->contact_count; ++i) {
-        const component *a = component_of(network, &floor->contacts[i]);
+    for (const mspringi_constraint *c = NULL; (c = mspringi_next_floor_push(&network->constraints, c)) != NULL;) {
+        const component *a = component_of(network, c);
+        const uint32_t slot = network->constraints.entries[c->first].slot;
         if (!a)
             continue;
-        floor->impulse.x[floor->contacts[i].slot] += (float)(a->floor_impulse_x / (double)a->support_count);
-        floor->impulse.y[floor->contacts[i].slot] += (float)(a->floor_impulse_y / (double)a->support_count);
+        floor->impulse.x[slot] += (float)(a->floor_impulse_x / (double)a->support_count);
+        floor->impulse.y[slot] += (float)(a->floor_impulse_y / (double)a->support_count);
     }
     for (const component *a = budget->components; a < end; ++a) {
         if (a->is_pinned || a->support_count > 0 || a->second_support_slot == MSPRING_NONE)

@@ -447,10 +447,10 @@ void mspringi_implicit_clear_overflow(const mspring_network *network, mspringi_i
 void mspringi_implicit_keep(mspringi_implicit *n) {
     n->is_kept = true;
     n->has_changed = false;
-    n->kept_age = n->age;
+    n->kept_age = n->has_constraints_in_coarse ? 0 : n->age;
     n->kept_restarts = n->history.restarts;
     n->solves = 0;
-    if (n->age > 0)
+    if (n->kept_age > 0)
         mspringi_coarse_keep(&n->coarse);
 }
 
@@ -464,6 +464,7 @@ void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit
     n->has_changed = n->is_kept = false;
     n->budget.knows_elastic = false;
     n->age = n->kept_age;
+    n->has_constraints_in_coarse = false;
     if (n->age > 0)
         mspringi_coarse_restore(&n->coarse);
     mspringi_implicit_clear_overflow(network, n);

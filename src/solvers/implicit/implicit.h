@@ -5,7 +5,8 @@
 ///
 ///   predict     positions and velocities without spring forces                    integrator.c
 ///   assemble    matrix A and right-hand side b of A d = b, linearised there       assemble.c
-///   terms       floor, contact, grips, areas and angles in the system             implicit_terms.h
+///   terms       floor, contact and areas in the system                            implicit_terms.h
+///               constraints: angles, grips                                        constraints/
 ///   solve       conjugate gradients with a two-level preconditioner               conjugate_gradients.c
 ///                 its coarse space: cells, tiles, the coarse matrix               cells.h, tiles.h, coarse.h
 ///               or, in the direct solver, a factorisation                         solvers/direct/direct.c
@@ -66,13 +67,14 @@ typedef enum mspringi_contact_mode {
 typedef struct mspringi_implicit {
     mspring_integrator integrator;
     uint32_t iterations, coarse_period;
-    uint32_t tile_size;     ///< as requested; 0: automatic
-    uint32_t age;           ///< substeps since the coarse matrix was factored; 0: factor it
-    uint32_t kept_age;      ///< before the step; 0: nothing to restore
-    uint32_t kept_restarts; ///< restarts of the history before the step
-    uint32_t retry_count;   ///< intervals of this substep that were undone
-    uint32_t solves;        ///< products with A or its inverse in this step
-    double scale;           ///< power of two that brings masses near 1
+    uint32_t tile_size;             ///< as requested; 0: automatic
+    uint32_t age;                   ///< substeps since the coarse matrix was factored; 0: factor it
+    bool has_constraints_in_coarse; ///< with bounds: they come and go, so it is not used again
+    uint32_t kept_age;              ///< before the step; 0: nothing to restore
+    uint32_t kept_restarts;         ///< restarts of the history before the step
+    uint32_t retry_count;           ///< intervals of this substep that were undone
+    uint32_t solves;                ///< products with A or its inverse in this step
+    double scale;                   ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup: before the step, once the step has changed it
     mspringi_history previous;        ///< output of the next substep; until then, before the last one

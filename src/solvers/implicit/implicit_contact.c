@@ -21,12 +21,6 @@
 /// Stiffness of a constraint, in units of the network's stiffness and inertia there.
 #define PENALTY 4.0
 
-/// Solutions of a substep that may release constraints or let them slide. Later ones only add constraints.
-#define FREE_PASSES 12
-
-/// Change of a normal force, as a part of it, that friction is worth another solution for.
-#define SAME_FORCE 0.1
-
 /// Rounding of a depth, and the depth left after the substep, as shares of the thickness.
 #define UNSEEN_SHARE 1e-6
 #define MENDED_SHARE 0.02
@@ -107,7 +101,7 @@ static void begin_constraint(const mspring_network *network, const mspringi_cont
     double way[3][2];
     const bool is_slick =
         t->tangent_mass == 0.0 || mspringi_implicit_of(network)->contact_mode != MSPRINGI_CONTACT_WITH_FRICTION;
-    *to = (hold){.friction = is_slick ? 0.0 : (double)t->friction};
+    *to = (hold){.listed = MSPRING_NONE, .friction = is_slick ? 0.0 : (double)t->friction};
     split_forces(network, t, to);
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i);
@@ -149,7 +143,7 @@ uint32_t mspringi_implicit_contact_count_intervals(mspring_network *network, flo
     return pieces < (double)MOST_PIECES ? (uint32_t)pieces : MOST_PIECES;
 }
 
-/* --------------------------------------------------------------------------------------------------- the terms */
+/* -------------------------------------------------------------------------------------------- the constraints */
 
 // How far a node comes without its springs.
 static void predict(const mspring_network *network, hold *c, const mspringi_contact_constraint *t, int i, double h,
@@ -186,145 +180,45 @@ static double stiffness_of(const mspring_network *network, hold *c, double (*sha
     return give > 0.0 ? 1.0 / give : 0.0;
 }
 
-static void predict_constraint(const mspring_network *network, const mspringi_contact_constraint *t, double h,
-                               hold *c) {
+static mspringi_constraint *add_constraint(mspring_network *network, uint32_t number, hold *c, double (*shares)[2],
+                                           double way) {
+    mspringi_constraints *all = &network->constraints;
+    mspringi_constraint *added = mspringi_constraint_add(all, MSPRINGI_CONTACT_CONSTRAINT, number, 3);
+    for (int i = 0; i < 3; ++i)
+        if (c->slots[i] != MSPRING_NONE && !flies(network, c->slots[i]))
+            mspringi_constraint_add_entry(all, c->slots[i], shares[i][0], shares[i][1]);
+    added->stiffness = stiffness_of(network, c, shares);
+    added->effort = -added->stiffness * way;
+    return added;
+}
+
+// Add a push and its friction.
+static void list_constraint(mspring_network *network, uint32_t number, double h) {
     const mspringi_contacts *contacts = network->contacts;
+    const mspringi_contact_constraint *t = &contacts->constraints[number];
+    hold *c = &contacts->implicit_constraints[number];
     double way[3][2];
     for (int i = 0; i < 3; ++i)
         predict(network, c, t, i, h, way[i]);
-    c->gap = product(c->across, way) - h * t->target_speed;
-    c->ahead = product(c->along, way);
-    if (t->collider != MSPRING_NONE)
-        c->ahead += h * mspringi_collider_surface_speed(contacts, t);
-    c->stiffness = stiffness_of(network, c, c->across);
-    c->grip = stiffness_of(network, c, c->along);
+    mspringi_constraint *push =
+        add_constraint(network, number, c, c->across, product(c->across, way) - h * t->target_speed);
+    c->listed = (uint32_t)(push - network->constraints.list);
+    push->bounded = MSPRINGI_BOUND_PUSH;
+    push->activity = c->is_active ? MSPRINGI_STIFF : MSPRINGI_IDLE;
+    push->bound = push->stiffness * (c->spare + UNSEEN_SHARE * contacts->thickness);
+    if (c->friction == 0.0)
+        return;
+    const double drag = t->collider == MSPRING_NONE ? 0.0 : h * mspringi_collider_surface_speed(contacts, t);
+    mspringi_constraint *friction = add_constraint(network, number, c, c->along, product(c->along, way) + drag);
+    friction->bounded = MSPRINGI_BOUND_FRICTION;
+    friction->bound = c->friction;
 }
 
-// Add the terms of a constraint along some shares to the system.
-static void add_constraint(mspring_network *network, hold *c, double (*shares)[2], double stiffness, double force) {
-    mspringi_implicit *n = mspringi_implicit_of(network);
-    for (int i = 0; i < 3; ++i) {
-        const uint32_t slot = c->slots[i];
-        if (slot == MSPRING_NONE || flies(network, slot))
-            continue;
-        const double x = shares[i][0], y = shares[i][1];
-        n->residual.x[slot] += (float)(force * x);
-        n->residual.y[slot] += (float)(force * y);
-        if (n->is_direct)
-            continue;
-        n->system.xx[slot] += (float)(stiffness * x * x);
-        n->system.xy[slot] += (float)(stiffness * x * y);
-        n->system.yy[slot] += (float)(stiffness * y * y);
-    }
-}
-
-bool mspringi_implicit_constraint_sticks(const hold *c) {
-    return c->is_active && c->slip == 0.0 && c->friction > 0.0;
-}
-
-// The factor of the direct solver excludes constraints: it solves for their forces.
-void mspringi_implicit_contact_add_terms(mspring_network *network, float h) {
-    const uint32_t count = count_of(network);
-    const mspringi_implicit *n = mspringi_implicit_of(network);
+void mspringi_implicit_contact_list_constraints(mspring_network *network, float h) {
+    const bool by_impulses = mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES;
+    const uint32_t count = by_impulses ? 0 : count_of(network);
     for (uint32_t i = 0; i < count; ++i)
-        predict_constraint(network, &network->contacts->constraints[i], (double)h,
-                           &network->contacts->implicit_constraints[i]);
-    for (uint32_t i = 0; i < count; ++i) {
-        hold *c = &network->contacts->implicit_constraints[i];
-        if (c->is_active && !n->is_direct)
-            add_constraint(network, c, c->across, c->stiffness, -c->stiffness * c->gap);
-        if (mspringi_implicit_constraint_sticks(c) && !n->is_direct)
-            add_constraint(network, c, c->along, c->grip, -c->grip * c->ahead);
-        else if (c->is_active && c->slip != 0.0)
-            add_constraint(network, c, c->along, 0.0, -c->friction * c->slip * c->normal);
-    }
-}
-
-double mspringi_implicit_contact_gather(const mspring_network *network, hold *c, double (*shares)[2],
-                                        mspringi_field field) {
-    double sum = 0.0;
-    for (int i = 0; i < 3; ++i)
-        if (c->slots[i] != MSPRING_NONE && !flies(network, c->slots[i]))
-            sum += shares[i][0] * (double)field.x[c->slots[i]] + shares[i][1] * (double)field.y[c->slots[i]];
-    return sum;
-}
-
-void mspringi_implicit_contact_scatter(const mspring_network *network, hold *c, double (*shares)[2], double force,
-                                       mspringi_field to) {
-    for (int i = 0; i < 3; ++i) {
-        if (c->slots[i] == MSPRING_NONE || flies(network, c->slots[i]))
-            continue;
-        to.x[c->slots[i]] += (float)(shares[i][0] * force);
-        to.y[c->slots[i]] += (float)(shares[i][1] * force);
-    }
-}
-
-double mspringi_implicit_contact_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
-    const uint32_t count = count_of(network);
-    double sum = 0.0;
-    for (uint32_t i = 0; i < count; ++i) {
-        hold *c = &network->contacts->implicit_constraints[i];
-        if (!c->is_active)
-            continue;
-        const double way = mspringi_implicit_contact_gather(network, c, c->across, from);
-        mspringi_implicit_contact_scatter(network, c, c->across, c->stiffness * way, to);
-        sum += c->stiffness * way * way;
-        if (!mspringi_implicit_constraint_sticks(c))
-            continue;
-        const double slide = mspringi_implicit_contact_gather(network, c, c->along, from);
-        mspringi_implicit_contact_scatter(network, c, c->along, c->grip * slide, to);
-        sum += c->grip * slide * slide;
-    }
-    return sum;
-}
-
-bool mspringi_implicit_contact_is_active(const mspring_network *network) {
-    const uint32_t count = count_of(network);
-    bool any = false;
-    for (uint32_t i = 0; i < count; ++i)
-        any |= network->contacts->implicit_constraints[i].is_active;
-    return any;
-}
-
-/* -------------------------------------------------------------------------------------------------- the review */
-
-// Displacement of a constraint at the solution. With the direct solver, displacement has all of it.
-static double end_of(const mspring_network *network, hold *c, double (*shares)[2], float alpha) {
-    const mspringi_implicit *n = mspringi_implicit_of(network);
-    const double way = mspringi_implicit_contact_gather(network, c, shares, n->displacement);
-    return n->is_direct ? way
-                        : way + (double)alpha * mspringi_implicit_contact_gather(network, c, shares, n->direction);
-}
-
-// Update a constraint from the solution. Return true if it differs from the assumption.
-static bool update_constraint(const mspring_network *network, hold *c, float alpha, bool is_free) {
-    const double end = c->gap + end_of(network, c, c->across, alpha), before = c->normal, slipped = c->slip;
-    const bool was_active = c->is_active;
-    c->normal = was_active ? -c->stiffness * end : 0.0;
-    c->is_active =
-        was_active ? end <= 0.0 || !is_free : end + c->spare < -UNSEEN_SHARE * network->contacts->thickness;
-    c->braked = 0.0;
-    if (c->friction == 0.0 || !was_active)
-        return c->is_active != was_active;
-    const double ahead = c->ahead + end_of(network, c, c->along, alpha), needed = -c->grip * ahead;
-    const double most = c->friction * (c->normal > 0.0 ? c->normal : 0.0);
-    c->braked = slipped != 0.0 ? -c->friction * slipped * before : needed;
-    if (is_free && slipped == 0.0 && fabs(needed) > most)
-        c->slip = needed < 0.0 ? 1.0 : -1.0;
-    else if (is_free && slipped * ahead < 0.0)
-        c->slip = 0.0;
-    const bool other_force = is_free && c->slip != 0.0 && fabs(c->normal - before) > SAME_FORCE * fabs(c->normal);
-    return c->is_active != was_active || (c->is_active && (c->slip != slipped || other_force));
-}
-
-bool mspringi_implicit_contact_update_active_set(mspring_network *network, float alpha, uint32_t pass) {
-    const uint32_t count = count_of(network);
-    bool again = false;
-    if (mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES)
-        return false;
-    for (uint32_t i = 0; i < count; ++i)
-        again |= update_constraint(network, &network->contacts->implicit_constraints[i], alpha, pass < FREE_PASSES);
-    return again;
+        list_constraint(network, i, (double)h);
 }
 
 void mspringi_implicit_contact_store_impulses(mspring_network *network, float h) {
@@ -335,13 +229,16 @@ void mspringi_implicit_contact_store_impulses(mspring_network *network, float h)
     for (uint32_t i = 0; i < count; ++i) {
         hold *c = &contacts->implicit_constraints[i];
         mspringi_contact_constraint *t = &contacts->constraints[i];
-        t->normal_impulse = c->normal * per_force;
-        t->tangent_impulse = c->braked * per_force;
+        const mspringi_constraint *push = c->listed == MSPRING_NONE ? NULL : &network->constraints.list[c->listed];
+        const double across = push ? push->force : 0.0;
+        const double along = push ? mspringi_friction_of(&network->constraints, push) : 0.0;
+        t->normal_impulse = across * per_force;
+        t->tangent_impulse = along * per_force;
         for (int k = 0; k < 3; ++k) {
             if (c->slots[k] == MSPRING_NONE || !flies(network, c->slots[k]))
                 continue;
-            n->residual.x[c->slots[k]] += (float)(c->across[k][0] * c->normal + c->along[k][0] * c->braked);
-            n->residual.y[c->slots[k]] += (float)(c->across[k][1] * c->normal + c->along[k][1] * c->braked);
+            n->residual.x[c->slots[k]] += (float)(c->across[k][0] * across + c->along[k][0] * along);
+            n->residual.y[c->slots[k]] += (float)(c->across[k][1] * across + c->along[k][1] * along);
         }
     }
 }

@@ -25,13 +25,6 @@ static mspringi_grip_target aim_of(const mspring_network *network, const mspring
     return mspringi_grip_target_at(network, grip, grips->begin + passed * grips->share);
 }
 
-// Stiffness and damping of a grip on the diagonal.
-static double weight_of(const mspring_network *network, const mspringi_grip *grip) {
-    const mspringi_system *s = &mspringi_implicit_of(network)->system;
-    const double whole = (double)grip->stiffness + (double)grip->damping * s->damping_rate;
-    return grip->is_bounded ? 0.0 : s->force_scale * (grip->share * whole);
-}
-
 // The force where the particle is predicted, and how much of the grip that lets act.
 static void predict_force(const mspring_network *network, mspringi_grip *grip, uint32_t slot, float h) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
@@ -45,48 +38,49 @@ static void predict_force(const mspring_network *network, mspringi_grip *grip, u
     grip->force_y = grip->share * y;
 }
 
-void mspringi_grips_add_terms(mspring_network *network, float h, uint32_t pass) {
-    mspringi_implicit *n = mspringi_implicit_of(network);
+static void add_constraint(mspring_network *network, uint32_t number, uint32_t slot, bool is_y) {
+    const mspringi_system *s = &mspringi_implicit_of(network)->system;
+    const mspringi_grip *grip = &network->grips.list[number];
+    mspringi_constraint *c = mspringi_constraint_add(&network->constraints, MSPRINGI_GRIP_CONSTRAINT, number, 1);
+    mspringi_constraint_add_entry(&network->constraints, slot, is_y ? 0.0 : 1.0, is_y ? 1.0 : 0.0);
+    c->bounded = is_y ? MSPRINGI_SECOND_OF_PAIR : MSPRINGI_BOUND_OF_PAIR;
+    c->stiffness =
+        s->force_scale * (grip->share * ((double)grip->stiffness + (double)grip->damping * s->damping_rate));
+    c->effort = s->force_scale * (is_y ? grip->force_y : grip->force_x);
+    c->bound = s->force_scale * (double)grip->max_force;
+}
+
+void mspringi_grips_list_constraints(mspring_network *network, float h) {
     uint32_t slot;
     for (uint32_t i = 0; i < network->grips.count; ++i) {
-        mspringi_grip *grip = &network->grips.list[i];
-        if (!is_held(network, grip, &slot))
+        if (!is_held(network, &network->grips.list[i], &slot))
             continue;
-        n->age = 0;
-        grip->is_bounded &= pass > 0;
-        if (!grip->is_bounded)
-            predict_force(network, grip, slot, h);
-        const double weight = weight_of(network, grip), scale = n->system.force_scale;
-        n->system.xx[slot] += (float)weight;
-        n->system.yy[slot] += (float)weight;
-        n->residual.x[slot] += (float)(scale * grip->force_x);
-        n->residual.y[slot] += (float)(scale * grip->force_y);
+        predict_force(network, &network->grips.list[i], slot, h);
+        add_constraint(network, i, slot, false);
+        add_constraint(network, i, slot, true);
     }
 }
 
-bool mspringi_grip_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold) {
-    const double weight = weight_of(network, &network->grips.list[i]);
-    *hold = (mspringi_slot_stiffness){.xx = weight, .yy = weight};
-    return is_held(network, &network->grips.list[i], &hold->slot);
+// Find the next pair of constraints of a grip, from *at on; NULL at the end.
+static const mspringi_constraint *next_pair(const mspring_network *network, uint32_t *at) {
+    const mspringi_constraints *all = &network->constraints;
+    while (*at < all->count && all->list[*at].bounded != MSPRINGI_BOUND_OF_PAIR)
+        ++*at;
+    if (*at == all->count)
+        return NULL;
+    *at += 2;
+    return &all->list[*at - 2];
 }
 
-bool mspringi_grips_update_active_set(mspring_network *network, float alpha) {
-    const mspringi_implicit *n = mspringi_implicit_of(network);
-    uint32_t slot;
-    bool again = false;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        mspringi_grip *grip = &network->grips.list[i];
-        if (!is_held(network, grip, &slot) || grip->is_bounded)
-            continue;
-        const double rest_x = n->is_direct ? 0.0 : (double)alpha * (double)n->direction.x[slot];
-        const double rest_y = n->is_direct ? 0.0 : (double)alpha * (double)n->direction.y[slot];
-        const double pull = weight_of(network, grip) / n->system.force_scale; // by a displacement of 1 m
-        grip->force_x -= pull * ((double)n->displacement.x[slot] + rest_x);
-        grip->force_y -= pull * ((double)n->displacement.y[slot] + rest_y);
-        grip->is_bounded = mspringi_grip_bound(grip, &grip->force_x, &grip->force_y);
-        again |= grip->is_bounded;
+void mspringi_grips_store_forces(mspring_network *network) {
+    const double scale = mspringi_implicit_of(network)->system.force_scale;
+    const mspringi_constraint *c;
+    for (uint32_t at = 0; network->grips.count > 0 && (c = next_pair(network, &at)) != NULL;) {
+        mspringi_grip *grip = &network->grips.list[c->source];
+        grip->force_x = c[0].force / scale;
+        grip->force_y = c[1].force / scale;
+        grip->is_bounded = c->activity == MSPRINGI_AT_BOUND;
     }
-    return again;
 }
 
 void mspringi_grips_count_impulses(mspring_network *network, float h) {

@@ -27,9 +27,9 @@ static uint64_t fingerprint_of(const mspringi_implicit *n) {
     return n->is_direct ? n->direct.fingerprint : n->tiles.fingerprint;
 }
 
-// The age of the coarse matrix that the next substep finds. One that has contacts in it is not used again.
+// The age of the coarse matrix that the next substep finds. One that has constraints in it is not used again.
 static uint32_t age_of(const mspring_network *network, const mspringi_implicit *n) {
-    if (n->is_direct || (network->floor && network->floor->is_in_coarse))
+    if (n->is_direct || n->has_constraints_in_coarse)
         return 0;
     return mspringi_tiles_are_outdated(&n->tiles, network, &n->seen) ? 0 : n->age;
 }
@@ -119,6 +119,5 @@ void mspringi_implicit_load(mspring_network *network, mspringi_implicit *n, cons
     n->age = io.left == n->coarse.value_count * sizeof(double) ? head.age : 0;
     if (n->age > 0)
         mspringi_hand(&io, n->coarse.values, n->coarse.value_count, sizeof(double));
-    if (network->floor)
-        network->floor->is_in_coarse = false;
+    n->has_constraints_in_coarse = false;
 }

@@ -41,28 +41,20 @@ static float solve(const mspringi_implicit_substep *substep, mspringi_team_membe
 #define MOST_PASSES 4
 #define MOST_PASSES_OF_BODIES 16
 
-// Add the terms of floor, grips and contact. Return false if particles hit the floor.
-static bool add_terms(const mspringi_implicit_substep *substep, uint32_t pass) {
-    mspring_network *network = substep->network;
-    if (network->floor && !mspringi_floor_add_terms(network, substep->h, pass))
-        return false;
-    mspringi_grips_add_terms(network, substep->h, pass);
-    mspringi_implicit_contact_add_terms(network, substep->h);
-    return true;
-}
-
 // True if an impact needs implicit Euler in this substep, but another integrator began it.
 static bool must_begin_anew(const mspringi_implicit *n) {
     return !n->uses_euler && n->integrator != MSPRING_INTEGRATOR_EULER;
 }
 
-// Update the active sets. Return true if one changed.
-static bool review_terms(mspring_network *network, float alpha, uint32_t pass) {
+// Update the active set. Return true if it changed.
+static bool update_active_set(mspring_network *network, float alpha, uint32_t pass) {
     mspringi_implicit *n = mspringi_implicit_of(network);
-    const bool by_floor = network->floor && mspringi_floor_update_active_set(network, alpha, pass);
-    const bool by_bodies = mspringi_implicit_contact_update_active_set(network, alpha, pass);
-    n->restarts_with_euler = by_bodies && must_begin_anew(n) && mspringi_implicit_contact_is_active(network);
-    return mspringi_grips_update_active_set(network, alpha) || by_floor || by_bodies;
+    mspringi_constraints *all = &network->constraints;
+    const uint32_t changed = mspringi_constraints_update_active_set(all, n->displacement, n->direction,
+                                                                    n->is_direct ? 0.0f : alpha, pass);
+    n->restarts_with_euler = (changed >> MSPRINGI_CONTACT_CONSTRAINT & 1) && must_begin_anew(n) &&
+                             mspringi_contact_constraint_is_active(all);
+    return changed != 0;
 }
 
 // Solve with the terms of floor, grips and contact. Return false if the substep must begin again.
@@ -77,14 +69,14 @@ static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_
         }
         mspringi_team_barrier(member);
         if (member->index == 0)
-            n->restarts_with_euler = !add_terms(substep, pass);
+            n->restarts_with_euler = !mspringi_constraints_add_terms(network, substep->h, pass);
         mspringi_team_barrier(member);
         if (n->restarts_with_euler)
             return false;
         *alpha = solve(substep, member);
         mspringi_team_barrier(member);
         if (member->index == 0)
-            n->must_solve_again = review_terms(network, *alpha, pass) && mspringi_may_iterate(n) &&
+            n->must_solve_again = update_active_set(network, *alpha, pass) && mspringi_may_iterate(n) &&
                                   !mspringi_implicit_is_too_much(network);
         mspringi_team_barrier(member);
         if (n->restarts_with_euler)
@@ -92,8 +84,10 @@ static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_
         if (!n->must_solve_again)
             break;
     }
-    if (member->index == 0)
+    if (member->index == 0) {
+        mspringi_grips_store_forces(network);
         mspringi_implicit_contact_store_impulses(network, substep->h);
+    }
     mspringi_team_barrier(member);
     return true;
 }
@@ -136,6 +130,10 @@ static void judge_team(mspringi_implicit *n, uint32_t sleeps) {
 
 static void run_team(mspringi_implicit_substep *substep) {
     mspringi_tasks *tasks = substep->progress ? substep->network->tasks : NULL;
+    mspringi_implicit *n = mspringi_implicit_of(substep->network);
+    mspringi_constraints_begin(&substep->network->constraints);
+    n->age = n->has_constraints_in_coarse ? 0 : n->age;
+    n->has_constraints_in_coarse = false;
     mspringi_integrator_prepare(substep);
     mspringi_tasks_run(tasks, substep->workers, run_share, substep);
 }

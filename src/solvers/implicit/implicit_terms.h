@@ -3,7 +3,6 @@
 ///
 ///   implicit_floor.c    floor
 ///   implicit_grips.c    grips
-///   holds.c             stiffness of both, by particle
 ///   implicit_contact.c  contact between bodies
 ///   implicit_areas.c    areas
 ///   implicit_angles.c   angle springs
@@ -18,40 +17,23 @@
 
 #include "contact/contacts.h"
 #include "contact/floor.h"
+#include "solvers/constraints/constraint_services.h"
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
-
-/// Stiffness that holds a particle: a 2 x 2 block on the diagonal of the matrix.
-typedef struct mspringi_slot_stiffness {
-    uint32_t slot;
-    double xx, xy, yy;
-} mspringi_slot_stiffness;
-/// Find that of floor contact or grip i. False: inactive, or not in the system.
-bool mspringi_floor_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold);
-bool mspringi_grip_hold(const mspring_network *network, uint32_t i, mspringi_slot_stiffness *hold);
-
-/// Add all of them to a product, to the coarse matrix, or to the diagonal blocks in double precision. @return
-/// mspringi_holds_multiply(): their share in from . to
-double mspringi_holds_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-void mspringi_holds_stiffen(const mspring_network *network);
-void mspringi_holds_add_nodes(const mspring_network *network, double *xx, double *xy, double *yy);
 
 /// Intervals that an implicit substep of h should have. Call mspringi_floor_save_positions() first.
 uint32_t mspringi_floor_count_intervals(const mspring_network *network, float h);
 
-/// Add floor contacts to the matrix and the right-hand side of a substep of h, assembled for the pass-th time.
-/// Return false if particles hit the floor and the substep should be one of implicit Euler.
-bool mspringi_floor_add_terms(mspring_network *network, float h, uint32_t pass);
-
-/// Update the active set from the solution, displacement + alpha direction. Return true if it changed.
-bool mspringi_floor_update_active_set(mspring_network *network, float alpha, uint32_t pass);
+/// List the floor's constraints as predicted. Return false if particles hit the floor and the substep should be one
+/// of implicit Euler.
+bool mspringi_floor_list_constraints(mspring_network *network, float h);
 
 /// Add the contact forces of a substep of h to the floor's impulses.
 void mspringi_floor_record_impulses(const mspring_network *network, float h);
 
-/// Add grips of particles with springs to the system, and clamp those whose force exceeds their limit.
-void mspringi_grips_add_terms(mspring_network *network, float h, uint32_t pass);
-bool mspringi_grips_update_active_set(mspring_network *network, float alpha);
+/// List the constraints of grips of particles with springs, as predicted. Accept the forces of the last solution.
+void mspringi_grips_list_constraints(mspring_network *network, float h);
+void mspringi_grips_store_forces(mspring_network *network);
 /// Record the impulses of grips in an accepted interval of h.
 void mspringi_grips_count_impulses(mspring_network *network, float h);
 /// Add the impulses of grips to the components' sums after a substep.
@@ -61,13 +43,13 @@ void mspringi_grips_add_impulses(const mspringi_budget_sums *all);
 void mspringi_areas_add_terms(const mspring_network *network);
 void mspringi_areas_add_energy(const mspring_network *network);
 
-/// Add angles with springs along both arms to the system, a product or the coarse matrix. Their energies count with
-/// the areas'.
-void mspringi_angles_add_terms(const mspring_network *network);
-/// Find the next such angle from *at on; NULL at the end.
-mspringi_hinge *mspringi_next_hinge(const mspring_network *network, size_t *at);
-double mspringi_angles_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-void mspringi_angles_add_to_coarse(const mspring_network *network);
+/// List the constraints of angles with springs along both arms, as predicted. Their energies count with the areas'.
+void mspringi_angles_list_constraints(mspring_network *network);
+
+/// Add the constraints of elements to an assembled system, those of others in the pass-th solution of a substep of
+/// h. The first calls in a substep list them.
+void mspringi_elements_add_terms(mspring_network *network);
+bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass);
 
 /// Correct the components' energies by one-way springs that were assumed on the wrong side.
 void mspringi_one_way_correct_energy(const mspringi_budget_sums *all);
@@ -80,11 +62,8 @@ static inline bool mspringi_implicit_contact_is_near(const mspring_network *netw
 /// substep should have.
 bool mspringi_implicit_contact_begin(mspring_network *network, float h);
 uint32_t mspringi_implicit_contact_count_intervals(mspring_network *network, float h);
-/// Add active constraints to the system or a product, test for active ones, and update the active set.
-void mspringi_implicit_contact_add_terms(mspring_network *network, float h);
-double mspringi_implicit_contact_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
-bool mspringi_implicit_contact_is_active(const mspring_network *network);
-bool mspringi_implicit_contact_update_active_set(mspring_network *network, float alpha, uint32_t pass);
+/// List their constraints as predicted.
+void mspringi_implicit_contact_list_constraints(mspring_network *network, float h);
 /// Accept the last solution: store impulses, and apply them to particles without springs.
 void mspringi_implicit_contact_store_impulses(mspring_network *network, float h);
 /// Push deep overlaps apart after a substep.
@@ -98,12 +77,5 @@ void mspringi_implicit_contact_count_impulses(mspring_network *network, float h)
 void mspringi_implicit_contact_push_free_particles(const mspring_network *network);
 /// Add contact impulses to the components' sums after a substep.
 void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all);
-
-/// True if a constraint sticks; displacement of a field along the shares; a force along them, added to a field.
-bool mspringi_implicit_constraint_sticks(const mspringi_implicit_constraint *hold);
-double mspringi_implicit_contact_gather(const mspring_network *network, mspringi_implicit_constraint *hold,
-                                        double (*shares)[2], mspringi_field field);
-void mspringi_implicit_contact_scatter(const mspring_network *network, mspringi_implicit_constraint *hold,
-                                       double (*shares)[2], double force, mspringi_field to);
 
 #endif

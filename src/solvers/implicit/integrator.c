@@ -230,7 +230,7 @@ static void land_loose(const mspring_network *network, mspringi_slots slots) {
 static void land_broken_off(const mspring_network *network, mspringi_slots slots, float alpha) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     if (n->is_direct || network->floor || !n->budget.has_isolated || !(alpha - alpha == 0.0f) ||
-        mspringi_implicit_contact_is_active(network))
+        mspringi_contact_constraint_is_active(&network->constraints))
         return;
     const size_t loose = (size_t)network->topology.loose_first * MSPRINGI_WIDTH;
     for (size_t i = slots.first; i < slots.end && i < loose; ++i) {

@@ -1,0 +1,306 @@
+#include "solvers/constraints/constraint_services.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "solvers/implicit/implicit.h"
+#include "solvers/implicit/implicit_terms.h"
+
+/// Solutions of a substep that may release constraints of a kind or let them slide; later ones only add constraints
+/// or make them stick. And the change of a bound, as a part of it, that is worth another solution.
+static const struct {
+    uint32_t free_passes;
+    double same_force;
+} kinds[MSPRINGI_CONSTRAINT_KINDS] = {
+    [MSPRINGI_FLOOR_CONSTRAINT] = {2, 0.02},
+    [MSPRINGI_CONTACT_CONSTRAINT] = {12, 0.1},
+};
+
+typedef mspringi_constraint constraint;
+typedef mspringi_jacobian_entry entry;
+
+/* ---------------------------------------------------------------------------------------------------- products */
+
+// Clamp to single precision: the guard finds what is that large. (fmin and fmax are calls.)
+static inline float clamped(double value) {
+    return value > (double)FLT_MAX ? FLT_MAX : value < -(double)FLT_MAX ? -FLT_MAX : (float)value;
+}
+
+// J u. A closed constraint takes differences from its first entry, so rigid motion gives exactly 0.
+static inline double gather(const constraint *c, const entry *e, mspringi_field from) {
+    const uint32_t count = c->count;
+    double sum = 0.0;
+    if (!c->is_closed) {
+        for (uint32_t i = 0; i < count; ++i) {
+            sum += e[i].x * (double)from.x[e[i].slot];
+            sum += e[i].y * (double)from.y[e[i].slot];
+        }
+        return sum;
+    }
+    const double x = (double)from.x[e->slot], y = (double)from.y[e->slot];
+    for (uint32_t i = 1; i < count; ++i) {
+        sum += e[i].x * ((double)from.x[e[i].slot] - x);
+        sum += e[i].y * ((double)from.y[e[i].slot] - y);
+    }
+    return sum;
+}
+
+// to += J' f. The first entry of a closed constraint gets minus the sum of what the others got, after rounding.
+// Forces of an angle with short arms may exceed single precision, those that iterations find do not.
+static inline void scatter(const constraint *c, const entry *e, double force, mspringi_field to, bool is_clamped) {
+    const uint32_t count = c->count;
+    double x = 0.0, y = 0.0;
+    for (uint32_t i = c->is_closed; i < count; ++i) {
+        const float fx = is_clamped ? clamped(force * e[i].x) : (float)(force * e[i].x);
+        const float fy = is_clamped ? clamped(force * e[i].y) : (float)(force * e[i].y);
+        to.x[e[i].slot] += fx;
+        to.y[e[i].slot] += fy;
+        x += (double)fx;
+        y += (double)fy;
+    }
+    if (!c->is_closed)
+        return;
+    to.x[e->slot] -= is_clamped ? clamped(x) : (float)x;
+    to.y[e->slot] -= is_clamped ? clamped(y) : (float)y;
+}
+
+void mspringi_constraints_activate(mspringi_constraints *all) {
+    all->active_count = 0;
+    for (uint32_t i = 0; i < all->count; ++i) {
+        const constraint *c = &all->list[i];
+        if (c->count > 0 && mspringi_constraint_is_stiff(c))
+            all->active[all->active_count++] =
+                (mspringi_active_constraint){c->stiffness, c->first, c->count << 1 | c->is_closed};
+    }
+}
+
+// One particle: the floor, grips, colliders.
+static inline double multiply_one(const entry *e, double stiffness, mspringi_field from, mspringi_field to) {
+    const double way = e->x * (double)from.x[e->slot] + e->y * (double)from.y[e->slot], force = stiffness * way;
+    to.x[e->slot] += (float)(force * e->x);
+    to.y[e->slot] += (float)(force * e->y);
+    return way * force;
+}
+
+// A point and the ends of an edge.
+static inline double multiply_three(const entry *e, double stiffness, mspringi_field from, mspringi_field to) {
+    const uint32_t a = e[0].slot, b = e[1].slot, c = e[2].slot;
+    const double way = e[0].x * (double)from.x[a] + e[0].y * (double)from.y[a] + e[1].x * (double)from.x[b] +
+                       e[1].y * (double)from.y[b] + e[2].x * (double)from.x[c] + e[2].y * (double)from.y[c];
+    const double force = stiffness * way;
+    to.x[a] += (float)(force * e[0].x);
+    to.y[a] += (float)(force * e[0].y);
+    to.x[b] += (float)(force * e[1].x);
+    to.y[b] += (float)(force * e[1].y);
+    to.x[c] += (float)(force * e[2].x);
+    to.y[c] += (float)(force * e[2].y);
+    return way * force;
+}
+
+// With the active ones only, and loops for one and for three particles, contact takes 0.80 to 0.90 of the time.
+double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to) {
+    double sum = 0.0;
+    for (uint32_t i = 0; i < all->active_count; ++i) {
+        const mspringi_active_constraint *a = &all->active[i];
+        const entry *e = all->entries + a->first;
+        if (a->shape == 2 * 1) {
+            sum += multiply_one(e, a->stiffness, from, to);
+        } else if (a->shape == 2 * 3) {
+            sum += multiply_three(e, a->stiffness, from, to);
+        } else {
+            const constraint c = {.count = a->shape >> 1, .is_closed = a->shape & 1};
+            const double way = gather(&c, e, from), force = a->stiffness * way;
+            scatter(&c, e, force, to, false);
+            sum += way * force;
+        }
+    }
+    return sum;
+}
+
+/* ---------------------------------------------------------------------------------------------------- assembly */
+
+void mspringi_constraints_assemble(const mspringi_constraints *all, uint32_t first, uint32_t end,
+                                   const mspringi_system *to, bool is_factored) {
+    for (uint32_t i = first; i < end; ++i) {
+        const constraint *c = &all->list[i];
+        const entry *entries = all->entries + c->first;
+        if (!mspringi_constraint_is_active(c) || (is_factored && mspringi_constraint_is_unknown(c)))
+            continue;
+        const bool is_stiff = mspringi_constraint_is_stiff(c);
+        scatter(c, entries, is_stiff ? c->effort : c->bound_force, (mspringi_field){to->force_x, to->force_y},
+                true);
+        for (const entry *e = entries; e < entries + c->count && is_stiff; ++e) {
+            to->xx[e->slot] += clamped(c->stiffness * e->x * e->x);
+            to->xy[e->slot] += clamped(c->stiffness * e->x * e->y);
+            to->yy[e->slot] += clamped(c->stiffness * e->y * e->y);
+        }
+    }
+}
+
+void mspringi_constraints_add_nodes(const mspringi_constraints *all, double *xx, double *xy, double *yy) {
+    for (uint32_t i = all->element_count; i < all->count; ++i) {
+        const constraint *c = &all->list[i];
+        const entry *e = &all->entries[c->first];
+        if (!mspringi_constraint_is_diagonal(c) || !mspringi_constraint_is_stiff(c))
+            continue;
+        xx[e->slot] += c->stiffness * e->x * e->x;
+        xy[e->slot] += c->stiffness * e->x * e->y;
+        yy[e->slot] += c->stiffness * e->y * e->y;
+    }
+}
+
+// Let a constraint act on the tiles of its particles. False: these are too many.
+static bool pull_tiles(const mspringi_implicit *n, const mspringi_active_constraint *a, const entry *entries,
+                       mspringi_coarse_rank_one *pulls) {
+    const double root = sqrt(a->stiffness);
+    for (const entry *e = entries; e < entries + (a->shape >> 1); ++e) {
+        const uint32_t tile = n->tiles.of_slot[e->slot];
+        const double x = root * e->x, y = root * e->y;
+        uint32_t i = 0;
+        if (tile == MSPRING_NONE)
+            continue;
+        while (i < pulls->count && pulls->tiles[i] != tile)
+            ++i;
+        if (i == MSPRINGI_COARSE_PULLS)
+            return false;
+        if (i == pulls->count) {
+            pulls->count++;
+            pulls->tiles[i] = tile;
+            pulls->rows[i][0] = pulls->rows[i][1] = pulls->rows[i][2] = 0.0;
+        }
+        pulls->rows[i][0] += x;
+        pulls->rows[i][1] += y;
+        pulls->rows[i][2] += (double)n->arm.x[e->slot] * y - (double)n->arm.y[e->slot] * x;
+    }
+    return true;
+}
+
+// With those between bodies: each of them took an iteration or two, and stacks twice as long.
+void mspringi_constraints_stiffen(const mspring_network *network) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_constraints *all = &network->constraints;
+    for (uint32_t i = 0; i < all->active_count; ++i) {
+        mspringi_coarse_rank_one pulls;
+        pulls.count = 0;
+        if (pull_tiles(n, &all->active[i], all->entries + all->active[i].first, &pulls))
+            mspringi_coarse_add_rank_one(&n->coarse, &pulls);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- active set */
+
+// These update a constraint from the force that it would have if it were stiff. They return true if it acts
+// otherwise from now on.
+static bool update_push(constraint *c, double force, bool is_free) {
+    const bool was_stiff = c->activity == MSPRINGI_STIFF;
+    const bool is_stiff = was_stiff ? force >= 0.0 || !is_free : force > c->bound;
+    c->force = was_stiff ? force : 0.0;
+    c->activity = is_stiff ? MSPRINGI_STIFF : MSPRINGI_IDLE;
+    return is_stiff != was_stiff;
+}
+
+// Friction of a push that was idle stays as it is: its bound would be 0, and it would begin by sliding.
+static bool update_friction(constraint *c, double force, bool is_free) {
+    const double most = c->bound * fmax(c[-1].force, 0.0), before = c->bound_force;
+    if (!c[-1].was_active)
+        return false;
+    const bool slid = c->activity == MSPRINGI_AT_BOUND, is_forwards = slid ? !signbit(before) : force >= 0.0;
+    bool slides = slid;
+    if (is_free && !slid)
+        slides = fabs(force) > most;
+    else if (slid && (is_forwards ? force < 0.0 : force > 0.0))
+        slides = false;
+    c->force = slid ? before : force;
+    c->bound_force = is_forwards ? most : -most;
+    c->activity = slides ? MSPRINGI_AT_BOUND : MSPRINGI_STIFF;
+    const bool has_other_force = fabs(c->bound_force - before) > kinds[c->kind].same_force * most;
+    return c[-1].activity != MSPRINGI_IDLE && (slides != slid || (slides && is_free && has_other_force));
+}
+
+static bool update_pair(constraint *c, double force, double other) {
+    const double size = sqrt(force * force + other * other);
+    if (c->activity == MSPRINGI_AT_BOUND)
+        return false;
+    const bool is_more = size > c->bound;
+    c[0].force = c[0].bound_force = is_more ? force * (c->bound / size) : force;
+    c[1].force = c[1].bound_force = is_more ? other * (c->bound / size) : other;
+    c[0].activity = c[1].activity = is_more ? MSPRINGI_AT_BOUND : MSPRINGI_STIFF;
+    return is_more;
+}
+
+// Force of a constraint at the solution, if it were stiff.
+static double force_at(const mspringi_constraints *all, const constraint *c, mspringi_field u,
+                       mspringi_field direction, float alpha) {
+    const entry *entries = all->entries + c->first;
+    double way = gather(c, entries, u);
+    if (alpha != 0.0f)
+        way += (double)alpha * gather(c, entries, direction);
+    return c->effort - c->stiffness * way;
+}
+
+uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspringi_field u,
+                                                mspringi_field direction, float alpha, uint32_t pass) {
+    uint32_t changed = 0;
+    for (uint32_t i = all->element_count; i < all->count; ++i) {
+        constraint *c = &all->list[i];
+        const bool is_free = pass < kinds[c->kind].free_passes;
+        bool has_changed = false;
+        c->was_active = mspringi_constraint_is_active(c);
+        if (c->bounded == MSPRINGI_BOUND_PUSH)
+            has_changed = update_push(c, force_at(all, c, u, direction, alpha), is_free);
+        else if (c->bounded == MSPRINGI_BOUND_FRICTION)
+            has_changed = update_friction(c, force_at(all, c, u, direction, alpha), is_free);
+        else if (c->bounded == MSPRINGI_BOUND_OF_PAIR)
+            has_changed =
+                update_pair(c, force_at(all, c, u, direction, alpha), force_at(all, c + 1, u, direction, alpha));
+        changed |= (uint32_t)has_changed << c->kind;
+    }
+    return changed;
+}
+
+bool mspringi_contact_constraint_is_active(const mspringi_constraints *all) {
+    for (uint32_t i = all->count; i-- > all->element_count && all->list[i].kind == MSPRINGI_CONTACT_CONSTRAINT;)
+        if (mspringi_constraint_is_active(&all->list[i]))
+            return true;
+    return false;
+}
+
+/* ------------------------------------------------------------------------------------------- terms of a substep */
+
+void mspringi_elements_add_terms(mspring_network *network) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    mspringi_constraints *all = &network->constraints;
+    if (!all->has_elements) {
+        mspringi_angles_list_constraints(network);
+        all->element_count = all->count;
+        all->element_entry_count = all->entry_count;
+        all->has_elements = true;
+        mspringi_constraints_activate(all);
+    }
+    mspringi_constraints_assemble(all, 0, all->element_count, &n->system, n->is_direct);
+}
+
+static bool is_any_active(const mspringi_constraints *all) {
+    for (uint32_t i = all->element_count; i < all->count; ++i)
+        if (mspringi_constraint_is_active(&all->list[i]))
+            return true;
+    return false;
+}
+
+bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass) {
+    mspringi_implicit *n = mspringi_implicit_of(network);
+    mspringi_constraints *all = &network->constraints;
+    if (pass == 0) {
+        if (network->floor && !mspringi_floor_list_constraints(network, h))
+            return false;
+        mspringi_grips_list_constraints(network, h);
+        mspringi_implicit_contact_list_constraints(network, h);
+    }
+    // They come and go: the coarse matrix is factored in each solution with active ones, and in the one after that.
+    const bool are_active = is_any_active(all);
+    mspringi_constraints_activate(all);
+    n->age = are_active || n->has_constraints_in_coarse ? 0 : n->age;
+    n->has_constraints_in_coarse = are_active;
+    mspringi_constraints_assemble(all, all->element_count, all->count, &n->system, n->is_direct);
+    return true;
+}
