@@ -58,7 +58,8 @@ static uint32_t uneven_substeps(const mspring_network *network, double dt, doubl
 #define MOST_AHEAD 1.5
 
 // Keep the length of substeps, and carry the rest of dt to the next step: the nearest whole number of them, at
-// least one. (A dt below half of the length, where the state is ahead, is taken as it is.)
+// least one. Where one is too many, as the state is ahead, the length is chosen anew; a dt far below the limit is
+// taken as it is, and the length stays. (Lengths near the limit that come and go make energy.)
 static uint32_t even_substeps(mspring_network *network, double dt, double limit) {
     const mspringi_pace *had = &network->steps.pace;
     mspringi_pace *pace = &network->next_pace;
@@ -73,9 +74,10 @@ static uint32_t even_substeps(mspring_network *network, double dt, double limit)
         return fewest;
     if ((dt == had->dt && fabs(had->left) <= 0.5 * h) || pace->steps >= EVEN_STEPS || !(h > 0.0 && h <= limit) ||
         times > MANY || whole > (double)most || (fewest > calm && whole < (double)fewest) ||
-        (is_ahead && dt >= 0.5 * h)) {
+        (is_ahead && (dt >= 0.5 * h || dt * MANY >= limit))) {
         pace->dt = dt;
         pace->h = (double)(float)(dt / (double)fewest);
+        pace->steps = 0;
         return fewest;
     }
     if (is_ahead)

@@ -349,7 +349,9 @@ typedef enum mspring_integrator {
 /// its energy as with even dt. The price: the state is up to half a substep off the time that was asked for, and more
 /// where a dt is shorter than that; draw x + v * time_left. Hooks, ramps and sleep go by the time that a step takes;
 /// pins that move by their velocity, too. The length is chosen anew from dt if it is not stable any more; after 30 steps
-/// of one dt, or in which it takes over twice the substeps that dt needs; or if it takes over 16 times as many.
+/// of one dt, or in which it takes over twice the substeps that dt needs; if it takes over 16 times as many; or if the
+/// state is ahead by over one and a half and dt is shorter still. (Steps of one substep stay ahead then, and a dt below a
+/// 16th of what is stable leaves the length: bursts of these still add energy.)
 #define MSPRING_SUBSTEPS_EVEN 0xfffffffeu
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. A solver ignores what it does not use.
