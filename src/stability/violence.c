@@ -21,7 +21,7 @@ static float square_of_rate(const mspring_network *network, mspringi_spring_slot
     const mspringi_spring_values spring = mspringi_spring_slot_get(network, slot);
     const float vx = s->vx[spring.tip] - s->vx[spring.base], vy = s->vy[spring.tip] - s->vy[spring.base];
     const float length = spring.rest_length > shortest ? spring.rest_length : shortest;
-    return (vx * vx + vy * vy) / (length * length);
+    return length > MSPRINGI_WELD ? (vx * vx + vy * vy) / (length * length) : 0.0f; // a weld is linear
 }
 
 // Raise the largest square of a rate to those of the spring slots first ... end - 1.

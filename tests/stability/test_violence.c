@@ -120,6 +120,31 @@ static void most_work_bounds_the_substeps(void **state) {
     }
 }
 
+/// Welds, of rest length 0, are linear: no motion of theirs makes energy.
+static void welds_alone_are_never_violent(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    mspring_spring_def weld;
+    check_ok(mspring_spring_def_init(&weld, sizeof weld));
+    weld.a = support_particle(builder, 0, 0, 1);
+    weld.b = support_particle(builder, 0.5, 0, 1);
+    weld.stiffness = 100;
+    weld.rest_length = 0;
+    check_ok(mspring_builder_add_spring(builder, &weld, NULL));
+    const mspring_network_def def = support_def(0, MSPRING_SUBSTEPS_AUTO);
+    mspring_network *network = support_network(builder, &def);
+    const double first = support_energy(network);
+    for (int step = 0; step < 300; step++) {
+        check_ok(mspring_network_step(network, 1.0 / 60));
+        const mspring_step_info info = report_of(network);
+        assert_int_equal(info.substeps, 1);
+        assert_int_equal(info.flags, 0);
+        // omega h is 0.24: the energy of leapfrog differs by (omega h)^2 / 4 at most.
+        check_near(support_energy(network), first, 0.02 * first);
+    }
+    mspring_network_destroy(network);
+}
+
 /// The look at velocities is left out where no speed is large: this changes no number.
 static void a_loaded_snapshot_takes_the_same_substeps(void **state) {
     (void)state;
@@ -188,6 +213,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(energy_stays),
         cmocka_unit_test(most_work_bounds_the_substeps),
+        cmocka_unit_test(welds_alone_are_never_violent),
         cmocka_unit_test(a_loaded_snapshot_takes_the_same_substeps),
         cmocka_unit_test(a_spinning_pair_does_not_harm_a_ship),
     };
