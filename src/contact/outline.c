@@ -414,12 +414,12 @@ void mspringi_outline_update(const mspring_network *network, mspringi_contacts *
         follow_bodies(network, contacts);
         return;
     }
+    memset(contacts->stamp, 0, contacts->particles * sizeof *contacts->stamp); // of springs that have broken
     judge_anew(network, contacts);
     list_edges(network, o, nodes);
     list_sides(contacts);
     list_points(o, nodes);
     o->are_bodies_found = false;
-    memset(contacts->stamp, 0, contacts->particles * sizeof *contacts->stamp);
     contacts->stamp_of = MSPRING_NONE;
     o->is_found = true;
     o->links = edits->links;
