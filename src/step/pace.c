@@ -14,9 +14,9 @@
 
 // More substeps where violent motion needs them. Relative springs would become firmer with them.
 static uint32_t raised(mspring_network *network, double dt, uint32_t calm) {
-    const uint32_t work = network->most_work;
-    const double most = fmin(work > 0 ? (double)work * (double)calm : INFINITY, (double)network->max_substeps);
-    if (network->fractions.values || !((double)calm < most) ||
+    const double work = network->most_work > 0 ? (double)network->most_work * (double)calm : INFINITY,
+                 most = fmin(work, (double)network->max_substeps);
+    if (network->fractions.values || (double)calm > most ||
         dt * mspringi_violence_bound(network) <= VIOLENT_SHARE * (double)calm)
         return calm;
     const double need = -floor(-dt * mspringi_violence(network) / VIOLENT_SHARE);

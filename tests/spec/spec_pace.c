@@ -59,7 +59,8 @@ static double violence_of(const spec_network *network) {
         const float vx = b.x - a.x, vy = b.y - a.y,
                     rest_length = s->rest_length > 0.0f ? s->rest_length : SPEC_WELD;
         const float length = rest_length > shortest ? rest_length : shortest;
-        const float square = (vx * vx + vy * vy) / (length * length);
+        const float square =
+            length > SPEC_WELD ? (vx * vx + vy * vy) / (length * length) : 0.0f; // welds are linear
         most = !s->is_broken && square > most ? square : most;
     }
     return sqrt((double)most);
@@ -105,11 +106,12 @@ static uint32_t count_even(const spec_network *network, double dt, spec_pace *pa
     }
     const bool keeps_dt = dt == had->dt && fabs(had->left) <= 0.5 * h;
     const bool is_too_long = !(h > 0.0 && h <= network->any_shape) || (fewest > calm && whole < (double)fewest);
-    const bool is_too_short =
-        pace->steps >= 30 || times > 16.0 || whole > (double)most || (is_ahead && dt >= 0.5 * h);
+    const bool is_too_short = pace->steps >= 30 || times > 16.0 || whole > (double)most ||
+                              (is_ahead && (dt >= 0.5 * h || dt * 16.0 >= network->any_shape));
     if (keeps_dt || is_too_long || is_too_short) {
         pace->dt = dt;
         pace->h = (double)(float)(dt / (double)fewest);
+        pace->steps = 0;
     } else if (!is_ahead) {
         pace->left = left;
         *time = whole * h;
