@@ -80,17 +80,15 @@ void mspringi_contact_begin_substep(const mspring_network *network, mspringi_con
 // True if the point never touches another edge at this end of the pair's edge. The pair caches the answer.
 static bool is_excluded(const mspring_network *network, mspringi_contacts *contacts, mspringi_pair *pair,
                         uint32_t end, uint32_t number, mspring_id other) {
-    const uint32_t bit = 1u << (end * REMEMBERED + number);
+    const uint32_t bit = number < REMEMBERED ? 1u << (end * REMEMBERED + number) : 0;
     if (!contacts->touches_itself || mspringi_is_collider_point(contacts, pair->point) ||
         mspringi_is_collider_point(contacts, other))
         return false;
-    if (number < REMEMBERED && pair->tested_bits & bit)
+    if (pair->tested_bits & bit)
         return pair->excluded_bits & bit;
     const bool apart = mspringi_outline_are_neighbours(network, contacts, pair->point, other);
-    if (number < REMEMBERED) {
-        pair->tested_bits |= (uint16_t)bit;
-        pair->excluded_bits |= (uint16_t)(apart ? bit : 0);
-    }
+    pair->tested_bits |= (uint16_t)bit;
+    pair->excluded_bits |= (uint16_t)(apart ? bit : 0);
     return apart;
 }
 
