@@ -146,9 +146,9 @@ static uint8_t *mark_of(const mspring_network *network, size_t slot) {
 
 // The first marked block before `next`, or `next`.
 static size_t next_marked(const mspring_network *network, size_t block, size_t next) {
-    const uint8_t *first = mark_of(network, block);
-    const uint8_t *marked = memchr(first, 1, (next - block) / MSPRINGI_WIDTH);
-    return marked ? block + (size_t)(marked - first) * MSPRINGI_WIDTH : next;
+    for (const uint8_t *mark = mark_of(network, block); block < next && !*mark; ++mark)
+        block += MSPRINGI_WIDTH;
+    return block < next ? block : next;
 }
 
 // Look at the blocks that are not clear, or were not before the substep: heights may be in the way to a place that

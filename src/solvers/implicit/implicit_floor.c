@@ -104,7 +104,8 @@ static void add_contact(mspring_network *network, const mover *m, const near_sur
     friction->bounded = MSPRINGI_BOUND_FRICTION;
     friction->activity = fabs(slid) > slop ? MSPRINGI_AT_BOUND : MSPRINGI_STIFF;
     friction->bound = line->friction;
-    friction->bound_force = copysign(line->friction * (double)n->mass[slot] * fmax(depth, 0.0), -slid);
+    const double force = line->friction * (double)n->mass[slot] * fmax(depth, 0.0);
+    friction->bound_force = slid < 0.0 ? force : -force;
 }
 
 static bool list_contacts(mspring_network *network, const mover *m, double fall) {
