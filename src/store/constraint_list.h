@@ -52,8 +52,8 @@ typedef struct mspringi_constraint {
     uint32_t source;
     uint8_t kind, bounded, activity;
     bool was_active; ///< in the last solution
-    bool
-        is_closed; ///< its entries add up to 0: products take differences from the first one, and momentum is exact
+    /// Its entries add up to 0: products take differences from the first one, and momentum is exact.
+    bool is_closed;
     double stiffness, effort; ///< in units of the matrix and of the right-hand side
     double bound;             ///< of the force, see `bounded`
     double bound_force;       ///< force of a constraint at its bound

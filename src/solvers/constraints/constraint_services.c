@@ -1,3 +1,4 @@
+/// Services of the list of constraints: assembly, products, the coarse matrix and the active set.
 #include "solvers/constraints/constraint_services.h"
 
 #include <float.h>

@@ -25,7 +25,7 @@
 /// hold gives way by 10^10 times as much as it does with its elements.
 #define MOST_ITERATIONS 1000u
 #define LEAST_PRODUCT 1e-24
-/// The same of constraints with bounds.
+/// Both for constraints with bounds.
 #define MOST_ITERATIONS_OF_OTHERS 64u
 #define LEAST_PRODUCT_OF_OTHERS 1e-12
 
