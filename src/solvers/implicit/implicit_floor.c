@@ -52,7 +52,7 @@ typedef struct near_surface {
 // Check a surface, and insert it if it is among the nearest that the particle may touch. Return true if the
 // particle hits it.
 static bool check_surface(const mspring_network *network, const mover *m, const mspringi_line *line, double fall,
-                          near_surface near[MSPRINGI_MAX_FLOOR_CONTACTS], uint32_t *count) {
+                          near_surface nearest[MSPRINGI_MAX_FLOOR_CONTACTS], uint32_t *count) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const double slop = mspringi_floor_slop(n->x[m->slot], n->y[m->slot]);
     const double before = distance_from(line, m->start_x, m->start_y);
@@ -63,13 +63,13 @@ static bool check_surface(const mspring_network *network, const mover *m, const 
     if (!(straight < 4.0 * slop + 2.0 * fabs(drop) + fabs(straight - before)))
         return false;
     if (*count < MSPRINGI_MAX_FLOOR_CONTACTS) {
-        near[(*count)++] = found;
+        nearest[(*count)++] = found;
     } else {
         uint32_t farthest = 0;
         for (uint32_t i = 1; i < *count; ++i)
-            farthest = near[i].straight > near[farthest].straight ? i : farthest;
-        if (straight < near[farthest].straight)
-            near[farthest] = found;
+            farthest = nearest[i].straight > nearest[farthest].straight ? i : farthest;
+        if (straight < nearest[farthest].straight)
+            nearest[farthest] = found;
     }
     return before > 2.0 * slop && straight < -2.0 * slop;
 }
@@ -86,12 +86,12 @@ static mspringi_constraint *add_constraint(mspring_network *network, uint32_t sl
 }
 
 // Add a push and its friction.
-static void add_contact(mspring_network *network, const mover *m, const near_surface *near) {
+static void add_contact(mspring_network *network, const mover *m, const near_surface *surface) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    const mspringi_line *line = near->line;
+    const mspringi_line *line = surface->line;
     const uint32_t slot = (uint32_t)m->slot;
     const double x = n->x[slot], y = n->y[slot], slop = mspringi_floor_slop(x, y), nx = line->nx, ny = line->ny;
-    const double depth = -(near->straight + near->drop);
+    const double depth = -(surface->straight + surface->drop);
     const double slid = nx * (m->straight_y - m->start_y) - ny * (m->straight_x - m->start_x);
     mspringi_constraint *push = add_constraint(network, slot, nx, ny, distance_from(line, x, y));
     push->bounded = MSPRINGI_BOUND_PUSH;
@@ -110,20 +110,20 @@ static void add_contact(mspring_network *network, const mover *m, const near_sur
 
 static bool list_contacts(mspring_network *network, const mover *m, double fall) {
     const mspringi_floor *floor = network->floor;
-    near_surface near[MSPRINGI_MAX_FLOOR_CONTACTS];
+    near_surface nearest[MSPRINGI_MAX_FLOOR_CONTACTS];
     mspringi_line part_line;
     uint32_t count = 0;
     bool hits = false;
     for (uint32_t i = 0; i < floor->plane_count; ++i)
-        hits |= check_surface(network, m, &floor->lines[i], fall, near, &count);
+        hits |= check_surface(network, m, &floor->lines[i], fall, nearest, &count);
     if (floor->heights.count > 0) {
         const int64_t part =
             mspringi_heights_first_hit(&floor->heights, m->start_x, m->start_y, m->straight_x, m->straight_y);
         part_line = mspringi_heights_line(&floor->heights, part);
-        hits |= check_surface(network, m, &part_line, fall, near, &count);
+        hits |= check_surface(network, m, &part_line, fall, nearest, &count);
     }
     for (uint32_t i = 0; i < count; ++i)
-        add_contact(network, m, &near[i]);
+        add_contact(network, m, &nearest[i]);
     return hits;
 }
 
