@@ -10,6 +10,7 @@
 
 #include <math.h>
 
+#include "base/shoelace.h"
 #include "sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
@@ -37,18 +38,16 @@ static double reach_of(const mspringi_implicit *n, const polygon *p, uint32_t si
 
 static polygon look(const mspring_network *network, const mspringi_implicit *n, const mspringi_area *area) {
     polygon p = {.area = area, .corners = network->areas.corners + area->first};
-    double before_x = 0.0, before_y = 0.0, twice = 0.0;
+    mspringi_shoelace shape = {0};
     p.x = n->x[p.corners[0].slot];
     p.y = n->y[p.corners[0].slot];
     for (uint32_t i = 1; i < area->count; ++i) {
         const double x = n->x[p.corners[i].slot] - p.x, y = n->y[p.corners[i].slot] - p.y;
-        twice += before_x * y - before_y * x;
+        mspringi_shoelace_add(&shape, x, y);
         p.middle_x += x / (double)area->count;
         p.middle_y += y / (double)area->count;
-        before_x = x;
-        before_y = y;
     }
-    p.size = 0.5 * twice;
+    p.size = 0.5 * shape.twice;
     for (uint32_t side = 0; side < area->count; ++side)
         p.all += reach_of(n, &p, side);
     return p;
