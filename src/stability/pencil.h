@@ -62,7 +62,7 @@ typedef struct mspringi_pencil {
     } * terms; ///< [springs] for A + 2 D
 } mspringi_pencil;
 
-/// Add the areas' part (stability/stability_areas.c) to the quotient of a displacement.
+/// Add the areas' part (features/areas/stability_areas.c) to the quotient of a displacement.
 void mspringi_areas_quotient(const mspring_network *network, mspringi_displacement vector, mspringi_quotient *sum);
 
 /// Linearise in the present shape. A compressed spring counts as one at rest length: its outward push across makes
