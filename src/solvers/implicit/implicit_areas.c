@@ -14,6 +14,7 @@
 #include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
+#include "store/elements.h"
 
 /// A polygon where its corners are predicted, from its first corner on.
 typedef struct polygon {
@@ -92,7 +93,7 @@ static bool acts(const mspring_network *network, const mspringi_implicit *n, con
            (n->is_direct || !mspringi_slot_is_asleep(network, network->areas.corners[area->first].slot));
 }
 
-void mspringi_areas_add_terms(const mspring_network *network) {
+static void add_terms(const mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     for (size_t i = 0; i < network->areas.count; ++i) {
         const mspringi_area *area = &network->areas.list[i];
@@ -113,7 +114,7 @@ static double energy_above_0(const mspring_network *network, const mspringi_area
     return mspringi_area_energy(area, mspringi_area_size(network, area)) + lowest * fill * area->rest_area;
 }
 
-void mspringi_areas_add_energy(const mspring_network *network) {
+static void add_energy(const mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     for (size_t i = 0; i < network->areas.count; ++i) {
         const mspringi_area *area = &network->areas.list[i];
@@ -124,3 +125,10 @@ void mspringi_areas_add_energy(const mspring_network *network) {
         n->budget.components[number].length += (double)area->stiffness * area->rest_area;
     }
 }
+
+static bool is_used(const mspring_network *network) {
+    return network->areas.count > 0;
+}
+
+const mspringi_element_ops mspringi_element_areas = {
+    .is_used = is_used, .add_terms = add_terms, .add_energy = add_energy};
