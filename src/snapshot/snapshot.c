@@ -6,6 +6,7 @@
 #include "features/contact/contacts.h"
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
+#include "store/events.h"
 #include "store/sections.h"
 
 /// Sections in the order of loading. All depend on the existing particles and springs, ramps on the springs'
@@ -307,7 +308,8 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
             sections[i]->load(network, in.from[i], in.size[i]);
     mspringi_piles_find(network);
     network->parameter_fingerprint = header.parameter_fingerprint;
-    network->events.count = 0;
+    if (network->events)
+        network->events->count = 0;
     return MSPRING_OK;
 }
 

@@ -286,8 +286,8 @@ static void hand_ramp(mspringi_io *io, mspringi_ramp *ramp) {
 
 static void ramps_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_io io = mspringi_io_to(to);
-    for (size_t i = 0; i < network->ramps.count; ++i)
-        hand_ramp(&io, &network->ramps.list[i]);
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i)
+        hand_ramp(&io, &network->ramps->list[i]);
 }
 
 static mspring_result ramps_check(mspring_network *network, const uint8_t *from, size_t size) {
@@ -311,7 +311,8 @@ static mspring_result ramps_check(mspring_network *network, const uint8_t *from,
 
 static void ramps_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_io io = mspringi_io_from(from, size);
-    network->ramps.count = 0;
+    if (network->ramps)
+        network->ramps->count = 0;
     while (io.left > 0) {
         mspringi_ramp ramp;
         hand_ramp(&io, &ramp);

@@ -73,7 +73,7 @@ extern const mspringi_section mspringi_section_shape;
 // In grips.c.
 extern const mspringi_section mspringi_section_grips;
 
-// In groups.c.
+// In snapshot_groups.c, snapshot_actuators.c.
 extern const mspringi_section mspringi_section_held;
 extern const mspringi_section mspringi_section_actuators;
 

@@ -7,6 +7,7 @@
 #include "base/array_table.h"
 #include "base/cpu.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 
 #define THICKEST 1e6
@@ -149,10 +150,7 @@ static void destroy(mspringi_contacts *contacts, mspringi_memory *memory) {
     mspringi_free(memory, contacts);
 }
 
-void mspringi_contacts_relocate(mspringi_contacts *contacts, const mspringi_memory *from,
-                                const mspringi_memory *to) {
-    mspringi_array_table_relocate(columns, contacts, from, to);
-}
+const mspringi_feature_state mspringi_state_of_contacts = {MSPRINGI_ARRAY_TABLE(members), NULL};
 
 // count arrays of so many elements, one behind the other. False: there is no memory.
 static bool reserve_doubles(mspringi_memory *memory, size_t elements, double **const arrays[], size_t count) {

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "features/hooks/hooks.h"
+#include "features/ramps/ramps.h"
 #include "store/changed.h"
 #include "store/id_pool.h"
 #include "store/selection.h"
@@ -300,7 +302,7 @@ void mspringi_sleep_put_back(const mspring_network *network) {
 // Wake islands that hooks have moved.
 static void update_sleep(mspring_network *network, double dt) {
     (void)dt;
-    if (network->sleep.sleeping == 0 || network->hook_count == 0)
+    if (network->sleep.sleeping == 0 || mspringi_hook_count(network) == 0)
         return;
     const uint64_t sleep_changes = network->edits.sleep_changes;
     wake_disturbed(network, true, false);
@@ -364,9 +366,9 @@ static void mark_moving(const mspring_network *network) {
             if (bits >> lane & 1 && s->island[first + lane] != MSPRING_NONE)
                 s->mark[s->island[first + lane]] = 1;
     }
-    for (size_t i = 0; i < network->ramps.count; ++i) {
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i) {
         uint32_t base, tip;
-        mspringi_topology_ends(t, mspringi_slot_of_spring(t, network->ramps.list[i].spring), &base, &tip);
+        mspringi_topology_ends(t, mspringi_slot_of_spring(t, network->ramps->list[i].spring), &base, &tip);
         s->mark[s->island[base]] = 1;
     }
 }
