@@ -91,7 +91,7 @@ static void check_trials(uint32_t first, uint32_t count, kind of, double deepest
 }
 
 /// Trials in all.
-static uint32_t trials = ROUNDS(1000);
+static uint32_t trials;
 
 static void nothing_gets_through(void **state) {
     (void)state;
@@ -130,8 +130,7 @@ static void factored_ones_let_nothing_through(void **state) {
 }
 
 int main(int argc, char **argv) {
-    if (argc > 1)
-        trials = (uint32_t)strtoul(argv[1], NULL, 10);
+    trials = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : SAMPLE(ROUNDS(1000u));
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_gets_through),
         cmocka_unit_test(what_bounces_gets_through_no_more),

@@ -204,7 +204,7 @@ static outcome fly(uint64_t trial, const kind *of, bool touches) {
     return o;
 }
 
-/// Trials in all, also with sanitizers: 0.6 of many meet, but only half of the first 40.
+/// Trials in all: 0.6 of many meet, but only half of the first 40.
 static uint32_t trials = 400;
 
 /// What contact makes worse: the same run without it has rounding and the scheme's own errors.
@@ -254,6 +254,8 @@ static void full_bounces_give_none(void **state) {
 int main(int argc, char **argv) {
     if (argc > 1)
         trials = (uint32_t)strtoul(argv[1], NULL, 10);
+    else if (support_is_quick() || ROUNDS_ARE_FEW)
+        trials = 200;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contact_keeps_momenta_and_gives_no_energy),
         cmocka_unit_test(bounces_do_so_too),

@@ -230,7 +230,7 @@ static void check_trials(make_scene *make, uint32_t first, uint32_t count, doubl
 }
 
 /// Trials of each kind.
-static uint32_t trials = ROUNDS(100);
+static uint32_t trials;
 
 static void nothing_is_thrown_through_the_next_in_a_row(void **state) {
     (void)state;
@@ -305,8 +305,7 @@ static void nothing_is_squeezed_on_the_floor(void **state) {
 }
 
 int main(int argc, char **argv) {
-    if (argc > 1)
-        trials = (uint32_t)strtoul(argv[1], NULL, 10);
+    trials = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : SAMPLE(ROUNDS(100u));
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_is_thrown_through_the_next_in_a_row),
         cmocka_unit_test(nothing_bounces_through_the_next_in_a_row),
