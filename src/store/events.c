@@ -15,6 +15,11 @@ void mspringi_events_push(mspring_network *network, mspring_event event) {
     events->count++;
 }
 
+void mspringi_events_clear(mspring_network *network) {
+    if (network->events)
+        network->events->count = 0;
+}
+
 static void destroy(mspringi_events *events, mspringi_memory *memory) {
     if (events)
         mspringi_free(memory, events->ring);

@@ -46,3 +46,8 @@ bool mspringi_features_vary(const mspring_network *network) {
 #include "store/features.def"
     return any;
 }
+
+void mspringi_features_discard_step(mspring_network *network) {
+#define DISCARDS(function) function(network);
+#include "store/features.def"
+}

@@ -6,6 +6,7 @@
 
 #include "base/array_table.h"
 #include "base/cpu.h"
+#include "features/contact/floor.h"
 #include "store/changed.h"
 #include "store/feature.h"
 #include "store/id_pool.h"
@@ -490,4 +491,22 @@ mspring_result mspring_network_get_contact_info(const mspring_network *network, 
     }
     mspringi_put_contact_info(info, &found);
     return MSPRING_OK;
+}
+
+void mspringi_contact_react(mspring_network *network, mspringi_change change, uint32_t index) {
+    if (change != MSPRINGI_CHANGED_SLOT)
+        return;
+    if (network->floor)
+        mspringi_floor_clear_slot(network->floor, index);
+    if (network->contacts)
+        mspringi_outline_clear_slot(network, index);
+}
+
+void mspringi_contact_discard_step(mspring_network *network) {
+    mspringi_floor_roll_back(network->floor);
+    if (!network->contacts)
+        return;
+    mspringi_colliders_discard_step(network->contacts);
+    mspringi_contact_events_discard_step(network->contacts);
+    network->contacts->is_listed = false; // it may be of places that were none
 }

@@ -16,6 +16,7 @@
 
 #include "features/contact/floor.h"
 #include "features/grips/grips.h"
+#include "store/feature.h"
 #include "store/stages.h"
 
 static bool is_used(const mspring_network *network) {
@@ -30,7 +31,7 @@ static bool any_active(const mspring_network *network) {
     return any;
 }
 
-static void clear_sums(mspring_network *network) {
+void mspringi_grips_discard_step(mspring_network *network) {
     if (network->grips)
         network->grips->could_act = false;
     for (uint32_t i = 0; i < mspringi_grip_count(network); ++i)
@@ -39,7 +40,7 @@ static void clear_sums(mspring_network *network) {
 
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    clear_sums(network);
+    mspringi_grips_discard_step(network);
 }
 
 // Nothing that sleeps or is pinned feels it.
@@ -274,5 +275,5 @@ const mspringi_stage mspringi_stage_grips = {.is_used = is_used,
                                              .before_substep = before_substep,
                                              .after_substep = after_substep,
                                              .must_repeat = must_repeat,
-                                             .roll_back = clear_sums,
+                                             .roll_back = mspringi_grips_discard_step,
                                              .after_step = after_step};

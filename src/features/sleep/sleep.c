@@ -11,6 +11,7 @@
 #include "features/hooks/hooks.h"
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 #include "store/selection.h"
 #include "store/stages.h"
@@ -557,4 +558,33 @@ mspring_result mspring_network_get_sleepers(const mspring_network *network, mspr
 
 uint32_t mspring_network_is_asleep(const mspring_network *network) {
     return network && mspringi_sleep_is_whole(network) && !mspringi_sleep_is_disturbed(network);
+}
+
+void mspringi_sleep_react(mspring_network *network, mspringi_change change, uint32_t index) {
+    switch (change) {
+    case MSPRINGI_CHANGED_SPRING_MASSES:
+    case MSPRINGI_CHANGED_SOLVER:
+    case MSPRINGI_CHANGED_GRAVITY:
+    case MSPRINGI_CHANGED_RELAX:
+    case MSPRINGI_CHANGED_NEW_FLOOR:
+    case MSPRINGI_CHANGED_CONTACT:
+    case MSPRINGI_CHANGED_AREA:
+    case MSPRINGI_CHANGED_REST_ANGLES:
+        mspringi_wake(network);
+        break;
+    case MSPRINGI_CHANGED_SPRING:
+    case MSPRINGI_CHANGED_BROKEN_SPRING:
+    case MSPRINGI_CHANGED_LIVE_SPRING:
+        mspringi_wake_spring(network, index);
+        break;
+    case MSPRINGI_CHANGED_GRIP:
+        mspringi_wake_slot(network, index);
+        break;
+    case MSPRINGI_CHANGED_COUNTS:
+    case MSPRINGI_CHANGED_SLEEP:
+        mspringi_sleep_reset(network);
+        break;
+    default:
+        break;
+    }
 }
