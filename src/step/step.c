@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "features/hooks/hooks.h"
 #include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
@@ -225,7 +226,7 @@ static bool is_idle(const mspring_network *network, const mspringi_stages *stage
 static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
     for (size_t repeats = 0;; ++repeats) {
         const mspringi_extrema extrema = run_once(network, attempt);
-        if (network->hook_count > 0)
+        if (mspringi_hook_count(network) > 0)
             network->seen = mspringi_guard_bound(network, attempt->h, extrema);
         if (!mspringi_stages_must_repeat(network, attempt) || repeats == attempt->stages->count)
             return extrema;

@@ -2,6 +2,7 @@
 #include "store/springs.h"
 
 #include "features/one_way/one_way.h"
+#include "features/ramps/ramps.h"
 #include "store/changed.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
@@ -61,10 +62,9 @@ mspringi_spring_values mspringi_spring_slot_get(const mspring_network *network, 
 }
 
 const mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network, mspringi_spring_slot spring_slot) {
-    const mspringi_ramps *ramps = &network->ramps;
-    for (size_t i = 0; i < ramps->count; ++i)
-        if (mspringi_slot_of_spring(&network->topology, ramps->list[i].spring) == spring_slot)
-            return &ramps->list[i];
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i)
+        if (mspringi_slot_of_spring(&network->topology, network->ramps->list[i].spring) == spring_slot)
+            return &network->ramps->list[i];
     return NULL;
 }
 

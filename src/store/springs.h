@@ -31,7 +31,8 @@ typedef struct mspringi_ends {
 mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring);
 
 /// The ramp of the spring in a place, or NULL; and its rest length once that has come to its end.
-const mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network, mspringi_spring_slot spring_slot);
+const struct mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network,
+                                                      mspringi_spring_slot spring_slot);
 float mspringi_spring_slot_own_length(const mspring_network *network, mspringi_spring_slot spring_slot);
 /// The rest length that the host gave, before any flow.
 float mspringi_spring_slot_given_length(const mspring_network *network, mspringi_spring_slot spring_slot);

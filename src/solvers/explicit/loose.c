@@ -2,6 +2,7 @@
 #include "solvers/explicit/loose.h"
 
 #include "features/contact/floor.h"
+#include "features/hooks/hooks.h"
 #include "solvers/explicit/strip.h"
 
 // Motion of particles without springs in substeps first to end - 1 of those that are taken now. (Substep by substep
@@ -53,8 +54,8 @@ static uint32_t end_of_chunk(const mspring_network *network, const mspringi_stri
 static bool may_be_cut(const mspring_network *network) {
     if (network->groups.count > 0)
         return true;
-    for (size_t i = 0; i < network->hook_count; ++i)
-        if (network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        if (network->hooks->list[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
             return true;
     return false;
 }
