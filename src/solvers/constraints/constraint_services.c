@@ -71,7 +71,7 @@ void mspringi_constraints_activate(mspringi_constraints *all) {
         const constraint *c = &all->list[i];
         if (c->count > 0 && mspringi_constraint_is_stiff(c))
             all->active[all->active_count++] =
-                (mspringi_active_constraint){c->stiffness, c->first, c->count << 1 | c->is_closed};
+                (mspringi_active_constraint){c->stiffness, c->first, (uint32_t)c->count << 1 | c->is_closed};
     }
 }
 
@@ -109,7 +109,7 @@ double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_f
         } else if (a->shape == 2 * 3) {
             sum += multiply_three(e, a->stiffness, from, to);
         } else {
-            const constraint c = {.count = a->shape >> 1, .is_closed = a->shape & 1};
+            const constraint c = {.count = (uint8_t)(a->shape >> 1), .is_closed = a->shape & 1};
             const double way = gather(&c, e, from), force = a->stiffness * way;
             scatter(&c, e, force, to, false);
             sum += way * force;
@@ -195,6 +195,7 @@ void mspringi_constraints_stiffen(const mspring_network *network) {
 static bool update_push(constraint *c, double force, bool is_free) {
     const bool was_stiff = c->activity == MSPRINGI_STIFF;
     const bool is_stiff = was_stiff ? force >= 0.0 || !is_free : force > c->bound;
+    c->was_active = was_stiff;
     c->force = was_stiff ? force : 0.0;
     c->activity = is_stiff ? MSPRINGI_STIFF : MSPRINGI_IDLE;
     return is_stiff != was_stiff;
@@ -246,7 +247,6 @@ uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspri
         constraint *c = &all->list[i];
         const bool is_free = pass < kinds[c->kind].free_passes;
         bool has_changed = false;
-        c->was_active = mspringi_constraint_is_active(c);
         if (c->bounded == MSPRINGI_BOUND_PUSH)
             has_changed = update_push(c, force_at(all, c, u, direction, alpha), is_free);
         else if (c->bounded == MSPRINGI_BOUND_FRICTION)
