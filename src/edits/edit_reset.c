@@ -2,11 +2,11 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "edits/edit_groups.h"
-#include "step/actuators.h"
+#include "features/actuators/actuators.h"
+#include "features/groups/edit_groups.h"
+#include "features/ramps/ramps.h"
+#include "features/yield/plastic.h"
 #include "step/held_groups.h"
-#include "step/plastic.h"
-#include "step/ramps.h"
 #include "store/changed.h"
 #include "store/id_pool.h"
 #include "store/rest_lengths.h"

@@ -2,10 +2,10 @@
 #include "store/changed.h"
 
 #include "base/hash.h"
-#include "contact/contacts.h"
-#include "contact/floor.h"
+#include "features/contact/contacts.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
 #include "network/job.h"
-#include "sleep/sleep.h"
 #include "store/springs.h"
 
 /// Longest log of broken and restored springs: more than break in one frame.

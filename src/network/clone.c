@@ -1,10 +1,10 @@
 /// Clone of a network: copy all blocks of memory, then relocate every pointer from one block into another.
 ///
 /// Pointers of the network are listed in store/network.def, those of topologies and solvers next to their destroy
-/// functions. Those of contact are in contact/contacts.c, those of floor and hooks here. A forgotten one points
-/// into the original; test_clone checks every word of a clone for that.
-#include "contact/contacts.h"
-#include "contact/floor.h"
+/// functions. Those of contact are in features/contact/contacts.c, those of floor and hooks here. A forgotten one
+/// points into the original; test_clone checks every word of a clone for that.
+#include "features/contact/contacts.h"
+#include "features/contact/floor.h"
 #include "store/network.h"
 #include "store/store.h"
 

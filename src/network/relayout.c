@@ -5,12 +5,12 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/floor.h"
+#include "features/breaking/strain.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
+#include "features/yield/plastic.h"
 #include "network/job.h"
-#include "sleep/sleep.h"
 #include "stability/stability_limit.h"
-#include "step/plastic.h"
-#include "step/strain.h"
 #include "store/changed.h"
 #include "store/springs.h"
 #include "store/store.h"

@@ -1,11 +1,11 @@
 /// Measurements of the state, summed in double precision in id order.
 #include <math.h>
 
+#include "features/areas/areas.h"
+#include "features/one_way/one_way.h"
 #include "kernels/spring_law.h"
 #include "query/kinetic.h"
 #include "query/measure.h"
-#include "store/areas.h"
-#include "store/one_way.h"
 #include "store/springs.h"
 
 static bool is_pinned(const mspring_network *network, mspring_id particle) {

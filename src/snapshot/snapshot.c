@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "contact/contacts.h"
-#include "step/ramps.h"
+#include "features/contact/contacts.h"
+#include "features/ramps/ramps.h"
 #include "store/changed.h"
 #include "store/sections.h"
 

@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "step/breaking.h"
-#include "step/ramps.h"
-#include "step/strain.h"
+#include "features/breaking/breaking.h"
+#include "features/breaking/strain.h"
+#include "features/ramps/ramps.h"
 #include "store/changed.h"
 #include "store/properties.h"
 #include "store/rest_lengths.h"

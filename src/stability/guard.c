@@ -14,8 +14,8 @@
 #include <math.h>
 
 #include "base/decay.h"
-#include "contact/contacts.h"
-#include "contact/floor.h"
+#include "features/contact/contacts.h"
+#include "features/contact/floor.h"
 #include "stability/stability.h"
 #include "stability/stability_limit.h"
 #include "store/stages.h"

@@ -2,7 +2,8 @@
 /// Stability of a network at a substep, as an eigenvalue problem.
 ///
 /// Around a shape, with displacement x, mass M, tangent stiffness K and damper matrix C, a substep is
-///     v' = g v - w h M^-1 (K x + C v);   x' = x + h v';   g = exp(-b h),   w = (1 - g) / (b h),   b = global_damping
+///     v' = g v - w h M^-1 (K x + C v);   x' = x + h v';   g = exp(-b h),   w = (1 - g) / (b h),   b =
+///     global_damping
 /// A solution that grows by z in each substep obeys
 ///     Q(z) x = 0,   Q(z) = (z - 1)(z - g) + w (z - 1) D + w z A,
 ///     A = h^2 M^-1/2 K M^-1/2,   D = h M^-1/2 C M^-1/2   (both symmetric and positive semidefinite).
@@ -59,7 +60,7 @@ typedef struct mspringi_pencil {
     } * terms; ///< [springs] for A + 2 D at some h
 } mspringi_pencil;
 
-/// Add the areas' part (stability/stability_areas.c) to the image of a vector, and to its quotient.
+/// Add the areas' part (features/areas/stability_areas.c) to the image of a vector, and to its quotient.
 void mspringi_areas_apply(const mspringi_pencil *pencil, const double *in, double *out);
 void mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector, mspringi_quotient *sum);
 

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
+#include "features/one_way/one_way.h"
 #include "stability/stability.h"
-#include "store/one_way.h"
 #include "store/springs.h"
 
 /// A spring outside the kernels. Members as in kernels/limit_kernel.h.

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
-#include "contact/contacts.h"
-#include "contact/floor.h"
+#include "features/contact/contacts.h"
+#include "features/contact/floor.h"
 #include "store/springs.h"
 
 static bool are_finite(const float *values, size_t count) {

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
 #include "step/finite.h"

@@ -10,12 +10,12 @@
 #include "base/assert.h"
 #include "base/structs.h"
 #include "builder/builder_areas.h"
+#include "features/groups/groups.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"
 #include "store/added_springs.h"
 #include "store/components.h"
 #include "store/constraint_list.h"
-#include "store/groups.h"
 #include "store/solver.h"
 #include "store/state.h"
 #include "tasks/tasks.h"
@@ -114,7 +114,7 @@ typedef struct mspringi_any_shape {
     uint64_t masses, values, growth;
 } mspringi_any_shape;
 
-/// A particle that the host holds; see contact/grips.h.
+/// A particle that the host holds; see features/grips/grips.h.
 typedef struct mspringi_grip {
     mspring_id id;       ///< of the grip
     mspring_id particle; ///< that it holds
@@ -178,7 +178,8 @@ typedef struct mspringi_one_way {
     bool is_repeated; ///< for that reason, the step is taken once more
 } mspringi_one_way;
 
-/// What springs yield at, and what has become of them, by place; NULL as long as none yields. See step/yielding.c.
+/// What springs yield at, and what has become of them, by place; NULL as long as none yields. See
+/// features/yield/yielding.c.
 typedef struct mspringi_plastic {
     float *yield_strain, *hardening, *plastic_limit;
     float *nominal;              ///< rest length before any flow, m; the one in force is among the spring's values

@@ -1,8 +1,8 @@
 /// Where springs lie and what they are like.
 #include "store/springs.h"
 
+#include "features/one_way/one_way.h"
 #include "store/changed.h"
-#include "store/one_way.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
 #include "store/stages.h"

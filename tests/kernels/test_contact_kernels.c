@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "level.h"
 #include "support.h"
 

@@ -138,7 +138,7 @@ static void jerks_at_the_stable_substep_gain_nothing(void **state) {
     (void)state;
     static const float stiffenings[] = {0, 0.5f, 3, 9, 30};
     for (size_t i = 0; i < COUNT_OF(stiffenings); i++)
-        for (uint64_t seed = 1; seed <= 8; seed++) {
+        for (uint64_t seed = 1; seed <= ROUNDS(8); seed++) {
             const double most = drop_chain(seed, stiffenings[i], 1);
             const double fine =
                 fmax(drop_chain(seed, stiffenings[i], 0.2), drop_chain(seed, stiffenings[i], 0.3));

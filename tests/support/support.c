@@ -14,6 +14,10 @@
 #include <malloc.h>
 #endif
 
+bool support_is_quick(void) {
+    return getenv("MASSSPRING_TEST_QUICK") != NULL;
+}
+
 void support_set_variable(const char *name, const char *value) {
 #if defined(_WIN32)
     assert_int_equal(_putenv_s(name, value != NULL ? value : ""), 0);

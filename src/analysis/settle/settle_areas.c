@@ -3,7 +3,7 @@
 /// An area adds stiffness along the springs of its outline, as in implicit substeps
 /// (solvers/implicit/implicit_areas.c). That is an upper bound, so Newton's step still descends, and the matrix
 /// keeps the pattern of the springs. Forces and energies are exact.
-#include "store/areas.h"
+#include "features/areas/areas.h"
 
 #include <math.h>
 

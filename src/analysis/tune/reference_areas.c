@@ -1,8 +1,8 @@
-/// Areas and angle springs of the reference: the law of store/areas.h and angles.h in double precision.
+/// Areas and angle springs of the reference: the law of features/areas/areas.h and angles.h in double precision.
 #include <math.h>
 
 #include "analysis/tune/reference.h"
-#include "store/angles.h"
+#include "features/angles/angles.h"
 
 typedef struct point {
     double x, y;

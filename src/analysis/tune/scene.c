@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "analysis/tune/tuning.h"
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 #include "stability/lanczos.h"
 #include "store/changed.h"
 #include "store/springs.h"

@@ -4,9 +4,9 @@
 #include "analysis/tune/reference.h"
 #include "analysis/tune/tuning.h"
 #include "base/clock.h"
-#include "sleep/sleep.h"
+#include "features/breaking/strain.h"
+#include "features/sleep/sleep.h"
 #include "step/origin.h"
-#include "step/strain.h"
 #include "store/changed.h"
 
 #define MAX_SETTINGS 1000

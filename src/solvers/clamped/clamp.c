@@ -13,8 +13,8 @@
 #include <math.h>
 
 #include "base/decay.h"
-#include "contact/floor.h"
-#include "sleep/sleep.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
 #include "store/springs.h"
 

@@ -1,7 +1,7 @@
 /// Particles without springs: all substeps at once, or one by one.
 #include "solvers/explicit/loose.h"
 
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "solvers/explicit/strip.h"
 
 // Motion of particles without springs in substeps first to end - 1 of those that are taken now. (Substep by substep

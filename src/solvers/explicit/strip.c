@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/decay.h"
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "solvers/explicit/flush.h"
 #include "solvers/explicit/halo.h"
 #include "solvers/explicit/partial_sweep.h"

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "features/sleep/sleep.h"
 #include "kernels/spring_law.h"
-#include "sleep/sleep.h"
 #include "store/springs.h"
 
 /* ----------------------------------------------------------------------------------------------- matrix rows */

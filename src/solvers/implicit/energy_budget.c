@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/decay.h"
-#include "contact/floor.h"
-#include "sleep/sleep.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 
 /// Excess of elastic energy that is tolerated, as a share: rounding of solutions in single precision.

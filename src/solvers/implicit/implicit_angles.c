@@ -3,11 +3,11 @@
 /// One is a constraint with the gradient of the angle where the particles are predicted, the stiffness k + c
 /// damping_rate, and the torque there. So there is no pair of particles that the springs' pattern would lack, and a
 /// body turns as freely as it does.
-#include "store/angles.h"
+#include "features/angles/angles.h"
 
 #include <math.h>
 
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 

@@ -6,11 +6,11 @@
 /// all |G_k|; and that is it, where all of the area swells alike. Around a circle, or a rectangle, each G_k is
 /// along its side. So the sum is that of springs along the sides, which the matrix has: they get stiffer in it. The
 /// force is the area's own, where the particles are predicted.
-#include "store/areas.h"
+#include "features/areas/areas.h"
 
 #include <math.h>
 
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 

@@ -10,9 +10,10 @@
 
 #include <math.h>
 
-#include "contact/grips.h"
+#include "features/grips/grips.h"
 
-// True if a grip is in the system. Particles without springs have no equation there; see contact/grip_stage.c.
+// True if a grip is in the system. Particles without springs have no equation there; see
+// features/grips/grip_stage.c.
 static bool is_held(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot) {
     return mspringi_grip_is_active(network, grip, slot) &&
            !network->running->ops->is_isolated(network, network->running->object, *slot);

@@ -1,8 +1,8 @@
 /// Springs that only pull or only push, in the energy budget of a substep.
 ///
-/// The system has those that are expected to act at its end (step/step_one_way.c). Where one is on the other side
-/// than was expected, its record has another energy than it has: one that tightened unforeseen would get its energy
-/// from nowhere, and one that acts ahead of time would make room for such.
+/// The system has those that are expected to act at its end (features/one_way/step_one_way.c). Where one is on the
+/// other side than was expected, its record has another energy than it has: one that tightened unforeseen would get
+/// its energy from nowhere, and one that acts ahead of time would make room for such.
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"

@@ -1,5 +1,5 @@
 /// Substeps: linear system, active set, floor, energy budget; repeated in halves if the budget is exceeded.
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 #include "stability/guard.h"

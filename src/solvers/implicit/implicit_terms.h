@@ -15,8 +15,8 @@
 #ifndef MSPRINGI_IMPLICIT_TERMS_H
 #define MSPRINGI_IMPLICIT_TERMS_H
 
-#include "contact/contacts.h"
-#include "contact/floor.h"
+#include "features/contact/contacts.h"
+#include "features/contact/floor.h"
 #include "solvers/constraints/constraint_services.h"
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
