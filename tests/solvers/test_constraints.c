@@ -313,12 +313,10 @@ static void particles_get_the_blocks_of_their_own(void **state) {
 
 /* --------------------------------------------------------------------------------------------------- active set */
 
-/// Passes in which constraints of a kind may be released or begin to slide, and the change of a bound that counts.
-static const struct {
-    uint32_t free_passes;
-    double same;
-} rules[MSPRINGI_CONSTRAINT_KINDS] = {
-    [MSPRINGI_FLOOR_CONSTRAINT] = {2, 0.02}, [MSPRINGI_CONTACT_CONSTRAINT] = {12, 0.1}};
+/// Passes in which constraints may be released or begin to slide, and the change of a bound that counts.
+enum { FREE_PASSES = 12 };
+static const double same_force[MSPRINGI_CONSTRAINT_KINDS] = {
+    [MSPRINGI_FLOOR_CONSTRAINT] = 0.02, [MSPRINGI_CONTACT_CONSTRAINT] = 0.1};
 
 static bool expect_push(mspringi_constraint *c, double force, bool is_free) {
     const mspringi_constraint old = *c;
@@ -347,7 +345,7 @@ static bool expect_friction(const mspringi_constraint *was, mspringi_constraint 
         c->activity = is_free && fabs(force) > most ? MSPRINGI_AT_BOUND : MSPRINGI_STIFF;
     }
     const bool slides = c->activity == MSPRINGI_AT_BOUND;
-    const bool is_other = fabs(c->bound_force - was->bound_force) > rules[c->kind].same * most;
+    const bool is_other = fabs(c->bound_force - was->bound_force) > same_force[c->kind] * most;
     return c[-1].activity != MSPRINGI_IDLE && (slides != slid || (slides && is_free && is_other));
 }
 
@@ -373,7 +371,7 @@ static uint32_t expect_update(const mspringi_constraint *was, mspringi_constrain
     uint32_t changed = 0;
     for (uint32_t i = all.element_count; i < all.count; i++) {
         mspringi_constraint *c = &list[i];
-        const bool is_free = pass < rules[c->kind].free_passes;
+        const bool is_free = pass < FREE_PASSES;
         const double force = force_of(c, direction, alpha);
         bool has_changed = false;
         if (c->bounded == MSPRINGI_BOUND_PUSH) {
