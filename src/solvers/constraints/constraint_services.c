@@ -272,7 +272,8 @@ void mspringi_elements_add_terms(mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_constraints *all = &network->constraints;
     if (!all->has_elements) {
-        mspringi_angles_list_constraints(network);
+#define ELEMENTS(function) function(network);
+#include "store/features.def"
         all->element_count = all->count;
         all->element_entry_count = all->entry_count;
         all->has_elements = true;
@@ -294,7 +295,8 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
     if (pass == 0) {
         if (network->floor && !mspringi_floor_list_constraints(network, h))
             return false;
-        mspringi_grips_list_constraints(network, h);
+#define SYSTEM(name) mspringi_##name##_list_constraints(network, h);
+#include "store/features.def"
         mspringi_implicit_contact_list_constraints(network, h);
     }
     // They come and go: the coarse matrix is factored in each solution with active ones, and in the one after that.

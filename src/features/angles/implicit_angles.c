@@ -55,6 +55,7 @@ static void list_angle(mspring_network *network, uint32_t number) {
     mspringi_constraint_add_entry(all, corners[2].slot, w.x, w.y);
 }
 
+// Their energies count with the areas'.
 void mspringi_angles_list_constraints(mspring_network *network) {
     for (size_t i = 0; i < network->areas.count && network->areas.hinge_count > 0; ++i) {
         const mspringi_area *area = &network->areas.list[i];
