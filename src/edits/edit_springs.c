@@ -348,7 +348,7 @@ static inline bool set_in_plane(mspring_network *network, const plane *known, ms
         return true;
     }
     *at = value;
-    network->has_welds |= value == MSPRINGI_WELD;
+    mspringi_note_rest_length(network, value);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
     return true;
 }

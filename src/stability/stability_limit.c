@@ -115,5 +115,5 @@ void mspringi_stability_limit_image(const mspring_network *network, const msprin
     network->kernels->image_lattice(b);
     network->kernels->image_chain(b);
     visit_others(network, b, add_image);
-    mspringi_areas_image(network, b);
+    mspringi_areas_image(network, b, (double)b->stiffness);
 }

@@ -130,6 +130,7 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
     network->first_substep = 0;
+    network->step_substeps = attempt->substeps;
     begin_lag(network, attempt);
     tidy(network);
     if (ops->begin)

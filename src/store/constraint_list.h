@@ -48,10 +48,11 @@ typedef struct mspringi_jacobian_entry {
 } mspringi_jacobian_entry;
 
 typedef struct mspringi_constraint {
-    uint32_t first, count; ///< of its entries
+    uint32_t first; ///< of its entries
     uint32_t source;
+    uint8_t count; ///< of its entries
     uint8_t kind, bounded, activity;
-    bool was_active; ///< in the last solution
+    bool was_active; ///< a push: in the last solution
     /// Its entries add up to 0: products take differences from the first one, and momentum is exact.
     bool is_closed;
     double stiffness, effort; ///< in units of the matrix and of the right-hand side
@@ -96,7 +97,7 @@ bool mspringi_constraints_allocate(mspring_network *network);
 
 /// Clear the list for a new substep.
 void mspringi_constraints_begin(mspringi_constraints *all);
-/// Add a stiff constraint that has no entries yet; there is room for it and for so many.
+/// Add a stiff constraint that has no entries yet; there is room for it and for so many, 255 at most.
 mspringi_constraint *mspringi_constraint_add(mspringi_constraints *all, mspringi_constraint_kind kind,
                                              uint32_t source, uint32_t entries);
 /// Add the next entry of the last constraint.

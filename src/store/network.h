@@ -134,6 +134,7 @@ struct mspring_network {
 
     // State.
     mspringi_state state, backup;
+    uint32_t step_substeps;    ///< of the step that is being made
     uint32_t first_substep;    ///< number in the step of the first of the substeps that are being taken
     float lag;                 ///< steps.lag at the first of these, s
     float full_lag;            ///< the same for gravity, whatever is stable
@@ -185,6 +186,7 @@ struct mspring_network {
     float
         *guard_scratch; ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
     double shortest;    ///< smallest rest length at first, m, but for welds
+    float shortest_set; ///< and of all that have been set since, but for flow
     bool has_welds;     ///< there has been one
 
     mspringi_edits edits;

@@ -121,6 +121,13 @@ void mspringi_spring_slot_set(mspring_network *network, mspringi_spring_slot spr
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 
+void mspringi_note_rest_length(mspring_network *network, float rest_length) {
+    if (rest_length == MSPRINGI_WELD)
+        network->has_welds = true;
+    else if (rest_length < network->shortest_set)
+        network->shortest_set = rest_length;
+}
+
 void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spring_slot spring_slot,
                                           float rest_length) {
     const spring_records records = find_records(network, spring_slot);
@@ -130,7 +137,7 @@ void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spr
     mspringi_shared_records_unshare_yielding(network, spring_slot);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
-    network->has_welds |= rest_length == MSPRINGI_WELD;
+    mspringi_note_rest_length(network, rest_length);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 

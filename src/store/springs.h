@@ -96,6 +96,9 @@ mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, ms
 void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot,
                                  mspringi_relative nominal);
 
+/// Note a rest length that is written somewhere.
+void mspringi_note_rest_length(mspring_network *network, float rest_length);
+
 /// Set the rest length in force: a ramp of the spring goes on from its own. After mspringi_rest_lengths_unshare()
 /// only, unless it is what the spring has.
 void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spring_slot spring_slot,

@@ -50,6 +50,13 @@ typedef struct mspringi_clearance {
 /// Most surfaces that hold a particle in an implicit substep, the nearest ones: where these meet it has one place.
 #define MSPRINGI_MAX_FLOOR_CONTACTS 2u
 
+/// Most particles that a second surface holds, of so many: those where surfaces meet. The nearest one holds the
+/// others. As with a third surface, the floor itself keeps them above the second one after the substep.
+static inline size_t mspringi_floor_max_second_contacts(size_t particles) {
+    const size_t most = particles / 4 + 64;
+    return most < particles ? most : particles;
+}
+
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
     double given[MSPRING_MAX_PLANES][4];         ///< definition of the host

@@ -16,11 +16,11 @@ static mspringi_free_motion plan_free_motion(const mspring_network *network, con
     double gravity_gain = 0.0, gravity_fall = 0.0;
     for (uint32_t i = first; i < end; ++i) {
         mspringi_sweep_set_substep(network, &s, i);
-        keep -= (double)s.loss * keep;
-        gain += (double)s.kick - (double)s.loss * gain;
+        keep -= (double)s.damping_loss * keep;
+        gain += (double)s.kick - (double)s.damping_loss * gain;
         reach += keep * h;
         fall += gain * h;
-        gravity_gain += (double)s.gravity_kick - (double)s.loss * gravity_gain;
+        gravity_gain += (double)s.gravity_kick - (double)s.damping_loss * gravity_gain;
         gravity_fall += gravity_gain * h;
     }
     return (mspringi_free_motion){.keep = (float)keep,

@@ -37,9 +37,8 @@ static float solve(const mspringi_implicit_substep *substep, mspringi_team_membe
     return 0.0f;
 }
 
-// Most solutions of a substep while the active set changes: of the floor, of bodies.
-#define MOST_PASSES 4
-#define MOST_PASSES_OF_BODIES 16
+// Most solutions of a substep while the active set changes.
+#define MOST_PASSES 16
 
 // True if an impact needs implicit Euler in this substep, but another integrator began it.
 static bool must_begin_anew(const mspringi_implicit *n) {
@@ -61,8 +60,7 @@ static bool update_active_set(mspring_network *network, float alpha, uint32_t pa
 static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_team_member *member, float *alpha) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    const uint32_t passes = mspringi_implicit_contact_is_near(network) ? MOST_PASSES_OF_BODIES : MOST_PASSES;
-    for (uint32_t pass = 0; pass < passes; ++pass) {
+    for (uint32_t pass = 0; pass < MOST_PASSES; ++pass) {
         if (pass > 0) {
             mspringi_predict(substep, member);
             mspringi_assemble(substep, member);

@@ -41,13 +41,7 @@ void mspringi_floor_record_impulses(const mspring_network *network, float h);
     void mspringi_##name##_count_impulses(mspring_network *network, float h);                                      \
     void mspringi_##name##_add_impulses(const mspringi_budget_sums *all);                                          \
     void mspringi_##name##_find_frames(const mspring_network *network);
-// List the constraints of elements, as predicted.
-#define ELEMENTS(function) void function(mspring_network *network);
 #include "store/features.def"
-
-/// Add areas with a spring on each side to the assembled system, and their energies to the components'.
-void mspringi_areas_add_terms(const mspring_network *network);
-void mspringi_areas_add_energy(const mspring_network *network);
 
 /// Add the constraints of elements to an assembled system, those of others in the pass-th solution of a substep of
 /// h. The first calls in a substep list them.
