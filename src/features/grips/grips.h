@@ -3,8 +3,9 @@
 ///
 ///   grips.c      the definition, given by the host; the law
 ///   grip_stage.c    the stage; what a grip does after a leapfrog substep
+///   implicit_grips.c    grips in the linear system of an implicit substep
 ///
-/// The solvers with a linear system have grips in it, see solvers/implicit/implicit_grips.c. All have the force of
+/// The solvers with a linear system have grips in it. All have the force of
 /// the end of the substep, so it is stable however stiff the grip is.
 ///
 /// SPDX-License-Identifier: MIT
@@ -62,8 +63,6 @@ bool mspringi_grip_is_active(const mspring_network *network, const mspringi_grip
 mspring_result mspringi_grips_reserve(mspring_network *network);
 /// Reset to a network that never had a grip.
 void mspringi_grips_clear(mspring_network *network);
-/// Remove the grips of a particle that is removed.
-void mspringi_grips_forget(mspring_network *network, mspring_id particle);
 /// Move the grips to their targets at the end of a step.
 void mspringi_grips_finish_step(mspring_network *network);
 

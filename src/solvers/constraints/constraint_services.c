@@ -317,7 +317,8 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
     if (pass == 0) {
         if (network->floor && !mspringi_floor_list_constraints(network, h))
             return false;
-        mspringi_grips_list_constraints(network, h);
+#define SYSTEM(name) mspringi_##name##_list_constraints(network, h);
+#include "store/features.def"
         mspringi_implicit_contact_list_constraints(network, h);
     }
     // They come and go: the coarse matrix is factored in each solution with active ones, and in the one after that.

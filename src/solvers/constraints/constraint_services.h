@@ -1,8 +1,8 @@
 /// @file constraint_services.h
 /// Services for the constraints of a linear system (store/constraint_list.h), each once for all kinds.
 ///
-///   implicit_angles.c, implicit_floor.c,     list the constraints of a kind
-///   implicit_grips.c, implicit_contact.c
+///   implicit_floor.c, implicit_contact.c,    list the constraints of a kind
+///   and those of features
 ///   constraint_services.c                    assembly, product, coarse matrix, active set
 ///   direct_constraints.c                     forces as unknowns beside the direct solver's factor
 ///
