@@ -202,7 +202,7 @@ static void update_fingerprints(mspring_network *network, const mspringi_spring 
 
 static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
-    network->shortest = INFINITY;
+    network->shortest = network->shortest_set = INFINITY;
     double longest = 0.0;
     network->topology_fingerprint = network->parameter_fingerprint = MSPRINGI_HASH_START;
     if (t->reserve.particle_end > t->particle_count || t->reserve.spring_end > t->spring_count)

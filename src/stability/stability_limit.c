@@ -99,7 +99,7 @@ static void visit_others(const mspring_network *network, const mspringi_stabilit
                          void (*visit)(const mspringi_stability_limit *b, single_spring s)) {
     for (uint32_t i = 0; i < network->topology.irregular_count; ++i)
         visit(b, linearise_irregular(network, b, i));
-    for (mspring_id i = 0; network->one_way.side && i < network->topology.reserve.first_spring; ++i)
+    for (mspring_id i = 0; network->one_way && i < network->topology.reserve.first_spring; ++i)
         if (mspringi_side_of(network, i) != 0 && mspringi_spring_exists(network, i))
             visit(b, linearise_surcharge(network, b, i));
 }
@@ -115,5 +115,5 @@ void mspringi_stability_limit_image(const mspring_network *network, const msprin
     network->kernels->image_lattice(b);
     network->kernels->image_chain(b);
     visit_others(network, b, add_image);
-    mspringi_areas_image(network, b);
+    mspringi_areas_image(network, b, (double)b->stiffness);
 }

@@ -12,17 +12,24 @@
 /// energy. A free lattice of 4 x 4 gains up to 1.3 times its energy at a quarter, 5,000 times at 0.4.
 #define VIOLENT_SHARE 0.25
 
-// More substeps where violent motion needs them. Relative springs would become firmer with them.
-static uint32_t raised(mspring_network *network, double dt, uint32_t calm) {
+// More substeps where violent motion needs them, as many as it may have. Relative springs would become firmer with
+// them. need is what it needs, 0 if it was not looked at.
+static uint32_t raised(const mspring_network *network, double dt, uint32_t calm, double *need) {
     const double work = network->most_work > 0 ? (double)network->most_work * (double)calm : INFINITY,
                  most = fmin(work, (double)network->max_substeps);
+    *need = 0.0;
     if (network->fractions.values || (double)calm > most ||
         dt * mspringi_violence_bound(network) <= VIOLENT_SHARE * (double)calm)
         return calm;
-    const double need = -floor(-dt * mspringi_violence(network) / VIOLENT_SHARE);
-    if (need > most)
+    *need = -floor(-dt * mspringi_violence(network) / VIOLENT_SHARE);
+    return *need > most ? (uint32_t)most : *need > (double)calm ? (uint32_t)*need : calm;
+}
+
+// Flag a step that takes fewer substeps than it needs.
+static uint32_t flagged(mspring_network *network, uint32_t substeps, double need) {
+    if (need > (double)substeps)
         network->outcome.flags |= MSPRING_STEP_FEWER;
-    return need > most ? (uint32_t)most : need > (double)calm ? (uint32_t)need : calm;
+    return substeps;
 }
 
 /* ------------------------------------------------------------------------------------- MSPRING_SUBSTEPS_AUTO */
@@ -63,8 +70,9 @@ static uint32_t uneven_substeps(const mspring_network *network, double dt, doubl
 static uint32_t even_substeps(mspring_network *network, double dt, double limit) {
     const mspringi_pace *had = &network->steps.pace;
     mspringi_pace *pace = &network->next_pace;
+    double need;
     const uint32_t most = network->max_substeps, calm = mspringi_substeps_within(dt, limit, most),
-                   fewest = raised(network, dt, calm);
+                   fewest = raised(network, dt, calm, &need);
     const double h = had->h, whole = fmax(floor((dt + had->left) / h + 0.5), 1.0),
                  left = dt + had->left - whole * h, times = whole / (double)fewest;
     const bool is_ahead = dt < h && left < -MOST_AHEAD * h;
@@ -78,13 +86,13 @@ static uint32_t even_substeps(mspring_network *network, double dt, double limit)
         pace->dt = dt;
         pace->h = (double)(float)(dt / (double)fewest);
         pace->steps = 0;
-        return fewest;
+        return flagged(network, fewest, need);
     }
     if (is_ahead)
-        return fewest;
+        return flagged(network, fewest, need);
     pace->left = left;
     network->step_time = whole * h;
-    return (uint32_t)whole;
+    return flagged(network, (uint32_t)whole, need);
 }
 
 /* ------------------------------------------------------------------------------------------------------ both */
@@ -92,10 +100,12 @@ static uint32_t even_substeps(mspring_network *network, double dt, double limit)
 static uint32_t preferred_substeps(mspring_network *network, double dt, double limit) {
     if (network->auto_substeps == MSPRINGI_SUBSTEPS_EVEN)
         return even_substeps(network, dt, limit);
-    return raised(network, dt,
-                  network->steps.uneven_steps > 0 || changes_dt(network, dt)
-                      ? uneven_substeps(network, dt, limit)
-                      : mspringi_substeps_within(dt, limit, network->max_substeps));
+    double need;
+    const uint32_t calm = network->steps.uneven_steps > 0 || changes_dt(network, dt)
+                              ? uneven_substeps(network, dt, limit)
+                              : mspringi_substeps_within(dt, limit, network->max_substeps);
+    const uint32_t substeps = raised(network, dt, calm, &need);
+    return flagged(network, substeps, need);
 }
 
 mspring_result mspringi_pace_choose(mspring_network *network, double dt) {

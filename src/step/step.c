@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "features/hooks/hooks.h"
 #include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
@@ -129,6 +130,7 @@ static mspringi_extrema run_once(mspring_network *network, const mspringi_attemp
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
     network->first_substep = 0;
+    network->step_substeps = attempt->substeps;
     begin_lag(network, attempt);
     tidy(network);
     if (ops->begin)
@@ -224,7 +226,7 @@ static bool is_idle(const mspring_network *network, const mspringi_stages *stage
 static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
     for (size_t repeats = 0;; ++repeats) {
         const mspringi_extrema extrema = run_once(network, attempt);
-        if (network->hook_count > 0)
+        if (mspringi_hook_count(network) > 0)
             network->seen = mspringi_guard_bound(network, attempt->h, extrema);
         if (!mspringi_stages_must_repeat(network, attempt) || repeats == attempt->stages->count)
             return extrema;

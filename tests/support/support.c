@@ -119,6 +119,20 @@ mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, 
     return id;
 }
 
+mspring_id support_join(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float rest_length,
+                        uint32_t flags) {
+    mspring_spring_def def;
+    mspring_id id = MSPRING_NONE;
+    check_ok(mspring_spring_def_init(&def, sizeof def));
+    def.a = a;
+    def.b = b;
+    def.stiffness = stiffness;
+    def.rest_length = rest_length;
+    def.flags = flags;
+    check_ok(mspring_builder_add_spring(builder, &def, &id));
+    return id;
+}
+
 mspring_network_def support_def(float gravity_y, uint32_t substeps) {
     mspring_network_def def;
     check_ok(mspring_network_def_init(&def, sizeof def));

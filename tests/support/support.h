@@ -85,6 +85,8 @@ mspring_id support_pinned(mspring_builder *builder, double x, double y, float ma
 
 /// Add a spring whose rest length is the distance of its ends.
 mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float damping);
+mspring_id support_join(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float rest_length,
+                        uint32_t flags);
 
 /// Defaults with this gravity along y and this number of substeps, and the guard that rejects steps which would
 /// grow.

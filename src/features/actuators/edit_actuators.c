@@ -5,11 +5,11 @@
 #include "builder/builder.h"
 #include "features/sleep/sleep.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 #include "store/properties.h"
 #include "store/rest_lengths.h"
 #include "store/springs.h"
-#include "store/store.h"
 
 #define MIN_SIGNAL 0.01f
 #define MAX_SIGNAL 100.0f
@@ -43,13 +43,13 @@ static mspring_result check(mspring_network *network, const mspring_id *springs,
 }
 
 static void free_all(mspring_network *network, mspringi_actuators *a) {
-    mspringi_memory *memory = &network->memory;
-    mspringi_free(memory, a->spring);
-    mspringi_free(memory, a->of_spring);
-    mspringi_free(memory, a->nominal);
-    mspringi_free(memory, a->to);
-    mspringi_free(memory, a->from);
-    mspringi_free(memory, a->bent_from);
+    if (a)
+        mspringi_array_table_free(mspringi_state_of_actuators.arrays, a, &network->memory);
+    mspringi_free(&network->memory, a);
+}
+
+static mspring_result no_memory(mspring_network *network, uint32_t count) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u actuators", (unsigned)count);
 }
 
 static mspring_result allocate(mspring_network *network, mspringi_actuators *a) {
@@ -66,7 +66,7 @@ static mspring_result allocate(mspring_network *network, mspringi_actuators *a) 
     a->bent_from = mspringi_alloc(memory, a->count, sizeof *a->bent_from);
     if (a->spring && a->of_spring && a->nominal && a->to && a->from && a->bent_from)
         return MSPRING_OK;
-    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u actuators", (unsigned)a->count);
+    return no_memory(network, a->count);
 }
 
 static mspring_result fill(mspring_network *network, mspringi_actuators *a, const mspring_id *springs) {
@@ -86,37 +86,48 @@ static mspring_result fill(mspring_network *network, mspringi_actuators *a, cons
 
 // The rest lengths of former actuators become parameters: no earlier frame fits any more.
 static void leave_lengths(mspring_network *network) {
-    const mspringi_actuators *a = &network->actuators;
-    if (!a->have_moved)
+    const mspringi_actuators *a = network->actuators;
+    if (!a || !a->have_moved)
         return;
     mspringi_fingerprint(network, MSPRINGI_EDIT_PARTS + MSPRINGI_REST_LENGTH, a->count);
     for (uint32_t i = 0; i < a->count; ++i)
         mspringi_fingerprint_floats(network, mspringi_actuator_length(network, i), 0.0f);
 }
 
+// Make them; on error there is a message, and nothing of them.
+static mspring_result make(mspring_network *network, const mspring_id *springs, uint32_t count, uint32_t changes,
+                           mspringi_actuators **made) {
+    *made = mspringi_alloc(&network->memory, 1, sizeof **made);
+    if (!*made)
+        return no_memory(network, count);
+    (*made)->count = count;
+    (*made)->changes = changes;
+    mspring_result result = allocate(network, *made);
+    if (result == MSPRING_OK)
+        result = fill(network, *made, springs);
+    if (result != MSPRING_OK)
+        free_all(network, *made);
+    return result;
+}
+
 mspring_result mspring_network_set_actuators(mspring_network *network, const mspring_id *springs, uint32_t count,
                                              uint32_t changes) {
     mspring_result result = mspringi_check_call(network);
-    mspringi_actuators made = {.count = count, .changes = changes};
+    mspringi_actuators *made = NULL;
     if (result == MSPRING_OK)
         result = check(network, springs, count, changes);
-    if (result == MSPRING_OK && count > 0) {
-        result = allocate(network, &made);
-        if (result == MSPRING_OK)
-            result = fill(network, &made, springs);
-        if (result != MSPRING_OK)
-            free_all(network, &made);
-    }
+    if (result == MSPRING_OK && count > 0)
+        result = make(network, springs, count, changes, &made);
     if (result != MSPRING_OK)
         return result;
     leave_lengths(network);
-    free_all(network, &network->actuators);
+    free_all(network, network->actuators);
     network->actuators = made;
     return MSPRING_OK;
 }
 
 uint32_t mspring_network_actuator_count(const mspring_network *network) {
-    return network ? network->actuators.count : 0;
+    return network ? mspringi_actuator_count(network) : 0;
 }
 
 /* ------------------------------------------------------------------------------------------------------ signals */
@@ -127,7 +138,8 @@ static bool is_signal(float value) {
 
 static mspring_result check_signals(mspring_network *network, uint32_t first, uint32_t count, const float *signals,
                                     uint32_t stride) {
-    mspring_result result = mspringi_check_range(network, "actuator", first, count, network->actuators.count);
+    mspring_result result =
+        mspringi_check_range(network, "actuator", first, count, mspringi_actuator_count(network));
     if (result != MSPRING_OK)
         return result;
     if (!signals && count > 0)
@@ -150,7 +162,7 @@ mspring_result mspring_network_set_signals(mspring_network *network, uint32_t fi
         result = check_signals(network, first, count, signals, stride);
     if (result != MSPRING_OK || count == 0)
         return result;
-    mspringi_actuators *a = &network->actuators;
+    mspringi_actuators *a = network->actuators;
     const float *nominal = a->nominal + first;
     float *to = a->to + first;
     const mspringi_fp_state before = mspringi_fp_enter();

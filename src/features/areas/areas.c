@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "base/shoelace.h"
 #include "builder/builder.h"
 #include "features/angles/angles.h"
 #include "features/one_way/one_way.h"
@@ -19,17 +20,14 @@ double mspringi_area_size(const mspring_network *network, const mspringi_area *a
     if (area->is_angle)
         return mspringi_angle_size(network, area);
     const mspringi_state *s = &network->state;
-    const uint32_t first = mspringi_area_slot(network, area, 0), second = mspringi_area_slot(network, area, 1);
-    const double x = mspringi_x_of(s, first), y = mspringi_y_of(s, first);
-    double dx = mspringi_x_of(s, second) - x, dy = mspringi_y_of(s, second) - y, twice = 0.0;
-    for (uint32_t i = 2; i < area->count; ++i) {
+    const uint32_t first = mspringi_area_slot(network, area, 0);
+    mspringi_shoelace polygon = {0};
+    for (uint32_t i = 1; i < area->count; ++i) {
         const uint32_t slot = mspringi_area_slot(network, area, i);
-        const double to_x = mspringi_x_of(s, slot) - x, to_y = mspringi_y_of(s, slot) - y;
-        twice += dx * to_y - dy * to_x;
-        dx = to_x;
-        dy = to_y;
+        mspringi_shoelace_add(&polygon, mspringi_x_of(s, slot) - mspringi_x_of(s, first),
+                              mspringi_y_of(s, slot) - mspringi_y_of(s, first));
     }
-    return 0.5 * twice;
+    return 0.5 * polygon.twice;
 }
 
 double mspringi_area_pressure(const mspringi_area *area, double size) {
@@ -110,18 +108,12 @@ void mspringi_area_push(const mspring_network *network, const mspringi_area *are
     const uint32_t first = corners[0].slot, last = corners[area->count - 1].slot;
     const double first_x = mspringi_x_of(s, first), first_y = mspringi_y_of(s, first);
     const double last_x = mspringi_x_of(s, last), last_y = mspringi_y_of(s, last);
-    double before_x = 0.0, before_y = 0.0, twice = 0.0;
-    for (uint32_t i = 1; i < area->count; ++i) {
-        const double x = mspringi_x_of(s, corners[i].slot) - first_x,
-                     y = mspringi_y_of(s, corners[i].slot) - first_y;
-        twice += before_x * y - before_y * x;
-        before_x = x;
-        before_y = y;
-    }
-    const double half = 0.5 * share * mspringi_area_pressure(area, 0.5 * twice);
-    double x = first_x, y = first_y;
-    before_x = last_x;
-    before_y = last_y;
+    mspringi_shoelace polygon = {0};
+    for (uint32_t i = 1; i < area->count; ++i)
+        mspringi_shoelace_add(&polygon, mspringi_x_of(s, corners[i].slot) - first_x,
+                              mspringi_y_of(s, corners[i].slot) - first_y);
+    const double half = 0.5 * share * mspringi_area_pressure(area, 0.5 * polygon.twice);
+    double x = first_x, y = first_y, before_x = last_x, before_y = last_y;
     for (uint32_t i = 0; i < area->count; ++i) {
         const bool is_last = i + 1 == area->count;
         const uint32_t slot = corners[i].slot;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "base/shoelace.h"
 #include "features/angles/angles.h"
 #include "store/changed.h"
 
@@ -150,13 +151,11 @@ double mspringi_area_within(const mspring_network *network, const mspring_id *pa
     const mspringi_state *s = &network->state;
     const uint32_t *slots = network->topology.slot_of_particle;
     const double x = mspringi_x_of(s, slots[particles[0]]), y = mspringi_y_of(s, slots[particles[0]]);
-    double twice = 0.0;
-    for (uint32_t i = 1; i + 1 < count; ++i) {
-        const uint32_t here = slots[particles[i]], next = slots[particles[i + 1]];
-        twice += (mspringi_x_of(s, here) - x) * (mspringi_y_of(s, next) - y) -
-                 (mspringi_y_of(s, here) - y) * (mspringi_x_of(s, next) - x);
-    }
-    return 0.5 * twice;
+    mspringi_shoelace shape = {0};
+    for (uint32_t i = 1; i < count; ++i)
+        mspringi_shoelace_add(&shape, mspringi_x_of(s, slots[particles[i]]) - x,
+                              mspringi_y_of(s, slots[particles[i]]) - y);
+    return 0.5 * shape.twice;
 }
 
 static MSPRINGI_NOINLINE mspring_result add_area(mspring_network *network, const mspring_area_def *def,

@@ -32,7 +32,7 @@ static stiff_area make_stiff_area(const mspring_network *network, size_t i, doub
                         square * fabs(mspringi_area_pressure(area, size))};
 }
 
-/* ------------------------------------------------------------------------------------------------------- guard */
+/* ------------------------------------------------------------------------------------------- bound and search */
 
 // Add a spring between two slots, isotropic.
 static void add_isotropic(const mspringi_stability_limit *b, uint32_t one, uint32_t other, double weight) {
@@ -109,16 +109,22 @@ void mspringi_areas_bound(const mspring_network *network, const mspringi_stabili
     }
 }
 
-void mspringi_areas_image(const mspring_network *network, const mspringi_stability_limit *b) {
+// Growth of an area with a displacement.
+static double growth(const mspring_network *network, const mspringi_area *area, const float *x, const float *y) {
+    double grows = 0.0;
+    for (uint32_t c = 0; c < area->count; ++c) {
+        const mspringi_area_end end = mspringi_area_end_of(network, area, c);
+        grows += end.x * (double)x[end.slot] + end.y * (double)y[end.slot];
+    }
+    return grows;
+}
+
+void mspringi_areas_image(const mspring_network *network, const mspringi_stability_limit *b, double square) {
     for (size_t i = 0; i < count_of(network); ++i) {
         if (!has_pressure(network, i))
             continue;
-        const stiff_area stiff = make_stiff_area(network, i, (double)b->stiffness);
-        double grows = 0.0;
-        for (uint32_t c = 0; c < stiff.area->count; ++c) {
-            const mspringi_area_end end = mspringi_area_end_of(network, stiff.area, c);
-            grows += end.x * (double)b->in[0][end.slot] + end.y * (double)b->in[1][end.slot];
-        }
+        const stiff_area stiff = make_stiff_area(network, i, square);
+        const double grows = growth(network, stiff.area, b->in[0], b->in[1]);
         for (uint32_t c = 0; c < stiff.area->count; ++c) {
             const mspringi_area_end end = mspringi_area_end_of(network, stiff.area, c);
             const double force = stiff.stiffness * grows * (double)b->inverse_mass[end.slot];
@@ -128,42 +134,12 @@ void mspringi_areas_image(const mspring_network *network, const mspringi_stabili
     }
 }
 
-/* ----------------------------------------------------------------------------------- mspring_network_stable_dt */
-
-// Growth of an area with a displacement, which is divided by the roots of inverse masses.
-static double growth(const mspringi_pencil *pencil, const mspringi_area *area, const double *vector) {
-    const uint32_t *particles = pencil->network->topology.particle_of_slot;
-    double grows = 0.0;
-    for (uint32_t c = 0; c < area->count; ++c) {
-        const mspringi_area_end end = mspringi_area_end_of(pencil->network, area, c);
-        const size_t p = particles[end.slot];
-        grows += pencil->root[p] * (end.x * vector[2 * p] + end.y * vector[2 * p + 1]);
-    }
-    return grows;
-}
-
-void mspringi_areas_apply(const mspringi_pencil *pencil, const double *in, double *out) {
-    const mspring_network *network = pencil->network;
+void mspringi_areas_quotient(const mspring_network *network, mspringi_displacement vector, mspringi_quotient *sum) {
     for (size_t i = 0; i < count_of(network); ++i) {
         if (!has_pressure(network, i))
             continue;
-        const stiff_area stiff = make_stiff_area(network, i, pencil->square);
-        const double force = stiff.stiffness * growth(pencil, stiff.area, in);
-        for (uint32_t c = 0; c < stiff.area->count; ++c) {
-            const mspringi_area_end end = mspringi_area_end_of(network, stiff.area, c);
-            const size_t p = network->topology.particle_of_slot[end.slot];
-            out[2 * p] += pencil->root[p] * force * end.x;
-            out[2 * p + 1] += pencil->root[p] * force * end.y;
-        }
-    }
-}
-
-void mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector, mspringi_quotient *sum) {
-    for (size_t i = 0; i < count_of(pencil->network); ++i) {
-        if (!has_pressure(pencil->network, i))
-            continue;
-        const mspringi_area *area = &pencil->network->areas.list[i];
-        const double grows = growth(pencil, area, vector), size = mspringi_area_size(pencil->network, area);
+        const mspringi_area *area = &network->areas.list[i];
+        const double grows = growth(network, area, vector.x, vector.y), size = mspringi_area_size(network, area);
         sum->stiffness += mspringi_area_stiffness(area, size) * grows * grows;
         sum->damping += (double)area->damping * grows * grows;
     }

@@ -6,7 +6,9 @@
 
 #include "base/array_table.h"
 #include "base/cpu.h"
+#include "features/contact/floor.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 
 #define THICKEST 1e6
@@ -149,10 +151,7 @@ static void destroy(mspringi_contacts *contacts, mspringi_memory *memory) {
     mspringi_free(memory, contacts);
 }
 
-void mspringi_contacts_relocate(mspringi_contacts *contacts, const mspringi_memory *from,
-                                const mspringi_memory *to) {
-    mspringi_array_table_relocate(columns, contacts, from, to);
-}
+const mspringi_feature_state mspringi_state_of_contacts = {MSPRINGI_ARRAY_TABLE(members), NULL};
 
 // count arrays of so many elements, one behind the other. False: there is no memory.
 static bool reserve_doubles(mspringi_memory *memory, size_t elements, double **const arrays[], size_t count) {
@@ -492,4 +491,22 @@ mspring_result mspring_network_get_contact_info(const mspring_network *network, 
     }
     mspringi_put_contact_info(info, &found);
     return MSPRING_OK;
+}
+
+void mspringi_contact_react(mspring_network *network, mspringi_change change, uint32_t index) {
+    if (change != MSPRINGI_CHANGED_SLOT)
+        return;
+    if (network->floor)
+        mspringi_floor_clear_slot(network->floor, index);
+    if (network->contacts)
+        mspringi_outline_clear_slot(network, index);
+}
+
+void mspringi_contact_discard_step(mspring_network *network) {
+    mspringi_floor_roll_back(network->floor);
+    if (!network->contacts)
+        return;
+    mspringi_colliders_discard_step(network->contacts);
+    mspringi_contact_events_discard_step(network->contacts);
+    network->contacts->is_listed = false; // it may be of places that were none
 }

@@ -515,7 +515,5 @@ void mspringi_colliders_finish_step(const mspring_network *network, mspringi_con
 bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points);
 /// Reserve implicit constraints, for solvers with contact in their system. Does nothing without contact.
 mspring_result mspringi_contacts_reserve_implicit(mspring_network *network);
-void mspringi_contacts_relocate(mspringi_contacts *contacts, const mspringi_memory *from,
-                                const mspringi_memory *to);
 
 #endif

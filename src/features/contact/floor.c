@@ -7,6 +7,7 @@
 #include "base/cpu.h"
 #include "features/sleep/sleep.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/selection.h"
 #include "store/stages.h"
 
@@ -492,3 +493,37 @@ const mspringi_stage mspringi_stage_floor = {.is_used = is_used,
                                              .forces_known = begin,
                                              .must_repeat = must_repeat,
                                              .roll_back = roll_back};
+
+#define RELOCATE(pointer) ((pointer) = mspringi_memory_relocate(from, to, (pointer)))
+
+static void relocate_floor(void *state, const mspringi_memory *from, const mspringi_memory *to) {
+    mspringi_floor *floor = state;
+    mspringi_state *before = &floor->before;
+    RELOCATE(floor->heights.heights);
+    RELOCATE(floor->heights.normals);
+    RELOCATE(floor->heights.frictions);
+    RELOCATE(floor->heights.restitutions);
+    RELOCATE(floor->plane_frictions);
+    RELOCATE(floor->plane_restitutions);
+    for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)
+        RELOCATE(floor->heights.highest[i]);
+    RELOCATE(floor->clearances);
+    RELOCATE(floor->start.x);
+    RELOCATE(floor->start.y);
+    RELOCATE(before->x);
+    RELOCATE(before->y);
+    RELOCATE(before->vx);
+    RELOCATE(before->vy);
+    RELOCATE(before->low_x);
+    RELOCATE(before->low_y);
+    RELOCATE(before->low_vx);
+    RELOCATE(before->low_vy);
+    RELOCATE(floor->impulse.x);
+    RELOCATE(floor->impulse.y);
+    RELOCATE(floor->previous_impulse.x);
+    RELOCATE(floor->previous_impulse.y);
+}
+
+#undef RELOCATE
+
+const mspringi_feature_state mspringi_state_of_floor = {{NULL, 0}, relocate_floor};

@@ -16,6 +16,7 @@
 
 #include "kernels/bounce_kernel.h"
 #include "store/network.h"
+#include "store/safe_box.h"
 
 typedef struct mspringi_half_plane {
     double x, y;   ///< a point on its border, world coordinates

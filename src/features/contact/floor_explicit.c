@@ -65,16 +65,15 @@ static void fly_slot(const mspring_network *network, const mspringi_floor_args *
         put(network, slot, p.x, p.y, vx, vy);
 }
 
-// Of velocities on which forces act for so long before they move for h.
-static mspringi_damping damping_of(const mspring_network *network, float h, float time) {
-    const float rate = network->settings.global_damping;
-    return (mspringi_damping){.keep = 1.0 - (double)mspringi_loss(rate, time),
-                              .scale = (double)h / (double)mspringi_gain(rate, time)};
+// Of velocities that lose such a share while forces act for so long, before they move for h.
+static mspringi_damping damping_of(const mspring_network *network, float h, float time, float loss) {
+    return (mspringi_damping){.keep = 1.0 - (double)loss,
+                              .scale = (double)h / (double)mspringi_gain(network->settings.global_damping, time)};
 }
 
 // Arguments of the floor kernel.
 static mspringi_floor_args args_of(const mspring_network *network, const mspringi_bounds *clear,
-                                   const mspringi_sweep *substep) {
+                                   const mspringi_sweep *substep, bool is_loose) {
     const mspringi_floor *floor = network->floor;
     const float h = substep->h;
     return (mspringi_floor_args){
@@ -108,7 +107,7 @@ static mspringi_floor_args args_of(const mspring_network *network, const mspring
         .before_vy = floor->before.vy,
         .silt_depth = floor->heights.silt_depth,
         .silt_rate = floor->heights.silt_rate,
-        .damping = damping_of(network, h, substep->time),
+        .damping = damping_of(network, h, substep->time, is_loose ? substep->damping_loss : substep->loss),
         .impulse_x = floor->impulse.x,
         .impulse_y = floor->impulse.y,
         .inverse_mass = network->inverse_mass,
@@ -178,7 +177,7 @@ static void touch_slots(const mspring_network *network, const mspringi_strip *st
     const bool has_heights = floor->heights.count > 0;
     if (block == slots.end && (!has_heights || next_marked(network, slots.first, block) == slots.end))
         return;
-    const mspringi_floor_args args = args_of(network, clear, substep);
+    const mspringi_floor_args args = args_of(network, clear, substep, is_loose);
     const mspringi_bounds bare = {clear->min_x, clear->max_x,
                                   floor->clearances[strip - network->topology.strips].bare, clear->max_y};
     if (has_heights) {
@@ -300,12 +299,14 @@ typedef struct gliding {
 // acts before and after a parabola (Strang, 1968), so that it takes energy whatever bounces there are: as a part of
 // the acceleration, found before a bounce, it gave some after it.
 static gliding glide(const mspring_network *network, float h) {
+    const float rate = network->settings.global_damping;
     const bool skews = network->running->ops->is_staggered;
-    const double half = skews ? 1.0 : (double)mspringi_decay(network->settings.global_damping, 0.5f * h);
+    const double half = skews ? 1.0 : (double)mspringi_decay(rate, 0.5f * h);
     return (gliding){.how = {.h = (double)h, .skew = skews ? 0.5 * (double)h : 0.0},
                      .before = half,
                      .after = half,
-                     .damping = skews ? damping_of(network, h, h) : (mspringi_damping){1.0, 1.0}};
+                     .damping =
+                         skews ? damping_of(network, h, h, mspringi_loss(rate, h)) : (mspringi_damping){1.0, 1.0}};
 }
 
 // A substep with an acceleration of (ax, ay).

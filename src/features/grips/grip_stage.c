@@ -16,29 +16,31 @@
 
 #include "features/contact/floor.h"
 #include "features/grips/grips.h"
+#include "store/feature.h"
 #include "store/stages.h"
 
 static bool is_used(const mspring_network *network) {
-    return network->grips.count > 0;
+    return mspringi_grip_count(network) > 0;
 }
 
 static bool any_active(const mspring_network *network) {
     uint32_t slot;
     bool any = false;
-    for (uint32_t i = 0; i < network->grips.count; ++i)
-        any |= mspringi_grip_is_active(network, &network->grips.list[i], &slot);
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i)
+        any |= mspringi_grip_is_active(network, &network->grips->list[i], &slot);
     return any;
 }
 
-static void clear_sums(mspring_network *network) {
-    network->grips.could_act = false;
-    for (uint32_t i = 0; i < network->grips.count; ++i)
-        network->grips.list[i].sum_x = network->grips.list[i].sum_y = 0.0;
+void mspringi_grips_discard_step(mspring_network *network) {
+    if (network->grips)
+        network->grips->could_act = false;
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i)
+        network->grips->list[i].sum_x = network->grips->list[i].sum_y = 0.0;
 }
 
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    clear_sums(network);
+    mspringi_grips_discard_step(network);
 }
 
 // Nothing that sleeps or is pinned feels it.
@@ -54,7 +56,7 @@ static uint32_t free_substeps(const mspring_network *network, const mspringi_att
 
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
-    mspringi_grips *grips = &network->grips;
+    mspringi_grips *grips = network->grips;
     grips->could_act |= any_active(network);
     grips->h = attempt->h;
     grips->share = 1.0 / (double)attempt->substeps;
@@ -200,7 +202,7 @@ static mspringi_force solve_bounded(mspringi_grips_of_particle *hold) {
 
 static void apply_grips(mspring_network *network, mspringi_grips_of_particle *hold, uint32_t slot) {
     const mspringi_state *s = &network->state;
-    const double h = hold->h = (double)network->grips.h;
+    const double h = hold->h = (double)network->grips->h;
     hold->by = (double)mspringi_active_inverse_mass(network)[slot];
     hold->x = mspringi_x_of(s, slot);
     hold->y = mspringi_y_of(s, slot);
@@ -226,7 +228,7 @@ static void apply_grips(mspring_network *network, mspringi_grips_of_particle *ho
 
 // Collect all grips on one particle. Empty unless `first` is the first of them, so each particle is visited once.
 static void collect_grips(mspring_network *network, uint32_t first, mspringi_grips_of_particle *hold) {
-    mspringi_grips *grips = &network->grips;
+    mspringi_grips *grips = network->grips;
     hold->count = 0;
     for (uint32_t i = 0; i < grips->count; ++i) {
         mspringi_grip *grip = &grips->list[i];
@@ -244,8 +246,8 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     const mspringi_solver *solver = attempt->solver;
     uint32_t slot;
     (void)substep;
-    for (uint32_t i = 0; network->grips.could_act && i < network->grips.count; ++i) {
-        if (mspringi_grip_is_active(network, &network->grips.list[i], &slot) &&
+    for (uint32_t i = 0; network->grips->could_act && i < mspringi_grip_count(network); ++i) {
+        if (mspringi_grip_is_active(network, &network->grips->list[i], &slot) &&
             !(solver->ops->has_implicit_grips && !solver->ops->is_isolated(network, solver->object, slot))) {
             mspringi_grips_of_particle hold;
             collect_grips(network, i, &hold);
@@ -258,7 +260,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
 // Islands asleep at the beginning of the step may have woken since.
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    return !network->grips.could_act && any_active(network);
+    return !network->grips->could_act && any_active(network);
 }
 
 static void after_step(mspring_network *network, double dt) {
@@ -273,5 +275,5 @@ const mspringi_stage mspringi_stage_grips = {.is_used = is_used,
                                              .before_substep = before_substep,
                                              .after_substep = after_substep,
                                              .must_repeat = must_repeat,
-                                             .roll_back = clear_sums,
+                                             .roll_back = mspringi_grips_discard_step,
                                              .after_step = after_step};

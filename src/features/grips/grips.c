@@ -6,7 +6,7 @@
 #include "base/cpu.h"
 #include "features/sleep/sleep.h"
 #include "store/changed.h"
-#include "store/store.h"
+#include "store/feature.h"
 
 #define STRONGEST 1e30f
 
@@ -15,7 +15,7 @@
 mspringi_grip_target mspringi_grip_target_at(const mspring_network *network, const mspringi_grip *grip,
                                              double share) {
     const double way_x = grip->x - grip->from_x, way_y = grip->y - grip->from_y;
-    const double seconds = (double)network->grips.h / network->grips.share;
+    const double seconds = (double)network->grips->h / network->grips->share;
     return (mspringi_grip_target){(grip->from_x + share * way_x) - network->origin_x,
                                   (grip->from_y + share * way_y) - network->origin_y, way_x / seconds,
                                   way_y / seconds};
@@ -36,8 +36,8 @@ bool mspringi_grip_is_active(const mspring_network *network, const mspringi_grip
 }
 
 void mspringi_grips_finish_step(mspring_network *network) {
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        mspringi_grip *grip = &network->grips.list[i];
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
+        mspringi_grip *grip = &network->grips->list[i];
         grip->from_x = grip->x;
         grip->from_y = grip->y;
         if (mspringi_slot_is_asleep(network, network->topology.slot_of_particle[grip->particle]))
@@ -47,13 +47,15 @@ void mspringi_grips_finish_step(mspring_network *network) {
     }
 }
 
+const mspringi_feature_state mspringi_state_of_grips = {{NULL, 0}, NULL};
+
 /* ------------------------------------------------------------------------------------------------- the setting */
 
 // NULL if there is none.
-static mspringi_grip *find(mspringi_grips *grips, mspring_id id) {
-    for (uint32_t i = 0; i < grips->count; ++i)
-        if (grips->list[i].id == id)
-            return &grips->list[i];
+static mspringi_grip *find(const mspring_network *network, mspring_id id) {
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i)
+        if (network->grips->list[i].id == id)
+            return &network->grips->list[i];
     return NULL;
 }
 
@@ -63,24 +65,25 @@ static void drop(mspringi_grips *grips, mspringi_grip *grip) {
         *grip = grip[1];
 }
 
-void mspringi_grips_clear(mspringi_grips *grips) {
-    *grips = (mspringi_grips){.list = grips->list};
+void mspringi_grips_clear(mspring_network *network) {
+    if (network->grips)
+        *network->grips = (mspringi_grips){.count = 0};
 }
 
 mspring_result mspringi_grips_reserve(mspring_network *network) {
-    return mspringi_store_reserve(network, MSPRINGI_STORE_GRIPS) &&
-                   mspringi_constraints_reserve(network, MSPRINGI_GRIP_CONSTRAINT, 2 * MSPRING_MAX_GRIPS,
-                                                2 * MSPRING_MAX_GRIPS)
+    if (!network->grips)
+        network->grips = mspringi_alloc(&network->memory, 1, sizeof *network->grips);
+    return network->grips && mspringi_constraints_reserve(network, MSPRINGI_GRIP_CONSTRAINT, 2 * MSPRING_MAX_GRIPS,
+                                                          2 * MSPRING_MAX_GRIPS)
                ? MSPRING_OK
                : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u grips",
                                (unsigned)MSPRING_MAX_GRIPS);
 }
 
 void mspringi_grips_forget(mspring_network *network, mspring_id particle) {
-    mspringi_grips *grips = &network->grips;
-    for (uint32_t i = grips->count; i-- > 0;)
-        if (grips->list[i].particle == particle)
-            drop(grips, &grips->list[i]);
+    for (uint32_t i = mspringi_grip_count(network); i-- > 0;)
+        if (network->grips->list[i].particle == particle)
+            drop(network->grips, &network->grips->list[i]);
 }
 
 #define NO_GRIP "there is no grip %s"
@@ -89,7 +92,7 @@ static mspring_result find_or_fail(mspring_network *network, mspring_id id, mspr
     const mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
-    *found = find(&network->grips, id);
+    *found = find(network, id);
     return *found ? MSPRING_OK : mspringi_fail(&network->message, MSPRING_ERROR_ID, NO_GRIP, MSPRINGI_ID(id));
 }
 
@@ -151,17 +154,17 @@ mspring_result mspring_network_add_grip(mspring_network *network, const mspring_
         result = check_grip(network, &def, &taken);
     if (result != MSPRING_OK)
         return result;
-    mspringi_grips *grips = &network->grips;
-    if (grips->count == MSPRING_MAX_GRIPS)
+    if (mspringi_grip_count(network) == MSPRING_MAX_GRIPS)
         return mspringi_fail(
             &network->message, MSPRING_ERROR_LIMIT,
             "the network has %u grips, as many as it may have (MSPRING_MAX_GRIPS): remove one first",
-            (unsigned)grips->count);
-    if (grips->next_id == MSPRING_NONE)
+            (unsigned)MSPRING_MAX_GRIPS);
+    if (network->grips && network->grips->next_id == MSPRING_NONE)
         return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT, "all ids of grips have been given away");
     result = mspringi_grips_reserve(network);
     if (result != MSPRING_OK)
         return result;
+    mspringi_grips *grips = network->grips;
     grips->list[grips->count] = made_of(def, grips->next_id++);
     if (grip)
         *grip = grips->list[grips->count].id;
@@ -175,7 +178,7 @@ mspring_result mspring_network_remove_grip(mspring_network *network, mspring_id 
     if (result != MSPRING_OK)
         return result;
     tell(network, found);
-    drop(&network->grips, found);
+    drop(network->grips, found);
     return MSPRING_OK;
 }
 
@@ -215,11 +218,10 @@ mspring_result mspring_network_move_grip(mspring_network *network, mspring_id gr
 
 // The same for calls that only read: NULL if there is none, with a message.
 static const mspringi_grip *look_up(const mspring_network *network, mspring_id id) {
-    for (uint32_t i = 0; i < network->grips.count; ++i)
-        if (network->grips.list[i].id == id)
-            return &network->grips.list[i];
-    (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_GRIP, MSPRINGI_ID(id));
-    return NULL;
+    const mspringi_grip *found = find(network, id);
+    if (!found)
+        (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_GRIP, MSPRINGI_ID(id));
+    return found;
 }
 
 mspring_result mspring_network_get_grip(const mspring_network *network, mspring_id grip, mspring_grip_def *def) {

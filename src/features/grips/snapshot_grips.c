@@ -36,12 +36,12 @@ static void hand_grip(mspringi_io *io, record *r) {
 // No section means that there never was a grip.
 static void grips_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_io io = mspringi_io_to(to);
-    mspring_id next_id = network->grips.next_id;
+    mspring_id next_id = network->grips ? network->grips->next_id : 0;
     if (next_id == 0)
         return;
     hand_head(&io, &next_id, &(uint32_t){0});
-    for (uint32_t i = 0; i < network->grips.count; ++i)
-        hand_grip(&io, &(record){.grip = network->grips.list[i]});
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i)
+        hand_grip(&io, &(record){.grip = network->grips->list[i]});
 }
 
 static bool is_strength(float value, float most) {
@@ -91,7 +91,7 @@ static mspring_result grips_check(mspring_network *network, const uint8_t *from,
         result = mspringi_section_fail(network, section, "it has %u grips", (unsigned)count);
     if (result == MSPRING_OK)
         result = mspringi_section_end(network, section, &io);
-    return result == MSPRING_OK && count > 0 ? mspringi_grips_reserve(network) : result;
+    return result == MSPRING_OK ? mspringi_grips_reserve(network) : result;
 }
 
 static mspring_result grips_check_against(mspring_network *network, const mspringi_saved *saved,
@@ -114,9 +114,9 @@ static mspring_result grips_check_against(mspring_network *network, const msprin
 
 static void grips_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_io io = mspringi_io_from(from, size);
-    mspringi_grips *grips = &network->grips;
+    mspringi_grips *grips = network->grips;
     uint32_t reserved;
-    mspringi_grips_clear(grips);
+    mspringi_grips_clear(network);
     if (size > 0)
         hand_head(&io, &grips->next_id, &reserved);
     while (io.left > 0) {

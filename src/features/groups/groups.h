@@ -1,5 +1,5 @@
 /// @file groups.h
-/// Groups of particles that are judged, held and put back singly, and springs that follow signals.
+/// Groups of particles that are judged, held and put back singly.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_GROUPS_STORE_H
@@ -39,18 +39,5 @@ typedef struct mspringi_groups {
     float *active_inverse_mass; ///< [slots] inverse mass, 0 of what is held
     mspringi_mark start, mark;
 } mspringi_groups;
-
-typedef struct mspringi_actuators {
-    uint32_t count;      ///< 0: there are none
-    uint32_t changes;    ///< in a step
-    bool are_pending;    ///< signals came since the last step
-    bool have_moved;     ///< some came ever
-    mspring_id *spring;  ///< [count]
-    uint32_t *of_spring; ///< [springs] number of the actuator, or MSPRING_NONE
-    float *nominal;      ///< [count] rest length at signal 1, m
-    float *to;           ///< [count] at the end of the next step
-    float *from;         ///< [count] at the beginning of the step that is being made, if signals came before it
-    float *bent_from;    ///< [count] and what was in force then; where springs yield
-} mspringi_actuators;
 
 #endif

@@ -1,6 +1,7 @@
 /// Queries about groups.
 #include "base/cpu.h"
 #include "store/id_pool.h"
+#include "store/moments.h"
 
 uint32_t mspring_network_group_count(const mspring_network *network) {
     return network ? network->groups.count : 0;
@@ -61,30 +62,26 @@ static mspring_result check_observation(const mspring_network *network, uint32_t
 static void observe_body(const mspring_network *network, uint32_t group, double *row) {
     const mspringi_groups *g = &network->groups;
     const mspringi_state *s = &network->state;
-    double sum = 0.0, x = 0.0, y = 0.0, vx = 0.0, vy = 0.0;
+    mspringi_moments sum = {0};
     double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;
     for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
         const uint32_t slot = network->topology.slot_of_particle[p];
         if (!mspringi_particle_exists(network, p))
             continue;
-        const double mass = (double)network->mass[p], px = mspringi_x_of(s, slot), py = mspringi_y_of(s, slot);
-        sum += mass;
-        x += mass * px;
-        y += mass * py;
-        vx += mass * (double)s->vx[slot];
-        vy += mass * (double)s->vy[slot];
-        low_x = px < low_x ? px : low_x;
-        low_y = py < low_y ? py : low_y;
-        high_x = px > high_x ? px : high_x;
-        high_y = py > high_y ? py : high_y;
+        const double x = mspringi_x_of(s, slot), y = mspringi_y_of(s, slot);
+        mspringi_moments_add(&sum, mspringi_moments_of(network, p));
+        low_x = x < low_x ? x : low_x;
+        low_y = y < low_y ? y : low_y;
+        high_x = x > high_x ? x : high_x;
+        high_y = y > high_y ? y : high_y;
     }
-    const double part = sum > 0.0 ? 1.0 / sum : 0.0;
+    const double part = sum.mass > 0.0 ? 1.0 / sum.mass : 0.0;
     const double values[MSPRING_OBSERVE_PARTICLES] = {
-        x * part,  y * part, vx * part,
-        vy * part, low_x,    low_y,
-        high_x,    high_y,   network->groups.flags[group] & MSPRINGI_HELD ? 1.0 : 0.0};
+        sum.x * part,  sum.y * part, sum.px * part,
+        sum.py * part, low_x,        low_y,
+        high_x,        high_y,       network->groups.flags[group] & MSPRINGI_HELD ? 1.0 : 0.0};
     for (int i = 0; i < MSPRING_OBSERVE_PARTICLES; ++i)
-        row[i] = sum > 0.0 || i == MSPRING_OBSERVE_HELD ? values[i] : 0.0;
+        row[i] = sum.mass > 0.0 || i == MSPRING_OBSERVE_HELD ? values[i] : 0.0;
 }
 
 static void observe_particles(const mspring_network *network, uint32_t group, const uint32_t *particles,
@@ -97,8 +94,8 @@ static void observe_particles(const mspring_network *network, uint32_t group, co
         const bool exists = mspringi_particle_exists(network, p);
         to[0] = exists ? mspringi_x_of(s, slot) - row[MSPRING_OBSERVE_X] : 0.0;
         to[1] = exists ? mspringi_y_of(s, slot) - row[MSPRING_OBSERVE_Y] : 0.0;
-        to[2] = exists ? (double)s->vx[slot] : 0.0;
-        to[3] = exists ? (double)s->vy[slot] : 0.0;
+        to[2] = exists ? mspringi_vx_of(s, slot) : 0.0;
+        to[3] = exists ? mspringi_vy_of(s, slot) : 0.0;
     }
 }
 

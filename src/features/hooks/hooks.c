@@ -3,6 +3,7 @@
 
 #include "features/hooks/reach.h"
 #include "features/sleep/sleep.h"
+#include "store/feature.h"
 #include "store/stages.h"
 
 /// Fewest slots that are worth to be handed to another worker, if the host does not say.
@@ -47,6 +48,19 @@ static mspring_result reserve_fields(mspring_network *network, const mspring_hoo
     return result == MSPRING_OK && def->period > 1 ? mspringi_field_reserve(network, held) : result;
 }
 
+// Make room for one more.
+static bool grow(mspring_network *network) {
+    if (!network->hooks)
+        network->hooks = mspringi_alloc(&network->memory, 1, sizeof *network->hooks);
+    mspringi_hooks *hooks = network->hooks;
+    void *list = hooks ? hooks->list : NULL;
+    const bool grown =
+        hooks && mspringi_grow(&network->memory, &list, &hooks->capacity, hooks->count + 1, sizeof *hooks->list);
+    if (grown)
+        hooks->list = list;
+    return grown;
+}
+
 mspring_result mspring_network_add_hook(mspring_network *network, const mspring_hook_def *def, mspring_id *hook) {
     mspring_hook_def taken;
     mspring_result result = mspringi_check_call(network);
@@ -54,21 +68,19 @@ mspring_result mspring_network_add_hook(mspring_network *network, const mspring_
         result = check_hook(network, &def, &taken);
     if (result != MSPRING_OK)
         return result;
-    void *hooks = network->hooks;
-    if (!mspringi_grow(&network->memory, &hooks, &network->hook_capacity, network->hook_count + 1,
-                       sizeof *network->hooks))
+    if (!grow(network))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for hook %zu",
-                             network->hook_count);
-    network->hooks = hooks;
-    mspringi_hook added = {.def = *def, .number = network->next_hook};
+                             mspringi_hook_count(network));
+    mspringi_hooks *hooks = network->hooks;
+    mspringi_hook added = {.def = *def, .number = hooks->next_number};
     result = reserve_fields(network, def, &added.held);
     if (result != MSPRING_OK)
         return result;
-    network->hooks[network->hook_count++] = added;
+    hooks->list[hooks->count++] = added;
     network->is_open = true;
     if (hook)
-        *hook = network->next_hook;
-    network->next_hook++;
+        *hook = hooks->next_number;
+    hooks->next_number++;
     return MSPRING_OK;
 }
 
@@ -76,17 +88,66 @@ mspring_result mspring_network_remove_hook(mspring_network *network, mspring_id 
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
+    mspringi_hooks *hooks = network->hooks;
     size_t i = 0;
-    while (i < network->hook_count && network->hooks[i].number != hook)
+    while (i < mspringi_hook_count(network) && hooks->list[i].number != hook)
         ++i;
-    if (i == network->hook_count)
+    if (i == mspringi_hook_count(network))
         return mspringi_fail(&network->message, MSPRING_ERROR_ID, "there is no hook %s", MSPRINGI_ID(hook));
-    mspringi_free(&network->memory, network->hooks[i].held.x);
-    network->hook_count--;
-    for (; i < network->hook_count; ++i)
-        network->hooks[i] = network->hooks[i + 1];
+    mspringi_free(&network->memory, hooks->list[i].held.x);
+    hooks->count--;
+    for (; i < hooks->count; ++i)
+        hooks->list[i] = hooks->list[i + 1];
     return MSPRING_OK;
 }
+
+/* --------------------------------------------------------------------------------------- layouts and copies */
+
+mspring_result mspringi_hooks_move(mspring_network *to, const mspring_network *from) {
+    const mspringi_hooks *had = from->hooks;
+    mspring_result result = MSPRING_OK;
+    if (!had)
+        return MSPRING_OK;
+    mspringi_hooks *made = to->hooks = mspringi_memory_duplicate(&to->memory, had);
+    if (made)
+        made->list = mspringi_memory_duplicate(&to->memory, had->list);
+    if (!made || (had->list && !made->list))
+        return mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for %zu hooks", had->count);
+    for (size_t i = 0; result == MSPRING_OK && i < had->count; ++i) {
+        made->list[i].held = (mspringi_field){NULL, NULL};
+        if (had->list[i].held.x)
+            result = mspringi_field_reserve(to, &made->list[i].held);
+    }
+    return result;
+}
+
+void mspringi_hooks_destroy(mspringi_hooks *hooks, mspringi_memory *memory) {
+    if (!hooks)
+        return;
+    for (size_t i = 0; i < hooks->count; ++i)
+        mspringi_free(memory, hooks->list[i].held.x);
+    mspringi_free(memory, hooks->list);
+    mspringi_free(memory, hooks);
+}
+
+void mspringi_hooks_clear(mspring_network *network) {
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        mspringi_free(&network->memory, network->hooks->list[i].held.x);
+    if (network->hooks)
+        network->hooks->count = 0;
+}
+
+static void relocate_fields(void *state, const mspringi_memory *from, const mspringi_memory *to) {
+    const mspringi_hooks *hooks = state;
+    for (size_t i = 0; i < hooks->count; ++i) {
+        mspringi_field *held = &hooks->list[i].held;
+        held->x = mspringi_memory_relocate(from, to, held->x);
+        held->y = mspringi_memory_relocate(from, to, held->y);
+    }
+}
+
+static const mspringi_array_entry arrays[] = {MSPRINGI_ARRAY_ENTRY(mspringi_hooks, list, MSPRINGI_ARRAY)};
+const mspringi_feature_state mspringi_state_of_hooks = {MSPRINGI_ARRAY_TABLE(arrays), relocate_fields};
 
 /* --------------------------------------------------------------------------------------------------- one call */
 
@@ -184,8 +245,8 @@ static void call_hook(mspring_network *network, const mspringi_attempt *attempt,
 /* ------------------------------------------------------------------------------------------------ whose turn */
 
 static bool has_any(const mspring_network *network, mspring_phase phase) {
-    for (size_t i = 0; i < network->hook_count; ++i)
-        if (network->hooks[i].def.phase == phase)
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        if (network->hooks->list[i].def.phase == phase)
             return true;
     return false;
 }
@@ -197,8 +258,8 @@ static bool is_due(const mspring_network *network, const mspringi_attempt *attem
 }
 
 static bool is_any_due(const mspring_network *network, const mspringi_attempt *attempt, mspring_phase phase) {
-    for (size_t i = 0; i < network->hook_count; ++i)
-        if (is_due(network, attempt, &network->hooks[i], phase))
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        if (is_due(network, attempt, &network->hooks->list[i], phase))
             return true;
     return false;
 }
@@ -207,8 +268,8 @@ static bool is_any_due(const mspring_network *network, const mspringi_attempt *a
 static bool is_any_needed(const mspring_network *network, mspring_phase phase) {
     const uint32_t slots = (uint32_t)mspringi_used_slots(network);
     mspringi_slot_run run;
-    for (size_t i = 0; i < network->hook_count; ++i) {
-        const mspring_hook_def *def = &network->hooks[i].def;
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i) {
+        const mspring_hook_def *def = &network->hooks->list[i].def;
         if (def->phase == phase &&
             (!mspringi_has_reach(def) ||
              (mspringi_sleep_is_idle(network) && mspringi_next_below(network, def, 0, slots, &run))))
@@ -221,9 +282,9 @@ static bool is_any_needed(const mspring_network *network, mspring_phase phase) {
 static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                               mspring_phase phase) {
     uint32_t count = attempt->substeps - substep;
-    for (size_t i = 0; i < network->hook_count; ++i) {
-        const uint32_t period = network->hooks[i].def.period;
-        if (is_due(network, attempt, &network->hooks[i], phase) && period - substep % period < count)
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i) {
+        const uint32_t period = network->hooks->list[i].def.period;
+        if (is_due(network, attempt, &network->hooks->list[i], phase) && period - substep % period < count)
             count = period - substep % period;
     }
     return count;
@@ -231,9 +292,9 @@ static uint32_t free_substeps(const mspring_network *network, const mspringi_att
 
 static void before_step(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field) {
     const hook_group all = {0, 1, attempt->dt};
-    for (size_t i = 0; i < network->hook_count; ++i)
-        if (is_due(network, attempt, &network->hooks[i], MSPRING_PHASE_BEFORE_STEP))
-            call_hook(network, attempt, &network->hooks[i].def, all, field);
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        if (is_due(network, attempt, &network->hooks->list[i], MSPRING_PHASE_BEFORE_STEP))
+            call_hook(network, attempt, &network->hooks->list[i].def, all, field);
 }
 
 static void add(const mspring_network *network, mspringi_field from, mspringi_field to) {
@@ -249,8 +310,8 @@ static void add(const mspring_network *network, mspringi_field from, mspringi_fi
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
     bool any = false, acts = false;
-    for (size_t i = 0; i < network->hook_count; ++i) {
-        mspringi_hook *hook = &network->hooks[i];
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i) {
+        mspringi_hook *hook = &network->hooks->list[i];
         const bool acts_here = is_due(network, attempt, hook, MSPRING_PHASE_BEFORE_SUBSTEP);
         acts |= acts_here;
         any |= acts_here && substep % hook->def.period == 0;
@@ -264,8 +325,8 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
         mspringi_field_clear(network, driven);
     // A hook with a period has a field of its own, since its forces act on while others may be called again.
     const uint32_t left = attempt->substeps - substep;
-    for (size_t i = 0; i < network->hook_count; ++i) {
-        mspringi_hook *hook = &network->hooks[i];
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i) {
+        mspringi_hook *hook = &network->hooks->list[i];
         if (!is_due(network, attempt, hook, MSPRING_PHASE_BEFORE_SUBSTEP))
             continue;
         if (!hook->held.x) {
@@ -283,8 +344,8 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 }
 
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
-    for (size_t i = 0; i < network->hook_count; ++i) {
-        mspringi_hook *hook = &network->hooks[i];
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i) {
+        mspringi_hook *hook = &network->hooks->list[i];
         const uint32_t group = substep % hook->def.period + 1;
         const mspringi_field none = {NULL, NULL};
         if (is_due(network, attempt, hook, MSPRING_PHASE_AFTER_SUBSTEP) &&
@@ -297,23 +358,23 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
 
 static void begin(mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    for (size_t i = 0; i < network->hook_count; ++i)
-        network->hooks[i].distance = MSPRINGI_UNKNOWN;
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        network->hooks->list[i].distance = MSPRINGI_UNKNOWN;
 }
 
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     bool any = false;
-    for (size_t i = 0; i < network->hook_count; ++i)
-        any |= network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP &&
-               mspringi_hook_must_repeat(network, &network->hooks[i], attempt->dt);
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        any |= network->hooks->list[i].def.phase != MSPRING_PHASE_BEFORE_STEP &&
+               mspringi_hook_must_repeat(network, &network->hooks->list[i], attempt->dt);
     return any;
 }
 
 // A step that is repeated is looked at in every substep.
 static void roll_back(mspring_network *network) {
-    for (size_t i = 0; i < network->hook_count; ++i)
-        if (network->hooks[i].distance == MSPRINGI_AWAY)
-            network->hooks[i].distance = MSPRINGI_CLOSE;
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        if (network->hooks->list[i].distance == MSPRINGI_AWAY)
+            network->hooks->list[i].distance = MSPRINGI_CLOSE;
 }
 
 /* ------------------------------------------------------------------------------------------------------ stages */

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_REACH_H
 #define MSPRINGI_REACH_H
 
-#include "store/network.h"
+#include "features/hooks/hooks.h"
 
 static inline bool mspringi_has_reach(const mspring_hook_def *def) {
     return (def->flags & MSPRING_HOOK_BELOW) != 0;

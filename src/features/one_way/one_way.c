@@ -2,26 +2,44 @@
 #include "features/one_way/one_way.h"
 
 #include "store/changed.h"
-#include "store/store.h"
+#include "store/feature.h"
 
 static int side_of(const mspringi_spring *spring) {
     return spring->flags & MSPRING_SPRING_PULL_ONLY ? 1 : spring->flags & MSPRING_SPRING_PUSH_ONLY ? -1 : 0;
 }
 
+static bool reserve(mspring_network *network, uint32_t count) {
+    mspringi_one_way *made = network->one_way = mspringi_alloc(&network->memory, 1, sizeof *made);
+    if (!made)
+        return false;
+    made->count = count;
+    made->side = mspringi_alloc(&network->memory, network->topology.reserve.first_spring, sizeof *made->side);
+    made->list = mspringi_alloc(&network->memory, count, sizeof *made->list);
+    return made->side && made->list;
+}
+
+static const mspringi_array_entry arrays[] = {MSPRINGI_ARRAY_ENTRY(mspringi_one_way, side, MSPRINGI_ARRAY),
+                                              MSPRINGI_ARRAY_ENTRY(mspringi_one_way, list, MSPRINGI_ARRAY)};
+const mspringi_feature_state mspringi_state_of_one_way = {MSPRINGI_ARRAY_TABLE(arrays), NULL};
+
 mspring_result mspringi_one_way_create(mspring_network *network, const mspring_builder *builder) {
-    mspringi_one_way *one_way = &network->one_way;
+    uint32_t count = 0;
     for (size_t s = 0; s < builder->spring_count; ++s)
-        one_way->count += side_of(&builder->springs[s]) != 0;
-    if (one_way->count == 0)
+        count += side_of(&builder->springs[s]) != 0;
+    if (count == 0)
         return MSPRING_OK;
-    if (!mspringi_store_reserve(network, MSPRINGI_STORE_ONE_WAY))
+    if (!reserve(network, count))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                             "no memory for %u springs that only pull or only push", (unsigned)one_way->count);
+                             "no memory for %u springs that only pull or only push", (unsigned)count);
     for (size_t s = 0; s < builder->spring_count; ++s) {
-        one_way->side[s] = (int8_t)side_of(&builder->springs[s]);
-        mspringi_fingerprint_floats(network, (float)one_way->side[s], 0.0f);
+        network->one_way->side[s] = (int8_t)side_of(&builder->springs[s]);
+        mspringi_fingerprint_floats(network, (float)network->one_way->side[s], 0.0f);
     }
     return MSPRING_OK;
+}
+
+bool mspringi_one_way_varies(const mspring_network *network) {
+    return network->one_way != NULL;
 }
 
 uint32_t mspringi_side_flags(const mspring_network *network, mspring_id spring) {

@@ -11,15 +11,14 @@
 /// 32 links was strained by 84 % by its first jerk without that.)
 #include <math.h>
 
+#include "features/actuators/actuators.h"
 #include "features/one_way/one_way.h"
+#include "features/ramps/ramps.h"
 #include "features/sleep/sleep.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 #include "store/springs.h"
 #include "store/stages.h"
-
-static bool is_used(const mspring_network *network) {
-    return network->one_way.side != NULL;
-}
 
 static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
@@ -61,13 +60,13 @@ static void activate(mspring_network *network, mspringi_one_way_spring *spring, 
 }
 
 static void activate_all(mspring_network *network) {
-    mspringi_one_way *one_way = &network->one_way;
+    mspringi_one_way *one_way = network->one_way;
     for (uint32_t i = 0; i < one_way->listed; ++i)
         activate(network, &one_way->list[i], true);
 }
 
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
-    mspringi_one_way *one_way = &network->one_way;
+    mspringi_one_way *one_way = network->one_way;
     const mspringi_topology *t = &network->topology;
     (void)attempt;
     one_way->listed = 0;
@@ -93,8 +92,8 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
 
 // Ramps and actuators change them from one substep to the next, and so does yielding.
 static void follow_rest_lengths(mspring_network *network) {
-    mspringi_one_way *one_way = &network->one_way;
-    if (network->ramps.count == 0 && network->actuators.count == 0 && !network->plastic.nominal)
+    mspringi_one_way *one_way = network->one_way;
+    if (mspringi_ramp_count(network) == 0 && mspringi_actuator_count(network) == 0 && !network->plastic.nominal)
         return;
     for (uint32_t i = 0; i < one_way->listed; ++i)
         one_way->list[i].rest_length =
@@ -103,7 +102,7 @@ static void follow_rest_lengths(mspring_network *network) {
 
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
-    mspringi_one_way *one_way = &network->one_way;
+    mspringi_one_way *one_way = network->one_way;
     const bool is_explicit = attempt->solver->ops->has_stability_limit;
     const double ahead = is_explicit ? 0.0 : (double)attempt->h;
     follow_rest_lengths(network);
@@ -122,7 +121,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 }
 
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
-    mspringi_one_way *one_way = &network->one_way;
+    mspringi_one_way *one_way = network->one_way;
     if (attempt->solver->ops->has_stability_limit)
         return;
     follow_rest_lengths(network);
@@ -138,7 +137,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
 
 // Once: those that tighten in the second run are let be.
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
-    mspringi_one_way *one_way = &network->one_way;
+    mspringi_one_way *one_way = network->one_way;
     (void)attempt;
     if (!one_way->must_repeat || one_way->is_repeated)
         return false;
@@ -162,7 +161,7 @@ static void undo(mspring_network *network, const mspringi_attempt *attempt) {
     activate_all(network);
 }
 
-const mspringi_stage mspringi_stage_one_way = {.is_used = is_used,
+const mspringi_stage mspringi_stage_one_way = {.is_used = mspringi_one_way_varies,
                                                .before_step = before_step,
                                                .is_quiet = is_quiet,
                                                .before_substep = before_substep,

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "features/yield/plastic.h"
+#include "store/feature.h"
 #include "store/rest_lengths.h"
 #include "store/springs.h"
 #include "store/stages.h"
@@ -17,22 +18,29 @@ static void follow(mspring_network *network, mspring_id spring) {
         mspringi_plastic_renew(network, mspringi_slot_of_spring(&network->topology, spring));
 }
 
+static bool grow(mspring_network *network, size_t count) {
+    if (!network->ramps)
+        network->ramps = mspringi_alloc(&network->memory, 1, sizeof *network->ramps);
+    mspringi_ramps *ramps = network->ramps;
+    void *list = ramps ? ramps->list : NULL;
+    const bool grown = ramps && mspringi_grow(&network->memory, &list, &ramps->capacity, ramps->count + count,
+                                              sizeof *ramps->list);
+    if (grown)
+        ramps->list = list;
+    return grown;
+}
+
 mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
-    mspringi_ramps *ramps = &network->ramps;
     mspring_result result = mspringi_rest_lengths_unshare(network);
     if (result != MSPRING_OK)
         return result;
-    void *list = ramps->list;
-    const bool grown =
-        mspringi_grow(&network->memory, &list, &ramps->capacity, ramps->count + count, sizeof *ramps->list);
-    ramps->list = list;
-    return grown ? MSPRING_OK
-                 : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for the ramps of %zu springs",
-                                 count);
+    return grow(network, count) ? MSPRING_OK
+                                : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                                                "no memory for the ramps of %zu springs", count);
 }
 
 void mspringi_ramp_add(mspring_network *network, const mspringi_ramp *ramp) {
-    network->ramps.list[network->ramps.count++] = *ramp;
+    network->ramps->list[network->ramps->count++] = *ramp;
     follow(network, ramp->spring);
 }
 
@@ -54,16 +62,15 @@ void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double sec
 }
 
 bool mspringi_has_ramp(const mspring_network *network, mspring_id spring) {
-    const mspringi_ramps *ramps = &network->ramps;
-    for (size_t i = 0; i < ramps->count; ++i)
-        if (ramps->list[i].spring == spring)
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i)
+        if (network->ramps->list[i].spring == spring)
             return true;
     return false;
 }
 
 void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
-    mspringi_ramps *ramps = &network->ramps;
-    for (size_t i = 0; i < ramps->count; ++i) {
+    mspringi_ramps *ramps = network->ramps;
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i) {
         if (ramps->list[i].spring != spring)
             continue;
         mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, spring),
@@ -75,8 +82,10 @@ void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
 }
 
 void mspringi_ramps_clear(mspring_network *network) {
-    mspringi_ramps *ramps = &network->ramps;
-    const size_t count = ramps->count;
+    mspringi_ramps *ramps = network->ramps;
+    const size_t count = mspringi_ramp_count(network);
+    if (count == 0)
+        return;
     for (size_t i = 0; i < count; ++i)
         mspringi_spring_slot_set_rest_length(
             network, mspringi_slot_of_spring(&network->topology, ramps->list[i].spring), ramps->list[i].to);
@@ -86,8 +95,8 @@ void mspringi_ramps_clear(mspring_network *network) {
 }
 
 void mspringi_ramps_apply(mspring_network *network, double dt) {
-    for (size_t i = 0; i < network->ramps.count; ++i) {
-        const mspringi_ramp *ramp = &network->ramps.list[i];
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i) {
+        const mspringi_ramp *ramp = &network->ramps->list[i];
         const double passed = (ramp->passed + dt) / ramp->seconds;
         const double rest_length = ramp->from + ((double)ramp->to - ramp->from) * passed;
         mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, ramp->spring),
@@ -97,7 +106,7 @@ void mspringi_ramps_apply(mspring_network *network, double dt) {
 
 // Let dt seconds pass, and forget the ramps that have come to their end.
 static void pass(mspring_network *network, double dt) {
-    mspringi_ramps *ramps = &network->ramps;
+    mspringi_ramps *ramps = network->ramps;
     const size_t count = ramps->count;
     size_t kept = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -112,8 +121,11 @@ static void pass(mspring_network *network, double dt) {
         follow(network, ramps->list[i].spring);
 }
 
-static bool is_used(const mspring_network *network) {
-    return network->ramps.count > 0;
+static const mspringi_array_entry arrays[] = {MSPRINGI_ARRAY_ENTRY(mspringi_ramps, list, MSPRINGI_ARRAY)};
+const mspringi_feature_state mspringi_state_of_ramps = {MSPRINGI_ARRAY_TABLE(arrays), NULL};
+
+bool mspringi_ramps_vary(const mspring_network *network) {
+    return mspringi_ramp_count(network) > 0;
 }
 
 static void go_along(mspring_network *network, const mspringi_attempt *attempt) {
@@ -126,4 +138,4 @@ static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
 }
 
 const mspringi_stage mspringi_stage_ramps = {
-    .is_used = is_used, .before_step = go_along, .after_step = pass, .undo = go_back};
+    .is_used = mspringi_ramps_vary, .before_step = go_along, .after_step = pass, .undo = go_back};

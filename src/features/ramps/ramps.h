@@ -11,7 +11,25 @@
 
 #include "store/network.h"
 
+/// A restored spring on its way to its own rest length.
+typedef struct mspringi_ramp {
+    mspring_id spring;
+    float to;       ///< its own rest length, m
+    double from;    ///< rest length when it was restored
+    double seconds; ///< that the way takes
+    double passed;  ///< of these
+} mspringi_ramp;
+
+typedef struct mspringi_ramps {
+    mspringi_ramp *list;
+    size_t count, capacity;
+} mspringi_ramps;
+
 #define MSPRINGI_LONGEST_RAMP 1e6 // s
+
+static inline size_t mspringi_ramp_count(const mspring_network *network) {
+    return network->ramps ? network->ramps->count : 0;
+}
 
 /// Make room for count ramps more.
 mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count);

@@ -8,7 +8,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "features/hooks/hooks.h"
+#include "features/ramps/ramps.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 #include "store/selection.h"
 #include "store/stages.h"
@@ -300,7 +303,7 @@ void mspringi_sleep_put_back(const mspring_network *network) {
 // Wake islands that hooks have moved.
 static void update_sleep(mspring_network *network, double dt) {
     (void)dt;
-    if (network->sleep.sleeping == 0 || network->hook_count == 0)
+    if (network->sleep.sleeping == 0 || mspringi_hook_count(network) == 0)
         return;
     const uint64_t sleep_changes = network->edits.sleep_changes;
     wake_disturbed(network, true, false);
@@ -364,9 +367,9 @@ static void mark_moving(const mspring_network *network) {
             if (bits >> lane & 1 && s->island[first + lane] != MSPRING_NONE)
                 s->mark[s->island[first + lane]] = 1;
     }
-    for (size_t i = 0; i < network->ramps.count; ++i) {
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i) {
         uint32_t base, tip;
-        mspringi_topology_ends(t, mspringi_slot_of_spring(t, network->ramps.list[i].spring), &base, &tip);
+        mspringi_topology_ends(t, mspringi_slot_of_spring(t, network->ramps->list[i].spring), &base, &tip);
         s->mark[s->island[base]] = 1;
     }
 }
@@ -555,4 +558,33 @@ mspring_result mspring_network_get_sleepers(const mspring_network *network, mspr
 
 uint32_t mspring_network_is_asleep(const mspring_network *network) {
     return network && mspringi_sleep_is_whole(network) && !mspringi_sleep_is_disturbed(network);
+}
+
+void mspringi_sleep_react(mspring_network *network, mspringi_change change, uint32_t index) {
+    switch (change) {
+    case MSPRINGI_CHANGED_SPRING_MASSES:
+    case MSPRINGI_CHANGED_SOLVER:
+    case MSPRINGI_CHANGED_GRAVITY:
+    case MSPRINGI_CHANGED_RELAX:
+    case MSPRINGI_CHANGED_NEW_FLOOR:
+    case MSPRINGI_CHANGED_CONTACT:
+    case MSPRINGI_CHANGED_AREA:
+    case MSPRINGI_CHANGED_REST_ANGLES:
+        mspringi_wake(network);
+        break;
+    case MSPRINGI_CHANGED_SPRING:
+    case MSPRINGI_CHANGED_BROKEN_SPRING:
+    case MSPRINGI_CHANGED_LIVE_SPRING:
+        mspringi_wake_spring(network, index);
+        break;
+    case MSPRINGI_CHANGED_GRIP:
+        mspringi_wake_slot(network, index);
+        break;
+    case MSPRINGI_CHANGED_COUNTS:
+    case MSPRINGI_CHANGED_SLEEP:
+        mspringi_sleep_reset(network);
+        break;
+    default:
+        break;
+    }
 }

@@ -125,7 +125,7 @@ static void keep(mspringi_plastic *p, mspringi_spring_slot spring_slot, float re
 // Whether a spring that is expected to act at the end of an implicit substep does not yet.
 static bool is_slack(const mspring_network *network, mspringi_spring_slot spring_slot,
                      const mspringi_spring_values *spring, float length) {
-    if (!network->one_way.side)
+    if (!network->one_way)
         return false;
     const mspring_id id =
         mspringi_incident_springs_find(network, network->topology.particle_of_slot[spring->base], spring_slot);
@@ -333,7 +333,7 @@ static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
     if (network->strain.break_strain)
         mspringi_strain_renew_least(network, spring_slot);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
-    if (network->events.capacity == 0)
+    if (!network->events)
         return;
     const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     const double nominal = (double)p->nominal[spring_slot];

@@ -9,6 +9,7 @@
 
 #include <math.h>
 
+#include "features/one_way/one_way.h"
 #include "store/springs.h"
 
 // How much longer than its rest length a spring is, m. What yields has another one since the stage looked.
@@ -25,9 +26,9 @@ static double stretch_of(const mspring_network *network, const mspringi_motion *
 }
 
 void mspringi_one_way_correct_energy(const mspringi_budget_sums *all) {
-    const mspringi_one_way *one_way = &all->network->one_way;
+    const mspringi_one_way *one_way = all->network->one_way;
     const mspringi_budget *budget = &mspringi_implicit_of(all->network)->budget;
-    for (uint32_t i = 0; one_way->side && i < one_way->listed; ++i) {
+    for (uint32_t i = 0; one_way && i < one_way->listed; ++i) {
         const mspringi_one_way_spring *spring = &one_way->list[i];
         const uint32_t number = budget->of_slot[spring->base];
         const double stretch = stretch_of(all->network, &all->motion, spring);

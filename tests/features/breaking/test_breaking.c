@@ -13,24 +13,6 @@
 #include "snapshots.h"
 #include "support.h"
 
-/// A network with springs in rows of every kind, all damped.
-static recipe mixed_recipe(uint32_t spring_flags) {
-    uint64_t seed = 11;
-    const bool relative = spring_flags & MSPRING_SPRING_RELATIVE;
-    const recipe_stuff stuff = {.mass = {1, 2},
-                                .stiffness = {relative ? 0.1 : 500, relative ? 0.2 : 1000},
-                                .damping = {relative ? 0.01 : 1, relative ? 0.05 : 5},
-                                .spring_flags = spring_flags,
-                                .holes = 0.1};
-    recipe made = {0};
-    recipe_lattice(&made, 37, 9, 0, 0, 1, &stuff, &seed);
-    mspring_id end = recipe_particle(&made, 60, 20, 1, MSPRING_PARTICLE_PINNED);
-    recipe_rope(&made, 2, end, 30, &stuff, &seed);
-    recipe_random_springs(&made, 12, &stuff, &seed);
-    recipe_disturb(&made, 0.05, 0.5, &seed);
-    return made;
-}
-
 static mspring_network *network_of(const recipe *made, mspring_simd level) {
     mspring_network_def def = support_def(-9.8f, 4);
     def.simd_level = level;
@@ -68,7 +50,7 @@ static void a_broken_spring_is_one_without_stiffness_and_damping(void **state) {
     mspring_simd levels[MSPRING_SIMD_AVX512];
     const uint32_t level_count = support_levels(levels);
     for (uint32_t flags = 0; flags <= MSPRING_SPRING_RELATIVE; flags += MSPRING_SPRING_RELATIVE) {
-        recipe made = mixed_recipe(flags);
+        recipe made = recipe_rows(11, flags, 1, 5);
         mspring_id *ids = malloc(made.spring_count * sizeof *ids);
         assert_non_null(ids);
         const uint32_t count = every_third(&made, ids);
@@ -96,7 +78,7 @@ static void a_broken_spring_is_one_without_stiffness_and_damping(void **state) {
 static void restoring_undoes_breaking(void **state) {
     (void)state;
     for (uint32_t flags = 0; flags <= MSPRING_SPRING_RELATIVE; flags += MSPRING_SPRING_RELATIVE) {
-        recipe made = mixed_recipe(flags);
+        recipe made = recipe_rows(11, flags, 1, 5);
         mspring_id *ids = malloc(made.spring_count * sizeof *ids);
         assert_non_null(ids);
         const uint32_t count = every_third(&made, ids);
@@ -146,7 +128,7 @@ static void a_broken_spring_that_is_set_stays_broken(void **state) {
     for (uint32_t i = 0; i < 4; i++) {
         const uint32_t flags = i % 2 ? MSPRING_SPRING_RELATIVE : 0;
         const float stiffness = flags ? 0.15f : 750.0f;
-        recipe made = mixed_recipe(flags);
+        recipe made = recipe_rows(11, flags, 1, 5);
         mspring_id *ids = malloc(made.spring_count * sizeof *ids);
         assert_non_null(ids);
         const uint32_t count = every_third(&made, ids);
@@ -412,7 +394,7 @@ static void ramps_take_up_to_eleven_days(void **state) {
 /// Memory is taken at the first break, which a list of none is not.
 static void lists_of_none_take_no_memory(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(11, 0, 1, 5);
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
     const size_t before = mspring_network_memory_used(network);
     check_ok(mspring_network_break_springs(network, NULL, 0));
@@ -450,7 +432,7 @@ static void a_refused_step_does_not_move_a_ramp(void **state) {
 
 static void a_detached_particle_flies_on_alone(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(11, 0, 1, 5);
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
     // One inside the lattice, its corner with the rope, one inside the rope.
     const mspring_id detached[] = {100, 2, made.particle_count - 5};
@@ -482,7 +464,7 @@ static void a_detached_particle_flies_on_alone(void **state) {
 
 static void bad_lists_are_refused_and_change_nothing(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(11, 0, 1, 5);
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
     const mspring_id bad[] = {0, 1, made.spring_count, 2}, worse[] = {MSPRING_NONE};
     check_error(mspring_network_break_springs(NULL, bad, 1), MSPRING_ERROR_ARGUMENT);
@@ -504,7 +486,7 @@ static void bad_lists_are_refused_and_change_nothing(void **state) {
 
 static void the_first_break_survives_every_failure(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(11, 0, 1, 5);
     const mspring_id spring = 17;
     size_t fail_at = 1;
     for (bool failed = true; failed; fail_at++) {

@@ -18,16 +18,7 @@
 /// Blocks that fall onto a rope and a paddle of the host. The last one is of a group that touches the paddle alone.
 static mspring_network *heap(const mspring_allocator *allocator, uint32_t *ghost) {
     bodies *b = bodies_begin(DT / SUBSTEPS);
-    (void)bodies_add(b, &(bodies_lattice){.width = 24, .height = 1, .spacing = 1, .f = 0.1});
-    for (int i = 0; i < 7; i++)
-        *ghost = bodies_add(b, &(bodies_lattice){.width = 4,
-                                                 .height = 2 + (uint32_t)(i % 2),
-                                                 .x = -6 + 5 * (i % 3),
-                                                 .y = 2 + 4 * (i / 3),
-                                                 .angle = 0.3 * i,
-                                                 .spacing = 1,
-                                                 .mass = 4,
-                                                 .f = 0.3});
+    *ghost = bodies_heap(b, 7, 2);
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
     def.allocator = allocator;
     mspring_network *network = bodies_network(b, &def);

@@ -190,16 +190,7 @@ static void colliders_have_events(void **state) {
 /// Blocks that fall on each other and break.
 static mspring_network *heap(mspring_simd level, uint32_t workers, uint32_t capacity) {
     bodies *b = bodies_begin(DT / SUBSTEPS);
-    (void)bodies_add(b, &(bodies_lattice){.width = 24, .height = 1, .spacing = 1, .f = 0.1});
-    for (int i = 0; i < 8; i++)
-        (void)bodies_add(b, &(bodies_lattice){.width = 4,
-                                              .height = 2 + (uint32_t)(i % 2),
-                                              .x = -6 + 5 * (i % 3),
-                                              .y = 2 + 4 * (i / 3),
-                                              .angle = 0.3 * i,
-                                              .spacing = 1,
-                                              .mass = 4,
-                                              .f = 0.3});
+    (void)bodies_heap(b, 8, 2);
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
     def.simd_level = level;
     def.worker_count = workers;

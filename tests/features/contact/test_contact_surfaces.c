@@ -113,16 +113,7 @@ static void restitution_is_the_larger_one(void **state) {
 /// Blocks that fall onto each other and onto a collider.
 static mspring_network *heap(const mspring_allocator *allocator, mspring_simd level, uint32_t workers) {
     bodies *b = bodies_begin(DT / SUBSTEPS);
-    (void)bodies_add(b, &(bodies_lattice){.width = 24, .height = 1, .spacing = 1, .f = 0.1});
-    for (int i = 0; i < 6; i++)
-        (void)bodies_add(b, &(bodies_lattice){.width = 4,
-                                              .height = 2 + (uint32_t)(i % 2),
-                                              .x = -6 + 5 * (i % 3),
-                                              .y = 3 + 4 * (i / 3),
-                                              .angle = 0.3 * i,
-                                              .spacing = 1,
-                                              .mass = 4,
-                                              .f = 0.3});
+    (void)bodies_heap(b, 6, 3);
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
     def.allocator = allocator;
     def.simd_level = level;

@@ -9,24 +9,8 @@
 
 #include "support.h"
 
-static mspring_id join(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float rest_length,
-                       uint32_t flags) {
-    mspring_spring_def def;
-    mspring_id id;
-    check_ok(mspring_spring_def_init(&def, sizeof def));
-    def.a = a;
-    def.b = b;
-    def.stiffness = stiffness;
-    def.rest_length = rest_length;
-    def.flags = flags;
-    check_ok(mspring_builder_add_spring(builder, &def, &id));
-    return id;
-}
-
 static double y_of(const mspring_network *network, mspring_id particle) {
-    double x, y;
-    check_ok(mspring_network_get_positions(network, particle, 1, &x, &y, 1));
-    return y;
+    return support_position(network, particle).y;
 }
 
 static double elastic_of(const mspring_network *network) {
@@ -46,7 +30,7 @@ static mspring_network *mast(uint32_t flags, float vy, mspring_solver solver, ui
     particle.y = 1;
     particle.vy = vy;
     check_ok(mspring_builder_add_particle(builder, &particle, NULL));
-    (void)join(builder, 0, 1, 400, 1, flags);
+    (void)support_join(builder, 0, 1, 400, 1, flags);
     mspring_network_def def = support_def(0, substeps);
     def.solver = solver;
     return support_network(builder, &def);
@@ -149,7 +133,7 @@ static mspring_network *cable(uint32_t links, bool zigzag, uint32_t flags, mspri
                                     : support_particle(builder, x, y, mass));
     }
     for (uint32_t i = 0; i < links; i++)
-        (void)join(builder, i, i + 1, (float)(1e5 / length), (float)length, flags);
+        (void)support_join(builder, i, i + 1, (float)(1e5 / length), (float)length, flags);
     mspring_network_def def = support_def(0, substeps);
     def.solver = solver;
     def.gravity_y = -9.8f;
@@ -192,9 +176,9 @@ static void a_guyed_mast_gives_in_to_one_side(void **state) {
             (void)support_pinned(builder, 1, 0, 1);
             const mspring_id top = support_particle(builder, 0, 1, 1);
             const uint32_t flags = one_way ? MSPRING_SPRING_PULL_ONLY : 0;
-            (void)join(builder, 0, top, 1e6f, 1, 0);
-            (void)join(builder, 1, top, 1e4f, sqrtf(2), flags);
-            (void)join(builder, 2, top, 1e4f, sqrtf(2), flags);
+            (void)support_join(builder, 0, top, 1e6f, 1, 0);
+            (void)support_join(builder, 1, top, 1e4f, sqrtf(2), flags);
+            (void)support_join(builder, 2, top, 1e4f, sqrtf(2), flags);
             mspring_network_def def = support_def(0, 200);
             def.global_damping = 40;
             mspring_network *network = support_network(builder, &def);
@@ -236,15 +220,15 @@ static void a_cable_net_carries_a_deck(void **state) {
         for (mspring_id i = 0; i < SPANS; i++) {
             const double length = hypot(1, ys[i + 1] - ys[i]), pull = horizontal * length;
             const double rest = length / (1 + pull / stiffness);
-            (void)join(builder, i, i + 1, (float)(stiffness / rest), (float)rest, MSPRING_SPRING_PULL_ONLY);
+            (void)support_join(builder, i, i + 1, (float)(stiffness / rest), (float)rest, MSPRING_SPRING_PULL_ONLY);
         }
         for (mspring_id i = 1; i < SPANS; i++) {
             const mspring_id deck = support_particle(builder, i, -2, 1); // each carries a half
             const double length = ys[i] + 2, rest = length / (1 + 0.5 * load / stiffness);
-            (void)join(builder, i, deck, (float)(stiffness / rest), (float)rest, MSPRING_SPRING_PULL_ONLY);
-            (void)join(builder, i < SPANS / 2 ? 0 : SPANS, deck, 1e5f, 9, MSPRING_SPRING_PULL_ONLY);
+            (void)support_join(builder, i, deck, (float)(stiffness / rest), (float)rest, MSPRING_SPRING_PULL_ONLY);
+            (void)support_join(builder, i < SPANS / 2 ? 0 : SPANS, deck, 1e5f, 9, MSPRING_SPRING_PULL_ONLY);
             if (i > 1)
-                (void)join(builder, deck - 1, deck, 1e5f, 1.2f, MSPRING_SPRING_PULL_ONLY);
+                (void)support_join(builder, deck - 1, deck, 1e5f, 1.2f, MSPRING_SPRING_PULL_ONLY);
         }
         mspring_network_def def = support_def(-10, solver ? 4 : MSPRING_SUBSTEPS_AUTO);
         def.solver = settles ? MSPRING_SOLVER_EXPLICIT : (mspring_solver)solver;
@@ -276,7 +260,7 @@ static void a_hub_hangs_on_the_spokes_above_it(void **state) {
         for (int i = 0; i < 8; i++) {
             const double angle = 3.14159265358979 / 4 * i;
             const mspring_id rim = support_pinned(builder, cos(angle), sin(angle), 1);
-            (void)join(builder, hub, rim, 1e4f, 1, one_way ? MSPRING_SPRING_PULL_ONLY : 0);
+            (void)support_join(builder, hub, rim, 1e4f, 1, one_way ? MSPRING_SPRING_PULL_ONLY : 0);
         }
         mspring_network_def def = support_def(-10, 100);
         def.global_damping = 20;
@@ -324,16 +308,16 @@ static mspring_network *mixed(mspring_solver solver, mspring_simd level, uint32_
             for (int d = 0; d < 4; d++) {
                 const int u = i + directions[d][0], v = j + directions[d][1];
                 if (u < WIDTH && v >= 0 && v < HEIGHT)
-                    (void)join(builder, (mspring_id)(i * HEIGHT + j), (mspring_id)(u * HEIGHT + v), 2000,
-                               MSPRING_REST_LENGTH_DISTANCE, flags);
+                    (void)support_join(builder, (mspring_id)(i * HEIGHT + j), (mspring_id)(u * HEIGHT + v), 2000,
+                                       MSPRING_REST_LENGTH_DISTANCE, flags);
             }
     mspring_id first = WIDTH * HEIGHT, last = first;
     for (int i = 0; i < ROPE; i++, first = last) {
         last = support_particle(builder, i, 30 + i % 3, 1);
         if (i > 0)
-            (void)join(builder, first, last, 2000, 1, flags);
+            (void)support_join(builder, first, last, 2000, 1, flags);
         if (i > 3)
-            (void)join(builder, last - 3, last, 2000, 3, i % 2 ? flags : 0);
+            (void)support_join(builder, last - 3, last, 2000, 3, i % 2 ? flags : 0);
     }
     mspring_network_def def = support_def(0, solver ? 2 : 20);
     def.solver = solver;
@@ -403,7 +387,7 @@ static void slack_ropes_join_what_they_did(void **state) {
             for (mspring_id p = 0; p < 2 * PAIRS; p++) {
                 (void)support_particle(builder, 0.9 * p, support_random_between(&seed, -0.1, 0.1), 1);
                 if (p > 0)
-                    (void)join(builder, p - 1, p, 5000, 1, p % 2 ? 0 : MSPRING_SPRING_PULL_ONLY);
+                    (void)support_join(builder, p - 1, p, 5000, 1, p % 2 ? 0 : MSPRING_SPRING_PULL_ONLY);
             }
             mspring_network_def def = support_def(0, 2);
             def.solver = MSPRING_SOLVER_IMPLICIT;
