@@ -30,7 +30,7 @@
 #define MOST_TRIES ((uint64_t)1 << 24)
 #define TRIES_OF_SPRING 32
 
-/// Room for constraints: one for so many pairs, and a constant.
+/// Room for constraints: pairs for each of them, and a constant.
 #define PAIRS_OF_CONSTRAINT 8
 #define CONSTRAINTS_BESIDES 1024
 

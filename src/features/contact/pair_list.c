@@ -12,7 +12,7 @@
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
 
-/// Reach of a scan beyond the thickness: a share of it, plus the way of so many steps, which is bounded by another
+/// Required reach beyond the thickness: a share of it, plus the way of these steps; together at most another
 /// thickness.
 #define LEAST_SHARE 0.15
 #define STEPS_AHEAD 4.0
