@@ -406,7 +406,7 @@ static void exchange_impulses(mspringi_floor *floor) {
     floor->had_impulse = has_impulse;
 }
 
-// The floor goes on bearing what sleeps on it.
+// Keep the impulses on sleeping particles, which rest on the floor.
 static void keep_impulses(const mspring_network *network) {
     mspringi_floor *floor = network->floor;
     for (size_t slot = 0; slot < mspringi_used_slots(network); ++slot) {
@@ -466,7 +466,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     network->floor->is_missed = network->floor->is_second_try = false;
 }
 
-// A strip that was left out may have met the surface, and what has become of it there is lost.
+// Repeat the step if a strip that was left out may have met the surface.
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_floor *floor = network->floor;
     (void)attempt;

@@ -8,11 +8,12 @@
 #include "solvers/implicit/implicit_terms.h"
 #include "store/elements.h"
 
-/// Solutions of a substep that may release constraints or let them slide; later ones only add constraints or make
-/// them stick.
+/// Solutions of a substep that may release constraints or let them slide. Later ones only add constraints or make
+/// them stick, so the active set settles.
 #define FREE_PASSES 12u
-/// Change of a bound, as a part of it, that is worth another solution. (With 0.1 for the floor, friction on each
-/// stretch of it was off by 5 %; with 0.02 for bodies, beams on each other took 1.05 to 1.1 times as long.)
+/// Change of a friction's bound, as a share of it, that is worth another solution. (With 0.1 for the floor,
+/// friction on each stretch of it was off by 5 %; with 0.02 for bodies, beams on each other took 1.05 to 1.1 times
+/// as long.)
 static const double same_force[MSPRINGI_CONSTRAINT_KINDS] = {
     [MSPRINGI_FLOOR_CONSTRAINT] = 0.02,
     [MSPRINGI_CONTACT_CONSTRAINT] = 0.1,
@@ -23,7 +24,7 @@ typedef mspringi_jacobian_entry entry;
 
 /* ---------------------------------------------------------------------------------------------------- products */
 
-// Clamp to single precision: the guard finds what is that large. (fmin and fmax are calls.)
+// Clamp to single precision: the guard rejects values this large. (fmin and fmax are calls.)
 static inline float clamped(double value) {
     return value > (double)FLT_MAX ? FLT_MAX : value < -(double)FLT_MAX ? -FLT_MAX : (float)value;
 }
@@ -47,8 +48,8 @@ static inline double gather(const constraint *c, const entry *e, mspringi_field 
     return sum;
 }
 
-// to += J' f. The first entry of a closed constraint gets minus the sum of what the others got, after rounding.
-// Forces of an angle with short arms may exceed single precision, those that iterations find do not.
+// to += J' f. The first entry of a closed constraint gets minus the rounded sum of the others. Clamp if forces may
+// exceed single precision, as those of an angle with short arms; forces that iterations find do not.
 static inline void scatter(const constraint *c, const entry *e, double force, mspringi_field to, bool is_clamped) {
     const uint32_t count = c->count;
     double x = 0.0, y = 0.0;
@@ -173,7 +174,7 @@ void mspringi_constraints_add_nodes(const mspringi_constraints *all, double *xx,
     }
 }
 
-// Let a constraint act on the tiles of its particles. False: these are too many.
+// Find the action of a constraint on tiles, a row for each. Return false if it acts on too many.
 static bool pull_tiles(const mspringi_implicit *n, const mspringi_active_constraint *a, const entry *entries,
                        mspringi_coarse_rank_one *pulls) {
     const double root = sqrt(a->stiffness);
@@ -199,7 +200,7 @@ static bool pull_tiles(const mspringi_implicit *n, const mspringi_active_constra
     return true;
 }
 
-// With those between bodies: each of them took an iteration or two, and stacks twice as long.
+// Contact between bodies is in it, too. Without, each contact took an iteration or two more, stacks twice the time.
 void mspringi_constraints_stiffen(const mspring_network *network) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_constraints *all = &network->constraints;
@@ -213,8 +214,7 @@ void mspringi_constraints_stiffen(const mspring_network *network) {
 
 /* -------------------------------------------------------------------------------------------------- active set */
 
-// These update a constraint from the force that it would have if it were stiff. They return true if it acts
-// otherwise from now on.
+// Update a push from the force that it would have if it were stiff. Return true if it begins or ends.
 static bool update_push(constraint *c, double force, bool is_free) {
     const bool was_stiff = c->activity == MSPRINGI_STIFF;
     const bool is_stiff = was_stiff ? force >= 0.0 || !is_free : force > c->bound;
@@ -224,7 +224,8 @@ static bool update_push(constraint *c, double force, bool is_free) {
     return is_stiff != was_stiff;
 }
 
-// Friction of a push that was idle stays as it is: its bound would be 0, and it would begin by sliding.
+// Update friction likewise: it slides beyond the cone, and sticks again if it would push the wrong way. Friction of
+// a push that was idle keeps its activity: its bound would be 0, and it would begin by sliding.
 static bool update_friction(constraint *c, double force, bool is_free) {
     const double most = c->bound * fmax(c[-1].force, 0.0), before = c->bound_force;
     if (!c[-1].was_active)
@@ -242,6 +243,7 @@ static bool update_friction(constraint *c, double force, bool is_free) {
     return c[-1].activity != MSPRINGI_IDLE && (slides != slid || (slides && is_free && has_other_force));
 }
 
+// Update both constraints of a pair likewise: clamp the vector of their forces. Once at its bound it stays there.
 static bool update_pair(constraint *c, double force, double other) {
     const double size = sqrt(force * force + other * other);
     if (c->activity == MSPRINGI_AT_BOUND)
@@ -282,6 +284,7 @@ uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspri
     return changed;
 }
 
+// Contacts are at the end of the list.
 bool mspringi_contact_constraint_is_active(const mspringi_constraints *all) {
     for (uint32_t i = all->count; i-- > all->element_count && all->list[i].kind == MSPRINGI_CONTACT_CONSTRAINT;)
         if (mspringi_constraint_is_active(&all->list[i]))
@@ -321,7 +324,7 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
 #include "store/features.def"
         mspringi_implicit_contact_list_constraints(network, h);
     }
-    // They come and go: the coarse matrix is factored in each solution with active ones, and in the one after that.
+    // Factor the coarse matrix in each solution with active constraints, which come and go, and in the next one.
     const bool are_active = is_any_active(all);
     mspringi_constraints_activate(all);
     n->age = are_active || n->has_constraints_in_coarse ? 0 : n->age;
