@@ -355,6 +355,15 @@ typedef enum mspring_integrator {
 #define MSPRING_SUBSTEPS_EVEN 0xfffffffeu
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. A solver ignores what it does not use.
+///
+/// Work is counted, never timed: an explicit substep is 1, a clamped one 3, an implicit or direct one 1 for each 8
+/// products with its matrix and for each pass of its active set. A calm step has the substeps that were set or, with
+/// MSPRING_SUBSTEPS_AUTO and _EVEN, those that stability asks for, and repeats nothing. For MSPRING_GUARD_RETRY it has at
+/// least the substeps that are stable in any shape, up to max_substeps. Three things come on top of most_work. A step
+/// that the guard rejects may end with one by the fallback, with the substeps of calm motion: MSPRING_GUARD_CLAMP,
+/// _IMPLICIT, _CLAMP_BOUNDS. A step that counted on what did not hold, as on no floor within reach, is repeated: once
+/// each for floor, contact, grips, hooks, one-way springs and yielding. With groups of particles a step is repeated up
+/// to twice for each group that goes wrong, once in its life: how many others do is no reason to hold it.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
@@ -367,8 +376,9 @@ typedef struct mspring_solver_def {
                             ///< 256; 0, the default: chosen by the plan
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
                             ///< if the network turns little in them; 0, the default: 1
-    uint32_t most_work; ///< times the substeps of calm motion that MSPRING_SUBSTEPS_AUTO and _EVEN may take in violent
-                        ///< motion, at most MSPRING_MAX_SUBSTEPS; default 4; 0: up to max_substeps
+    uint32_t most_work; ///< work in a step, in calm steps, up to which MSPRING_SUBSTEPS_AUTO and _EVEN take more
+                        ///< substeps for violent motion and MSPRING_GUARD_RETRY repeats; at most MSPRING_MAX_SUBSTEPS;
+                        ///< default 4; 0: no bound but max_substeps. See below
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
@@ -673,6 +683,8 @@ typedef struct mspring_step_info {
     double largest_speed;    ///< length of the fastest particle's velocity now, m/s
     double time_left;        ///< with MSPRING_SUBSTEPS_EVEN, dt that steps were given and have not taken yet, s; < 0:
                              ///< they are ahead
+    double work;             ///< of the last step, even if it failed, in calm steps (mspring_solver_def.most_work): 1 if
+                             ///< nothing was repeated or raised; 0 if nothing was computed
 } mspring_step_info;
 
 /// Read the report of the last step. Takes a pass over the velocities.

@@ -21,7 +21,7 @@
 #ifndef MSPRINGI_STAGES_H
 #define MSPRINGI_STAGES_H
 
-#include "store/network.h"
+#include "store/attempt.h"
 
 /// Parts of equal length that a substep has. A piece of it is some of them.
 #define MSPRINGI_SUBSTEP_PARTS 16u
