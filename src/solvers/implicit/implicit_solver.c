@@ -91,12 +91,13 @@ static void substeps(mspring_network *network, void *object, float h, mspringi_f
 
 static double calm_work(const void *object) {
     const mspringi_implicit *n = object;
-    return 1.0 + (n->is_direct ? 1.0 : (double)n->iterations) / PRODUCTS_OF_ONE;
+    return 1.0 + (n->is_direct ? 1.0 : (double)(n->iterations - 1)) / PRODUCTS_OF_ONE; // the last step takes none
 }
 
 static double count_work(const void *object) {
     const mspringi_implicit *n = object;
-    return (double)n->pass_count + (double)n->solves / PRODUCTS_OF_ONE;
+    const uint32_t products = n->solves + (n->is_direct ? n->pass_count : 0); // each solution is one, uncounted
+    return (double)n->pass_count + (double)products / PRODUCTS_OF_ONE;
 }
 
 static void keep(void *object) {
