@@ -179,7 +179,8 @@ static bool read_motion(const map_case *what, mspring_network *network, body_mot
 }
 
 /// Explicit velocities are half a substep older than positions. PRECISE keeps what a substep adds. Otherwise each
-/// may round the speed, and the coordinate, by half a last place, always the same way.
+/// may round the speed, and the coordinate, by half a last place, always the same way, but that explicit steps
+/// dither: 5e-5 at most.
 static map_verdict run_fall(const map_case *what, mspring_network *network, char text[MAP_TEXT]) {
     const bool is_explicit = what->solver.solver == MSPRING_SOLVER_EXPLICIT;
     const double g = (double)what->network.gravity_y, h = what->dt / what->solver.substeps;
@@ -190,7 +191,8 @@ static map_verdict run_fall(const map_case *what, mspring_network *network, char
         const double t = step * what->dt, count = (double)step * what->solver.substeps;
         const double way = g * t * t / 2, speed = g * (is_explicit ? t - h / 2 : t);
         const bool is_precise = what->network.flags != 0;
-        const double part = (is_explicit ? 1e-6 : 2e-6) + (is_precise ? 0 : count * 0x1p-24);
+        const double rounded = is_precise ? 0 : fmin(count * 0x1p-24, is_explicit ? 5e-5 : 1);
+        const double part = (is_explicit ? 1e-6 : 2e-6) + rounded;
         const double places = (is_precise ? 2 : count) * now.largest * 0x1p-24;
         // The implicit solver's first substep falls by g h^2, not by half of it.
         const double order = is_explicit ? 0 : fabs(g) * h * t;

@@ -30,4 +30,11 @@ static inline uint64_t mspringi_hash_double(uint64_t hash, double value) {
     return mspringi_hash(hash, word);
 }
 
+/// Pseudo-random bits for each n; the upper ones are the best (SplitMix64 but its last line, Steele et al. 2014).
+static inline uint64_t mspringi_mix(uint64_t n) {
+    uint64_t bits = n * UINT64_C(0x9e3779b97f4a7c15);
+    bits = (bits ^ bits >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
+    return (bits ^ bits >> 27) * UINT64_C(0x94d049bb133111eb);
+}
+
 #endif

@@ -11,8 +11,8 @@
 
 #include "base/rotation.h"
 
-/// Closed polygon of particles that resists a change of its area, see store/areas.h; or an angle spring, see
-/// store/angles.h.
+/// Closed polygon of particles that resists a change of its area, see features/areas/areas.h; or an angle spring,
+/// see features/angles/angles.h.
 typedef struct mspringi_area {
     mspring_id id;
     mspring_area_kind kind;

@@ -1,8 +1,8 @@
 /// Removal of particles and springs, and recycling of their ids.
-#include "contact/grips.h"
+#include "features/areas/areas.h"
+#include "features/breaking/breaking.h"
+#include "features/grips/grips.h"
 #include "layout/emit/spare.h"
-#include "step/breaking.h"
-#include "store/areas.h"
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/id_pool.h"

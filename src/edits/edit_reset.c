@@ -2,11 +2,11 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "edits/edit_groups.h"
-#include "step/actuators.h"
+#include "features/actuators/actuators.h"
+#include "features/groups/edit_groups.h"
+#include "features/ramps/ramps.h"
+#include "features/yield/plastic.h"
 #include "step/held_groups.h"
-#include "step/plastic.h"
-#include "step/ramps.h"
 #include "store/changed.h"
 #include "store/id_pool.h"
 #include "store/rest_lengths.h"
@@ -132,13 +132,13 @@ static void restore_motion(mspring_network *network, const mspringi_mark *mark, 
 
 static void put_length_back(mspring_network *network, mspring_id spring, const float lengths[2]) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
-    const uint32_t *actuator = network->actuators.of_spring;
+    const uint32_t *actuator = network->actuators ? network->actuators->of_spring : NULL;
     float *nominal = network->plastic.nominal;
     const bool is_plain =
         mspringi_actuators_are_plain(network) && spring_slot < network->topology.lattice_spring_slots;
     if (actuator && actuator[spring] != MSPRING_NONE)
-        network->actuators.to[actuator[spring]] = lengths[1];
-    if (network->ramps.count > 0)
+        network->actuators->to[actuator[spring]] = lengths[1];
+    if (mspringi_ramp_count(network) > 0)
         mspringi_ramp_drop(network, spring);
     if (is_plain)
         network->rest_lengths.lengths[spring_slot] = lengths[0];

@@ -7,9 +7,9 @@
 #include "base/cpu.h"
 #include "base/hash.h"
 #include "edits/edit_values.h"
-#include "step/plastic.h"
-#include "step/ramps.h"
-#include "step/strain.h"
+#include "features/breaking/strain.h"
+#include "features/ramps/ramps.h"
+#include "features/yield/plastic.h"
 #include "store/changed.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
@@ -57,7 +57,7 @@ static plane plane_of(const mspring_network *network, mspring_property property)
     const mspringi_topology *t = &network->topology;
     const uint32_t planes = network->parts - 1;
     float *thresholds = thresholds_of(network, property);
-    if (property == MSPRING_REST_LENGTH && network->ramps.count == 0 && network->plastic.nominal)
+    if (property == MSPRING_REST_LENGTH && mspringi_ramp_count(network) == 0 && network->plastic.nominal)
         thresholds = network->plastic.nominal;
     if (thresholds)
         return (plane){thresholds, 1, (mspringi_spring_slot)(mspringi_spring_slot_words(t) * MSPRINGI_WIDTH)};
@@ -65,7 +65,8 @@ static plane plane_of(const mspring_network *network, mspring_property property)
         return (plane){network->lattice_springs, planes, t->lattice_spring_slots};
     if (property == MSPRING_DAMPING && planes > 1)
         return (plane){network->lattice_springs + MSPRINGI_WIDTH, planes, t->lattice_spring_slots};
-    if (property == MSPRING_REST_LENGTH && network->rest_lengths.shared_count == 0 && network->ramps.count == 0)
+    if (property == MSPRING_REST_LENGTH && network->rest_lengths.shared_count == 0 &&
+        mspringi_ramp_count(network) == 0)
         return (plane){network->rest_lengths.lengths, 1, t->lattice_spring_slots};
     return (plane){NULL, 1, 0};
 }
@@ -147,7 +148,7 @@ static uint32_t next_changed(const mspring_network *network, const mspringi_sele
     const bool is_damping = values->property == MSPRING_DAMPING;
     const bool has_fractions = network->fractions.values && (is_damping || values->property == MSPRING_STIFFNESS);
     const bool has_shared_rests = values->property == MSPRING_REST_LENGTH &&
-                                  network->rest_lengths.shared_count > 0 && network->ramps.count == 0;
+                                  network->rest_lengths.shared_count > 0 && mspringi_ramp_count(network) == 0;
     for (; i < at->count; ++i) {
         if (!at->list && has_shared_rests)
             i = skip_equal_rests(network, spring_slots, values->first, values->stride, i, at->count);
@@ -347,7 +348,7 @@ static inline bool set_in_plane(mspring_network *network, const plane *known, ms
         return true;
     }
     *at = value;
-    network->has_welds |= value == MSPRINGI_WELD;
+    mspringi_note_rest_length(network, value);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
     return true;
 }

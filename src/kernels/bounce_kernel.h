@@ -1,6 +1,6 @@
 /// @file bounce_kernel.h
 /// Action of a straight surface on one particle in a substep. Branch-free, so that blocks of particles
-/// (floor_kernel.h, free_kernel.h) and single ones (contact/floor_bounce.c) take the same operations.
+/// (floor_kernel.h, free_kernel.h) and single ones (features/contact/floor_bounce.c) take the same operations.
 ///
 /// After a leapfrog substep, velocities lag half a substep behind. For linear springs the integrator
 /// conserves exactly

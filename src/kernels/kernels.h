@@ -150,7 +150,8 @@ typedef struct mspringi_sweep {
     float kick;         ///< change of velocity per acceleration in that time, s
     float gravity_time; ///< the same for gravity, s: longer where an edit has cut that of springs
     float gravity_kick; ///< change of velocity per gravity, s
-    float loss;         ///< share of a velocity that global damping takes in it
+    float damping_loss; ///< share of a velocity that global damping takes in it
+    float loss;         ///< the same with the substep's dither, see mspringi_dither()
     float grid;         ///< 1.5 * 2^23 times the grid of precise coordinates: adding and subtracting it rounds
     float gravity_h_x, gravity_h_y; ///< gravity times its kick, m/s
     float *keep; ///< [6 or 8][slots] copy of the state before the substep, in the order of mspringi_state; or NULL

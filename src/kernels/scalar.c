@@ -278,7 +278,7 @@ static inline vector lattice_force(motion base, motion tip, lattice_springs spri
 }
 
 // Add the force of the slot's cell area to those of its diagonals: with D and D' the diagonals from tips to bases,
-// f = f0 - f1 D x D' along the normals. See store/areas.h.
+// f = f0 - f1 D x D' along the normals. See features/areas/areas.h.
 static inline void add_area_force(const mspringi_sweep *s, const mspringi_span *span, size_t slot,
                                   vector to_north_east, vector to_south_east, vector *north_east,
                                   vector *south_east) {

@@ -112,7 +112,7 @@ MSPRINGI_INLINE vector spring_force(extent e, vec inverse, motion base, motion t
     return result;
 }
 
-// Add the forces of cell areas, along pairs of particles that diagonals connect: see store/areas.h.
+// Add the forces of cell areas, along pairs of particles that diagonals connect: see features/areas/areas.h.
 MSPRINGI_INLINE void add_area_force(const float *cells, extent to_north_east, extent to_south_east,
                                     vector *north_east, vector *south_east) {
     const vec cross = sub(mul(to_north_east.dx, to_south_east.dy), mul(to_north_east.dy, to_south_east.dx));

@@ -1,6 +1,6 @@
 /// @file yield_law.h
-/// Law of plastic springs in single precision, as in the kernels: see step/plastic.h. The rest length r of a spring
-/// of length L after flow is
+/// Law of plastic springs in single precision, as in the kernels: see features/yield/plastic.h. The rest length r
+/// of a spring of length L after flow is
 ///
 ///     stretched    r = (L + (H - y) r0) / (1 + H),  at most   (1 + P) r0
 ///     compressed   r = (L + (H + y) r0) / (1 + H),  at least  (1 - P) r0

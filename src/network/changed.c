@@ -2,10 +2,8 @@
 #include "store/changed.h"
 
 #include "base/hash.h"
-#include "contact/contacts.h"
-#include "contact/floor.h"
 #include "network/job.h"
-#include "sleep/sleep.h"
+#include "store/feature.h"
 #include "store/springs.h"
 
 /// Longest log of broken and restored springs: more than break in one frame.
@@ -41,14 +39,6 @@ static void free_ends(const mspring_network *network, mspring_id spring) {
     mspringi_solvers_clear_slot(network, tip);
 }
 
-static void free_slot(const mspring_network *network, uint32_t slot) {
-    mspringi_solvers_clear_slot(network, slot);
-    if (network->floor)
-        mspringi_floor_clear_slot(network->floor, slot);
-    if (network->contacts)
-        mspringi_outline_clear_slot(network, slot);
-}
-
 static void notify_floor(const mspring_network *network) {
     if (network->solver.ops->new_floor)
         network->solver.ops->new_floor(network->solver.object);
@@ -58,12 +48,8 @@ static void notify_floor(const mspring_network *network) {
 #define LOG log_spring(network, index);
 #define COPY mspringi_job_track(network, index);
 #define COPY_ALL mspringi_job_track_all(network);
-#define SLEEP_ANEW mspringi_sleep_reset(network);
-#define FREE_SLOT free_slot(network, index);
+#define FREE_SLOT mspringi_solvers_clear_slot(network, index);
 #define COPY_SPRING mspringi_job_track(network, mspringi_slot_of_spring(&network->topology, index));
-#define WAKE mspringi_wake(network);
-#define WAKE_SPRING mspringi_wake_spring(network, index);
-#define WAKE_SLOT mspringi_wake_slot(network, index);
 #define FREE_ENDS free_ends(network, index);
 #define FLOOR notify_floor(network);
 
@@ -77,18 +63,16 @@ void mspringi_dispatch_change(mspring_network *network, mspringi_change change, 
     case MSPRINGI_CHANGES:
         break;
     }
+#define REACTS(function) function(network, change, index);
+#include "store/features.def"
 }
 
 #undef COUNT
 #undef LOG
 #undef COPY
 #undef COPY_ALL
-#undef SLEEP_ANEW
 #undef FREE_SLOT
 #undef COPY_SPRING
-#undef WAKE
-#undef WAKE_SPRING
-#undef WAKE_SLOT
 #undef FREE_ENDS
 #undef FLOOR
 

@@ -1,79 +1,26 @@
 /// Clone of a network: copy all blocks of memory, then relocate every pointer from one block into another.
 ///
 /// Pointers of the network are listed in store/network.def, those of topologies and solvers next to their destroy
-/// functions. Those of contact are in contact/contacts.c, those of floor and hooks here. A forgotten one points
-/// into the original; test_clone checks every word of a clone for that.
-#include "contact/contacts.h"
-#include "contact/floor.h"
+/// functions, those of features in their rooms. A forgotten one points into the original; test_clone checks every
+/// word of a clone for that.
+#include "features/hooks/hooks.h"
+#include "store/feature.h"
 #include "store/network.h"
 #include "store/store.h"
 
-/// Memories of the original and of the copy.
-typedef struct relocation {
-    const mspringi_memory *from, *to;
-} relocation;
-
-/// Redirect a copied pointer to the copy of its block.
-#define RELOCATE(pointer) ((pointer) = mspringi_memory_relocate(r->from, r->to, (pointer)))
-
-static void relocate_field(const relocation *r, mspringi_field *field) {
-    RELOCATE(field->x);
-    RELOCATE(field->y);
-}
-
-static void relocate_state(const relocation *r, mspringi_state *state) {
-    RELOCATE(state->x);
-    RELOCATE(state->y);
-    RELOCATE(state->vx);
-    RELOCATE(state->vy);
-    RELOCATE(state->low_x);
-    RELOCATE(state->low_y);
-    RELOCATE(state->low_vx);
-    RELOCATE(state->low_vy);
-}
-
-static void relocate_floor(const relocation *r, mspringi_floor *floor) {
-    RELOCATE(floor->heights.heights);
-    RELOCATE(floor->heights.normals);
-    RELOCATE(floor->heights.frictions);
-    RELOCATE(floor->heights.restitutions);
-    RELOCATE(floor->plane_frictions);
-    RELOCATE(floor->plane_restitutions);
-    for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)
-        RELOCATE(floor->heights.highest[i]);
-    RELOCATE(floor->clearances);
-    relocate_field(r, &floor->start);
-    relocate_state(r, &floor->before);
-    relocate_field(r, &floor->impulse);
-    relocate_field(r, &floor->previous_impulse);
-}
-
-static void relocate_network(const relocation *r, mspring_network *n) {
-    mspringi_array_table_relocate(mspringi_topology_arrays, &n->topology, r->from, r->to);
-    mspringi_array_table_relocate(mspringi_topology_arrays, &n->whole, r->from, r->to);
-    mspringi_store_relocate(n, r->from, r->to);
-    for (size_t i = 0; i < n->hook_count; ++i)
-        relocate_field(r, &n->hooks[i].held);
-    RELOCATE(n->floor);
-    if (n->floor)
-        relocate_floor(r, n->floor);
-    RELOCATE(n->contacts);
-    if (n->contacts)
-        mspringi_contacts_relocate(n->contacts, r->from, r->to);
-    mspringi_solvers_relocate(n, r->from, r->to);
+static void relocate_network(mspring_network *n, const mspringi_memory *from, const mspringi_memory *to) {
+    mspringi_array_table_relocate(mspringi_topology_arrays, &n->topology, from, to);
+    mspringi_array_table_relocate(mspringi_topology_arrays, &n->whole, from, to);
+    mspringi_store_relocate(n, from, to);
+    mspringi_features_relocate(n, from, to);
+    mspringi_solvers_relocate(n, from, to);
 }
 
 /* ---------------------------------------------------------------------------------------------------- the clone */
 
-static void drop_hooks(mspring_network *network) {
-    for (size_t i = 0; i < network->hook_count; ++i)
-        mspringi_free(&network->memory, network->hooks[i].held.x);
-    network->hook_count = 0;
-}
-
 static bool has_hook_with_storage(const mspring_network *network) {
-    for (size_t i = 0; i < network->hook_count; ++i)
-        if (network->hooks[i].def.storage)
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        if (network->hooks->list[i].def.storage)
             return true;
     return false;
 }
@@ -105,9 +52,9 @@ static mspring_result copy(const mspring_network *network, const mspring_clone_d
     made->job = NULL;
     mspringi_message_clear(&made->message);
     made->shared = NULL;
-    relocate_network(&(relocation){&network->memory, &made->memory}, made);
+    relocate_network(made, &network->memory, &made->memory);
     if (!(def->flags & MSPRING_CLONE_HOOKS))
-        drop_hooks(made);
+        mspringi_hooks_clear(made);
     mspring_result result = start_tasks(made, def);
     if (result == MSPRING_OK) {
         *clone = made;

@@ -1,8 +1,8 @@
 /// Conversion of a network into a builder: to store it, join it to others, or split it.
 #include "base/cpu.h"
 #include "builder/builder.h"
-#include "store/areas.h"
-#include "store/one_way.h"
+#include "features/areas/areas.h"
+#include "features/one_way/one_way.h"
 #include "store/properties.h"
 #include "store/springs.h"
 

@@ -3,6 +3,7 @@
 
 #include "base/cpu.h"
 #include "network/compact.h"
+#include "store/feature.h"
 #include "store/springs.h"
 #include "store/store.h"
 
@@ -102,8 +103,8 @@ static bool copy_all(mspring_job *job, const mspring_network *network) {
     job->to.tasks = NULL; // owned by the network; finish reserves what more workers need
     job->to.message = (mspringi_message){0};
     job->shape = *network;
-    job->shape.hooks = NULL;
     mspringi_store_forget(&job->to);
+    mspringi_features_forget(&job->to);
     job->to.whole = (mspringi_topology){0};
     job->from = job->to;
     job->from.rest_lengths = network->rest_lengths;

@@ -7,20 +7,20 @@
 #include "base/definitions.h"
 #include "base/hash.h"
 #include "base/unit.h"
+#include "features/areas/areas.h"
+#include "features/breaking/strain.h"
+#include "features/one_way/one_way.h"
+#include "features/sleep/sleep.h"
+#include "features/yield/plastic.h"
 #include "network/job.h"
 #include "network/level.h"
-#include "sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
 #include "solvers/explicit/halo.h"
 #include "stability/guard.h"
 #include "stability/stability_limit.h"
 #include "step/origin.h"
-#include "step/plastic.h"
-#include "step/strain.h"
-#include "store/areas.h"
 #include "store/fractions.h"
 #include "store/id_pool.h"
-#include "store/one_way.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
 #include "store/springs.h"
@@ -202,7 +202,7 @@ static void update_fingerprints(mspring_network *network, const mspringi_spring 
 
 static void fill_springs(mspring_network *network, const mspring_builder *builder) {
     const mspringi_topology *t = &network->topology;
-    network->shortest = INFINITY;
+    network->shortest = network->shortest_set = INFINITY;
     double longest = 0.0;
     network->topology_fingerprint = network->parameter_fingerprint = MSPRINGI_HASH_START;
     if (t->reserve.particle_end > t->particle_count || t->reserve.spring_end > t->spring_count)

@@ -5,12 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/floor.h"
+#include "features/breaking/strain.h"
+#include "features/contact/floor.h"
+#include "features/hooks/hooks.h"
+#include "features/sleep/sleep.h"
+#include "features/yield/plastic.h"
 #include "network/job.h"
-#include "sleep/sleep.h"
 #include "stability/stability_limit.h"
-#include "step/plastic.h"
-#include "step/strain.h"
 #include "store/changed.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -137,17 +138,6 @@ static mspring_result adopt_solver(mspring_network *to, mspringi_solver *solver,
     return ops && ops->create ? mspringi_solver_make(solver, to, &def, tile_size) : MSPRING_OK;
 }
 
-static mspring_result make_hooks(mspring_network *to, const mspring_network *from) {
-    mspring_result result = MSPRING_OK;
-    for (size_t i = 0; result == MSPRING_OK && i < from->hook_count; ++i) {
-        to->hooks[i] = from->hooks[i];
-        to->hooks[i].held = (mspringi_field){NULL, NULL};
-        if (from->hooks[i].held.x)
-            result = mspringi_field_reserve(to, &to->hooks[i].held);
-    }
-    return result;
-}
-
 static mspring_result make_floor(mspring_network *to, const mspring_network *from) {
     if (!from->floor)
         return MSPRING_OK;
@@ -171,7 +161,7 @@ static mspring_result make_others(mspring_network *to, const mspring_network *fr
     if (result == MSPRING_OK)
         result = mspringi_carry_reserve(to);
     if (result == MSPRING_OK)
-        result = make_hooks(to, from);
+        result = mspringi_hooks_move(to, from);
     if (result == MSPRING_OK)
         result = make_floor(to, from);
     if (result == MSPRING_OK)
@@ -190,8 +180,7 @@ static void move_values(const float *from, float *to, const mspring_network *old
 
 // Free all arrays by slot or spring slot.
 static void free_layout(mspring_network *network, mspringi_memory *memory) {
-    for (size_t i = 0; network->hooks && i < network->hook_count; ++i)
-        mspringi_free(memory, network->hooks[i].held.x);
+    mspringi_hooks_destroy(network->hooks, memory);
     mspringi_store_free_layout(network, memory);
     mspringi_floor_free_layout(network->floor, memory);
     mspringi_solver_destroy(&network->solver, memory);

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "contact/contacts.h"
-#include "sleep/sleep.h"
+#include "features/contact/contacts.h"
+#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
 #include "step/held_groups.h"

@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/decay.h"
+#include "features/grips/grips.h"
+#include "features/hooks/hooks.h"
 #include "query/measure.h"
 #include "store/springs.h"
 
@@ -89,8 +91,9 @@ static double energy_of(const mspring_network *network, mspring_id particle, dou
 
 // True if springs, gravity and global damping are all that acts.
 static bool is_plain(const mspring_network *network) {
-    return !network->floor && !network->contacts && network->areas.count == 0 && network->grips.count == 0 &&
-           network->hook_count == 0 && network->sleep.sleeping == 0 && network->groups.count == 0;
+    return !network->floor && !network->contacts && network->areas.count == 0 &&
+           mspringi_grip_count(network) == 0 && mspringi_hook_count(network) == 0 && network->sleep.sleeping == 0 &&
+           network->groups.count == 0;
 }
 
 static double stored_energy(const mspring_network *network) {

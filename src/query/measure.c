@@ -1,11 +1,12 @@
 /// Measurements of the state, summed in double precision in id order.
 #include <math.h>
 
+#include "features/areas/areas.h"
+#include "features/one_way/one_way.h"
 #include "kernels/spring_law.h"
 #include "query/kinetic.h"
 #include "query/measure.h"
-#include "store/areas.h"
-#include "store/one_way.h"
+#include "store/moments.h"
 #include "store/springs.h"
 
 static bool is_pinned(const mspring_network *network, mspring_id particle) {
@@ -128,12 +129,11 @@ mspring_result mspring_network_momentum(const mspring_network *network, double *
         const uint32_t slot = t->slot_of_particle[p];
         if (is_pinned(network, p))
             continue;
-        const double mass = (double)network->mass[p];
+        const mspringi_moments moments = mspringi_moments_of(network, p);
         const double x = network->origin_x + mspringi_x_of(s, slot), y = network->origin_y + mspringi_y_of(s, slot);
-        const double momentum_x = mass * (double)s->vx[slot], momentum_y = mass * (double)s->vy[slot];
-        sum_x += momentum_x;
-        sum_y += momentum_y;
-        sum_angular += x * momentum_y - y * momentum_x;
+        sum_x += moments.px;
+        sum_y += moments.py;
+        sum_angular += x * moments.py - y * moments.px;
     }
     if (px)
         *px = sum_x;

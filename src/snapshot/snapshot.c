@@ -3,23 +3,15 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "contact/contacts.h"
-#include "step/ramps.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/sections.h"
 
-/// Sections in the order of loading. All depend on the existing particles and springs, ramps on the springs'
-/// values, stressed springs on the broken ones, sleep on all edits, and a solver's tiles on sleep.
+/// Sections in the order of loading.
 static const mspringi_section *const sections[] = {
-    &mspringi_section_growth,        &mspringi_section_settings,       &mspringi_section_steps,
-    &mspringi_section_precision,     &mspringi_section_motion,         &mspringi_section_masses,
-    &mspringi_section_forces,        &mspringi_section_broken,         &mspringi_section_values,
-    &mspringi_section_break_strains, &mspringi_section_stress_strains, &mspringi_section_relax_strains,
-    &mspringi_section_stressed,      &mspringi_section_yielding,       &mspringi_section_bent,
-    &mspringi_section_ramps,         &mspringi_section_areas,          &mspringi_section_rest_angles,
-    &mspringi_section_shape,         &mspringi_section_grips,          &mspringi_section_sleep,
-    &mspringi_section_implicit,      &mspringi_section_guard,          &mspringi_section_held,
-    &mspringi_section_actuators};
+#define SECTION(name) &mspringi_section_##name,
+#include "store/features.def"
+};
 enum { SECTIONS = sizeof sections / sizeof sections[0] };
 
 /* --------------------------------------------------------------------------------------------------- messages */
@@ -301,13 +293,14 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
     if (result != MSPRING_OK)
         return result;
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
-    mspringi_ramps_clear(network);
+#define LOADS(function) function(network);
+#include "store/features.def"
     for (int i = 0; i < SECTIONS; ++i)
         if (concerns(sections[i], &header))
             sections[i]->load(network, in.from[i], in.size[i]);
-    mspringi_piles_find(network);
     network->parameter_fingerprint = header.parameter_fingerprint;
-    network->events.count = 0;
+#define LOADED(function) function(network);
+#include "store/features.def"
     return MSPRING_OK;
 }
 

@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "base/bytes.h"
+#include "features/breaking/breaking.h"
 #include "layout/analysis.h"
 #include "layout/emit/spare.h"
-#include "step/breaking.h"
 #include "store/changed.h"
 #include "store/fractions.h"
 #include "store/id_pool.h"

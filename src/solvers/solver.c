@@ -1,7 +1,7 @@
 /// The solvers that there are, and what is done to any of them.
 #include "store/solver.h"
 
-#include "contact/contacts.h"
+#include "features/contact/contacts.h"
 #include "store/network.h"
 
 const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name) {

@@ -10,9 +10,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "features/one_way/one_way.h"
 #include "stability/pencil.h"
 #include "stability/stability_limit.h"
-#include "store/one_way.h"
 #include "store/springs.h"
 
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,

@@ -14,10 +14,11 @@
 #include <math.h>
 
 #include "base/decay.h"
-#include "contact/contacts.h"
-#include "contact/floor.h"
+#include "features/contact/contacts.h"
+#include "features/contact/floor.h"
 #include "stability/stability.h"
 #include "stability/stability_limit.h"
+#include "store/feature.h"
 #include "store/stages.h"
 
 /// Growth of the largest change of velocity from one check of the limit to the next.
@@ -121,13 +122,7 @@ void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *
 // Clamp the state at the end of a step. Impulses of grips and colliders may be NaN: they are cleared.
 static mspringi_extrema put_back(mspring_network *network) {
     mspringi_guard_clamp_state(network, &network->backup);
-    mspringi_floor_roll_back(network->floor);
-    mspringi_stage_grips.roll_back(network);
-    if (network->contacts) {
-        mspringi_colliders_discard_step(network->contacts);
-        mspringi_contact_events_discard_step(network->contacts);
-        network->contacts->is_listed = false; // it may be of places that were none
-    }
+    mspringi_features_discard_step(network);
     return mspringi_guard_extrema(network, 0, mspringi_used_slots(network));
 }
 

@@ -1,10 +1,10 @@
 #include "stability/pencil.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "base/decay.h"
 #include "stability/stability.h"
+#include "stability/stability_limit.h"
 #include "store/springs.h"
 
 double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping) {
@@ -28,14 +28,12 @@ double mspringi_quotient_limit(const mspringi_quotient *q, float global_damping)
 
 mspringi_linear_spring mspringi_linearise_spring(const mspring_network *network, mspring_id spring,
                                                  mspringi_spring_slot spring_slot) {
-    const mspringi_topology *t = &network->topology;
     const mspringi_state *s = &network->state;
     const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     const double dx = (double)s->x[values.tip] - (double)s->x[values.base];
     const double dy = (double)s->y[values.tip] - (double)s->y[values.base];
     const double length = sqrt(dx * dx + dy * dy);
-    mspringi_linear_spring seen = {
-        .a = t->particle_of_slot[values.base], .b = t->particle_of_slot[values.tip], .directed = length > 0.0};
+    mspringi_linear_spring seen = {.a = values.base, .b = values.tip, .directed = length > 0.0};
     if (mspringi_spring_slot_is_live(network, spring_slot))
         seen.strength = mspringi_strength_of(network, spring, spring_slot);
     if (seen.directed) {
@@ -68,8 +66,8 @@ static mspringi_linear_spring linearise_conservatively(const mspring_network *ne
 void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
     const mspring_network *network = pencil->network;
     pencil->square = h * h;
-    for (mspring_id p = 0; p < network->topology.particle_count; ++p)
-        pencil->root[p] = sqrt((double)network->inverse_mass[network->topology.slot_of_particle[p]]);
+    pencil->limit = mspringi_stability_limit_at(network, h);
+    pencil->limit.inverse_mass = network->inverse_mass;
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[i];
         pencil->terms[i] = (struct mspringi_pencil_term){0};
@@ -82,40 +80,40 @@ void mspringi_pencil_set(mspringi_pencil *pencil, double h) {
         const double along = s.directed ? stiffness * (1.0 - s.across) + damping : 0.0;
         pencil->terms[i].a = s.a;
         pencil->terms[i].b = s.b;
-        pencil->terms[i].xx = all + along * s.nx * s.nx;
-        pencil->terms[i].xy = along * s.nx * s.ny;
-        pencil->terms[i].yy = all + along * s.ny * s.ny;
+        pencil->terms[i].xx = (float)(all + along * s.nx * s.nx);
+        pencil->terms[i].xy = (float)(along * s.nx * s.ny);
+        pencil->terms[i].yy = (float)(all + along * s.ny * s.ny);
     }
 }
 
-void mspringi_pencil_apply(const void *context, const double *in, double *out) {
-    const mspringi_pencil *pencil = context;
-    const mspringi_topology *t = &pencil->network->topology;
-    memset(out, 0, 2 * (size_t)t->particle_count * sizeof *out);
-    for (mspring_id i = 0; i < t->spring_count; ++i) {
-        const struct mspringi_pencil_term *term = &pencil->terms[i];
-        const size_t a = 2 * (size_t)term->a, b = 2 * (size_t)term->b;
-        const double root_a = pencil->root[term->a], root_b = pencil->root[term->b];
-        const double dx = root_b * in[b] - root_a * in[a], dy = root_b * in[b + 1] - root_a * in[a + 1];
-        const double fx = term->xx * dx + term->xy * dy, fy = term->xy * dx + term->yy * dy;
-        out[a] -= root_a * fx;
-        out[a + 1] -= root_a * fy;
-        out[b] += root_b * fx;
-        out[b + 1] += root_b * fy;
+void mspringi_pencil_add_image(void *context, mspringi_displacement in, mspringi_displacement out) {
+    mspringi_pencil *pencil = context;
+    const float *inverse_mass = pencil->network->inverse_mass;
+    for (mspring_id i = 0; i < pencil->network->topology.spring_count; ++i) {
+        const struct mspringi_pencil_term *s = &pencil->terms[i];
+        const float dx = in.x[s->b] - in.x[s->a], dy = in.y[s->b] - in.y[s->a];
+        const float fx = s->xx * dx + s->xy * dy, fy = s->xy * dx + s->yy * dy;
+        out.x[s->a] -= inverse_mass[s->a] * fx;
+        out.y[s->a] -= inverse_mass[s->a] * fy;
+        out.x[s->b] += inverse_mass[s->b] * fx;
+        out.y[s->b] += inverse_mass[s->b] * fy;
     }
-    mspringi_areas_apply(pencil, in, out);
+    pencil->limit.in[0] = in.x;
+    pencil->limit.in[1] = in.y;
+    pencil->limit.out[0] = out.x;
+    pencil->limit.out[1] = out.y;
+    mspringi_areas_image(pencil->network, &pencil->limit, pencil->square);
 }
 
-mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const double *vector) {
+mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, mspringi_displacement vector) {
     mspringi_quotient sum = {0.0, 0.0, 0.0};
     for (mspring_id i = 0; i < pencil->network->topology.spring_count; ++i) {
         const mspringi_spring_slot spring_slot = pencil->network->topology.slot_of_spring[i];
         if (!mspringi_spring_exists(pencil->network, i))
             continue;
         mspringi_linear_spring s = linearise_conservatively(pencil->network, i, spring_slot);
-        const double *const at_a = vector + 2 * (size_t)s.a, *const at_b = vector + 2 * (size_t)s.b;
-        const double dx = pencil->root[s.b] * at_b[0] - pencil->root[s.a] * at_a[0];
-        const double dy = pencil->root[s.b] * at_b[1] - pencil->root[s.a] * at_a[1];
+        const double dx = (double)vector.x[s.b] - (double)vector.x[s.a];
+        const double dy = (double)vector.y[s.b] - (double)vector.y[s.a];
         if (!s.directed) { // a direction along the displacement is the worst
             const double length = sqrt(dx * dx + dy * dy);
             s.nx = length > 0.0 ? dx / length : 0.0;
@@ -123,6 +121,6 @@ mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const 
         }
         mspringi_quotient_add(&sum, &s, dx, dy);
     }
-    mspringi_areas_quotient(pencil, vector, &sum);
+    mspringi_areas_quotient(pencil->network, vector, &sum);
     return sum;
 }

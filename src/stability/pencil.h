@@ -2,7 +2,8 @@
 /// Stability of a network at a substep, as an eigenvalue problem.
 ///
 /// Around a shape, with displacement x, mass M, tangent stiffness K and damper matrix C, a substep is
-///     v' = g v - w h M^-1 (K x + C v);   x' = x + h v';   g = exp(-b h),   w = (1 - g) / (b h),   b = global_damping
+///     v' = g v - w h M^-1 (K x + C v);   x' = x + h v';   g = exp(-b h),   w = (1 - g) / (b h),   b =
+///     global_damping
 /// A solution that grows by z in each substep obeys
 ///     Q(z) x = 0,   Q(z) = (z - 1)(z - g) + w (z - 1) D + w z A,
 ///     A = h^2 M^-1/2 K M^-1/2,   D = h M^-1/2 C M^-1/2   (both symmetric and positive semidefinite).
@@ -16,6 +17,8 @@
 /// For one undamped mode this is omega h <= 2, for one mode of damping ratio zeta
 ///     omega h <= 2 (sqrt(1 + zeta^2) - zeta).
 /// The k and c of relative springs depend on h, such that their part of A and D is the same at any h.
+///
+/// Vectors are displacements q = M^-1/2 x, of which the image is M^-1/2 (A + 2 D) M^1/2 q (lanczos.h).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_PENCIL_H
@@ -35,7 +38,7 @@ double mspringi_quotient_limit(const mspringi_quotient *quotient, float global_d
 
 /// A live spring in the stability matrices.
 typedef struct mspringi_linear_spring {
-    uint32_t a, b; ///< particles
+    uint32_t a, b; ///< slots
     bool directed; ///< its length is not 0
     double nx, ny; ///< direction
     double across; ///< tangent stiffness across the spring, relative to that along it; negative if the spring is
@@ -48,26 +51,25 @@ mspringi_linear_spring mspringi_linearise_spring(const mspring_network *network,
 /// Add a spring's part for a displacement of b relative to a.
 void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_linear_spring *seen, double dx, double dy);
 
-/// The springs' part of the matrices.
+/// The matrices at some h.
 typedef struct mspringi_pencil {
     const mspring_network *network;
-    double square; ///< of the substep, s^2
-    double *root;  ///< [particles] 1 / sqrt(mass), 0 if pinned
+    double square;                  ///< of the substep, s^2
+    mspringi_stability_limit limit; ///< for areas
     struct mspringi_pencil_term {
-        uint32_t a, b; ///< particles
-        double xx, xy, yy;
-    } * terms; ///< [springs] for A + 2 D at some h
+        uint32_t a, b; ///< slots
+        float xx, xy, yy;
+    } * terms; ///< [springs] for A + 2 D
 } mspringi_pencil;
 
-/// Add the areas' part (stability/stability_areas.c) to the image of a vector, and to its quotient.
-void mspringi_areas_apply(const mspringi_pencil *pencil, const double *in, double *out);
-void mspringi_areas_quotient(const mspringi_pencil *pencil, const double *vector, mspringi_quotient *sum);
+/// Add the areas' part (features/areas/stability_areas.c) to the quotient of a displacement.
+void mspringi_areas_quotient(const mspring_network *network, mspringi_displacement vector, mspringi_quotient *sum);
 
 /// Linearise in the present shape. A compressed spring counts as one at rest length: its outward push across makes
 /// no substep unstable. Springs of length 0 count in all directions, as the next substep may turn them any way.
 void mspringi_pencil_set(mspringi_pencil *pencil, double h);
-/// Apply A + 2 D, as a mspringi_operator over x and y of particle 0, x and y of particle 1, and so on.
-void mspringi_pencil_apply(const void *pencil, const double *in, double *out);
-mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, const double *vector);
+/// Add the image of a displacement, for mspringi_lanczos.
+void mspringi_pencil_add_image(void *pencil, mspringi_displacement in, mspringi_displacement out);
+mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, mspringi_displacement vector);
 
 #endif

@@ -35,8 +35,8 @@ double mspringi_stable_in_any_shape(mspring_network *network, mspring_id *spring
 /// present shape. Infinite if all springs are relative.
 double mspringi_stable_with_relative(mspring_network *network);
 
-/// Largest rate at which the ends of a spring move against each other, in its rest length, 1/s. Rest lengths below the
-/// shortest at creation count as that. What mspringi_violence_bound() gives is no less; it takes no pass over springs.
+/// Largest rate at which the ends of a spring move against each other, in its rest length, 1/s. What
+/// mspringi_violence_bound() gives is no less; it takes no pass over springs.
 double mspringi_violence(const mspring_network *network);
 double mspringi_violence_bound(const mspring_network *network);
 

@@ -3,8 +3,8 @@
 
 #include <math.h>
 
+#include "features/one_way/one_way.h"
 #include "stability/stability.h"
-#include "store/one_way.h"
 #include "store/springs.h"
 
 /// A spring outside the kernels. Members as in kernels/limit_kernel.h.
@@ -86,7 +86,7 @@ static void visit_others(const mspring_network *network, const mspringi_stabilit
         const mspringi_spring_values values = mspringi_irregular_spring(network, i);
         visit(b, linearise(b, &values));
     }
-    for (mspring_id i = 0; network->one_way.side && i < network->topology.reserve.first_spring; ++i)
+    for (mspring_id i = 0; network->one_way && i < network->topology.reserve.first_spring; ++i)
         if (mspringi_side_of(network, i) != 0 && mspringi_spring_exists(network, i))
             visit(b, linearise_surcharge(network, b, i));
 }
@@ -102,5 +102,5 @@ void mspringi_stability_limit_image(const mspring_network *network, const msprin
     network->kernels->image_lattice(b);
     network->kernels->image_chain(b);
     visit_others(network, b, add_image);
-    mspringi_areas_image(network, b);
+    mspringi_areas_image(network, b, (double)b->stiffness);
 }

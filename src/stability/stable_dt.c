@@ -1,68 +1,70 @@
 /// Stability limit in the present shape, on request of the host.
 #include <math.h>
+#include <string.h>
 
 #include "base/cpu.h"
+#include "stability/lanczos.h"
 #include "stability/pencil.h"
 #include "stability/stability.h"
-
-/// Residual of a converged eigenvalue, relative to the eigenvalue. The limit is its square root.
-#define TOLERANCE 2e-3
+#include "stability/tridiagonal.h"
 
 /// Relative change of the limit at convergence.
 #define LIMIT_TOLERANCE 5e-4
 
+/// Fewest iterations: a start near an eigenvector hides larger eigenvalues for a while.
+#define MIN_ITERATIONS 16
+
 typedef struct workspace {
     mspringi_pencil pencil;
-    mspringi_lanczos lanczos;
+    float *arrays; ///< [6 slots] three displacements
 } workspace;
 
 static void release(mspring_network *network, workspace *work) {
-    mspringi_free(&network->memory, work->pencil.root);
     mspringi_free(&network->memory, work->pencil.terms);
-    mspringi_free(&network->memory, work->lanczos.vector);
-    for (int i = 0; i < 3; ++i)
-        mspringi_free(&network->memory, work->lanczos.work[i]);
+    mspringi_free(&network->memory, work->arrays);
 }
 
 static mspring_result reserve(mspring_network *network, workspace *work) {
-    const size_t particles = network->topology.particle_count, springs = network->topology.spring_count;
+    const size_t slots = mspringi_slot_count(network), springs = network->topology.spring_count;
     *work = (workspace){.pencil.network = network};
-    work->pencil.root = mspringi_alloc(&network->memory, particles, sizeof *work->pencil.root);
     work->pencil.terms = mspringi_alloc(&network->memory, springs, sizeof *work->pencil.terms);
-    work->lanczos.apply = mspringi_pencil_apply;
-    work->lanczos.size = 2 * particles;
-    work->lanczos.vector = mspringi_alloc(&network->memory, 2 * particles, sizeof *work->lanczos.vector);
-    bool has_all = work->pencil.root && work->pencil.terms && work->lanczos.vector;
-    for (int i = 0; i < 3; ++i) {
-        work->lanczos.work[i] = mspringi_alloc(&network->memory, 2 * particles, sizeof *work->lanczos.work[i]);
-        has_all = has_all && work->lanczos.work[i];
-    }
-    work->lanczos.context = &work->pencil;
-    if (has_all)
+    work->arrays = mspringi_alloc(&network->memory, 6 * slots, sizeof *work->arrays);
+    if (work->pencil.terms && work->arrays)
         return MSPRING_OK;
     release(network, work);
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to find the stable dt of %u particles",
-                         (unsigned)particles);
+                         (unsigned)network->topology.particle_count);
 }
 
-// Perturb each component differently, so that the start contains every mode.
-static void perturb(double *vector, size_t size, double amount) {
-    for (size_t i = 0; i < size; ++i)
-        vector[i] += amount * mspringi_noise(i);
+static mspringi_displacement displacement_at(const workspace *work, size_t which) {
+    const size_t slots = mspringi_slot_count(work->pencil.network);
+    return (mspringi_displacement){work->arrays + 2 * which * slots, work->arrays + (2 * which + 1) * slots};
 }
 
 // Any vector gives an upper bound of the limit; the eigenvector at the limit gives the limit itself. So iterate:
 // eigenvector at the last bound, then its bound. The bounds fall so fast that few iterations suffice.
 static double find_limit(const mspring_network *network, workspace *work, double start) {
-    const size_t size = work->lanczos.size;
+    const size_t slots = mspringi_slot_count(network);
+    const mspringi_lanczos lanczos = {.slots = slots,
+                                      .inverse_mass = network->inverse_mass,
+                                      .add_image = mspringi_pencil_add_image,
+                                      .context = &work->pencil,
+                                      .here = displacement_at(work, 0),
+                                      .next = displacement_at(work, 1),
+                                      .vector = displacement_at(work, 2),
+                                      .bound = INFINITY,
+                                      .least = MIN_ITERATIONS,
+                                      .most = MSPRINGI_LANCZOS_MAX,
+                                      .period = 4};
     double limit = start;
-    perturb(work->lanczos.vector, size, 1.0);
+    memset(lanczos.here.x, 0, 2 * slots * sizeof *lanczos.here.x);
+    mspringi_lanczos_add_noise(&lanczos, 1.0f);
     for (int turn = 0; turn < 12; ++turn) {
         mspringi_pencil_set(&work->pencil, limit);
-        const mspringi_ritz ritz = mspringi_lanczos_largest(&work->lanczos, TOLERANCE);
+        const mspringi_ritz ritz = mspringi_lanczos_largest(&lanczos);
         if (!(ritz.value > 0.0))
             return INFINITY;
-        mspringi_quotient quotient = mspringi_pencil_quotient(&work->pencil, work->lanczos.vector);
+        mspringi_quotient quotient = mspringi_pencil_quotient(&work->pencil, lanczos.vector);
         const double margin = 1.0 + ritz.residual / ritz.value;
         quotient.stiffness *= margin;
         quotient.damping *= margin;
@@ -73,7 +75,8 @@ static double find_limit(const mspring_network *network, workspace *work, double
         if ((quotient.damping == 0.0 && quotient.relative == 0.0) || !(limit > 0.0 && limit < INFINITY) ||
             fabs(limit - before) <= LIMIT_TOLERANCE * limit)
             break;
-        perturb(work->lanczos.vector, size, 1.0 / sqrt((double)size));
+        memcpy(lanczos.here.x, lanczos.vector.x, 2 * slots * sizeof *lanczos.here.x);
+        mspringi_lanczos_add_noise(&lanczos, (float)(1.0 / sqrt(2.0 * (double)slots)));
     }
     return limit;
 }

@@ -11,16 +11,16 @@
 #define LARGEST_DIFFERENCE 2.8285
 
 double mspringi_violence_bound(const mspring_network *network) {
-    const bool is_known =
-        network->guard.state == network->edits.state && !network->is_open && isfinite(network->shortest);
-    return is_known ? LARGEST_DIFFERENCE * (double)network->guard.speed / network->shortest : INFINITY;
+    const bool is_known = network->guard.state == network->edits.state && !network->is_open &&
+                          isfinite(network->shortest_set) && !network->plastic.is_bent;
+    return is_known ? LARGEST_DIFFERENCE * (double)network->guard.speed / (double)network->shortest_set : INFINITY;
 }
 
-static float square_of_rate(const mspring_network *network, mspringi_spring_slot slot, float shortest) {
+static float square_of_rate(const mspring_network *network, mspringi_spring_slot slot) {
     const mspringi_state *s = &network->state;
     const mspringi_spring_values spring = mspringi_spring_slot_get(network, slot);
     const float vx = s->vx[spring.tip] - s->vx[spring.base], vy = s->vy[spring.tip] - s->vy[spring.base];
-    const float length = spring.rest_length > shortest ? spring.rest_length : shortest;
+    const float length = spring.rest_length;
     return length > MSPRINGI_WELD ? (vx * vx + vy * vy) / (length * length) : 0.0f; // a weld is linear
 }
 
@@ -36,7 +36,7 @@ static float raise_square(const mspring_network *network, mspringi_spring_slot f
         const float vx = s->vx[tip] - s->vx[base], vy = s->vy[tip] - s->vy[base];
         if (!(vx * vx + vy * vy > most * (shortest * shortest)))
             continue;
-        const float square = square_of_rate(network, slot, shortest);
+        const float square = square_of_rate(network, slot);
         most = square > most ? square : most;
     }
     return most;
@@ -45,7 +45,8 @@ static float raise_square(const mspring_network *network, mspringi_spring_slot f
 double mspringi_violence(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_spring_slot of_block = MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
-    const float shortest = isfinite(network->shortest) ? (float)network->shortest : 0.0f;
+    const float shortest =
+        isfinite(network->shortest_set) && !network->plastic.is_bent ? network->shortest_set : 0.0f;
     mspringi_violence_sweep sweep = {.vx = network->state.vx,
                                      .vy = network->state.vy,
                                      .up_of_block = t->up_of_block,

@@ -4,7 +4,8 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "sleep/sleep.h"
+#include "features/hooks/hooks.h"
+#include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
 #include "step/held_groups.h"
@@ -126,6 +127,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
     network->first_substep = 0;
+    network->step_substeps = attempt->substeps;
     begin_lag(network, attempt);
     tidy(network);
     if (ops->begin)
@@ -232,7 +234,7 @@ static mspring_result take(mspring_network *network, mspringi_attempt *attempt) 
     const mspringi_extrema extrema = run(network, attempt);
     if (!mspringi_sleep_is_whole(network))
         count_work(attempt, attempt->substeps + network->added_substeps);
-    if (network->hook_count > 0)
+    if (mspringi_hook_count(network) > 0)
         network->seen = mspringi_guard_bound(network, attempt->h, extrema);
     attempt->has_missed =
         mspringi_stages_must_repeat(network, attempt) && attempt->missed_count < attempt->stages->count;

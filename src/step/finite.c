@@ -3,8 +3,9 @@
 
 #include <math.h>
 
-#include "contact/contacts.h"
-#include "contact/floor.h"
+#include "features/contact/contacts.h"
+#include "features/contact/floor.h"
+#include "features/grips/grips.h"
 #include "store/springs.h"
 
 static bool are_finite(const float *values, size_t count) {
@@ -36,8 +37,8 @@ static bool are_forces_finite(const mspring_network *network) {
 
 static bool are_contacts_finite(const mspring_network *network) {
     bool finite = true;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        const mspringi_grip *grip = &network->grips.list[i];
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
+        const mspringi_grip *grip = &network->grips->list[i];
         finite = finite && isfinite(grip->impulse_x) && isfinite(grip->impulse_y) && isfinite(grip->from_x) &&
                  isfinite(grip->from_y);
     }

@@ -17,21 +17,28 @@ typedef struct choice {
     double dt, limit;
     bool may_raise; ///< for violent motion
     uint32_t calm;  ///< substeps without that
+    double need;    ///< substeps that motion needs; 0: not looked at
 } choice;
 
-// More substeps where violent motion needs them. Relative springs would become firmer with them.
-static uint32_t raised(mspring_network *network, choice *made, uint32_t calm) {
+// More substeps where violent motion needs them, as many as it may have. Relative springs would become firmer with
+// them.
+static uint32_t raised(const mspring_network *network, choice *made, uint32_t calm) {
     const double dt = made->dt;
-    made->calm = calm;
     const double work = network->most_work > 0 ? (double)network->most_work * (double)calm : INFINITY,
                  most = fmin(work, (double)network->max_substeps);
+    made->calm = calm;
     if (!made->may_raise || network->fractions.values || (double)calm > most ||
         dt * mspringi_violence_bound(network) <= VIOLENT_SHARE * (double)calm)
         return calm;
-    const double need = -floor(-dt * mspringi_violence(network) / VIOLENT_SHARE);
-    if (need > most)
+    made->need = -floor(-dt * mspringi_violence(network) / VIOLENT_SHARE);
+    return made->need > most ? (uint32_t)most : made->need > (double)calm ? (uint32_t)made->need : calm;
+}
+
+// Flag a step that takes fewer substeps than it needs.
+static uint32_t flagged(mspring_network *network, uint32_t substeps, double need) {
+    if (need > (double)substeps)
         network->outcome.flags |= MSPRING_STEP_FEWER;
-    return need > most ? (uint32_t)most : need > (double)calm ? (uint32_t)need : calm;
+    return substeps;
 }
 
 /* ------------------------------------------------------------------------------------- MSPRING_SUBSTEPS_AUTO */
@@ -88,14 +95,14 @@ static uint32_t even_substeps(mspring_network *network, choice *made) {
         pace->dt = dt;
         pace->h = (double)(float)(dt / (double)fewest);
         pace->steps = 0;
-        return fewest;
+        return flagged(network, fewest, made->need);
     }
     if (is_ahead)
-        return fewest;
+        return flagged(network, fewest, made->need);
     pace->left = left;
     network->step_time = whole * h;
     made->calm = fewest > calm ? calm : (uint32_t)whole;
-    return (uint32_t)whole;
+    return flagged(network, (uint32_t)whole, made->need);
 }
 
 /* ------------------------------------------------------------------------------------------------------ both */
@@ -104,10 +111,11 @@ static uint32_t preferred_substeps(mspring_network *network, choice *made) {
     const double dt = made->dt, limit = made->limit;
     if (network->auto_substeps == MSPRINGI_SUBSTEPS_EVEN)
         return even_substeps(network, made);
-    return raised(network, made,
-                  network->steps.uneven_steps > 0 || changes_dt(network, dt)
-                      ? uneven_substeps(network, dt, limit)
-                      : mspringi_substeps_within(dt, limit, network->max_substeps));
+    const uint32_t calm = network->steps.uneven_steps > 0 || changes_dt(network, dt)
+                              ? uneven_substeps(network, dt, limit)
+                              : mspringi_substeps_within(dt, limit, network->max_substeps);
+    const uint32_t substeps = raised(network, made, calm);
+    return flagged(network, substeps, made->need);
 }
 
 mspring_result mspringi_pace_choose(mspring_network *network, double dt, bool may_raise, uint32_t *calm) {

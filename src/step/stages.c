@@ -1,10 +1,10 @@
 /// Going through the stages of a step.
 #include "store/stages.h"
 
-static const mspringi_stage *const all[] = {
-#define STAGE(table) &table,
-#include "store/stages.def"
-#undef STAGE
+// By place; NULL where a build has no stage.
+static const mspringi_stage *const all[MSPRINGI_STAGES] = {
+#define STAGE(place, table) [MSPRINGI_STAGE_OF_##place] = &table,
+#include "store/features.def"
 };
 
 static bool cuts_substeps(const mspringi_stage *stage) {
@@ -14,7 +14,7 @@ static bool cuts_substeps(const mspringi_stage *stage) {
 mspringi_stages mspringi_stages_of(const mspring_network *network) {
     mspringi_stages stages = {.count = 0};
     for (size_t i = 0; i < MSPRINGI_STAGES; ++i) {
-        if (all[i]->is_used && !all[i]->is_used(network))
+        if (!all[i] || (all[i]->is_used && !all[i]->is_used(network)))
             continue;
         const bool is_optional = all[i]->is_quiet && !(all[i]->is_needed && all[i]->is_needed(network));
         stages.used[stages.count++] = all[i];

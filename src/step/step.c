@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "step/finite.h"
 #include "step/held_groups.h"

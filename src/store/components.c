@@ -7,6 +7,7 @@
 #include "base/cpu.h"
 #include "store/events.h"
 #include "store/id_pool.h"
+#include "store/moments.h"
 #include "store/roots.h"
 #include "store/selection.h"
 #include "store/store.h"
@@ -136,15 +137,13 @@ mspring_result mspring_network_get_component_numbers(const mspring_network *netw
 // Add a particle to its component: mass, centre times mass, momentum. All of these fields are of the first version,
 // so that the host's struct has them, however short it is.
 static void add_particle(const mspring_network *network, mspring_id particle, mspring_component *to) {
-    const mspringi_state *s = &network->state;
-    const uint32_t slot = network->topology.slot_of_particle[particle];
-    const double mass = (double)network->mass[particle];
-    to->mass += mass;
-    to->x += mass * (double)s->x[slot];
-    to->y += mass * (double)s->y[slot];
-    if (network->inverse_mass[slot] > 0.0f) {
-        to->px += mass * (double)s->vx[slot];
-        to->py += mass * (double)s->vy[slot];
+    const mspringi_moments moments = mspringi_moments_of(network, particle);
+    to->mass += moments.mass;
+    to->x += moments.x;
+    to->y += moments.y;
+    if (network->inverse_mass[network->topology.slot_of_particle[particle]] > 0.0f) {
+        to->px += moments.px;
+        to->py += moments.py;
     }
 }
 

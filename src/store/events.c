@@ -1,9 +1,10 @@
 /// The queue of events: a ring that the host sizes.
 #include "store/events.h"
+#include "store/feature.h"
 
 void mspringi_events_push(mspring_network *network, mspring_event event) {
-    mspringi_events *events = &network->events;
-    if (events->capacity == 0)
+    mspringi_events *events = network->events;
+    if (!events)
         return;
     if (events->count == events->capacity) {
         events->lost++;
@@ -14,6 +15,33 @@ void mspringi_events_push(mspring_network *network, mspring_event event) {
     events->count++;
 }
 
+void mspringi_events_clear(mspring_network *network) {
+    if (network->events)
+        network->events->count = 0;
+}
+
+static void destroy(mspringi_events *events, mspringi_memory *memory) {
+    if (events)
+        mspringi_free(memory, events->ring);
+    mspringi_free(memory, events);
+}
+
+// NULL: no memory.
+static mspringi_events *make(mspringi_memory *memory, uint32_t capacity) {
+    mspringi_events *made = mspringi_alloc(memory, 1, sizeof *made);
+    if (!made)
+        return NULL;
+    made->capacity = capacity;
+    made->ring = mspringi_alloc(memory, capacity, sizeof *made->ring);
+    if (made->ring)
+        return made;
+    destroy(made, memory);
+    return NULL;
+}
+
+static const mspringi_array_entry arrays[] = {MSPRINGI_ARRAY_ENTRY(mspringi_events, ring, MSPRINGI_ARRAY)};
+const mspringi_feature_state mspringi_state_of_events = {MSPRINGI_ARRAY_TABLE(arrays), NULL};
+
 mspring_result mspring_network_reserve_events(mspring_network *network, uint32_t capacity) {
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
@@ -22,12 +50,12 @@ mspring_result mspring_network_reserve_events(mspring_network *network, uint32_t
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "room for %u events is asked for, %u is the most", (unsigned)capacity,
                              (unsigned)MSPRING_MAX_SPRINGS);
-    mspring_event *ring = capacity > 0 ? mspringi_alloc(&network->memory, capacity, sizeof *ring) : NULL;
-    if (capacity > 0 && !ring)
+    mspringi_events *made = capacity > 0 ? make(&network->memory, capacity) : NULL;
+    if (capacity > 0 && !made)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u events",
                              (unsigned)capacity);
-    mspringi_free(&network->memory, network->events.ring);
-    network->events = (mspringi_events){.ring = ring, .capacity = capacity};
+    destroy(network->events, &network->memory);
+    network->events = made;
     return MSPRING_OK;
 }
 
@@ -39,7 +67,7 @@ mspring_result mspring_network_read_events(mspring_network *network, mspring_eve
     if (!count || (capacity > 0 && !events))
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "the place for events, or their count, is NULL");
-    mspringi_events *queue = &network->events;
+    mspringi_events none = {.ring = NULL}, *queue = network->events ? network->events : &none;
     const uint32_t read = capacity < queue->count ? capacity : queue->count;
     for (uint32_t i = 0; i < read; ++i) {
         events[i] = queue->ring[queue->first];

@@ -10,14 +10,20 @@
 #include "base/assert.h"
 #include "base/structs.h"
 #include "builder/builder_areas.h"
+#include "features/areas/areas_state.h"
+#include "features/breaking/strain_state.h"
+#include "features/groups/groups.h"
+#include "features/sleep/sleep_state.h"
+#include "features/yield/plastic_state.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"
 #include "store/added_springs.h"
 #include "store/components.h"
 #include "store/constraint_list.h"
-#include "store/groups.h"
+#include "store/edit_counters.h"
 #include "store/solver.h"
 #include "store/state.h"
+#include "store/steps.h"
 #include "tasks/tasks.h"
 
 /// Forces from outside, in N by slot. Fields that a network does not need are NULL.
@@ -32,25 +38,6 @@ typedef struct mspringi_forces {
 /// N, of which so many calls add up to something finite.
 #define MSPRINGI_MODEST 1e30f
 #define MSPRINGI_MODEST_CALLS 1000000u
-
-/// A box that no surface is near.
-typedef struct mspringi_safe_box {
-    mspringi_bounds box;
-    float coordinate;          ///< coordinates of less than this size are in the box
-    double reach;              ///< half as far from the box there is no surface; 0: there is no such box
-    double origin_x, origin_y; ///< that it is relative to
-} mspringi_safe_box;
-
-/// Whether any particle may come below the height of a hook with MSPRING_HOOK_BELOW in a step.
-typedef enum mspringi_distance { MSPRINGI_UNKNOWN, MSPRINGI_AWAY, MSPRINGI_CLOSE } mspringi_distance;
-
-typedef struct mspringi_hook {
-    mspring_hook_def def;
-    uint32_t number;
-    mspringi_field held; ///< forces of a hook that is not called before every substep; else none
-    mspringi_distance distance;
-    mspringi_safe_box room; ///< above its height, that all of the network was in
-} mspringi_hook;
 
 typedef enum mspringi_in_hook {
     MSPRINGI_IN_NO_HOOK,
@@ -68,235 +55,6 @@ typedef struct mspringi_fractions {
     mspringi_relative *values;
     uint8_t *of_spring; ///< [springs] which of values; NULL: values is [springs]
 } mspringi_fractions;
-
-/// What has been edited between steps, in counters that only ever grow. Whoever keeps something that follows from
-/// the edited (a solver its history or its tiles, a measurement its components) remembers the counters that it has
-/// seen and looks whether they are still the same: mspringi_edits_have_link() and mspringi_edits_link() then tell
-/// which springs it was. Views may be written to without any counter knowing; what relative springs derive from a
-/// new substep is no edit either.
-typedef struct mspringi_edits {
-    uint64_t state;         ///< calls that set positions or velocities
-    uint64_t motion;        ///< calls that set the positions of all particles at once: a new motion begins
-    uint64_t masses;        ///< calls that changed inverse masses
-    uint64_t values;        ///< calls that changed stiffness, damping or rest lengths
-    uint64_t growth;        ///< calls that added or removed particles or springs
-    uint64_t grafts;        ///< those among them in which springs were added or removed
-    uint64_t links;         ///< springs that were broken or restored, added or removed, one by one
-    uint64_t sleep_changes; ///< times that islands fell asleep or woke
-    uint64_t layouts;       ///< times that all slots changed
-    uint64_t origins;       ///< times that the local origin moved
-    mspring_id
-        *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
-    uint32_t link_mask;
-    bool broke; ///< there have been such changes, here or in what was loaded
-} mspringi_edits;
-
-/// A restored spring on its way to its own rest length.
-typedef struct mspringi_ramp {
-    mspring_id spring;
-    float to;       ///< its own rest length, m
-    double from;    ///< rest length when it was restored
-    double seconds; ///< that the way takes
-    double passed;  ///< of these
-} mspringi_ramp;
-
-typedef struct mspringi_ramps {
-    mspringi_ramp *list;
-    size_t count, capacity;
-} mspringi_ramps;
-
-/// What mspringi_stable_in_any_shape() has found, and the edits that it has seen.
-typedef struct mspringi_any_shape {
-    double dt;
-    double mixed_dt; ///< see mspringi_stable_with_relative(); 0: not known yet
-    mspring_id spring;
-    bool is_known;
-    uint64_t masses, values, growth;
-} mspringi_any_shape;
-
-/// A particle that the host holds; see contact/grips.h.
-typedef struct mspringi_grip {
-    mspring_id id;       ///< of the grip
-    mspring_id particle; ///< that it holds
-    float stiffness, damping, max_force;
-    double x, y;                 ///< where the target is at the end of the next step, world coordinates
-    double from_x, from_y;       ///< and at its start
-    double impulse_x, impulse_y; ///< that it gave in the last step, N s
-    double sum_x, sum_y;         ///< the same of the step that is being made
-    double force_x, force_y;     ///< in an implicit substep, N
-    double share;                ///< of stiffness and damping that acts in it
-    bool is_bounded;             ///< none does, but the force that is the largest
-} mspringi_grip;
-
-typedef struct mspringi_grips {
-    mspringi_grip *list; ///< [MSPRING_MAX_GRIPS] in the order of ids; NULL before the first
-    uint32_t count;
-    mspring_id next_id;
-
-    // A step.
-    bool could_act; ///< they could act in it
-    float h;
-    double begin, share; ///< of the step that has passed before its substep, and that the substep is
-    double passed;       ///< of the substep, where an implicit one is taken in pieces
-} mspringi_grips;
-
-/// The events that the host has not read yet: a ring, empty if the host has not asked for one.
-typedef struct mspringi_events {
-    mspring_event *ring; ///< [capacity]
-    uint32_t first, count, capacity;
-    uint64_t lost;
-} mspringi_events;
-
-/// What springs break and are stressed at, by place; NULL as long as none does.
-typedef struct mspringi_strain {
-    float *break_strain, *stress_strain;
-    float *relax_strain;       ///< MSPRING_RELAX_STRAIN_DEFAULT: the usual fraction of its stress strain
-    float *least;              ///< the smaller of the two; NULL as long as break_strain is alone
-    uint16_t *stressed;        ///< [places / MSPRINGI_WIDTH] a bit for each place
-    mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] for the pass to write to
-    bool breaks, stresses;     ///< a threshold of this kind has been finite: there is something to save
-    bool relaxes;              ///< so with a relax strain that is not the default
-} mspringi_strain;
-
-/// A spring that only pulls or only pushes, in a step.
-typedef struct mspringi_one_way_spring {
-    mspringi_spring_slot spring_slot;
-    uint32_t base, tip;       ///< slots
-    float rest_length;        ///< as the host reads it
-    float stiffness, damping; ///< where it acts
-    uint32_t due;             ///< substep in which it acts whatever is expected; MSPRING_NONE: in none
-    int32_t side;             ///< 1: it pulls; -1: it pushes
-    bool acts;                ///< its records have these values, not 0
-} mspringi_one_way_spring;
-
-/// Springs that only pull or only push; side is NULL if there is none.
-typedef struct mspringi_one_way {
-    int8_t *side;                  ///< [reserve.first_spring] see mspringi_side_of()
-    mspringi_one_way_spring *list; ///< [count] those of the step that are live
-    uint32_t count, listed;
-    bool must_repeat; ///< one did not act in a substep in which it should have
-    bool is_repeated; ///< for that reason, the step is taken once more
-} mspringi_one_way;
-
-/// What springs yield at, and what has become of them, by place; NULL as long as none yields. See step/yielding.c.
-typedef struct mspringi_plastic {
-    float *yield_strain, *hardening, *plastic_limit;
-    float *nominal;              ///< rest length before any flow, m; the one in force is among the spring's values
-    float *low, *high;           ///< squares of the lengths between which the spring is cold, m^2
-    float *flow_low, *flow_high; ///< of those between which it does not flow
-    float *before;               ///< rest length before the step, where it has changed in it
-    float *gain;                 ///< 1 / (1 + hardening)
-    float *heat;                 ///< what flow has dissipated in the step, J
-    mspringi_shared_records shared_records; ///< lattice blocks with the same rest lengths and bounds
-    uint16_t
-        *has_flowed; ///< [places / MSPRINGI_WIDTH] a bit for each place: its rest length has changed in the step
-    mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] springs that were warm at the last look
-    uint32_t hit_count;
-    float *ahead;          ///< [2 slots] x and y where particles would be at the end of a substep
-    uint8_t *warmth;       ///< [strips] MSPRINGI_WARM, ...
-    uint32_t substep;      ///< of the step, the first of those that are being taken
-    bool is_swept;         ///< the sweeps of rows test their springs
-    bool maps;             ///< ... and map them; else they only find out whether any is warm
-    bool was_warm;         ///< some strip was in the last step; says only what is worth trying
-    bool irregular_yields; ///< some spring of the irregular part may yield in this step
-    bool yields;           ///< a yield strain has been finite: there is something to save
-    bool is_bent;          ///< some rest length may be another than the nominal one
-    bool flows;            ///< some bit of has_flowed is set, other than by rows that test
-    uint64_t flows_seen;   ///< times that a rest length has changed by flow
-    uint64_t count;        ///< springs that flowed in a step, summed over the steps
-    double dissipated;     ///< J
-} mspringi_plastic;
-
-typedef struct mspringi_corner {
-    mspring_id particle;
-    mspring_id spring; ///< to the next corner when the area was added; MSPRING_NONE: there was none
-    uint32_t slot;     ///< of the particle; see mspringi_areas_refresh()
-    float reach;       ///< by how much the area grew then where the particle moved outwards, m
-} mspringi_corner;
-
-/// Counters of edits, see mspringi_edits.
-typedef struct mspringi_areas_seen {
-    uint64_t changes, links, growth, layouts, masses;
-} mspringi_areas_seen;
-
-/// All of them.
-typedef struct mspringi_areas {
-    mspringi_area *list; ///< [count] in the order of ids
-    size_t count, capacity;
-    mspringi_corner *corners; ///< [corner_count] of the first area, of the second, and so on
-    size_t corner_count, corner_capacity;
-    size_t angle_count; ///< areas in the list that are angles
-    mspring_id next_id;
-    uint64_t changes; ///< times that any was edited
-
-    // What follows from these, the springs and the layout; see mspringi_areas_refresh().
-    mspringi_areas_seen seen;
-    uint32_t swept, unswept; ///< closed areas that the explicit solver's sweeps have in them, and others
-    uint32_t unringed;       ///< and those without springs all around
-    uint32_t hinge_count;    ///< closed angles with springs along both arms
-    double longest;          ///< substep that is stable with forces of these alone, s
-    double longest_of_all;   ///< and with those of all
-    float *cells;            ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
-    mspringi_field force;    ///< from outside and of areas, in a substep
-} mspringi_areas;
-
-/// What came of a step beside its result: see mspring_step_info.
-typedef struct mspringi_outcome {
-    mspring_id particle, spring; ///< to blame
-    uint32_t flags;
-    double work; ///< of all attempts, in calm steps
-} mspringi_outcome;
-
-/// Pace of MSPRING_SUBSTEPS_EVEN.
-typedef struct mspringi_pace {
-    double dt;      ///< from which the length of substeps was chosen, s; 0: none was
-    double h;       ///< the length, s
-    double left;    ///< that steps were asked for and have not taken yet, s; < 0: they are ahead
-    uint32_t steps; ///< in a row that ask for another length
-} mspringi_pace;
-
-/// Values of auto_substeps.
-enum { MSPRINGI_SUBSTEPS_GIVEN, MSPRINGI_SUBSTEPS_AUTO, MSPRINGI_SUBSTEPS_EVEN };
-
-/// The last step, and how many there have been.
-typedef struct mspringi_steps {
-    mspring_result result;
-    mspringi_outcome outcome;
-    uint32_t substeps; ///< of the last that succeeded
-    uint64_t count, fallback_count;
-    double time; ///< s
-    double dt;   ///< of the last that succeeded, s; 0: none did
-    /// Steps that MSPRING_SUBSTEPS_AUTO still takes for uneven, after a change of dt.
-    uint32_t uneven_steps;
-    /// The last explicit substep, s: velocities are half of it older than positions; 0: they are not. Other solvers
-    /// leave it: what they begin with, and end with, is as old.
-    float lag;
-    mspringi_pace pace;
-} mspringi_steps;
-
-/// Steps after a change of dt for which steps count as uneven.
-#define MSPRINGI_UNEVEN_STEPS 600u
-
-static inline mspringi_outcome mspringi_outcome_none(void) {
-    return (mspringi_outcome){.particle = MSPRING_NONE, .spring = MSPRING_NONE};
-}
-
-/// Steps that follow one which the explicit solver could not take, and which it is not asked to: to find that it
-/// still cannot takes longer than they do.
-#define MSPRINGI_FALLBACK_STEPS 15u
-
-/// What the guard knows from step to step.
-typedef struct mspringi_guard {
-    float h, global_damping; ///< the border was looked at for these; h is 0 at first
-    bool watches;            ///< this step's substeps are longer than what is stable in any shape
-    uint32_t fallback_steps; ///< steps that the fallback still takes before the explicit solver is tried again
-    float peak;              ///< largest change when the border was looked at last, fading, m/s
-    bool knows_speed;        ///< speed is that of the state before this step
-    bool knows_coordinate;   ///< place is, and how far it gets in this step follows from speeds at its end
-    float speed;             ///< none was larger at the end of the last step, m/s; infinite if that is not known
-    float coordinate;        ///< so with coordinates, m
-    uint64_t state;          ///< edits.state then
-} mspringi_guard;
 
 /// Rest lengths of the lattices' springs, in blocks of [direction][lane].
 typedef struct mspringi_rest_lengths {
@@ -319,37 +77,6 @@ typedef struct mspringi_halos {
     uint32_t *borders;    ///< [MSPRINGI_PLANNED_PASSES][workers]
     uint64_t *weights;    ///< [strips + 1] of the strips below each
 } mspringi_halos;
-
-/// Which islands sleep, and what they were when they fell asleep; no arrays if none ever does. An island is a
-/// component of live springs, numbered by its lowest slot.
-typedef struct mspringi_sleep {
-    uint32_t count;    ///< islands; 0: not looked for yet
-    uint32_t sleeping; ///< of these asleep; what follows of slots and blocks is of no use as long as this is 0
-    uint32_t *island;  ///< [slots] of each slot, MSPRING_NONE if it has no particle
-    uint32_t *lowest;  ///< [particles] the lowest slot of each island
-    uint32_t *beside;  ///< [slots] of the lowest one of a sleeper: that of the next in its pile, in a ring
-    double *still;     ///< [particles] of each island, for how long it has been still, s; < 0: asleep
-    double *kept;      ///< [particles] still before the step, if it woke any
-    bool has_kept;
-    bool is_mapped;         ///< what follows is up to date
-    uint8_t *mark;          ///< [particles] of each island, while all are gone through
-    uint32_t *scratch;      ///< [slots]
-    uint32_t *block_island; ///< [blocks] the island that all of a block is of, MSPRING_NONE if there are several
-    float *active_inverse_mass;    ///< [slots] inverse mass, 0 of what sleeps
-    uint16_t *sleepers;            ///< [blocks] a bit for each slot
-    uint8_t *swept;                ///< [blocks] 1 where a particle is awake, or springs are of one that is
-    uint8_t *share;                ///< [strips] mspringi_strip_sleep
-    mspringi_span *runs;           ///< [spans] runs of blocks of a row while that is swept, from its first span on
-    bool has_force;                ///< force is not all zero
-    double origin_x, origin_y;     ///< that state is relative to, m
-    float *state;                  ///< [MSPRINGI_STATE_ARRAYS][slots]
-    float *inverse_mass;           ///< [slots]
-    float *held;                   ///< [4][slots] positions and their low words, while substeps are taken
-    mspringi_field force;          ///< from outside
-    mspringi_field in_force;       ///< of the step that is being made; else NULL
-    uint64_t masses, links, moved; ///< edits that it has seen; the last is edits.state
-    uint64_t piled;                ///< edits.naps for which piles were found
-} mspringi_sleep;
 
 /// Whether an id names something.
 enum {
@@ -384,7 +111,8 @@ typedef struct mspringi_extents {
     uint16_t *reversed; ///< [place words] a bit for each place: 1 where its base is the second end
 } mspringi_extents;
 
-/// An array that is added here goes into store/network.def.
+/// An array that is added here goes into store/network.def. What one feature alone has is behind a pointer that
+/// features.def declares.
 struct mspring_network {
     mspringi_memory memory;       ///< the network itself and all that it holds, but for
     mspringi_memory tasks_memory; ///< what a copy of the network has of its own: workers, and the shared message
@@ -406,6 +134,7 @@ struct mspring_network {
 
     // State.
     mspringi_state state, backup;
+    uint32_t step_substeps;    ///< of the step that is being made
     uint32_t first_substep;    ///< number in the step of the first of the substeps that are being taken
     float lag;                 ///< steps.lag at the first of these, s
     float full_lag;            ///< the same for gravity, whatever is stable
@@ -453,23 +182,21 @@ struct mspring_network {
     mspringi_solver solver;         ///< the one that the host chose
     mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
     const mspringi_solver *running; ///< the one that takes the step that is being made; else NULL
-    struct mspringi_floor *floor;   ///< NULL: there is none
-    struct mspringi_contacts *contacts; ///< contact between bodies; NULL: there is none
     mspringi_guard guard;
     float
         *guard_scratch; ///< [5][slots] weights of the guard's bound, and room; NULL if it never looks at the border
     double shortest;    ///< smallest rest length at first, m, but for welds
+    float shortest_set; ///< and of all that have been set since, but for flow
     bool has_welds;     ///< there has been one
 
     mspringi_edits edits;
-    mspringi_ramps ramps;
-    mspringi_grips grips;
+/// Of features: NULL as long as the network does not use them.
+#define STATE(name) struct mspringi_##name *name;
+#include "store/features.def"
     mspringi_strain strain;
     mspringi_plastic plastic;
-    mspringi_one_way one_way;
     mspringi_areas areas;
     mspringi_constraints constraints; ///< of the last substep with a linear system
-    mspringi_events events;
     mspringi_components components;
     mspringi_extents extents;
     mspringi_sleep sleep;
@@ -477,14 +204,10 @@ struct mspring_network {
     mspringi_id_pool growth;
     mspringi_added_springs added_springs;
     mspringi_groups groups;
-    mspringi_actuators actuators;
     mspringi_any_shape any_shape;
     mspringi_any_shape last_shape; ///< found last, maybe in a step that was refused: to find it again costs nothing
 
     mspringi_forces forces;
-    mspringi_hook *hooks;
-    size_t hook_count, hook_capacity;
-    uint32_t next_hook;
     mspring_id next_collider;
     mspringi_in_hook in_hook;
     bool was_in_hook;      ///< one was called in this step
@@ -516,17 +239,6 @@ static inline const float *mspringi_active_inverse_mass(const mspring_network *n
     return network->sleep.sleeping > 0 ? network->sleep.active_inverse_mass
            : network->groups.held > 0  ? network->groups.active_inverse_mass
                                        : network->inverse_mass;
-}
-
-/// Whether the log still has everything from change number seen on; if not, any spring may have changed.
-static inline bool mspringi_edits_have_link(const mspringi_edits *edits, uint64_t seen) {
-    return edits->links - seen <= (uint64_t)edits->link_mask + 1;
-}
-
-/// The spring that was broken or restored in change number n.
-static inline mspring_id mspringi_edits_link(const mspringi_edits *edits, uint64_t n) {
-    MSPRINGI_ASSERT(edits->link_log && n < edits->links && mspringi_edits_have_link(edits, n));
-    return edits->link_log[n & edits->link_mask];
 }
 
 static inline bool mspringi_particle_exists(const mspring_network *network, mspring_id particle) {

@@ -1,8 +1,8 @@
 /// @file sections.h
 /// What snapshots hold: a section for each thing that the next step depends on.
 ///
-/// Whoever adds something of that kind, a solver with a history for instance, adds a section for it to the list in
-/// snapshot.c. What follows from other things (springs' values in N/m from relative ones, say) needs none.
+/// Whoever adds something of that kind, a solver with a history for instance, adds a section for it to
+/// features.def. What follows from other things (springs' values in N/m from relative ones, say) needs none.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SNAPSHOT_SECTIONS_H
@@ -57,52 +57,8 @@ mspringi_spring_slot mspringi_saved_place(const mspringi_saved *saved, mspring_i
 /// Angles in a section of areas that has been checked.
 size_t mspringi_saved_angles(const uint8_t *from, size_t size);
 
-// In snapshot_state.c.
-extern const mspringi_section mspringi_section_settings;
-extern const mspringi_section mspringi_section_steps;
-extern const mspringi_section mspringi_section_motion;
-extern const mspringi_section mspringi_section_masses;
-extern const mspringi_section mspringi_section_forces;
-
-// In id_pool.c.
-extern const mspringi_section mspringi_section_growth;
-
-// In snapshot_contact.c.
-extern const mspringi_section mspringi_section_shape;
-
-// In grips.c.
-extern const mspringi_section mspringi_section_grips;
-
-// In groups.c.
-extern const mspringi_section mspringi_section_held;
-extern const mspringi_section mspringi_section_actuators;
-
-// In sleep.c.
-extern const mspringi_section mspringi_section_sleep;
-
-// In guard.c.
-extern const mspringi_section mspringi_section_guard;
-
-// In solver.c.
-extern const mspringi_section mspringi_section_precision;
-extern const mspringi_section mspringi_section_implicit;
-
-// In springs.c.
-extern const mspringi_section mspringi_section_broken;
-extern const mspringi_section mspringi_section_values;
-extern const mspringi_section mspringi_section_break_strains;
-extern const mspringi_section mspringi_section_stress_strains;
-extern const mspringi_section mspringi_section_relax_strains;
-extern const mspringi_section mspringi_section_stressed;
-extern const mspringi_section mspringi_section_ramps;
-
-// In plastic.c.
-extern const mspringi_section mspringi_section_yielding;
-extern const mspringi_section mspringi_section_bent;
-
-// In areas.c.
-extern const mspringi_section mspringi_section_areas;
-extern const mspringi_section mspringi_section_rest_angles;
+#define SECTION(name) extern const mspringi_section mspringi_section_##name;
+#include "store/features.def"
 
 /// Fail with what is wrong with a section.
 mspring_result mspringi_section_fail(mspring_network *network, const mspringi_section *section, const char *format,

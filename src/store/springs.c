@@ -1,8 +1,9 @@
 /// Where springs lie and what they are like.
 #include "store/springs.h"
 
+#include "features/one_way/one_way.h"
+#include "features/ramps/ramps.h"
 #include "store/changed.h"
-#include "store/one_way.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
 #include "store/stages.h"
@@ -61,10 +62,9 @@ mspringi_spring_values mspringi_spring_slot_get(const mspring_network *network, 
 }
 
 const mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network, mspringi_spring_slot spring_slot) {
-    const mspringi_ramps *ramps = &network->ramps;
-    for (size_t i = 0; i < ramps->count; ++i)
-        if (mspringi_slot_of_spring(&network->topology, ramps->list[i].spring) == spring_slot)
-            return &ramps->list[i];
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i)
+        if (mspringi_slot_of_spring(&network->topology, network->ramps->list[i].spring) == spring_slot)
+            return &network->ramps->list[i];
     return NULL;
 }
 
@@ -121,6 +121,13 @@ void mspringi_spring_slot_set(mspring_network *network, mspringi_spring_slot spr
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 
+void mspringi_note_rest_length(mspring_network *network, float rest_length) {
+    if (rest_length == MSPRINGI_WELD)
+        network->has_welds = true;
+    else if (rest_length < network->shortest_set)
+        network->shortest_set = rest_length;
+}
+
 void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spring_slot spring_slot,
                                           float rest_length) {
     const spring_records records = find_records(network, spring_slot);
@@ -130,7 +137,7 @@ void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spr
     mspringi_shared_records_unshare_yielding(network, spring_slot);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
-    network->has_welds |= rest_length == MSPRINGI_WELD;
+    mspringi_note_rest_length(network, rest_length);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 

@@ -31,7 +31,8 @@ typedef struct mspringi_ends {
 mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring);
 
 /// The ramp of the spring in a place, or NULL; and its rest length once that has come to its end.
-const mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network, mspringi_spring_slot spring_slot);
+const struct mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network,
+                                                      mspringi_spring_slot spring_slot);
 float mspringi_spring_slot_own_length(const mspring_network *network, mspringi_spring_slot spring_slot);
 /// The rest length that the host gave, before any flow.
 float mspringi_spring_slot_given_length(const mspring_network *network, mspringi_spring_slot spring_slot);
@@ -94,6 +95,9 @@ mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, ms
 /// broken spring exerts stays 0.
 void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot,
                                  mspringi_relative nominal);
+
+/// Note a rest length that is written somewhere.
+void mspringi_note_rest_length(mspring_network *network, float rest_length);
 
 /// Set the rest length in force: a ramp of the spring goes on from its own. After mspringi_rest_lengths_unshare()
 /// only, unless it is what the spring has.

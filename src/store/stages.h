@@ -54,14 +54,13 @@ typedef struct mspringi_stage {
     void (*undo)(mspring_network *network, const mspringi_attempt *attempt);
 } mspringi_stage;
 
-#define STAGE(table) extern const mspringi_stage table;
-#include "store/stages.def"
-#undef STAGE
+#define STAGE(place, table) extern const mspringi_stage table;
+#include "store/features.def"
 
 enum {
-#define STAGE(table) MSPRINGI_NUMBER_OF_##table,
-#include "store/stages.def"
-#undef STAGE
+#define PLACE(name) MSPRINGI_STAGE_OF_##name,
+#include "store/places.def"
+#undef PLACE
     MSPRINGI_STAGES
 };
 

@@ -616,7 +616,7 @@ static void every_failure_is_survived(void **state) {
     assert_true(count > 200);
     // Sanitizers look at every third: they take minutes, and the allocator here finds what leaks. tests/README.md
     // says where every tenth of these is enough.
-    const bool is_sanitized = ROUNDS(15) < 15, is_quick = getenv("MASSSPRING_TEST_QUICK") != NULL;
+    const bool is_sanitized = ROUNDS(15) < 15, is_quick = support_is_quick();
     const size_t stride = (is_sanitized ? 3 : 1) * (is_quick ? 10 : 1);
     size_t failed = 0;
     for (size_t n = 1; n <= count; n += stride, failed++) {

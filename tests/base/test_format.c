@@ -42,7 +42,7 @@ static void check_number(double value) {
 static void numbers_of_every_size_have_the_digits_of_printf(void **state) {
     (void)state;
     uint64_t seed = 19;
-    for (int i = 0; i < 10000; ++i) {
+    for (int i = 0; i < SAMPLE(10000); ++i) {
         const uint64_t bits = support_random(&seed);
         double value;
         memcpy(&value, &bits, sizeof value);

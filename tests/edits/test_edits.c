@@ -13,24 +13,6 @@
 #include "recipe.h"
 #include "support.h"
 
-/// A network with springs in rows of every kind and a pinned particle.
-static recipe mixed_recipe(uint32_t spring_flags, double damping) {
-    uint64_t seed = 21;
-    const bool relative = spring_flags & MSPRING_SPRING_RELATIVE;
-    const recipe_stuff stuff = {.mass = {1, 2},
-                                .stiffness = {relative ? 0.1 : 500, relative ? 0.2 : 1000},
-                                .damping = {0, damping * (relative ? 0.05 : 5)},
-                                .spring_flags = spring_flags,
-                                .holes = 0.1};
-    recipe made = {0};
-    recipe_lattice(&made, 37, 9, 0, 0, 1, &stuff, &seed);
-    mspring_id end = recipe_particle(&made, 60, 20, 1, MSPRING_PARTICLE_PINNED);
-    recipe_rope(&made, 2, end, 30, &stuff, &seed);
-    recipe_random_springs(&made, 12, &stuff, &seed);
-    recipe_disturb(&made, 0.05, 0.5, &seed);
-    return made;
-}
-
 static mspring_network *network_of(const recipe *made, mspring_simd level) {
     mspring_network_def def = support_def(-9.8f, 4);
     def.simd_level = level;
@@ -105,7 +87,7 @@ static void edited_masses_count_like_those_made_so(void **state) {
     mspring_simd levels[MSPRING_SIMD_AVX512];
     const uint32_t level_count = support_levels(levels);
     for (uint32_t i = 0; i < level_count; i++) {
-        recipe made = mixed_recipe(0, 1);
+        recipe made = recipe_rows(21, 0, 0, 5);
         values mass = random_values(made.particle_count, 1, 5, 3);
         mspring_network *ranged = network_of(&made, levels[i]), *listed = network_of(&made, levels[i]);
         const uint32_t half = mass.count / 2;
@@ -126,7 +108,7 @@ static void edited_masses_count_like_those_made_so(void **state) {
 
 static void relative_springs_keep_their_stiffness_as_masses_change(void **state) {
     (void)state;
-    recipe made = mixed_recipe(MSPRING_SPRING_RELATIVE, 1);
+    recipe made = recipe_rows(21, MSPRING_SPRING_RELATIVE, 0, 5);
     values mass = random_values(made.particle_count, 1, 5, 4);
     mspring_network *edited = network_of(&made, MSPRING_SIMD_AUTO), *early = network_of(&made, MSPRING_SIMD_AUTO);
     check_ok(mspring_network_set(edited, MSPRING_MASS, 0, mass.count, mass.value, 1));
@@ -161,7 +143,7 @@ static void relative_springs_keep_their_stiffness_as_masses_change(void **state)
 static void scales_of_inverse_mass_make_particles_heavier(void **state) {
     (void)state;
     // Scales that are powers of two, so that mass over scale has no rounding.
-    recipe made = mixed_recipe(0, 1);
+    recipe made = recipe_rows(21, 0, 0, 5);
     values scale = random_values(made.particle_count, 0, 1, 5);
     for (uint32_t p = 0; p < scale.count; p++) {
         scale.value[p] = p % 7 == 0 ? 0.0f : scale.value[p] < 0.3f ? 0.25f : scale.value[p] < 0.6f ? 0.5f : 1.0f;
@@ -197,7 +179,7 @@ static void scales_of_inverse_mass_make_particles_heavier(void **state) {
 
 static void pins_come_and_go(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0, 1);
+    recipe made = recipe_rows(21, 0, 0, 5);
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO), *twin = network_of(&made, MSPRING_SIMD_AUTO);
     const mspring_id some[] = {0, 5, 9, made.particle_count - 1};
     const float zeros[4] = {0}, ones[4] = {1, 1, 1, 1}, mass[4] = {3, 3, 3, 3};
@@ -239,7 +221,7 @@ static void edited_springs_act_like_those_made_so(void **state) {
         // or, while edited, broken.
         for (int variant = 0; variant < 8; variant++) {
             const bool relative = variant & 1, late = variant & 2, broken = variant & 4;
-            recipe made = mixed_recipe(relative ? MSPRING_SPRING_RELATIVE : 0, 1);
+            recipe made = recipe_rows(21, relative ? MSPRING_SPRING_RELATIVE : 0, 0, 5);
             values wanted = random_values(made.spring_count, kind->low[relative], kind->high[relative], 7 + part);
             mspring_network *networks[2];
             for (int i = 0; i < 2; i++) {
@@ -270,7 +252,7 @@ static void edited_springs_act_like_those_made_so(void **state) {
 
 static void damping_needs_room(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0, 0);
+    recipe made = recipe_rows(21, 0, 0, 0);
     const float some = 3, none = 0;
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
     check_error(mspring_network_set(network, MSPRING_DAMPING, 4, 1, &some, 1), MSPRING_ERROR_ARGUMENT);
@@ -297,7 +279,7 @@ static void damping_needs_room(void **state) {
 
 static void scattered_positions_and_velocities_equal_ranges(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0, 1);
+    recipe made = recipe_rows(21, 0, 0, 5);
     const mspring_id list[] = {3, 70, 3};
     const double x[] = {0, 33.25, 4.5}, y[] = {0, 1.125, -7};
     const float vx[] = {9, 1, 2}, vy[] = {9, -3, 4};
@@ -318,7 +300,7 @@ static void scattered_positions_and_velocities_equal_ranges(void **state) {
 
 static void what_is_refused_changes_nothing(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0, 1);
+    recipe made = recipe_rows(21, 0, 0, 5);
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO), *twin = network_of(&made, MSPRING_SIMD_AUTO);
     const mspring_id list[] = {1, 2, 3}, beyond[] = {1, made.spring_count, 3};
     const double far[] = {0, 1e13, 0}, near[] = {0, 0, 0};
@@ -407,7 +389,7 @@ static void edit_in_hook(const mspring_hook_args *args, void *user) {
 
 static void no_edits_in_the_middle_of_a_step(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0, 1);
+    recipe made = recipe_rows(21, 0, 0, 5);
     mspring_network *network = network_of(&made, MSPRING_SIMD_AUTO);
     check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, edit_in_hook, network, NULL));
     support_steps(network, 1, 0.01);
@@ -435,7 +417,7 @@ enum { EDITS = 4 };
 
 static void edits_survive_every_failure(void **state) {
     (void)state;
-    recipe made = mixed_recipe(MSPRING_SPRING_RELATIVE, 1);
+    recipe made = recipe_rows(21, MSPRING_SPRING_RELATIVE, 0, 5);
     mspring_network *twin = network_of(&made, MSPRING_SIMD_AUTO);
     for (int i = 0; i < EDITS; i++) {
         check_ok(edit_number(twin, i));
@@ -473,7 +455,7 @@ static void edits_survive_every_failure(void **state) {
 
 static void rounding_mode_of_the_host_does_not_matter(void **state) {
     (void)state;
-    recipe made = mixed_recipe(MSPRING_SPRING_RELATIVE, 1);
+    recipe made = recipe_rows(21, MSPRING_SPRING_RELATIVE, 0, 5);
     values mass = random_values(made.particle_count, 1, 5, 3);
     const int modes[] = {FE_TONEAREST, FE_UPWARD, FE_TOWARDZERO};
     uint64_t expected = 0;

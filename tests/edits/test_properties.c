@@ -18,24 +18,6 @@
 #define MOST 3000
 #define MEASURES (ALL - WRITABLE)
 
-/// A network with springs in rows of every kind.
-static recipe mixed_recipe(uint32_t spring_flags) {
-    uint64_t seed = 21;
-    const bool relative = spring_flags & MSPRING_SPRING_RELATIVE;
-    const recipe_stuff stuff = {.mass = {1, 2},
-                                .stiffness = {relative ? 0.1 : 500, relative ? 0.2 : 1000},
-                                .damping = {relative ? 0.01 : 1, relative ? 0.05 : 5},
-                                .spring_flags = spring_flags,
-                                .holes = 0.1};
-    recipe made = {0};
-    recipe_lattice(&made, 37, 9, 0, 0, 1, &stuff, &seed);
-    const mspring_id end = recipe_particle(&made, 60, 20, 1, MSPRING_PARTICLE_PINNED);
-    recipe_rope(&made, 2, end, 30, &stuff, &seed);
-    recipe_random_springs(&made, 12, &stuff, &seed);
-    recipe_disturb(&made, 0.02, 0.1, &seed);
-    return made;
-}
-
 static uint32_t count_of(const mspring_network *network, mspring_property property) {
     return property <= MSPRING_INVERSE_MASS_SCALE ? mspring_network_particle_count(network)
                                                   : mspring_network_spring_count(network);
@@ -58,7 +40,7 @@ static uint64_t hash_after(mspring_network *network, uint32_t steps) {
 static void what_is_set_can_be_read(void **state) {
     (void)state;
     for (int relative = 0; relative < 2; relative++) {
-        recipe made = mixed_recipe(relative ? MSPRING_SPRING_RELATIVE : 0);
+        recipe made = recipe_rows(21, relative ? MSPRING_SPRING_RELATIVE : 0, 1, 5);
         mspring_network_def def = support_def(-9.8f, 4);
         mspring_network *network = recipe_network(&made, &def);
         static float values[MOST], read[MOST], wide[3 * MOST];
@@ -108,7 +90,7 @@ static void what_is_set_can_be_read(void **state) {
 /// INFINITY and all from MSPRING_NEVER on are one value: it is read as that, and to set one for another is no edit.
 static void never_is_one_value(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(21, 0, 1, 5);
     mspring_network_def def = support_def(-9.8f, 4);
     mspring_network *network = recipe_network(&made, &def);
     const float never[] = {MSPRING_NEVER, INFINITY}, some = 0.5f;
@@ -135,7 +117,7 @@ static void never_is_one_value(void **state) {
 
 static void measured_ones_are_those_of_each_spring(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(21, 0, 1, 5);
     mspring_network_def def = support_def(-9.8f, 40);
     mspring_network *network = recipe_network(&made, &def);
     static float read[MEASURES][MOST], wide[2 * MOST];
@@ -191,7 +173,7 @@ static void set_what_is_there(mspring_network *network) {
 static void what_is_there_is_left_alone(void **state) {
     (void)state;
     for (int relative = 0; relative < 2; relative++) {
-        recipe made = mixed_recipe(relative ? MSPRING_SPRING_RELATIVE : 0);
+        recipe made = recipe_rows(21, relative ? MSPRING_SPRING_RELATIVE : 0, 1, 5);
         mspring_network_def def = support_def(0, 4);
         def.global_damping = 20;
         def.sleep_speed = 0.01f;
@@ -227,7 +209,7 @@ static void what_is_there_is_left_alone(void **state) {
 
 static void a_ramp_ends_even_at_the_length_that_it_has(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(21, 0, 1, 5);
     mspring_network_def def = support_def(0, 4);
     mspring_network *network = recipe_network(&made, &def);
     const mspring_id spring = 20;
@@ -249,7 +231,7 @@ static void a_ramp_ends_even_at_the_length_that_it_has(void **state) {
 
 static void what_was_removed_has_nothing(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(21, 0, 1, 5);
     mspring_network_def def = support_def(0, 4);
     mspring_network *network = recipe_network(&made, &def);
     const mspring_id particle = 7;
@@ -282,7 +264,7 @@ static void what_was_removed_has_nothing(void **state) {
 
 static void refused_ones_are_named(void **state) {
     (void)state;
-    recipe made = mixed_recipe(0);
+    recipe made = recipe_rows(21, 0, 1, 5);
     mspring_network_def def = support_def(0, 4);
     mspring_network *network = recipe_network(&made, &def);
     static const char *const names[WRITABLE] = {"mass",          "scale of inverse mass", "stiffness",

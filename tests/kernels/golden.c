@@ -487,13 +487,13 @@ const golden_scene golden_scenes[] = {
     {"implicit_areas", all_areas, push_and_change_solver, 10, 80, 1.0 / 64, false},
     {"angles", angles, push_and_bend, 10, 60, 1.0 / 64, false},
     {"implicit_angles", implicit_angles, push_and_bend, 2, 60, 1.0 / 64, false},
-    {"direct_angles", direct_angles, push_and_bend, 2, 60, 1.0 / 64, false},
+    {"direct_angles", direct_angles, push_and_bend, 2, 60, 1.0 / 64, true},
     {"floor", on_floor, NULL, 20, 160, 1.0 / 64, false},
     {"implicit_floor", implicit_floor, NULL, 2, 80, 1.0 / 64, false},
     {"direct_floor", direct_floor, NULL, 2, 80, 1.0 / 64, false},
     {"grips", grips, push_and_drag, 10, 80, 1.0 / 64, false},
-    {"implicit_grips", implicit_grips, push_and_drag, 2, 80, 1.0 / 64, false},
-    {"direct_grips", direct_grips, push_and_drag, 2, 80, 1.0 / 64, false},
+    {"implicit_grips", implicit_grips, push_and_drag, 2, 80, 1.0 / 64, true},
+    {"direct_grips", direct_grips, push_and_drag, 2, 80, 1.0 / 64, true},
 };
 const uint32_t golden_scene_count = COUNT_OF(golden_scenes);
 

@@ -96,7 +96,7 @@ static void levels_are_alike(void **state) {
 /// What a spring adds, by its formulas.
 static void add_spring(const mspring_network *network, const mspringi_linear_spring *s, bool is_image,
                        double *sums) {
-    const uint32_t *slots = network->topology.slot_of_particle, a = slots[s->a], b = slots[s->b];
+    const uint32_t a = s->a, b = s->b;
     const size_t count = mspringi_slot_count(network);
     const float *first = array_of(network, IN), *second = array_of(network, IN + 1);
     const double along = H * H * s->strength.stiffness + 2 * H * s->strength.damping;

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "contact/floor.h"
-#include "level.h"
+#include "features/contact/floor.h"
+#include "level_kernels.h"
 #include "support.h"
 
 static const mspringi_kernels *kernels;
@@ -371,12 +371,7 @@ static void heights_and_planes(void **state) {
 }
 
 int main(int argc, char **argv) {
-    mspring_simd level = level_from_arguments(argc, argv);
-    kernels = mspringi_kernels_of(level);
-    if (kernels->level != level) {
-        print_error("the kernels of %s were not built\n", mspring_simd_name(level));
-        return 1;
-    }
+    kernels = level_kernels(argc, argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_plane),       cmocka_unit_test(several_planes),
         cmocka_unit_test(heights_alone), cmocka_unit_test(heights_and_planes),

@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "kernels/kernels.h"
-#include "level.h"
+#include "level_kernels.h"
 #include "support.h"
 
 static const mspringi_kernels *kernels;
@@ -474,12 +473,7 @@ static void checksums_are_alike(void **state) {
 }
 
 int main(int argc, char **argv) {
-    mspring_simd level = level_from_arguments(argc, argv);
-    kernels = mspringi_kernels_of(level);
-    if (kernels->level != level) {
-        print_error("the kernels of %s were not built\n", mspring_simd_name(level));
-        return 1;
-    }
+    kernels = level_kernels(argc, argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lattice_kernels),     cmocka_unit_test(chain_kernels),
         cmocka_unit_test(loose_kernels),       cmocka_unit_test(largest_sees_every_lane),

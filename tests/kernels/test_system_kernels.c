@@ -9,8 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "kernels/kernels.h"
-#include "level.h"
+#include "level_kernels.h"
 #include "support.h"
 
 static const mspringi_system_kernels *kernels, *scalar = &mspringi_kernels_scalar.system;
@@ -684,12 +683,7 @@ static void edges_in_double_precision(void **state) {
 }
 
 int main(int argc, char **argv) {
-    const mspring_simd level = level_from_arguments(argc, argv);
-    kernels = &mspringi_kernels_of(level)->system;
-    if (mspringi_kernels_of(level)->level != level) {
-        print_error("the kernels of %s were not built\n", mspring_simd_name(level));
-        return 1;
-    }
+    kernels = &level_kernels(argc, argv)->system;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(assembly),
         cmocka_unit_test(products),

@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "kernels/kernels.h"
-#include "level.h"
+#include "level_kernels.h"
 #include "support.h"
 
 static const mspringi_kernels *kernels;
@@ -259,12 +258,7 @@ static void pack_copies_blocks(void **state) {
 }
 
 int main(int argc, char **argv) {
-    mspring_simd level = level_from_arguments(argc, argv);
-    kernels = mspringi_kernels_of(level);
-    if (kernels->level != level) {
-        print_error("the kernels of %s were not built\n", mspring_simd_name(level));
-        return 1;
-    }
+    kernels = level_kernels(argc, argv);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(web_kernels),
         cmocka_unit_test(pack_copies_blocks),

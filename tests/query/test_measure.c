@@ -130,6 +130,33 @@ static void energies_and_momenta(void **state) {
     check_error(mspring_network_momentum(NULL, &alone, NULL, NULL), MSPRING_ERROR_ARGUMENT);
 }
 
+/// Both words of positions and velocities count, in whole networks and in components.
+static void moments_have_low_words(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    support_particle(builder, 1000.123456789, -3000.987654321, 3);
+    support_particle(builder, 1001.123456789, -3000.987654321, 3);
+    support_spring(builder, 0, 1, 100, 0);
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.flags |= MSPRING_NETWORK_PRECISE;
+    mspring_network *network = support_network(builder, &def);
+    mspring_component component = {.struct_size = sizeof component};
+    double py = 0;
+    check_ok(mspring_network_update_components(network, NULL, NULL));
+    check_ok(mspring_network_get_components(network, 0, 1, &component));
+    // A float has steps of 6e-5 m and 2e-4 m there; two words have 2e-11 m, a position of the host twice that.
+    check_near(component.x, 1000.623456789, 1e-9);
+    check_near(component.y, -3000.987654321, 1e-9);
+    support_steps(network, 1001, 1.0 / 1024);
+    const double fallen = 6.0 * (double)-9.8f * 1000.5 / 1024; // velocities are of half a substep ago
+    check_ok(mspring_network_momentum(network, NULL, &py, NULL));
+    check_ok(mspring_network_get_components(network, 0, 1, &component));
+    // A thousand sums of two words, of 2^-48 each; in one word the sum alone would be off by 2^-24.
+    check_near(py, fallen, 1e-10 * fabs(fallen));
+    assert_true(component.py == py);
+    mspring_network_destroy(network);
+}
+
 static void springs_tell_what_they_are_and_do(void **state) {
     moving *m = *state;
     float strains[1000], worst = 0;
@@ -511,6 +538,7 @@ int main(void) {
         MEASURE_TEST(springs_tell_what_they_are_and_do),
         MEASURE_TEST(bounds_hold_all_particles),
         MEASURE_TEST(bad_calls_are_refused),
+        cmocka_unit_test(moments_have_low_words),
         cmocka_unit_test(no_spring_no_strain),
         cmocka_unit_test(the_lowest_of_equal_strains_is_named),
         cmocka_unit_test(strains_do_not_depend_on_how_they_are_asked_for),

@@ -6,7 +6,7 @@
 
 #include "support.h"
 
-#include "contact/contacts.h"
+#include "features/contact/contacts.h"
 #include "solvers/implicit/implicit.h"
 
 #define PARTICLES 88u

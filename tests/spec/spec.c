@@ -212,10 +212,23 @@ typedef struct step {
 typedef struct substep {
     float h;                    ///< s
     float kick, gravity_kick;   ///< s, change of velocity per acceleration by springs and by gravity
-    float loss;                 ///< share of a velocity that global damping takes
+    float damping;              ///< share of a velocity that global damping takes
+    float loss;                 ///< the same with the dither of the substep
     float gravity_x, gravity_y; ///< change of velocity, m/s
     bool flushes;               ///< tiny speeds become 0
 } substep;
+
+// Velocities are scaled by 1 - d, with a d of up to 2^-19 that differs from substep to substep, so that roundings
+// average out. Four substeps have +, -, - and + the same d, so nothing is left of it; fewer at the end have none.
+// Precise networks do without, and those without gravity.
+static float dither(const spec_network *network, uint32_t number, uint32_t count) {
+    const uint32_t four = number / 4, fraction = (2 * four + 1) * 0x4f1bbcddu;
+    const float d = (float)(fraction >> 8) * 0x1p-43f;
+    if (network->is_precise || (network->gravity_x == 0.0f && network->gravity_y == 0.0f) || four == count / 4) {
+        return 0.0f;
+    }
+    return number % 4 == 0 || number % 4 == 3 ? d : -d;
+}
 
 // Velocities are half a substep old: v(t - h/2) becomes v(t + h/2). So the first kick of a step lasts (lag + h) /
 // 2, with lag the last substep before it, and 0 if velocities are of now. Damped and precise networks drop tiny
@@ -227,7 +240,8 @@ static substep substep_of(const spec_network *network, const step *all, uint32_t
     return (substep){.h = h,
                      .kick = gain_in(rate, time),
                      .gravity_kick = gravity_kick,
-                     .loss = loss_in(rate, time),
+                     .damping = loss_in(rate, time),
+                     .loss = loss_in(rate, time) + dither(network, number, all->count),
                      .gravity_x = network->gravity_x * gravity_kick + 0.0f, // never -0
                      .gravity_y = network->gravity_y * gravity_kick + 0.0f,
                      .flushes = (network->is_damped || network->is_precise) && number % 2 == 0};
@@ -302,11 +316,11 @@ static glide glide_of(const spec_network *network, const step *all) {
     const double h = (double)all->h, ax = (double)network->gravity_x, ay = (double)network->gravity_y;
     for (uint32_t i = 0; i < all->count; i++) {
         const substep now = substep_of(network, all, i);
-        keep -= (double)now.loss * keep;
-        gain += (double)now.kick - (double)now.loss * gain;
+        keep -= (double)now.damping * keep;
+        gain += (double)now.kick - (double)now.damping * gain;
         reach += keep * h;
         fall += gain * h;
-        gravity_gain += (double)now.gravity_kick - (double)now.loss * gravity_gain;
+        gravity_gain += (double)now.gravity_kick - (double)now.damping * gravity_gain;
         gravity_fall += gravity_gain * h;
     }
     return (glide){(float)keep,

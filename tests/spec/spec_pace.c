@@ -48,17 +48,13 @@ bool spec_changes_dt(const spec_network *network, double dt) {
     return network->dt > 0.0 && !(fabs(dt - network->dt) <= 1e-6 * network->dt);
 }
 
-// Largest rate at which the ends of a live spring move against each other, in its rest length, 1/s. Rest lengths
-// below the shortest at creation count as that.
+// Largest rate at which the ends of a live spring move against each other, in its rest length, 1/s.
 static double violence_of(const spec_network *network) {
-    const float shortest = isfinite(network->shortest) ? (float)network->shortest : 0.0f;
     float most = 0.0f; // square
     for (uint32_t i = 0; i < network->spring_count; i++) {
         const spec_spring *s = &network->springs[i];
         const spec_vector a = network->motions[s->a].velocity, b = network->motions[s->b].velocity;
-        const float vx = b.x - a.x, vy = b.y - a.y,
-                    rest_length = s->rest_length > 0.0f ? s->rest_length : SPEC_WELD;
-        const float length = rest_length > shortest ? rest_length : shortest;
+        const float vx = b.x - a.x, vy = b.y - a.y, length = s->rest_length > 0.0f ? s->rest_length : SPEC_WELD;
         const float square =
             length > SPEC_WELD ? (vx * vx + vy * vy) / (length * length) : 0.0f; // welds are linear
         most = !s->is_broken && square > most ? square : most;

@@ -13,7 +13,7 @@
 #include "recipe.h"
 #include "support.h"
 
-/// What mspring_network_stable_dt() may be below the border itself: its residuals (see SETTLED and TOLERANCE
+/// What mspring_network_stable_dt() may be below the border itself: its residuals (see lanczos.c and LIMIT_TOLERANCE
 /// there).
 #define SHARPNESS 3e-3
 

@@ -10,20 +10,6 @@
 
 #include "support.h"
 
-static mspring_id join(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float rest_length,
-                       uint32_t flags) {
-    mspring_spring_def def;
-    mspring_id id;
-    check_ok(mspring_spring_def_init(&def, sizeof def));
-    def.a = a;
-    def.b = b;
-    def.stiffness = stiffness;
-    def.rest_length = rest_length;
-    def.flags = flags;
-    check_ok(mspring_builder_add_spring(builder, &def, &id));
-    return id;
-}
-
 static uint32_t spring_count(const mspring_network *network) {
     return mspring_network_spring_count(network);
 }
@@ -40,7 +26,7 @@ static mspring_network *hanging(float strain, float stiffening, mspring_solver s
     mspring_builder *builder = support_builder();
     (void)support_pinned(builder, 0, 0, 1);
     (void)support_particle(builder, 0, strain > 0 ? -1 : 1, 1);
-    (void)join(builder, 0, 1, 100, 1, 0);
+    (void)support_join(builder, 0, 1, 100, 1, 0);
     mspring_id limit;
     check_ok(mspring_builder_add_strain_limits(builder, 0, 1, strain, stiffening, &limit));
     assert_int_equal(limit, 1);
@@ -110,7 +96,7 @@ static double drop_chain(uint64_t seed, float stiffening, double share) {
         (void)(i == 0 || (hangs_on_both && i == links) ? support_pinned(builder, i, 0, 1)
                                                        : support_particle(builder, i, 0, mass));
         if (i > 0)
-            (void)join(builder, i - 1, i, stiffness, 1, stiffening > 0 ? 0 : MSPRING_SPRING_PULL_ONLY);
+            (void)support_join(builder, i - 1, i, stiffness, 1, stiffening > 0 ? 0 : MSPRING_SPRING_PULL_ONLY);
     }
     if (stiffening > 0)
         check_ok(mspring_builder_add_strain_limits(builder, 0, links, strain, stiffening, NULL));
@@ -132,16 +118,15 @@ static double drop_chain(uint64_t seed, float stiffening, double share) {
 
 // Jerks are chaos, so each run has another highest one: that of one chain goes from 0.08 to 0.13 in substeps of 0.1
 // to 1 of the border, without a trend. Of two runs in short substeps the higher counts; those at the border, of 300
-// such chains, come to 1.35 of it at most. At the border of a linear motion, which counts one-way springs once, strains
-// are 10 to 1,000 times as large.
+// such chains, come to 1.35 of it at most. At the border of a linear motion, which counts one-way springs once,
+// strains are 10 to 1,000 times as large.
 static void jerks_at_the_stable_substep_gain_nothing(void **state) {
     (void)state;
     static const float stiffenings[] = {0, 0.5f, 3, 9, 30};
     for (size_t i = 0; i < COUNT_OF(stiffenings); i++)
-        for (uint64_t seed = 1; seed <= 8; seed++) {
+        for (uint64_t seed = 1; seed <= ROUNDS(8); seed++) {
             const double most = drop_chain(seed, stiffenings[i], 1);
-            const double fine =
-                fmax(drop_chain(seed, stiffenings[i], 0.2), drop_chain(seed, stiffenings[i], 0.3));
+            const double fine = fmax(drop_chain(seed, stiffenings[i], 0.2), drop_chain(seed, stiffenings[i], 0.3));
             if (getenv("LIMITS_REPORT"))
                 print_message("s = %g: most strain %g, in short substeps %g\n", (double)stiffenings[i], most, fine);
             assert_true(most < 1.5 * fine);
@@ -164,8 +149,9 @@ static void add_grid(mspring_builder *builder, int width, int height, float stif
             for (int d = 0; d < 4; d++) {
                 const int u = i + directions[d][0], v = j + directions[d][1];
                 if (u < width && v >= 0 && v < height)
-                    (void)join(builder, first + (mspring_id)(i * height + j), first + (mspring_id)(u * height + v),
-                               stiffness, MSPRING_REST_LENGTH_DISTANCE, 0);
+                    (void)support_join(builder, first + (mspring_id)(i * height + j),
+                                       first + (mspring_id)(u * height + v), stiffness,
+                                       MSPRING_REST_LENGTH_DISTANCE, 0);
             }
 }
 
@@ -176,20 +162,20 @@ static void add_shape(mspring_builder *builder, body of, float k) {
     for (int i = 0; of == CHAIN && i < 40; i++) {
         const mspring_id p = i ? support_particle(builder, i, 0.1 * (i % 2), 1) : support_pinned(builder, 0, 0, 1);
         if (i)
-            (void)join(builder, p - 1, p, k, MSPRING_REST_LENGTH_DISTANCE, 0);
+            (void)support_join(builder, p - 1, p, k, MSPRING_REST_LENGTH_DISTANCE, 0);
     }
     for (int i = 0; of == SMALL_TREES && i < 40; i++) {
         const mspring_id p = support_pinned(builder, 5 * i, 0, 1);
         for (mspring_id c = 1; c <= 3; c++) {
             (void)support_particle(builder, 5 * i + c, -1, 1);
-            (void)join(builder, c == 3 ? p + 1 : p, p + c, k, MSPRING_REST_LENGTH_DISTANCE, 0);
+            (void)support_join(builder, c == 3 ? p + 1 : p, p + c, k, MSPRING_REST_LENGTH_DISTANCE, 0);
         }
     }
     for (int i = 0; of == ROPES_ON_LATTICE && i < 30; i++) {
         mspring_id last = (mspring_id)(i % 30 * 8);
         for (int n = 1; n <= 9 + i % 4; n++) {
             const mspring_id p = support_particle(builder, i, -n, 1);
-            (void)join(builder, last, p, k, 1, 0);
+            (void)support_join(builder, last, p, k, 1, 0);
             last = p;
         }
     }
@@ -197,7 +183,7 @@ static void add_shape(mspring_builder *builder, body of, float k) {
         const double x = support_random_between(&seed, 0, 20), y = support_random_between(&seed, 0, 20);
         const mspring_id p = i % 20 ? support_particle(builder, x, y, 1) : support_pinned(builder, x, y, 1);
         for (mspring_id other = 1; other <= 3 && other * 7 <= p; other++)
-            (void)join(builder, p - other * 7, p, k, MSPRING_REST_LENGTH_DISTANCE, 0);
+            (void)support_join(builder, p - other * 7, p, k, MSPRING_REST_LENGTH_DISTANCE, 0);
     }
 }
 
@@ -309,7 +295,7 @@ static void contact_takes_both_for_one_edge(void **state) {
         for (int n = 0; n < 6; n++) {
             const mspring_id p = support_particle(builder, 0.5 + n, 4, 1);
             if (n)
-                (void)join(builder, p - 1, p, 4000, 1, 0);
+                (void)support_join(builder, p - 1, p, 4000, 1, 0);
         }
         if (i)
             check_ok(mspring_builder_add_strain_limits(builder, 0, (uint32_t)mspring_builder_spring_count(builder),
@@ -371,7 +357,7 @@ static void two_that_act_both_ways_are_refused(void **state) {
         (void)support_particle(builder, 0, 0, 1);
         (void)support_particle(builder, 1, 0, 1);
         for (int i = 0; i < 3; i++)
-            (void)join(builder, i % 2, 1 - i % 2, 100, 1, i == order ? MSPRING_SPRING_PULL_ONLY : 0);
+            (void)support_join(builder, i % 2, 1 - i % 2, 100, 1, i == order ? MSPRING_SPRING_PULL_ONLY : 0);
         check_error(mspring_network_create(builder, &def, &network), MSPRING_ERROR_DUPLICATE);
         check_contains(mspring_builder_error(builder), "both join particles 0 and 1");
         mspring_builder_destroy(builder);
@@ -384,8 +370,8 @@ static void bad_limits_are_refused(void **state) {
     mspring_spring_def def;
     for (int i = 0; i < 4; i++)
         (void)support_particle(builder, i, 0, 1);
-    (void)join(builder, 0, 1, 100, 1, 0);
-    (void)join(builder, 1, 2, 100, 0, 0);
+    (void)support_join(builder, 0, 1, 100, 1, 0);
+    (void)support_join(builder, 1, 2, 100, 0, 0);
     check_ok(mspring_spring_def_init(&def, sizeof def));
     def.a = 2;
     def.b = 3;

@@ -185,6 +185,20 @@ mspring_network *bodies_network(bodies *b, const mspring_network_def *def) {
     return network;
 }
 
+uint32_t bodies_heap(bodies *b, int blocks, double y) {
+    uint32_t last = bodies_add(b, &(bodies_lattice){.width = 24, .height = 1, .spacing = 1, .f = 0.1});
+    for (int i = 0; i < blocks; i++)
+        last = bodies_add(b, &(bodies_lattice){.width = 4,
+                                               .height = 2 + (uint32_t)(i % 2),
+                                               .x = -6 + 5 * (i % 3),
+                                               .y = y + 4 * (i / 3),
+                                               .angle = 0.3 * i,
+                                               .spacing = 1,
+                                               .mass = 4,
+                                               .f = 0.3});
+    return last;
+}
+
 mspring_contact_def bodies_contact(double thickness, float friction, float restitution) {
     mspring_contact_def def;
     check_ok(mspring_contact_def_init(&def, sizeof def));

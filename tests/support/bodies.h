@@ -52,6 +52,9 @@ bodies *bodies_two(uint64_t trial, double fastest, double h, double *speed);
 mspring_network *bodies_network(bodies *b, const mspring_network_def *def);
 void bodies_free(bodies *b);
 
+/// Blocks that fall onto each other and onto a rope, from y on. Returns the first particle of the last one.
+uint32_t bodies_heap(bodies *b, int blocks, double y);
+
 /// Contact with these numbers and the defaults of the rest.
 mspring_contact_def bodies_contact(double thickness, float friction, float restitution);
 mspring_result bodies_touch(mspring_network *network, double thickness, float friction, float restitution);

@@ -248,6 +248,23 @@ mspring_network *recipe_solved(const recipe *made, const mspring_network_def *de
     return network;
 }
 
+recipe recipe_rows(uint64_t seed, uint32_t spring_flags, double least, double most) {
+    const bool relative = spring_flags & MSPRING_SPRING_RELATIVE;
+    const double scale = relative ? 0.01 : 1;
+    const recipe_stuff stuff = {.mass = {1, 2},
+                                .stiffness = {relative ? 0.1 : 500, relative ? 0.2 : 1000},
+                                .damping = {scale * least, scale * most},
+                                .spring_flags = spring_flags,
+                                .holes = 0.1};
+    recipe made = {0};
+    recipe_lattice(&made, 37, 9, 0, 0, 1, &stuff, &seed);
+    const mspring_id end = recipe_particle(&made, 60, 20, 1, MSPRING_PARTICLE_PINNED);
+    recipe_rope(&made, 2, end, 30, &stuff, &seed);
+    recipe_random_springs(&made, 12, &stuff, &seed);
+    recipe_disturb(&made, 0.05, 0.5, &seed);
+    return made;
+}
+
 recipe recipe_mixed(uint64_t seed) {
     const recipe_stuff relative = {.mass = {1, 2},
                                    .stiffness = {0.1, 0.2},

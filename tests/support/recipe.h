@@ -57,6 +57,10 @@ void recipe_disturb(recipe *made, double distance, double speed, uint64_t *seed)
 /// Rows of every kind, relative springs and others, dampers, pins and a loose particle.
 recipe recipe_mixed(uint64_t seed);
 
+/// A lattice with holes, a rope to a pin, and springs at random. Damping from `least` to `most`, N s/m; relative
+/// springs have a hundredth of these numbers.
+recipe recipe_rows(uint64_t seed, uint32_t spring_flags, double least, double most);
+
 /// Put particles and springs into a random order, and half of the springs' ends the other way round.
 /// @param new_ids  [particle_count], receives where each particle went; may be NULL
 void recipe_shuffle(recipe *made, uint64_t *seed, mspring_id *new_ids);

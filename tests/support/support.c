@@ -14,6 +14,10 @@
 #include <malloc.h>
 #endif
 
+bool support_is_quick(void) {
+    return getenv("MASSSPRING_TEST_QUICK") != NULL;
+}
+
 void support_set_variable(const char *name, const char *value) {
 #if defined(_WIN32)
     assert_int_equal(_putenv_s(name, value != NULL ? value : ""), 0);
@@ -111,6 +115,20 @@ mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, 
     def.b = b;
     def.stiffness = stiffness;
     def.damping = damping;
+    check_ok(mspring_builder_add_spring(builder, &def, &id));
+    return id;
+}
+
+mspring_id support_join(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float rest_length,
+                        uint32_t flags) {
+    mspring_spring_def def;
+    mspring_id id = MSPRING_NONE;
+    check_ok(mspring_spring_def_init(&def, sizeof def));
+    def.a = a;
+    def.b = b;
+    def.stiffness = stiffness;
+    def.rest_length = rest_length;
+    def.flags = flags;
     check_ok(mspring_builder_add_spring(builder, &def, &id));
     return id;
 }

@@ -28,6 +28,12 @@
 #define ROUNDS(count) (count)
 #endif
 
+/// Whether a test is to sample what takes long: in the sets that each change and each push is judged by.
+bool support_is_quick(void);
+
+/// A number of rounds, of which such a test makes a quarter.
+#define SAMPLE(count) (support_is_quick() ? ((count) + 3) / 4 : (count))
+
 /// Whether rounds are few, so that a test may leave out what repeats itself.
 #define ROUNDS_ARE_FEW (ROUNDS(5) < 5)
 
@@ -79,6 +85,8 @@ mspring_id support_pinned(mspring_builder *builder, double x, double y, float ma
 
 /// Add a spring whose rest length is the distance of its ends.
 mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float damping);
+mspring_id support_join(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float rest_length,
+                        uint32_t flags);
 
 /// Defaults with this gravity along y and this number of substeps, and the guard that rejects steps which would
 /// grow.

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "analysis/settle/equilibrium.h"
+#include "base/hash.h"
 
 /// Fraction of the decrease predicted by the slope that a step must reach (Armijo 1966).
 #define MIN_DECREASE 1e-4
@@ -126,13 +127,11 @@ static double iterate(newton *n) {
     return -1.0;
 }
 
-// Perturb all particles, the same way on every machine: SplitMix64 of their numbers (Steele et al. 2014).
+// Perturb all particles, the same way on every machine.
 static void perturb(newton *n) {
     mspringi_statics *statics = n->statics;
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
-        uint64_t bits = ((uint64_t)n->perturbation_count << 32 | p) * 0x9e3779b97f4a7c15u;
-        bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9u;
-        bits = (bits ^ bits >> 27) * 0x94d049bb133111ebu;
+        uint64_t bits = mspringi_mix((uint64_t)n->perturbation_count << 32 | p);
         bits ^= bits >> 31;
         if (statics->fixed[p])
             continue;

@@ -5,10 +5,10 @@
 #include "analysis/settle/equilibrium.h"
 #include "base/cpu.h"
 #include "base/union_find.h"
+#include "features/one_way/one_way.h"
 #include "step/origin.h"
 #include "store/changed.h"
 #include "store/network.h"
-#include "store/one_way.h"
 #include "store/springs.h"
 
 /* ----------------------------------------------------------------------------------------------------- filling */

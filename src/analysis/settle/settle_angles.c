@@ -9,7 +9,7 @@
 /// times its stiffness to the energy. So it is three blocks between pairs of its particles, which have edges of
 /// their own in the matrix. Blocks are symmetric, so the antisymmetric part of g_a g_c' is omitted. It scales with
 /// the square of the angle's sine: strongly bent beams take more iterations. Forces and energies are exact.
-#include "store/angles.h"
+#include "features/angles/angles.h"
 
 #include <math.h>
 

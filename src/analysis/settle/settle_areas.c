@@ -3,11 +3,12 @@
 /// An area adds stiffness along the springs of its outline, as in implicit substeps
 /// (solvers/implicit/implicit_areas.c). That is an upper bound, so Newton's step still descends, and the matrix
 /// keeps the pattern of the springs. Forces and energies are exact.
-#include "store/areas.h"
+#include "features/areas/areas.h"
 
 #include <math.h>
 
 #include "analysis/settle/equilibrium.h"
+#include "base/shoelace.h"
 #include "store/springs.h"
 
 // Number the springs with stiffness.
@@ -74,14 +75,12 @@ static point position_of(const mspringi_statics *s, const mspringi_area *area, u
 }
 
 static double size_of(const mspringi_statics *s, const mspringi_area *area) {
-    double twice = 0.0;
-    point before = position_of(s, area, 1);
-    for (uint32_t i = 2; i < area->count; ++i) {
+    mspringi_shoelace polygon = {0};
+    for (uint32_t i = 1; i < area->count; ++i) {
         const point here = position_of(s, area, i);
-        twice += before.x * here.y - before.y * here.x;
-        before = here;
+        mspringi_shoelace_add(&polygon, here.x, here.y);
     }
-    return 0.5 * twice;
+    return 0.5 * polygon.twice;
 }
 
 // Displacement on the path, relative to the first corner.

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "features/areas/areas.h"
 #include "kernels/spring_law.h"
-#include "store/areas.h"
 #include "store/springs.h"
 
 /// Substep, relative to the longest one that is stable in any shape.

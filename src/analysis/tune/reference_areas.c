@@ -1,8 +1,9 @@
-/// Areas and angle springs of the reference: the law of store/areas.h and angles.h in double precision.
+/// Areas and angle springs of the reference: the law of features/areas/areas.h and angles.h in double precision.
 #include <math.h>
 
 #include "analysis/tune/reference.h"
-#include "store/angles.h"
+#include "base/shoelace.h"
+#include "features/angles/angles.h"
 
 typedef struct point {
     double x, y;
@@ -23,19 +24,17 @@ static double square_of(point p) {
 }
 
 static double size_of(const mspringi_reference *r, const mspringi_area *area) {
-    point before = vector_between(r, area, 0, 1);
-    double twice = 0.0;
+    mspringi_shoelace polygon = {0};
     if (area->is_angle) {
-        const point next = vector_between(r, area, 1, 2);
+        const point before = vector_between(r, area, 0, 1), next = vector_between(r, area, 1, 2);
         const double u[2] = {before.x, before.y}, w[2] = {next.x, next.y};
         return mspringi_angle_size_by(area, u, w);
     }
-    for (uint32_t i = 2; i < area->count; ++i) {
+    for (uint32_t i = 1; i < area->count; ++i) {
         const point here = vector_between(r, area, 0, i);
-        twice += before.x * here.y - before.y * here.x;
-        before = here;
+        mspringi_shoelace_add(&polygon, here.x, here.y);
     }
-    return 0.5 * twice;
+    return 0.5 * polygon.twice;
 }
 
 // An arm rotated left by 90 degrees, divided by its squared length.

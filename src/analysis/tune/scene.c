@@ -6,8 +6,8 @@
 #include <math.h>
 
 #include "analysis/tune/tuning.h"
-#include "sleep/sleep.h"
-#include "stability/lanczos.h"
+#include "base/hash.h"
+#include "features/sleep/sleep.h"
 #include "store/changed.h"
 #include "store/springs.h"
 
@@ -25,6 +25,11 @@ typedef enum run_outcome { WHOLE, REJECTED, CUT_SHORT } run_outcome;
 
 /* ---------------------------------------------------------------------------------------------------- one start */
 
+// Pseudo-random number from -1 to 1 for each n.
+static double noise_at(size_t n) {
+    return (double)(mspringi_mix((uint64_t)n + 1) >> 11) * 0x1p-52 - 1.0;
+}
+
 static void perturb(mspring_network *network, uint32_t start, double most) {
     const size_t particles = network->topology.particle_count;
     for (uint32_t p = 0; p < particles; ++p) {
@@ -32,8 +37,8 @@ static void perturb(mspring_network *network, uint32_t start, double most) {
         if (!(network->inverse_mass[slot] > 0.0f))
             continue;
         const size_t number = 2 * (start * particles + p);
-        network->state.vx[slot] += (float)(most * mspringi_noise(number));
-        network->state.vy[slot] += (float)(most * mspringi_noise(number + 1));
+        network->state.vx[slot] += (float)(most * noise_at(number));
+        network->state.vy[slot] += (float)(most * noise_at(number + 1));
     }
     mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
 }

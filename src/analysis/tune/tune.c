@@ -4,9 +4,10 @@
 #include "analysis/tune/reference.h"
 #include "analysis/tune/tuning.h"
 #include "base/clock.h"
-#include "sleep/sleep.h"
+#include "features/breaking/strain.h"
+#include "features/ramps/ramps.h"
+#include "features/sleep/sleep.h"
 #include "step/origin.h"
-#include "step/strain.h"
 #include "store/changed.h"
 
 #define MAX_SETTINGS 1000
@@ -184,7 +185,8 @@ static mspring_result make_base(mspringi_tuning *tuning) {
         return result;
     mspringi_tune_disable_fallbacks(base);
     mspringi_tune_make_unbreakable(base);
-    base->ramps.count = 0;
+    if (base->ramps)
+        base->ramps->count = 0;
     result = end_lag(base);
     if (result != MSPRING_OK) {
         tuning->network->message = base->message;

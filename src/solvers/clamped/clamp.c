@@ -20,8 +20,8 @@
 #include <string.h>
 
 #include "base/decay.h"
-#include "contact/floor.h"
-#include "sleep/sleep.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
 #include "stability/stability_limit.h"
 

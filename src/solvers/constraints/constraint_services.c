@@ -6,6 +6,7 @@
 
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
+#include "store/elements.h"
 
 /// Solutions of a substep that may release constraints of a kind or let them slide; later ones only add constraints
 /// or make them stick. And the change of a bound, as a part of it, that is worth another solution.
@@ -272,7 +273,7 @@ void mspringi_elements_add_terms(mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_constraints *all = &network->constraints;
     if (!all->has_elements) {
-        mspringi_angles_list_constraints(network);
+        mspringi_elements_list_constraints(network);
         all->element_count = all->count;
         all->element_entry_count = all->entry_count;
         all->has_elements = true;

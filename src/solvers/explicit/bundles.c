@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "contact/floor.h"
-#include "sleep/sleep.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
 #include "solvers/explicit/strip.h"
 #include "store/precise.h"

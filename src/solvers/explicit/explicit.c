@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "contact/floor.h"
-#include "sleep/sleep.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
 #include "solvers/explicit/bundles.h"
 #include "solvers/explicit/flush.h"
 #include "solvers/explicit/halo.h"
@@ -16,7 +16,8 @@
 #include "store/record_sharing.h"
 #include "tasks/team.h"
 
-/// Cache for the strips of a pass: the second level, or the third where the second holds FEW_SUBSTEPS at most.
+/// Cache for the strips of a pass: the second level, or the third where the second holds FEW_SUBSTEPS at most. Of
+/// half or twice the first, and four times the second, steps are as long (bench/ATTEMPTS.md, Caches).
 #define NEAR_CACHE_BYTES ((size_t)1 << 20)
 #define FAR_CACHE_BYTES ((size_t)4 << 20)
 #define FEW_SUBSTEPS 4u
@@ -40,25 +41,27 @@ typedef struct job {
 
 /* ---------------------------------------------------------------------------------------------- the wavefront */
 
-// Substeps whose strips fit so much cache, at least one.
-static uint32_t depth_within(const mspring_network *network, size_t cache_bytes) {
-    const mspringi_topology *topology = &network->topology;
-    const uint32_t parts = network->parts;
-    const size_t floats_per_slot = mspringi_state_arrays(network) + 1 +
-                                   (size_t)MSPRINGI_DIRECTIONS * (parts - 1); // state, inverse mass, springs
-    const uint64_t slots = (uint64_t)topology->lattice_blocks * MSPRINGI_WIDTH;
-    const uint64_t rows =
-        cache_bytes / (floats_per_slot * sizeof(float)) * (uint64_t)topology->lattice_rows / slots;
-    const uint64_t strips = rows * topology->wavefront_strips / topology->wavefront_rows;
-    const uint64_t depth = strips > topology->skew ? (strips - 1) / topology->skew : 1;
-    return (uint32_t)(depth < MSPRINGI_DEEPEST_PASS ? depth : MSPRINGI_DEEPEST_PASS);
+// Substeps of a pass over strips of so many bytes together, at least one: those whose strips fit the cache. A pass
+// keeps `skew` strips for each, and `more`.
+static uint32_t fit_depth(uint64_t bytes, uint32_t strips, uint32_t skew, uint32_t more) {
+    const uint64_t caches[] = {NEAR_CACHE_BYTES, FAR_CACHE_BYTES};
+    uint64_t depth = 0;
+    for (size_t i = 0; i < 2 && depth <= FEW_SUBSTEPS; ++i) {
+        const uint64_t fit = caches[i] * strips / (bytes + 1);
+        depth = fit > more ? (fit - more) / skew : 0;
+    }
+    return depth < 1 ? 1 : depth < MSPRINGI_DEEPEST_PASS ? (uint32_t)depth : MSPRINGI_DEEPEST_PASS;
 }
 
 uint32_t mspringi_explicit_depth(const mspring_network *network) {
-    if (network->topology.wavefront_rows == 0)
+    const mspringi_topology *t = &network->topology;
+    if (t->wavefront_rows == 0)
         return 1;
-    const uint32_t near_depth = depth_within(network, NEAR_CACHE_BYTES);
-    return near_depth > FEW_SUBSTEPS ? near_depth : depth_within(network, FAR_CACHE_BYTES);
+    const uint64_t floats_per_slot = mspringi_state_arrays(network) + 1 +
+                                     MSPRINGI_DIRECTIONS * (network->parts - 1); // state, inverse mass, springs
+    const uint64_t bytes_of_lattices =
+        (uint64_t)t->lattice_blocks * MSPRINGI_WIDTH * floats_per_slot * sizeof(float);
+    return fit_depth(bytes_of_lattices * t->wavefront_rows / t->lattice_rows, t->wavefront_strips, t->skew, 1);
 }
 
 uint32_t mspringi_explicit_workers(const mspring_network *network) {
@@ -271,19 +274,17 @@ static const mspringi_strip *find_irregular_strip(const mspringi_topology *t) {
     return NULL;
 }
 
-// Substeps, at least one, whose tiers fit the cache: a pass keeps two more tiers than substeps in it.
-static uint32_t irregular_depth_within(const job *wavefront, size_t cache_bytes) {
-    const mspringi_topology *t = &wavefront->network->topology;
-    const uint32_t first = t->spans[t->rows[wavefront->irregular->first_row].first_span].first_record;
+// A pass keeps two more tiers than substeps in the cache.
+static uint32_t irregular_depth(const mspring_network *network, const mspringi_strip *irregular) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t first = t->spans[t->rows[irregular->first_row].first_span].first_record;
     const uint32_t groups = t->tier_blocks[t->tier_count];
     const uint64_t slice_columns =
         t->irregular.first_slice_column[first + groups] - t->irregular.first_slice_column[first];
-    const uint64_t parts = wavefront->network->parts + 1; // and the neighbour
-    const uint64_t floats =
-        slice_columns * parts + (uint64_t)groups * (mspringi_state_arrays(wavefront->network) + 1 +
-                                                    2 * 4); // state, inverse mass, packed twice
-    const uint64_t tiers = cache_bytes * t->tier_count / (floats * MSPRINGI_WIDTH * sizeof(float) + 1);
-    return tiers < 3 ? 1 : tiers - 2 < MSPRINGI_DEEPEST_PASS ? (uint32_t)tiers - 2 : MSPRINGI_DEEPEST_PASS;
+    const uint64_t parts = network->parts + 1; // and the neighbour
+    const uint64_t floats = slice_columns * parts + (uint64_t)groups * (mspringi_state_arrays(network) + 1 +
+                                                                        2 * 4); // state, inverse mass, packed twice
+    return fit_depth(floats * MSPRINGI_WIDTH * sizeof(float), t->tier_count, 1, 2);
 }
 
 // Sweep the irregular row in tiers for several substeps, if the wavefront has work for all workers. (Zen 4, shared
@@ -300,9 +301,7 @@ static bool sweep_tiers(const mspring_network *network, float h, mspringi_field 
                      .count = count,
                      .irregular = irregular,
                      .all_extrema = all_extrema};
-    const uint32_t near_depth = irregular_depth_within(&wavefront, NEAR_CACHE_BYTES);
-    const uint32_t depth =
-        near_depth > FEW_SUBSTEPS ? near_depth : irregular_depth_within(&wavefront, FAR_CACHE_BYTES);
+    const uint32_t depth = irregular_depth(network, irregular);
     wavefront.partition = mspringi_partition_make(network, irregular, count, depth);
     if (depth == 1 || wavefront.partition.workers < mspringi_tasks_concurrency(network->tasks))
         return false;

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "solvers/explicit/flush.h"
 #include "stability/guard.h"
 #include "store/added_springs.h"

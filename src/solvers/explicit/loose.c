@@ -1,7 +1,8 @@
 /// Particles without springs: all substeps at once, or one by one.
 #include "solvers/explicit/loose.h"
 
-#include "contact/floor.h"
+#include "features/contact/floor.h"
+#include "features/hooks/hooks.h"
 #include "solvers/explicit/strip.h"
 
 // Motion of particles without springs in substeps first to end - 1 of those that are taken now. (Substep by substep
@@ -15,11 +16,11 @@ static mspringi_free_motion plan_free_motion(const mspring_network *network, con
     double gravity_gain = 0.0, gravity_fall = 0.0;
     for (uint32_t i = first; i < end; ++i) {
         mspringi_sweep_set_substep(network, &s, i);
-        keep -= (double)s.loss * keep;
-        gain += (double)s.kick - (double)s.loss * gain;
+        keep -= (double)s.damping_loss * keep;
+        gain += (double)s.kick - (double)s.damping_loss * gain;
         reach += keep * h;
         fall += gain * h;
-        gravity_gain += (double)s.gravity_kick - (double)s.loss * gravity_gain;
+        gravity_gain += (double)s.gravity_kick - (double)s.damping_loss * gravity_gain;
         gravity_fall += gravity_gain * h;
     }
     return (mspringi_free_motion){.keep = (float)keep,
@@ -53,8 +54,8 @@ static uint32_t end_of_chunk(const mspring_network *network, const mspringi_stri
 static bool may_be_cut(const mspring_network *network) {
     if (network->groups.count > 0)
         return true;
-    for (size_t i = 0; i < network->hook_count; ++i)
-        if (network->hooks[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
+        if (network->hooks->list[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
             return true;
     return false;
 }

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_PARTIAL_SWEEP_H
 #define MSPRINGI_PARTIAL_SWEEP_H
 
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 #include "solvers/explicit/strip.h"
 
 /// How far a row has been gone through.

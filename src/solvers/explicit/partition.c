@@ -1,7 +1,7 @@
 /// Equal shares.
 #include "solvers/explicit/partition.h"
 
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 #include "solvers/explicit/halo.h"
 
 /// Substeps of a step times springs from which more than one worker is worth it, and those of a pass: workers meet

@@ -3,7 +3,7 @@
 /// strip.c, and so are the bits.
 #include "solvers/explicit/small_network.h"
 
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "solvers/explicit/explicit.h"
 #include "solvers/explicit/strip.h"
 #include "store/precise.h"

@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "base/decay.h"
-#include "contact/floor.h"
+#include "base/dither.h"
+#include "features/contact/floor.h"
 #include "solvers/explicit/flush.h"
 #include "solvers/explicit/halo.h"
 #include "solvers/explicit/partial_sweep.h"
@@ -58,13 +59,16 @@ void mspringi_sweep_set_substep(const mspring_network *network, mspringi_sweep *
     if (time != sweep->time || full_time != sweep->gravity_time) {
         sweep->gravity_time = full_time;
         sweep->time = time;
-        sweep->loss = mspringi_loss(settings->global_damping, time);
+        sweep->damping_loss = mspringi_loss(settings->global_damping, time);
         sweep->kick = mspringi_gain(settings->global_damping, time);
         sweep->gravity_kick = mspringi_gain(settings->global_damping, full_time);
         // Never -0: what is added to +0 then does not depend on the sign of a force that is 0.
         sweep->gravity_h_x = settings->gravity_x * sweep->gravity_kick + 0.0f;
         sweep->gravity_h_y = settings->gravity_y * sweep->gravity_kick + 0.0f;
     }
+    sweep->loss = sweep->damping_loss;
+    if (!network->is_precise && (settings->gravity_x != 0.0f || settings->gravity_y != 0.0f))
+        sweep->loss += mspringi_dither(network->first_substep + i, network->step_substeps);
     sweep->flushes = (network->first_substep + i) % MSPRINGI_FLUSH_PERIOD == 0;
 }
 

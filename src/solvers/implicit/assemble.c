@@ -6,8 +6,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "features/sleep/sleep.h"
 #include "kernels/spring_law.h"
-#include "sleep/sleep.h"
+#include "store/elements.h"
 #include "store/springs.h"
 
 /* ----------------------------------------------------------------------------------------------- matrix rows */
@@ -232,10 +233,10 @@ void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_m
     assemble_panels(network, member);
     clear_others(network, slots);
     mspringi_team_barrier(member);
-    if (network->topology.irregular_count > 0 || network->areas.count > 0) {
+    if (network->topology.irregular_count > 0 || mspringi_elements_are_used(network)) {
         if (member->index == 0) {
             assemble_irregular(network);
-            mspringi_areas_add_terms(network);
+            mspringi_elements_stiffen(network);
             mspringi_elements_add_terms(substep->network);
         }
         mspringi_team_barrier(member);

@@ -10,7 +10,7 @@
 /// Colliders and pins at rest do no work. Moving ones do the work of their constraints. Push-out from a collider is
 /// work, too: an impulse times its way. (As long as that was a gain, bodies that landed on a collider took 12 times
 /// as long.) Between bodies push-out is a gain: one in a press had 0.4 % more.
-#include "contact/contacts.h"
+#include "features/contact/contacts.h"
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"

@@ -5,10 +5,11 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/floor.h"
-#include "sleep/sleep.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
+#include "store/elements.h"
 #include "store/springs.h"
 
 typedef mspringi_budget budget_of;
@@ -245,7 +246,7 @@ void mspringi_budget_measure(measuring *all) {
         return;
     add_springs(all);
     mspringi_one_way_correct_energy(all);
-    mspringi_areas_add_energy(network);
+    mspringi_elements_add_energy(network);
 }
 
 /* -------------------------------------------------------------------------------------------- work of pins */

@@ -5,9 +5,10 @@
 #include <string.h>
 
 #include "base/decay.h"
-#include "contact/floor.h"
-#include "sleep/sleep.h"
+#include "features/contact/floor.h"
+#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
+#include "store/feature.h"
 
 /// Excess of elastic energy that is tolerated, as a share: rounding of solutions in single precision.
 #define TOLERATED 1e-6
@@ -120,16 +121,15 @@ static void count_edits(const mspring_network *network, uint64_t *to) {
     memcpy(to, counts, sizeof counts);
 }
 
-// True if elastic energy is still that after the last substep. False if the host may write to the state, if rest
-// lengths or stiffnesses follow from the time, or if relative springs are of another substep.
+// True if elastic energy is still that after the last substep: no host may have written, and no spring varies.
 static bool knows_elastic(const mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     uint64_t now[MSPRINGI_BUDGET_EDITS];
     count_edits(network, now);
-    return budget->knows_elastic && !network->is_open && network->ramps.count == 0 &&
-           !network->actuators.are_pending && network->areas.hinge_count == 0 && !network->one_way.side &&
-           budget->relative_h == network->relative_h && budget->origin_x == network->origin_x &&
-           budget->origin_y == network->origin_y && memcmp(now, budget->seen, sizeof now) == 0;
+    return budget->knows_elastic && !network->is_open && !mspringi_features_vary(network) &&
+           network->areas.hinge_count == 0 && budget->relative_h == network->relative_h &&
+           budget->origin_x == network->origin_x && budget->origin_y == network->origin_y &&
+           memcmp(now, budget->seen, sizeof now) == 0;
 }
 
 void mspringi_budget_begin(mspring_network *network) {

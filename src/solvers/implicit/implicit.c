@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 
 #define DEFAULT_ITERATIONS 8
 

@@ -3,13 +3,14 @@
 /// One is a constraint with the gradient of the angle where the particles are predicted, the stiffness k + c
 /// damping_rate, and the torque there. So there is no pair of particles that the springs' pattern would lack, and a
 /// body turns as freely as it does.
-#include "store/angles.h"
+#include "features/angles/angles.h"
 
 #include <math.h>
 
-#include "sleep/sleep.h"
+#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
+#include "store/elements.h"
 
 // A sleeper is swept by the direct solver only, where it is as heavy as a pinned particle.
 static bool sleeps(const mspring_network *network, const mspringi_corner *corners) {
@@ -55,10 +56,17 @@ static void list_angle(mspring_network *network, uint32_t number) {
     mspringi_constraint_add_entry(all, corners[2].slot, w.x, w.y);
 }
 
-void mspringi_angles_list_constraints(mspring_network *network) {
-    for (size_t i = 0; i < network->areas.count && network->areas.hinge_count > 0; ++i) {
+static bool is_used(const mspring_network *network) {
+    return network->areas.hinge_count > 0;
+}
+
+// Energies count with those of areas.
+static void list_constraints(mspring_network *network) {
+    for (size_t i = 0; i < network->areas.count; ++i) {
         const mspringi_area *area = &network->areas.list[i];
         if (area->is_angle && area->is_ringed && !area->is_open)
             list_angle(network, (uint32_t)i);
     }
 }
+
+const mspringi_element_ops mspringi_element_angles = {.is_used = is_used, .list_constraints = list_constraints};

@@ -6,13 +6,15 @@
 /// all |G_k|; and that is it, where all of the area swells alike. Around a circle, or a rectangle, each G_k is
 /// along its side. So the sum is that of springs along the sides, which the matrix has: they get stiffer in it. The
 /// force is the area's own, where the particles are predicted.
-#include "store/areas.h"
+#include "features/areas/areas.h"
 
 #include <math.h>
 
-#include "sleep/sleep.h"
+#include "base/shoelace.h"
+#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
+#include "store/elements.h"
 
 /// A polygon where its corners are predicted, from its first corner on.
 typedef struct polygon {
@@ -37,18 +39,16 @@ static double reach_of(const mspringi_implicit *n, const polygon *p, uint32_t si
 
 static polygon look(const mspring_network *network, const mspringi_implicit *n, const mspringi_area *area) {
     polygon p = {.area = area, .corners = network->areas.corners + area->first};
-    double before_x = 0.0, before_y = 0.0, twice = 0.0;
+    mspringi_shoelace shape = {0};
     p.x = n->x[p.corners[0].slot];
     p.y = n->y[p.corners[0].slot];
     for (uint32_t i = 1; i < area->count; ++i) {
         const double x = n->x[p.corners[i].slot] - p.x, y = n->y[p.corners[i].slot] - p.y;
-        twice += before_x * y - before_y * x;
+        mspringi_shoelace_add(&shape, x, y);
         p.middle_x += x / (double)area->count;
         p.middle_y += y / (double)area->count;
-        before_x = x;
-        before_y = y;
     }
-    p.size = 0.5 * twice;
+    p.size = 0.5 * shape.twice;
     for (uint32_t side = 0; side < area->count; ++side)
         p.all += reach_of(n, &p, side);
     return p;
@@ -93,7 +93,7 @@ static bool acts(const mspring_network *network, const mspringi_implicit *n, con
            (n->is_direct || !mspringi_slot_is_asleep(network, network->areas.corners[area->first].slot));
 }
 
-void mspringi_areas_add_terms(const mspring_network *network) {
+static void add_terms(const mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     for (size_t i = 0; i < network->areas.count; ++i) {
         const mspringi_area *area = &network->areas.list[i];
@@ -114,7 +114,7 @@ static double energy_above_0(const mspring_network *network, const mspringi_area
     return mspringi_area_energy(area, mspringi_area_size(network, area)) + lowest * fill * area->rest_area;
 }
 
-void mspringi_areas_add_energy(const mspring_network *network) {
+static void add_energy(const mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     for (size_t i = 0; i < network->areas.count; ++i) {
         const mspringi_area *area = &network->areas.list[i];
@@ -125,3 +125,10 @@ void mspringi_areas_add_energy(const mspring_network *network) {
         n->budget.components[number].length += (double)area->stiffness * area->rest_area;
     }
 }
+
+static bool is_used(const mspring_network *network) {
+    return network->areas.count > 0;
+}
+
+const mspringi_element_ops mspringi_element_areas = {
+    .is_used = is_used, .add_terms = add_terms, .add_energy = add_energy};

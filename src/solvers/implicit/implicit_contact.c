@@ -1,11 +1,11 @@
 /// Contact between bodies in the linear system of an implicit substep: an active-set method.
 ///
-/// contact/constraints.c makes the constraints, with normals and weights of the start of the substep. Where the gap
-/// would close, a normal spring keeps it open. A tangential spring acts within the friction cone. These springs
-/// join two bodies. So they enter products with the matrix, or the solution of its factor, and the diagonal blocks.
-/// Solving again finds the active set: constraints that pull are released. The springs are about as stiff as the
-/// network at the constraint, so that few iterations find them; both give way about equally. Impulses after the
-/// substep correct larger overlaps.
+/// features/contact/constraints.c makes the constraints, with normals and weights of the start of the substep.
+/// Where the gap would close, a normal spring keeps it open. A tangential spring acts within the friction cone.
+/// These springs join two bodies. So they enter products with the matrix, or the solution of its factor, and the
+/// diagonal blocks. Solving again finds the active set: constraints that pull are released. The springs are about
+/// as stiff as the network at the constraint, so that few iterations find them; both give way about equally.
+/// Impulses after the substep correct larger overlaps.
 ///
 /// A particle without springs is no unknown of the system. A constraint with one gives way like a spring and a mass
 /// in series.
@@ -15,7 +15,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "contact/contacts.h"
+#include "features/contact/contacts.h"
 #include "solvers/implicit/implicit_terms.h"
 
 /// Stiffness of a constraint, in units of the network's stiffness and inertia there.

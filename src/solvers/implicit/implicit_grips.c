@@ -10,9 +10,10 @@
 
 #include <math.h>
 
-#include "contact/grips.h"
+#include "features/grips/grips.h"
 
-// True if a grip is in the system. Particles without springs have no equation there; see contact/grip_stage.c.
+// True if a grip is in the system. Particles without springs have no equation there; see
+// features/grips/grip_stage.c.
 static bool is_held(const mspring_network *network, const mspringi_grip *grip, uint32_t *slot) {
     return mspringi_grip_is_active(network, grip, slot) &&
            !network->running->ops->is_isolated(network, network->running->object, *slot);
@@ -20,7 +21,7 @@ static bool is_held(const mspring_network *network, const mspringi_grip *grip, u
 
 // Target at the end of a substep, or of an interval.
 static mspringi_grip_target aim_of(const mspring_network *network, const mspringi_grip *grip, float h) {
-    const mspringi_grips *grips = &network->grips;
+    const mspringi_grips *grips = network->grips;
     const double passed = grips->passed + (double)h / (double)grips->h;
     return mspringi_grip_target_at(network, grip, grips->begin + passed * grips->share);
 }
@@ -40,7 +41,7 @@ static void predict_force(const mspring_network *network, mspringi_grip *grip, u
 
 static void add_constraint(mspring_network *network, uint32_t number, uint32_t slot, bool is_y) {
     const mspringi_system *s = &mspringi_implicit_of(network)->system;
-    const mspringi_grip *grip = &network->grips.list[number];
+    const mspringi_grip *grip = &network->grips->list[number];
     mspringi_constraint *c = mspringi_constraint_add(&network->constraints, MSPRINGI_GRIP_CONSTRAINT, number, 1);
     mspringi_constraint_add_entry(&network->constraints, slot, is_y ? 0.0 : 1.0, is_y ? 1.0 : 0.0);
     c->bounded = is_y ? MSPRINGI_SECOND_OF_PAIR : MSPRINGI_BOUND_OF_PAIR;
@@ -52,10 +53,10 @@ static void add_constraint(mspring_network *network, uint32_t number, uint32_t s
 
 void mspringi_grips_list_constraints(mspring_network *network, float h) {
     uint32_t slot;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        if (!is_held(network, &network->grips.list[i], &slot))
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
+        if (!is_held(network, &network->grips->list[i], &slot))
             continue;
-        predict_force(network, &network->grips.list[i], slot, h);
+        predict_force(network, &network->grips->list[i], slot, h);
         add_constraint(network, i, slot, false);
         add_constraint(network, i, slot, true);
     }
@@ -75,8 +76,8 @@ static const mspringi_constraint *next_pair(const mspring_network *network, uint
 void mspringi_grips_store_forces(mspring_network *network) {
     const double scale = mspringi_implicit_of(network)->system.force_scale;
     const mspringi_constraint *c;
-    for (uint32_t at = 0; network->grips.count > 0 && (c = next_pair(network, &at)) != NULL;) {
-        mspringi_grip *grip = &network->grips.list[c->source];
+    for (uint32_t at = 0; mspringi_grip_count(network) > 0 && (c = next_pair(network, &at)) != NULL;) {
+        mspringi_grip *grip = &network->grips->list[c->source];
         grip->force_x = c[0].force / scale;
         grip->force_y = c[1].force / scale;
         grip->is_bounded = c->activity == MSPRINGI_AT_BOUND;
@@ -85,16 +86,16 @@ void mspringi_grips_store_forces(mspring_network *network) {
 
 void mspringi_grips_count_impulses(mspring_network *network, float h) {
     uint32_t slot;
-    if (network->grips.count == 0)
+    if (mspringi_grip_count(network) == 0)
         return;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        mspringi_grip *grip = &network->grips.list[i];
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
+        mspringi_grip *grip = &network->grips->list[i];
         if (!is_held(network, grip, &slot))
             continue;
         grip->sum_x += (double)h * grip->force_x;
         grip->sum_y += (double)h * grip->force_y;
     }
-    network->grips.passed += (double)h / (double)network->grips.h;
+    network->grips->passed += (double)h / (double)network->grips->h;
 }
 
 /* ----------------------------------------------------------------------------------------------------- the work */
@@ -139,8 +140,8 @@ static bool do_targets_move_alike(const mspring_network *network, uint32_t compo
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     uint32_t slot;
     bool alike = true;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        const mspringi_grip *grip = &network->grips.list[i];
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
+        const mspringi_grip *grip = &network->grips->list[i];
         const mspringi_grip_target to = aim_of(network, grip, 0.0f);
         if (is_held(network, grip, &slot) && budget->of_slot[slot] == component)
             alike &= to.vx == as.vx && to.vy == as.vy;
@@ -152,8 +153,8 @@ static bool do_targets_move_alike(const mspring_network *network, uint32_t compo
 void mspringi_grips_find_frames(const mspring_network *network) {
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     uint32_t slot;
-    for (uint32_t i = 0; i < network->grips.count && !network->floor && !network->contacts; ++i) {
-        const mspringi_grip *grip = &network->grips.list[i];
+    for (uint32_t i = 0; i < mspringi_grip_count(network) && !network->floor && !network->contacts; ++i) {
+        const mspringi_grip *grip = &network->grips->list[i];
         if (!is_held(network, grip, &slot) || budget->of_slot[slot] == MSPRINGI_NO_COMPONENT)
             continue;
         mspringi_component_budget *a = &budget->components[budget->of_slot[slot]];
@@ -169,8 +170,8 @@ void mspringi_grips_add_impulses(const mspringi_budget_sums *all) {
     const mspring_network *network = all->network;
     mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     uint32_t slot;
-    for (uint32_t i = 0; i < network->grips.count; ++i) {
-        const mspringi_grip *grip = &network->grips.list[i];
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
+        const mspringi_grip *grip = &network->grips->list[i];
         if (!is_held(network, grip, &slot) || budget->of_slot[slot] == MSPRINGI_NO_COMPONENT)
             continue;
         mspringi_component_budget *a = &budget->components[budget->of_slot[slot]];

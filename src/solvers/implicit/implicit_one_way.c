@@ -1,14 +1,15 @@
 /// Springs that only pull or only push, in the energy budget of a substep.
 ///
-/// The system has those that are expected to act at its end (step/step_one_way.c). Where one is on the other side
-/// than was expected, its record has another energy than it has: one that tightened unforeseen would get its energy
-/// from nowhere, and one that acts ahead of time would make room for such.
+/// The system has those that are expected to act at its end (features/one_way/step_one_way.c). Where one is on the
+/// other side than was expected, its record has another energy than it has: one that tightened unforeseen would get
+/// its energy from nowhere, and one that acts ahead of time would make room for such.
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 
 #include <math.h>
 
+#include "features/one_way/one_way.h"
 #include "store/springs.h"
 
 // How much longer than its rest length a spring is, m. What yields has another one since the stage looked.
@@ -25,9 +26,9 @@ static double stretch_of(const mspring_network *network, const mspringi_motion *
 }
 
 void mspringi_one_way_correct_energy(const mspringi_budget_sums *all) {
-    const mspringi_one_way *one_way = &all->network->one_way;
+    const mspringi_one_way *one_way = all->network->one_way;
     const mspringi_budget *budget = &mspringi_implicit_of(all->network)->budget;
-    for (uint32_t i = 0; one_way->side && i < one_way->listed; ++i) {
+    for (uint32_t i = 0; one_way && i < one_way->listed; ++i) {
         const mspringi_one_way_spring *spring = &one_way->list[i];
         const uint32_t number = budget->of_slot[spring->base];
         const double stretch = stretch_of(all->network, &all->motion, spring);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "solvers/implicit/implicit.h"
 #include "store/sections.h"
 

@@ -1,7 +1,7 @@
 /// Solver tables: implicit and direct. They differ in the solution of the linear system.
 #include <math.h>
 
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "solvers/implicit/implicit.h"
 
 static mspring_result create(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,

@@ -1,5 +1,6 @@
 /// Substeps: linear system, active set, floor, energy budget; repeated in halves if the budget is exceeded.
-#include "contact/floor.h"
+#include "features/contact/floor.h"
+#include "features/grips/grips.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 #include "stability/guard.h"
@@ -103,7 +104,7 @@ static void run_share(void *argument, uint32_t index, uint32_t worker) {
     mspringi_predict(substep, &member);
     mspringi_assemble(substep, &member);
     float alpha = 0.0f;
-    if (!substep->network->floor && substep->network->grips.count == 0 &&
+    if (!substep->network->floor && mspringi_grip_count(substep->network) == 0 &&
         !mspringi_implicit_contact_is_near(substep->network))
         alpha = solve(substep, &member);
     else if (!solve_with_terms(substep, &member, &alpha))

@@ -15,8 +15,8 @@
 #ifndef MSPRINGI_IMPLICIT_TERMS_H
 #define MSPRINGI_IMPLICIT_TERMS_H
 
-#include "contact/contacts.h"
-#include "contact/floor.h"
+#include "features/contact/contacts.h"
+#include "features/contact/floor.h"
 #include "solvers/constraints/constraint_services.h"
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
@@ -38,13 +38,6 @@ void mspringi_grips_store_forces(mspring_network *network);
 void mspringi_grips_count_impulses(mspring_network *network, float h);
 /// Add the impulses of grips to the components' sums after a substep.
 void mspringi_grips_add_impulses(const mspringi_budget_sums *all);
-
-/// Add areas with a spring on each side to the assembled system, and their energies to the components'.
-void mspringi_areas_add_terms(const mspring_network *network);
-void mspringi_areas_add_energy(const mspring_network *network);
-
-/// List the constraints of angles with springs along both arms, as predicted. Their energies count with the areas'.
-void mspringi_angles_list_constraints(mspring_network *network);
 
 /// Add the constraints of elements to an assembled system, those of others in the pass-th solution of a substep of
 /// h. The first calls in a substep list them.

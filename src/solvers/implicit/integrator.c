@@ -24,7 +24,7 @@
 ///
 /// Global damping of rate b is a damper b M in C. Splitting its decay off the substep would be exact in free
 /// flight, but the histories, which do not know of it, would make the whole first order.
-#include "contact/floor.h"
+#include "features/contact/floor.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 

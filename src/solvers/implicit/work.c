@@ -2,7 +2,7 @@
 ///
 /// Active sets, halvings and intervals repeat substeps, and each repetition may factor the matrix. Contact counts
 /// its comparisons and refuses the step where they are too many; here are what takes as long.
-#include "contact/contacts.h"
+#include "features/contact/contacts.h"
 #include "solvers/implicit/implicit.h"
 
 /// Springs that an iteration takes in the time of a comparison; comparisons in that of an iteration without any,

@@ -1,0 +1,176 @@
+/// Declaration of actuators, and their signals.
+#include "features/actuators/actuators.h"
+
+#include "base/cpu.h"
+#include "builder/builder.h"
+#include "features/sleep/sleep.h"
+#include "store/changed.h"
+#include "store/feature.h"
+#include "store/id_pool.h"
+#include "store/properties.h"
+#include "store/rest_lengths.h"
+#include "store/springs.h"
+
+#define MIN_SIGNAL 0.01f
+#define MAX_SIGNAL 100.0f
+#define MAX_CHANGES 256u
+
+/// Shortest and longest rest length of an actuator, m: no signal makes it a weld, or longer than springs may be.
+#define SHORTEST 1e-12f
+#define LONGEST (MSPRINGI_MAX_LENGTH / MAX_SIGNAL)
+
+static mspring_result check(mspring_network *network, const mspring_id *springs, uint32_t count, uint32_t changes) {
+    const uint32_t all = network->topology.spring_count;
+    if (!springs && count > 0)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the list of springs is NULL");
+    if (changes < 1 || changes > MAX_CHANGES)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "changes is %u, it must be 1 to %u",
+                             (unsigned)changes, (unsigned)MAX_CHANGES);
+    if (count > all)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "%u actuators are more than %u springs",
+                             (unsigned)count, (unsigned)all);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (springs[i] >= all || !mspringi_spring_exists(network, springs[i]))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ID, "actuator %u: there is no spring %s",
+                                 (unsigned)i, MSPRINGI_ID(springs[i]));
+        const float length = mspringi_spring_property(network, MSPRING_REST_LENGTH, springs[i]);
+        if (!(length >= SHORTEST && length <= LONGEST))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "actuator %u: spring %u has rest length %g m, it must be 1e-12 to 4e10",
+                                 (unsigned)i, (unsigned)springs[i], (double)mspringi_read_length(length));
+    }
+    return MSPRING_OK;
+}
+
+static void free_all(mspring_network *network, mspringi_actuators *a) {
+    if (a)
+        mspringi_array_table_free(mspringi_state_of_actuators.arrays, a, &network->memory);
+    mspringi_free(&network->memory, a);
+}
+
+static mspring_result no_memory(mspring_network *network, uint32_t count) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u actuators", (unsigned)count);
+}
+
+static mspring_result allocate(mspring_network *network, mspringi_actuators *a) {
+    mspringi_memory *memory = &network->memory;
+    const uint32_t springs = network->topology.reserve.spring_end;
+    mspring_result result = mspringi_rest_lengths_unshare(network);
+    if (result != MSPRING_OK)
+        return result;
+    a->spring = mspringi_alloc(memory, a->count, sizeof *a->spring);
+    a->of_spring = mspringi_alloc(memory, springs, sizeof *a->of_spring);
+    a->nominal = mspringi_alloc(memory, a->count, sizeof *a->nominal);
+    a->to = mspringi_alloc(memory, a->count, sizeof *a->to);
+    a->from = mspringi_alloc(memory, a->count, sizeof *a->from);
+    a->bent_from = mspringi_alloc(memory, a->count, sizeof *a->bent_from);
+    if (a->spring && a->of_spring && a->nominal && a->to && a->from && a->bent_from)
+        return MSPRING_OK;
+    return no_memory(network, a->count);
+}
+
+static mspring_result fill(mspring_network *network, mspringi_actuators *a, const mspring_id *springs) {
+    for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
+        a->of_spring[s] = MSPRING_NONE;
+    for (uint32_t i = 0; i < a->count; ++i) {
+        if (a->of_spring[springs[i]] != MSPRING_NONE)
+            return mspringi_fail(&network->message, MSPRING_ERROR_DUPLICATE,
+                                 "actuators %u and %u are the same spring, %u", (unsigned)a->of_spring[springs[i]],
+                                 (unsigned)i, (unsigned)springs[i]);
+        a->of_spring[springs[i]] = i;
+        a->spring[i] = springs[i];
+        a->nominal[i] = a->to[i] = mspringi_spring_property(network, MSPRING_REST_LENGTH, springs[i]);
+    }
+    return MSPRING_OK;
+}
+
+// The rest lengths of former actuators become parameters: no earlier frame fits any more.
+static void leave_lengths(mspring_network *network) {
+    const mspringi_actuators *a = network->actuators;
+    if (!a || !a->have_moved)
+        return;
+    mspringi_fingerprint(network, MSPRINGI_EDIT_PARTS + MSPRINGI_REST_LENGTH, a->count);
+    for (uint32_t i = 0; i < a->count; ++i)
+        mspringi_fingerprint_floats(network, mspringi_actuator_length(network, i), 0.0f);
+}
+
+// Make them; on error there is a message, and nothing of them.
+static mspring_result make(mspring_network *network, const mspring_id *springs, uint32_t count, uint32_t changes,
+                           mspringi_actuators **made) {
+    *made = mspringi_alloc(&network->memory, 1, sizeof **made);
+    if (!*made)
+        return no_memory(network, count);
+    (*made)->count = count;
+    (*made)->changes = changes;
+    mspring_result result = allocate(network, *made);
+    if (result == MSPRING_OK)
+        result = fill(network, *made, springs);
+    if (result != MSPRING_OK)
+        free_all(network, *made);
+    return result;
+}
+
+mspring_result mspring_network_set_actuators(mspring_network *network, const mspring_id *springs, uint32_t count,
+                                             uint32_t changes) {
+    mspring_result result = mspringi_check_call(network);
+    mspringi_actuators *made = NULL;
+    if (result == MSPRING_OK)
+        result = check(network, springs, count, changes);
+    if (result == MSPRING_OK && count > 0)
+        result = make(network, springs, count, changes, &made);
+    if (result != MSPRING_OK)
+        return result;
+    leave_lengths(network);
+    free_all(network, network->actuators);
+    network->actuators = made;
+    return MSPRING_OK;
+}
+
+uint32_t mspring_network_actuator_count(const mspring_network *network) {
+    return network ? mspringi_actuator_count(network) : 0;
+}
+
+/* ------------------------------------------------------------------------------------------------------ signals */
+
+static bool is_signal(float value) {
+    return value >= MIN_SIGNAL && value <= MAX_SIGNAL;
+}
+
+static mspring_result check_signals(mspring_network *network, uint32_t first, uint32_t count, const float *signals,
+                                    uint32_t stride) {
+    mspring_result result =
+        mspringi_check_range(network, "actuator", first, count, mspringi_actuator_count(network));
+    if (result != MSPRING_OK)
+        return result;
+    if (!signals && count > 0)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the signals are NULL");
+    bool are_good = true;
+    for (size_t i = 0; i < count; ++i)
+        are_good &= is_signal(signals[i * stride]);
+    for (size_t i = 0; !are_good && i < count; ++i)
+        if (!is_signal(signals[i * stride]))
+            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                 "actuator %u: the signal is %g, it must be 0.01 to 100",
+                                 (unsigned)(first + (uint32_t)i), (double)signals[i * stride]);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_set_signals(mspring_network *network, uint32_t first, uint32_t count,
+                                           const float *signals, uint32_t stride) {
+    mspring_result result = mspringi_check_call(network);
+    if (result == MSPRING_OK)
+        result = check_signals(network, first, count, signals, stride);
+    if (result != MSPRING_OK || count == 0)
+        return result;
+    mspringi_actuators *a = network->actuators;
+    const float *nominal = a->nominal + first;
+    float *to = a->to + first;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    for (size_t i = 0; i < count; ++i)
+        to[i] = nominal[i] * signals[i * stride];
+    mspringi_fp_leave(before);
+    a->are_pending = a->have_moved = true;
+    if (network->sleep.sleeping > 0)
+        mspringi_wake(network);
+    return MSPRING_OK;
+}

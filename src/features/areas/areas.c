@@ -1,0 +1,442 @@
+#include "features/areas/areas.h"
+
+#include <string.h>
+
+#include "base/shoelace.h"
+#include "builder/builder.h"
+#include "features/angles/angles.h"
+#include "features/one_way/one_way.h"
+#include "store/changed.h"
+#include "store/id_pool.h"
+#include "store/springs.h"
+#include "store/store.h"
+
+/// Part of the rest area below which the pressure of a gas no longer rises.
+#define SMALLEST 0.05
+
+/* --------------------------------------------------------------------------------------------------------- law */
+
+double mspringi_area_size(const mspring_network *network, const mspringi_area *area) {
+    if (area->is_angle)
+        return mspringi_angle_size(network, area);
+    const mspringi_state *s = &network->state;
+    const uint32_t first = mspringi_area_slot(network, area, 0);
+    mspringi_shoelace polygon = {0};
+    for (uint32_t i = 1; i < area->count; ++i) {
+        const uint32_t slot = mspringi_area_slot(network, area, i);
+        mspringi_shoelace_add(&polygon, mspringi_x_of(s, slot) - mspringi_x_of(s, first),
+                              mspringi_y_of(s, slot) - mspringi_y_of(s, first));
+    }
+    return 0.5 * polygon.twice;
+}
+
+double mspringi_area_pressure(const mspringi_area *area, double size) {
+    if (area->is_angle)
+        return mspringi_angle_torque(area, size);
+    const double share = size / area->rest_area, fill = (double)area->fill, pressure = (double)area->pressure;
+    return area->kind == MSPRING_AREA_GAS ? pressure * fill / fmax(share, SMALLEST)
+                                          : pressure + (double)area->stiffness * (fill - share);
+}
+
+double mspringi_area_stiffness(const mspringi_area *area, double size) {
+    if (area->is_angle)
+        return mspringi_angle_stiffness(area, size);
+    const double share = size / area->rest_area;
+    if (area->kind == MSPRING_AREA_ELASTIC)
+        return (double)area->stiffness / area->rest_area;
+    return share > SMALLEST ? mspringi_area_pressure(area, size) / size : 0.0;
+}
+
+// ln m = 2 artanh((m - 1) / (m + 1)), by that quotient, of at most 0.1716 in size. Not every host has libm's.
+static double logarithm_by(double quotient) {
+    double sum = 0.0;
+    for (int power = 21; power > 0; power -= 2)
+        sum = sum * quotient * quotient + 2.0 / (double)power;
+    return sum * quotient;
+}
+
+// Of a number > 0, by that of a part of it between sqrt(1 / 2) and sqrt(2).
+static double logarithm(double x) {
+    const double ln2 = 0.693147180559945309417;
+    double powers = 0.0;
+    for (; x > 1.4142135623730951 && x < INFINITY; x *= 0.5)
+        powers += 1.0;
+    for (; x < 0.70710678118654752; x *= 2.0)
+        powers -= 1.0;
+    return powers * ln2 + logarithm_by((x - 1.0) / (x + 1.0));
+}
+
+double mspringi_area_energy(const mspringi_area *area, double size) {
+    if (area->is_angle)
+        return mspringi_angle_energy(area, size);
+    const double share = size / area->rest_area, fill = (double)area->fill, lacks = fill - share;
+    const double pressure = (double)area->pressure * area->rest_area;
+    if (area->kind == MSPRING_AREA_ELASTIC)
+        return lacks * (0.5 * (double)area->stiffness * area->rest_area * lacks + pressure);
+    const double down_to = fmax(share, SMALLEST);
+    return pressure * fill * ((down_to - share) / SMALLEST - logarithm(down_to / fill));
+}
+
+double mspringi_area_energy_change(const mspringi_area *area, double size, double growth) {
+    const double pressure = mspringi_area_pressure(area, size), part = growth / size, after = size + growth;
+    if (area->kind == MSPRING_AREA_ELASTIC)
+        return growth * (0.5 * (double)area->stiffness / area->rest_area * growth - pressure);
+    if (!(fabs(part) < 0.3) || !(fmin(size, after) > SMALLEST * area->rest_area))
+        return mspringi_area_energy(area, after) - mspringi_area_energy(area, size);
+    return -pressure * size * logarithm_by(part / (2.0 + part));
+}
+
+mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner) {
+    if (area->is_angle)
+        return mspringi_angle_end_of(network, area, corner);
+    const mspringi_state *s = &network->state;
+    const uint32_t before = mspringi_area_slot(network, area, corner > 0 ? corner - 1 : area->count - 1);
+    const uint32_t behind = mspringi_area_slot(network, area, corner + 1 < area->count ? corner + 1 : 0);
+    return (mspringi_area_end){.slot = mspringi_area_slot(network, area, corner),
+                               .x = 0.5 * (mspringi_y_of(s, behind) - mspringi_y_of(s, before)),
+                               .y = 0.5 * (mspringi_x_of(s, before) - mspringi_x_of(s, behind))};
+}
+
+void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
+                        mspringi_field field) {
+    if (area->is_angle) {
+        mspringi_angle_push(network, area, share, field);
+        return;
+    }
+    const mspringi_state *s = &network->state;
+    const mspringi_corner *corners = network->areas.corners + area->first;
+    const uint32_t first = corners[0].slot, last = corners[area->count - 1].slot;
+    const double first_x = mspringi_x_of(s, first), first_y = mspringi_y_of(s, first);
+    const double last_x = mspringi_x_of(s, last), last_y = mspringi_y_of(s, last);
+    mspringi_shoelace polygon = {0};
+    for (uint32_t i = 1; i < area->count; ++i)
+        mspringi_shoelace_add(&polygon, mspringi_x_of(s, corners[i].slot) - first_x,
+                              mspringi_y_of(s, corners[i].slot) - first_y);
+    const double half = 0.5 * share * mspringi_area_pressure(area, 0.5 * polygon.twice);
+    double x = first_x, y = first_y, before_x = last_x, before_y = last_y;
+    for (uint32_t i = 0; i < area->count; ++i) {
+        const bool is_last = i + 1 == area->count;
+        const uint32_t slot = corners[i].slot;
+        const double next_x = is_last ? first_x : mspringi_x_of(s, corners[i + 1].slot);
+        const double next_y = is_last ? first_y : mspringi_y_of(s, corners[i + 1].slot);
+        field.x[slot] += mspringi_bounded(half * (next_y - before_y));
+        field.y[slot] += mspringi_bounded(half * (before_x - next_x));
+        before_x = x;
+        before_y = y;
+        x = next_x;
+        y = next_y;
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------- outline */
+
+bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *area) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_corner *corners = network->areas.corners + area->first;
+    for (uint32_t i = 0; i < area->count; ++i) {
+        const mspring_id spring = corners[i].spring;
+        if (spring == MSPRING_NONE)
+            continue;
+        if (!mspringi_spring_exists(network, spring) || !mspringi_spring_is_live(network, spring))
+            return true;
+        // The id may have been given to another spring.
+        const uint32_t here = t->slot_of_particle[corners[i].particle];
+        const uint32_t next = mspringi_area_slot(network, area, i + 1 < area->count ? i + 1 : 0);
+        const mspringi_ends ends = mspringi_spring_ends(network, spring);
+        if (!(ends.a == here && ends.b == next) && !(ends.a == next && ends.b == here))
+            return true;
+    }
+    return false;
+}
+
+static bool is_ringed(const mspring_network *network, const mspringi_area *area) {
+    const uint32_t sides = area->is_angle ? 2 : area->count;
+    for (uint32_t i = 0; i < sides; ++i)
+        if (network->areas.corners[area->first + i].spring == MSPRING_NONE)
+            return false;
+    return true;
+}
+
+// The one that acts both ways, if there is one, else the first.
+static mspring_id spring_between(const mspring_network *network, mspring_id a, mspring_id b) {
+    const uint32_t there = network->topology.slot_of_particle[b];
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, a);
+    mspring_id found = MSPRING_NONE;
+    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;) {
+        const mspringi_ends ends = mspringi_spring_ends(network, s);
+        if (!mspringi_spring_is_live(network, s) || (ends.a != there && ends.b != there))
+            continue;
+        if (mspringi_side_of(network, s) == 0)
+            return s;
+        found = found == MSPRING_NONE ? s : found;
+    }
+    return found;
+}
+
+/* ------------------------------------------------------------------------------------------------------ bounds */
+
+// In the shape that it was added in g . u is the sum of g_i . (u_i - u'), whatever u' is, as all g add up to 0.
+// With the mean of u by the sizes |g| for u', (g . u)^2 is at most the sum of |g_i| |g_j| (u_i - u_j)^2 over all
+// pairs: c times that is what springs of stiffness c |g_i| |g_j| between them would have. Of four corners, those
+// opposite each other have opposite g, and two such pairs are enough. The part of the tangent of the size of the
+// pressure is at most that of springs of half of it along the outline.
+void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums, float *dampings) {
+    const mspringi_corner *corners = network->areas.corners + area->first;
+    const bool is_gas = area->kind == MSPRING_AREA_GAS;
+    const double fill = (double)area->fill, pressure = fabs((double)area->pressure);
+    const double stiffness = (is_gas ? pressure * fill : (double)area->stiffness) / area->rest_area;
+    const double outline = is_gas ? pressure * fill : pressure + (double)area->stiffness * fabs(fill - 1.0);
+    double all = 0.0;
+    for (uint32_t i = 0; i < area->count; ++i)
+        all += (double)corners[i].reach;
+    for (uint32_t i = 0; i < area->count; ++i) {
+        const double reach = (double)corners[i].reach, others = area->count == 4 ? 0.5 * all : all - reach;
+        const uint32_t slot = mspringi_area_slot(network, area, i);
+        sums[slot] += mspringi_bounded(stiffness * reach * others + outline);
+        dampings[slot] += mspringi_bounded((double)area->damping * reach * others);
+    }
+}
+
+double mspringi_area_largest(const mspring_network *network, const mspringi_area *area, const float *sums) {
+    double first = 0.0, second = 0.0;
+    for (uint32_t i = 0; i < area->count; ++i) {
+        const uint32_t slot = mspringi_area_slot(network, area, i);
+        const double quotient = (double)sums[slot] * (double)network->inverse_mass[slot];
+        second = fmax(second, fmin(first, quotient));
+        first = fmax(first, quotient);
+    }
+    return first + second;
+}
+
+/* ---------------------------------------------------------------------------------------------------- the list */
+
+mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners, size_t angles) {
+    mspringi_areas *a = &network->areas;
+    void *list = a->list, *all = a->corners;
+    const mspring_result result = mspringi_incidence_reserve(network);
+    if (result != MSPRING_OK)
+        return result;
+    bool whole = mspringi_grow(&network->memory, &list, &a->capacity, a->count + areas, sizeof *a->list);
+    a->list = list;
+    whole = whole && mspringi_grow(&network->memory, &all, &a->corner_capacity, a->corner_count + corners,
+                                   sizeof *a->corners);
+    a->corners = all;
+    whole = whole &&
+            (angles == 0 || mspringi_constraints_reserve(network, MSPRINGI_ANGLE_CONSTRAINT,
+                                                         a->angle_count + angles, 3 * (a->angle_count + angles)));
+    if (whole && mspringi_store_reserve(network, MSPRINGI_STORE_AREAS))
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %zu areas", a->count + areas);
+}
+
+void mspringi_areas_append(mspring_network *network, const mspringi_area *area, const mspring_id *particles) {
+    mspringi_areas *a = &network->areas;
+    mspringi_area *made = &a->list[a->count++];
+    *made = *area;
+    made->first = (uint32_t)a->corner_count;
+    made->cell = MSPRINGI_NO_CELL;
+    a->angle_count += area->is_angle;
+    for (uint32_t i = 0; i < area->count; ++i) {
+        const mspring_id next = particles[i + 1 < area->count ? i + 1 : 0];
+        a->corners[a->corner_count++] = (mspringi_corner){
+            .particle = particles[i],
+            .spring = area->is_angle && i == 2 ? MSPRING_NONE : spring_between(network, particles[i], next)};
+    }
+    for (uint32_t i = 0; i < area->count; ++i) {
+        const mspringi_area_end end = mspringi_area_end_of(network, made, i);
+        a->corners[made->first + i].reach = mspringi_bounded(sqrt(end.x * end.x + end.y * end.y));
+    }
+    a->changes++;
+}
+
+// A step goes through the list only while something is in it: what steps have of the last must not stay.
+static void note_change(mspringi_areas *a) {
+    a->changes++;
+    if (a->count > 0)
+        return;
+    a->swept = a->unswept = a->unringed = 0;
+    a->hinge_count = 0;
+}
+
+void mspringi_areas_drop(mspring_network *network, mspringi_area *area) {
+    mspringi_areas *a = &network->areas;
+    const uint32_t first = area->first, count = area->count;
+    const size_t behind = (size_t)(a->list + --a->count - area);
+    a->corner_count -= count;
+    a->angle_count -= area->is_angle;
+    memmove(a->corners + first, a->corners + first + count, (a->corner_count - first) * sizeof *a->corners);
+    memmove(area, area + 1, behind * sizeof *area);
+    for (size_t i = 0; i < behind; ++i)
+        area[i].first -= count;
+    note_change(a);
+}
+
+void mspringi_areas_forget(mspring_network *network, mspring_id particle) {
+    mspringi_areas *a = &network->areas;
+    for (size_t i = a->corner_count; i-- > 0;) {
+        if (a->corners[i].particle != particle)
+            continue;
+        mspringi_area *area = a->list;
+        while (area->first + area->count <= i)
+            ++area;
+        i = area->first;
+        mspringi_areas_drop(network, area);
+    }
+}
+
+void mspringi_areas_clear(mspring_network *network) {
+    network->areas.count = network->areas.corner_count = network->areas.angle_count = 0;
+    note_change(&network->areas);
+}
+
+/* ---------------------------------------------------------------------------------------- what follows of them */
+
+bool mspringi_cell_at(const mspring_network *network, uint32_t slot, uint32_t corners[4]) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t block = slot / MSPRINGI_WIDTH - t->lattice_first, lane = slot % MSPRINGI_WIDTH;
+    if (slot / MSPRINGI_WIDTH < t->lattice_first || block >= t->lattice_blocks ||
+        t->up_of_block[block] == t->lattice_first + block)
+        return false;
+    const uint32_t up = t->up_of_block[block] * MSPRINGI_WIDTH + lane;
+    const uint32_t outline[4][2] = {
+        {slot, MSPRINGI_EAST}, {slot, MSPRINGI_NORTH}, {slot + 1, MSPRINGI_NORTH}, {up, MSPRINGI_EAST}};
+    for (int i = 0; i < 4; ++i) {
+        const uint32_t of = outline[i][0] / MSPRINGI_WIDTH - t->lattice_first;
+        const mspringi_spring_slot spring_slot =
+            (of * MSPRINGI_DIRECTIONS + outline[i][1]) * MSPRINGI_WIDTH + outline[i][0] % MSPRINGI_WIDTH;
+        if (of >= t->lattice_blocks || !mspringi_spring_slot_is_live(network, spring_slot))
+            return false;
+    }
+    const uint32_t next_block = (slot + 1) / MSPRINGI_WIDTH - t->lattice_first;
+    if (t->up_of_block[next_block] * MSPRINGI_WIDTH + (slot + 1) % MSPRINGI_WIDTH != up + 1)
+        return false;
+    corners[0] = slot;
+    corners[1] = slot + 1;
+    corners[2] = up + 1;
+    corners[3] = up;
+    return true;
+}
+
+// The cell that an area is around, with its first corner at a slot: 1 if its corners are in the cell's order, -1 if
+// they are in the other, 0 if there is none.
+static int cell_sense(const mspring_network *network, const mspringi_area *area, uint32_t corner) {
+    uint32_t cell[4];
+    const uint32_t next = mspringi_area_slot(network, area, (corner + 1) % 4);
+    const uint32_t opposite = mspringi_area_slot(network, area, (corner + 2) % 4);
+    const uint32_t before = mspringi_area_slot(network, area, (corner + 3) % 4);
+    if (!mspringi_cell_at(network, mspringi_area_slot(network, area, corner), cell) || cell[2] != opposite)
+        return 0;
+    return cell[1] == next && cell[3] == before ? 1 : cell[3] == next && cell[1] == before ? -1 : 0;
+}
+
+// Enter an area into the sweeps, if they can have it.
+static bool enter_cell(mspring_network *network, mspringi_area *area) {
+    mspringi_areas *a = &network->areas;
+    for (uint32_t corner = 0; area->kind == MSPRING_AREA_ELASTIC && area->count == 4 && corner < 4; ++corner) {
+        const int sense = cell_sense(network, area, corner);
+        if (sense == 0)
+            continue;
+        const uint32_t slot = mspringi_area_slot(network, area, corner);
+        const uint32_t block = slot / MSPRINGI_WIDTH - network->topology.lattice_first;
+        const uint32_t cell = 2 * block * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
+        const double stiffness = (double)area->stiffness, fill = (double)area->fill;
+        if (a->cells[cell] != 0.0f || a->cells[cell + MSPRINGI_WIDTH] != 0.0f)
+            return false; // another has it
+        a->cells[cell] = (float)(0.5 * sense * ((double)area->pressure + stiffness * fill));
+        a->cells[cell + MSPRINGI_WIDTH] = (float)(0.25 * stiffness / area->rest_area);
+        area->cell = cell;
+        return true;
+    }
+    return false;
+}
+
+// The substep that is stable with forces of areas alone: of all, or of those without springs all around.
+static double find_longest(mspring_network *network, bool of_all) {
+    mspringi_areas *a = &network->areas;
+    double largest = 0.0, damped = 0.0;
+    mspringi_field_clear(network, a->force);
+    for (size_t i = 0; i < a->count; ++i)
+        if (of_all || !a->list[i].is_ringed)
+            mspringi_area_weigh(network, &a->list[i], a->force.x, a->force.y);
+    for (size_t i = 0; i < a->count; ++i)
+        if (of_all || !a->list[i].is_ringed) {
+            largest = fmax(largest, mspringi_area_largest(network, &a->list[i], a->force.x));
+            damped = fmax(damped, mspringi_area_largest(network, &a->list[i], a->force.y));
+        }
+    // h^2 largest + 2 h damped = 4
+    return largest + damped > 0.0 ? 4.0 / (damped + sqrt(damped * damped + 4.0 * largest)) : INFINITY;
+}
+
+void mspringi_areas_refresh(mspring_network *network) {
+    mspringi_areas *a = &network->areas;
+    const mspringi_edits *e = &network->edits;
+    const mspringi_areas_seen now = {a->changes, e->links, e->growth, e->layouts, e->masses}, *seen = &a->seen;
+    if (now.changes == seen->changes && now.links == seen->links && now.growth == seen->growth &&
+        now.layouts == seen->layouts && now.masses == seen->masses)
+        return;
+    a->seen = now;
+    a->swept = a->unswept = a->unringed = 0;
+    a->hinge_count = 0;
+    if (!a->cells)
+        return;
+    const size_t cells = (size_t)2 * MSPRINGI_WIDTH * network->topology.lattice_blocks;
+    for (size_t i = 0; i < cells; ++i)
+        a->cells[i] = 0.0f;
+    for (size_t i = 0; i < a->corner_count; ++i)
+        a->corners[i].slot = network->topology.slot_of_particle[a->corners[i].particle];
+    for (size_t i = 0; i < a->count; ++i) {
+        mspringi_area *area = &a->list[i];
+        area->cell = MSPRINGI_NO_CELL;
+        area->is_open = mspringi_area_is_open(network, area);
+        area->is_ringed = is_ringed(network, area);
+        if (area->is_open)
+            continue;
+        a->unringed += !area->is_ringed;
+        a->hinge_count += area->is_angle && area->is_ringed;
+        if (enter_cell(network, area))
+            a->swept++;
+        else
+            a->unswept++;
+    }
+    a->longest = find_longest(network, false);
+    a->longest_of_all = find_longest(network, true);
+}
+
+/* ------------------------------------------------------------------------------------------------------- edits */
+
+mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners, size_t angles) {
+    const mspringi_areas *a = &network->areas;
+    if (areas >= MSPRING_NONE - a->next_id || corners >= MSPRING_NONE - a->corner_count)
+        return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                             "there are %zu areas and angles already, of %u ever made", a->count,
+                             (unsigned)a->next_id);
+    return mspringi_areas_reserve(network, areas, corners, angles);
+}
+
+void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area) {
+    mspringi_fingerprint(network, edit, area->id);
+    mspringi_fingerprint_floats(network, area->stiffness, area->is_angle ? area->damping : area->pressure);
+    mspringi_fingerprint_floats(network, area->fill, (float)(area->is_angle ? area->rest_angle : area->rest_area));
+    mspringi_notify_change(network, MSPRINGI_CHANGED_AREA, 0);
+}
+
+void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles) {
+    made.id = network->areas.next_id++;
+    mspringi_areas_append(network, &made, particles);
+    for (uint32_t i = 0; i < made.count; ++i)
+        mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_AREA, particles[i]);
+    mspringi_area_tell(network, MSPRINGI_EDIT_ADDED_AREA, &made);
+}
+
+mspring_result mspringi_areas_of_builder(mspring_network *network, const mspring_builder *builder) {
+    if (builder->area_count == 0)
+        return MSPRING_OK;
+    size_t angles = 0;
+    for (size_t i = 0; i < builder->area_count; ++i)
+        angles += builder->areas[i].is_angle;
+    const mspring_result result =
+        mspringi_areas_check_room(network, builder->area_count, builder->corner_count, angles);
+    for (size_t i = 0; result == MSPRING_OK && i < builder->area_count; ++i)
+        mspringi_area_add(network, builder->areas[i], builder->corners + builder->areas[i].first);
+    return result;
+}

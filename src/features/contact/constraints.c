@@ -1,0 +1,454 @@
+/// Contact constraints: one for each outline point that touches, or may touch, an edge in an interval.
+///
+/// A constraint keeps the gap at the end of the interval, gap + h v, from becoming negative. An overlap is pushed
+/// out at a bounded speed. A pair gets a constraint if its present velocities can close the gap, or if the solver
+/// has made it fast enough to.
+///
+/// Restitution acts on the normal speed before the substep's forces. An impulse J changes the energy by J times the
+/// mean of the speeds before the forces and after contact. So any later speed would add energy.
+///
+/// The order of constraints follows from ids and from the pairs alone. Results do not depend on when the list was
+/// made.
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "base/cpu.h"
+#include "features/contact/contacts.h"
+#include "store/network.h"
+
+/// Share of an overlap that is pushed out in a substep, within the host's limit on speed. Intervals of an implicit
+/// substep push at the same speed. (With this share in each of 32 intervals, a stiff body in a pinch had 1.9 times
+/// its energy in a step.)
+#define PUSHOUT_FRACTION 0.2
+
+/// Slowest bounce, m/s.
+#define RESTITUTION_THRESHOLD 0.2
+
+/// Longest move of a fast node in an interval, in thicknesses.
+#define MAX_MOVE 1.25
+
+/// Half of the extra reach of an implicit substep, as a share of the thickness.
+#define EXTRA_APPROACH 0.1
+
+/// Candidates in a batch of the filter, and its margin beyond the reach, as a share of the thickness.
+#define FILTER_BATCH 256u
+#define FILTER_MARGIN 0.05
+
+/// Edges at each end of a pair's edge with a bit of their own.
+#define REMEMBERED 8
+
+/* ------------------------------------------------------------------------------------------------------- nodes */
+
+// Load a collider point. Contact does not move it.
+static void load_collider_point(const mspringi_contacts *contacts, uint32_t i) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const uint32_t point = k->particles[i] - contacts->particles;
+    k->x[i] = contacts->colliders.x[point];
+    k->y[i] = contacts->colliders.y[point];
+    k->v[i].x = k->v_start[i].x = contacts->colliders.vx[point];
+    k->v[i].y = k->v_start[i].y = contacts->colliders.vy[point];
+    k->inverse_mass[i] = 0.0;
+}
+
+void mspringi_contact_load_nodes(const mspring_network *network, mspringi_contacts *contacts) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const mspringi_state *s = &network->state;
+    const float *active_inverse_mass = mspringi_active_inverse_mass(network);
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
+        k->x[i] = mspringi_x_of(s, slot);
+        k->y[i] = mspringi_y_of(s, slot);
+        k->v_start[i].x = (double)s->vx[slot];
+        k->v_start[i].y = (double)s->vy[slot];
+        k->inverse_mass[i] = (double)active_inverse_mass[slot];
+    }
+    for (uint32_t i = k->particle_count; i < k->count; ++i)
+        load_collider_point(contacts, i);
+}
+
+void mspringi_contact_begin_substep(const mspring_network *network, mspringi_contacts *contacts) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    mspringi_contact_load_nodes(network, contacts);
+    for (uint32_t i = 0; i < k->particle_count; ++i)
+        k->shift_x[i] = k->shift_y[i] = k->extra_vx[i] = k->extra_vy[i] = 0.0;
+    contacts->passed = 0.0;
+}
+
+/* --------------------------------------------------------------------------------------------------------- rows */
+
+// True if the point never touches another edge at this end of the pair's edge. The pair caches the answer.
+static bool is_excluded(const mspring_network *network, mspringi_contacts *contacts, mspringi_pair *pair,
+                        uint32_t end, uint32_t number, mspring_id other) {
+    const uint32_t bit = number < REMEMBERED ? 1u << (end * REMEMBERED + number) : 0;
+    if (!contacts->touches_itself || mspringi_is_collider_point(contacts, pair->point) ||
+        mspringi_is_collider_point(contacts, other))
+        return false;
+    if (pair->tested_bits & bit)
+        return pair->excluded_bits & bit;
+    const bool apart = mspringi_outline_are_neighbours(network, contacts, pair->point, other);
+    pair->tested_bits |= (uint16_t)bit;
+    pair->excluded_bits |= (uint16_t)(apart ? bit : 0);
+    return apart;
+}
+
+// True if another edge at the same corner takes the contact: a nearer one, else the one with the lower number.
+static bool belongs_to_other_edge(const mspring_network *network, mspringi_contacts *contacts, mspringi_pair *pair,
+                                  uint32_t end) {
+    const mspringi_outline *o = &contacts->outline;
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const mspring_id corner = end == 0 ? o->a[pair->edge] : o->b[pair->edge];
+    const uint32_t at = k->number[corner], p = k->number[pair->point];
+    const double dx = k->x[p] - k->x[at], dy = k->y[p] - k->y[at];
+    bool is_found = false;
+    uint32_t j = o->first[corner];
+    for (; j < o->first[corner + 1] && !is_found; ++j) {
+        const uint32_t edge = o->at[j];
+        if (edge == pair->edge)
+            continue;
+        const mspring_id other = o->a[edge] == corner ? o->b[edge] : o->a[edge];
+        const uint32_t beyond = k->number[other];
+        const bool is_nearer = dx * (k->x[beyond] - k->x[at]) + dy * (k->y[beyond] - k->y[at]) > 0.0;
+        is_found = (is_nearer || edge < pair->edge) && other != pair->point &&
+                   !is_excluded(network, contacts, pair, end, j - o->first[corner], other);
+    }
+    mspringi_contact_count_visits(contacts, j - o->first[corner]);
+    return is_found;
+}
+
+// Add friction. It acts on the surface, not on the edge's centre line; the couple conserves angular momentum.
+static void add_friction(const mspringi_contacts *contacts, mspringi_contact_constraint *t) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const double ex = k->x[t->b] - k->x[t->a], ey = k->y[t->b] - k->y[t->a], square = ex * ex + ey * ey;
+    if (square == 0.0 && t->collider == MSPRING_NONE)
+        return;
+    if (square > 0.0) {
+        const double arm = t->collider == MSPRING_NONE
+                               ? t->distance
+                               : t->distance - mspringi_collider_friction_offset(contacts, t);
+        const double turn = arm / square;
+        t->couple_x = turn * ex;
+        t->couple_y = turn * ey;
+    }
+    const double inverse_mass_a = k->inverse_mass[t->a], inverse_mass_b = k->inverse_mass[t->b];
+    const double ax = t->bary_a * t->ny - t->couple_y, ay = t->bary_a * t->nx - t->couple_x;
+    const double bx = t->bary_b * t->ny + t->couple_y, by = t->bary_b * t->nx + t->couple_x;
+    t->couple_response =
+        (inverse_mass_a * t->bary_a - inverse_mass_b * t->bary_b) * (t->couple_y * t->nx - t->couple_x * t->ny);
+    t->tangent_mass =
+        1.0 / (k->inverse_mass[t->p] + inverse_mass_a * (ax * ax + ay * ay) + inverse_mass_b * (bx * bx + by * by));
+    if (t->collider != MSPRING_NONE)
+        t->surface_speed = mspringi_collider_surface_speed(contacts, t);
+}
+
+// Normal speed from gravity in an implicit interval, m/s. A bounce that ignored it would rise above its start.
+static double gravity_normal_speed(const mspringi_contacts *contacts, const mspringi_contact_constraint *t) {
+    const double *inverse_mass = contacts->nodes.inverse_mass;
+    const double share = (inverse_mass[t->p] > 0.0 ? 1.0 : 0.0) - (inverse_mass[t->a] > 0.0 ? t->bary_a : 0.0) -
+                         (inverse_mass[t->b] > 0.0 ? t->bary_b : 0.0);
+    return share * (t->nx * contacts->fall_x + t->ny * contacts->fall_y);
+}
+
+// Set the target speed: restitution or push-out, whichever is larger.
+static void set_target_speed(const mspringi_contacts *contacts, mspringi_contact_constraint *t, double restitution,
+                             double h) {
+    t->target_speed = -t->gap / h;
+    t->clear_speed = t->target_speed;
+    t->is_bounce = false;
+    if (t->gap <= 0.0) {
+        t->clear_speed = DBL_MAX;
+        t->target_speed *= PUSHOUT_FRACTION * contacts->share;
+        t->target_speed = t->target_speed < contacts->push ? t->target_speed : contacts->push;
+    }
+    const double before = mspringi_normal_speed(t, contacts->nodes.v_start);
+    if (!(before < -RESTITUTION_THRESHOLD))
+        return;
+    const double back = -restitution * before, fall = gravity_normal_speed(contacts, t);
+    const double bounce = fall < 0.0 ? (back + fall > 0.0 ? back + fall : 0.0) : back;
+    t->is_bounce = bounce > t->target_speed && bounce > 0.0;
+    t->target_speed = bounce > t->target_speed ? bounce : t->target_speed;
+}
+
+static double square_of_speed(const mspringi_contact_nodes *k, uint32_t p, uint32_t q) {
+    const double x = k->v[p].x - k->v[q].x, y = k->v[p].y - k->v[q].y;
+    return x * x + y * y;
+}
+
+// Collider of the pair's point or edge, or NULL.
+static const mspringi_collider *collider_of_pair(const mspringi_contacts *contacts, const mspringi_pair *pair) {
+    const mspring_id a = contacts->outline.a[pair->edge];
+    return mspringi_is_collider_point(contacts, pair->point) ? mspringi_collider_of(contacts, pair->point)
+           : mspringi_is_collider_point(contacts, a)         ? mspringi_collider_of(contacts, a)
+                                                             : NULL;
+}
+
+// Effective inverse mass of the point and the closest point of the edge, 1/kg.
+static double resistance_of(const mspringi_contact_nodes *k, const mspringi_candidate *c, double share) {
+    const double of_a = 1.0 - share;
+    return k->inverse_mass[c->p] + of_a * of_a * k->inverse_mass[c->a] + share * share * k->inverse_mass[c->b];
+}
+
+// Largest squared speed of the point relative to an end of the edge.
+static double max_square_speed(const mspringi_contact_nodes *k, uint32_t p, uint32_t a, uint32_t b) {
+    const double of_a = square_of_speed(k, p, a), of_b = square_of_speed(k, p, b);
+    return of_a > of_b ? of_a : of_b;
+}
+
+static mspringi_contact_material material_of(const mspringi_contacts *contacts, const mspringi_pair *pair,
+                                             const mspringi_collider *collider) {
+    if (contacts->materials)
+        return mspringi_contact_material_mix(contacts, pair, collider);
+    return collider ? (mspringi_contact_material){collider->def.friction, collider->def.restitution}
+                    : (mspringi_contact_material){contacts->def.friction, contacts->def.restitution};
+}
+
+// Make the constraint of a pending one in an interval of h seconds.
+static void make_constraint(const mspringi_contacts *contacts, const mspringi_pending_constraint *pending,
+                            mspringi_contact_constraint *t, double h) {
+    const mspringi_candidate *c = &contacts->candidates[pending->candidate];
+    const mspringi_pair *pair = &contacts->list[c->pair];
+    const mspringi_collider *collider = contacts->colliders.count > 0 ? collider_of_pair(contacts, pair) : NULL;
+    const mspringi_contact_material material = material_of(contacts, pair, collider);
+    t->p = c->p;
+    t->a = c->a;
+    t->b = c->b;
+    t->candidate = pending->candidate;
+    t->collider = collider ? (uint32_t)(collider - contacts->colliders.list) : MSPRING_NONE;
+    t->distance = sqrt(pending->at.x * pending->at.x + pending->at.y * pending->at.y);
+    t->gap = t->distance - (collider ? contacts->thickness + collider->radius : contacts->thickness);
+    const double per_distance = 1.0 / t->distance;
+    t->nx = pending->at.x * per_distance;
+    t->ny = pending->at.y * per_distance;
+    t->bary_a = 1.0 - pending->at.fraction;
+    t->bary_b = pending->at.fraction;
+    t->normal_mass = 1.0 / pending->resistance;
+    t->friction = material.friction;
+    t->couple_x = t->couple_y = t->couple_response = t->tangent_mass = t->surface_speed = t->normal_impulse =
+        t->tangent_impulse = 0.0;
+    set_target_speed(contacts, t, (double)material.restitution, h);
+    if (material.friction > 0.0f)
+        add_friction(contacts, t);
+}
+
+/// Colours of pending constraints. The last one holds the rest, which may share particles.
+#define COLOURS 32u
+
+// Colour the pending constraints greedily. Those of one colour share no movable particle, so that a processor can
+// overlap them. end[c] is the end of colour c.
+static void colour_pending(mspringi_contacts *contacts, uint32_t *end) {
+    const double *inverse_mass = contacts->nodes.inverse_mass;
+    uint32_t *used = contacts->colours, most = 0;
+    for (uint32_t i = 0; i < contacts->pending_count; ++i) {
+        const mspringi_candidate *c = &contacts->candidates[contacts->pending[i].candidate];
+        used[c->p] = used[c->a] = used[c->b] = 0;
+    }
+    for (uint32_t i = 0; i < contacts->pending_count; ++i) {
+        const mspringi_candidate *c = &contacts->candidates[contacts->pending[i].candidate];
+        uint32_t number = 0;
+        for (uint32_t all = used[c->p] | used[c->a] | used[c->b]; all & 1u && number + 1 < COLOURS; all >>= 1)
+            ++number;
+        used[c->p] |= inverse_mass[c->p] > 0.0 ? 1u << number : 0;
+        used[c->a] |= inverse_mass[c->a] > 0.0 ? 1u << number : 0;
+        used[c->b] |= inverse_mass[c->b] > 0.0 ? 1u << number : 0;
+        contacts->pending[i].colour = number;
+        ++end[number];
+        most = number > most ? number : most;
+    }
+    for (uint32_t number = 1; number <= most; ++number)
+        end[number] += end[number - 1];
+}
+
+// Make all pending constraints, by colour and then by id.
+static void flush_pending(mspringi_contacts *contacts, double h) {
+    uint32_t end[COLOURS] = {0};
+    if (contacts->pending_count == 1) {
+        make_constraint(contacts, contacts->pending, &contacts->constraints[contacts->constraint_count++], h);
+        contacts->pending_count = 0;
+        return;
+    }
+    colour_pending(contacts, end);
+    for (uint32_t i = contacts->pending_count; i-- > 0;) {
+        const mspringi_pending_constraint *pending = &contacts->pending[i];
+        make_constraint(contacts, pending,
+                        &contacts->constraints[contacts->constraint_count + --end[pending->colour]], h);
+    }
+    contacts->constraint_count += contacts->pending_count;
+    contacts->pending_count = 0;
+}
+
+// True if the point is next to the last pending one on an outline. Only such runs are reordered: with all
+// reordered, impulses spread so slowly that heaps of fragments crept for a minute instead of 20 s.
+static bool is_beside_last(mspringi_contacts *contacts, mspring_id point) {
+    const mspringi_outline *o = &contacts->outline;
+    const mspring_id last =
+        contacts->list[contacts->candidates[contacts->pending[contacts->pending_count - 1].candidate].pair].point;
+    bool is_next = point == last;
+    uint32_t j = o->first[last];
+    for (; j < o->first[last + 1] && !is_next; ++j)
+        is_next = o->a[o->at[j]] == point || o->b[o->at[j]] == point;
+    mspringi_contact_count_visits(contacts, j - o->first[last]);
+    return is_next;
+}
+
+// Queue a constraint if the pair may touch within h, at its own speed or at `given`. Raise *fastest.
+static void queue_constraint(const mspring_network *network, mspringi_contacts *contacts, uint32_t candidate,
+                             double h, double given, double *fastest) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const mspringi_candidate *c = &contacts->candidates[candidate];
+    const mspringi_closest_point at =
+        mspringi_closest_point_on_edge(k->x[c->p], k->y[c->p], k->x[c->a], k->y[c->a], k->x[c->b], k->y[c->b]);
+    const double square = at.x * at.x + at.y * at.y, to_ends = max_square_speed(k, c->p, c->a, c->b);
+    mspringi_pair *pair = &contacts->list[c->pair];
+    const mspringi_collider *collider = contacts->colliders.count > 0 ? collider_of_pair(contacts, pair) : NULL;
+    const double thickness = collider ? contacts->thickness + collider->radius : contacts->thickness;
+    const double still = thickness + MSPRINGI_NEAR_MISS_FRACTION * contacts->thickness;
+    const double square_way = 4.0 * h * h * (to_ends > given * given ? to_ends : given * given);
+    if (square > 2.0 * (still * still + square_way)) // further than the border: most are, and need no root
+        return;
+    const double speed = sqrt(to_ends), way = 2.0 * h * (speed > given ? speed : given);
+    const double reach = thickness + way, border = still + way;
+    if (!(square < border * border) || square == 0.0)
+        return;
+    if (!(square < reach * reach)) {
+        contacts->near_misses[contacts->near_miss_count++] = candidate;
+        return;
+    }
+    if (c->a != c->b && (at.fraction <= 0.0 || at.fraction >= 1.0) &&
+        belongs_to_other_edge(network, contacts, pair, at.fraction <= 0.0 ? 0 : 1))
+        return;
+    if (contacts->constraint_count + contacts->pending_count == contacts->constraint_capacity) {
+        contacts->is_out_of_room = true;
+        return;
+    }
+    const double resistance = resistance_of(k, c, at.fraction);
+    if (!(resistance > 0.0))
+        return;
+    if (contacts->pending_count == contacts->max_pending ||
+        (contacts->pending_count > 0 && !is_beside_last(contacts, pair->point)))
+        flush_pending(contacts, h);
+    contacts->pending[contacts->pending_count++] =
+        (mspringi_pending_constraint){.at = at, .resistance = resistance, .candidate = candidate};
+    *fastest = speed > *fastest ? speed : *fastest;
+}
+
+// True if two particles are too far apart for a constraint. No root: a way w is at most (L + w^2 / L) / 2 for any
+// length L.
+MSPRINGI_ALWAYS_INLINE bool are_far(const mspringi_contact_nodes *k, const mspringi_candidate *c, double still,
+                                    double per_square) {
+    const double dx = k->x[c->p] - k->x[c->a], dy = k->y[c->p] - k->y[c->a];
+    const double most = still + per_square * square_of_speed(k, c->p, c->a);
+    return (c->a == c->b) & (c->p < k->particle_count) & (c->a < k->particle_count) &
+           (dx * dx + dy * dy > most * most);
+}
+
+static uint32_t filter_end(const mspringi_contacts *contacts, uint32_t first) {
+    return contacts->candidate_count - first < FILTER_BATCH ? contacts->candidate_count : first + FILTER_BATCH;
+}
+
+// Collect candidates that may need a constraint. Branch-free, since most need none.
+static uint32_t filter_candidates(const mspringi_contacts *contacts, uint32_t first, double h, double given,
+                                  uint32_t *kept) {
+    const double length = 2.0 * FILTER_MARGIN * contacts->thickness, per_square = 2.0 * h * h / length;
+    const double still =
+        (1.0 + MSPRINGI_NEAR_MISS_FRACTION + FILTER_MARGIN) * contacts->thickness + 2.0 * h * given;
+    uint32_t count = 0;
+    for (uint32_t i = first, end = filter_end(contacts, first); i < end; ++i) {
+        kept[count] = i;
+        count += !are_far(&contacts->nodes, &contacts->candidates[i], still, per_square);
+    }
+    return count;
+}
+
+static bool any_fast(const mspringi_contacts *contacts, uint32_t p, uint32_t a, uint32_t b) {
+    const uint8_t *thrown = contacts->nodes.is_fast;
+    return thrown[p] | thrown[a] | thrown[b];
+}
+
+// Collect fast candidates without a constraint.
+static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, uint32_t *kept) {
+    uint32_t count = 0;
+    for (uint32_t i = first, end = filter_end(contacts, first); i < end; ++i) {
+        const mspringi_candidate *c = &contacts->candidates[i];
+        kept[count] = i;
+        count += any_fast(contacts, c->p, c->a, c->b) & !contacts->is_seen[i];
+    }
+    return count;
+}
+
+// Queue constraints of candidates: of all, or only of fast ones without a constraint.
+static void queue_constraints(const mspring_network *network, mspringi_contacts *contacts, double h, double given,
+                              bool only_fast, double *fastest) {
+    for (uint32_t first = 0; first < contacts->candidate_count && !contacts->is_out_of_room;
+         first += FILTER_BATCH) {
+        uint32_t kept[FILTER_BATCH];
+        const uint32_t count =
+            only_fast ? filter_fast(contacts, first, kept) : filter_candidates(contacts, first, h, given, kept);
+        for (uint32_t i = 0; i < count && !contacts->is_out_of_room; ++i)
+            queue_constraint(network, contacts, kept[i], h, given, fastest);
+    }
+}
+
+// Make what is pending. If there was no room, the step will be rejected: do nothing more for it.
+static void flush_or_end(mspringi_contacts *contacts, double h) {
+    flush_pending(contacts, h);
+    if (contacts->is_out_of_room)
+        contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
+}
+
+double mspringi_contact_make_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
+                                         double given, uint32_t pending) {
+    double fastest = 0.0;
+    contacts->max_pending = pending;
+    contacts->constraint_count = contacts->pending_count = contacts->near_miss_count = 0;
+    queue_constraints(network, contacts, h, given, false, &fastest);
+    flush_or_end(contacts, h);
+    return fastest;
+}
+
+double mspringi_contact_prepare_implicit(const mspring_network *network, mspringi_contacts *contacts, double h) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    contacts->share = h / (double)contacts->h;
+    contacts->fall_x = h * (double)network->settings.gravity_x;
+    contacts->fall_y = h * (double)network->settings.gravity_y;
+    memcpy(k->v, k->v_start, k->particle_count * sizeof *k->v);
+    const double fastest = mspringi_contact_make_constraints(network, contacts, h, 0.0, 1);
+    (void)mspringi_contact_make_constraints(network, contacts, h,
+                                            fastest + EXTRA_APPROACH * contacts->thickness / h, 1);
+    return fastest;
+}
+
+/* -------------------------------------------------------------------------------------------- what is thrown */
+
+bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
+                                      bool any_fast) {
+    const uint32_t before = contacts->constraint_count, near_miss_count = contacts->near_miss_count;
+    double fastest = 0.0;
+    memset(contacts->is_seen, 0, contacts->candidate_count);
+    for (uint32_t i = 0; i < before; ++i)
+        contacts->is_seen[contacts->constraints[i].candidate] = 1;
+    contacts->near_miss_count = 0;
+    for (uint32_t i = 0; i < near_miss_count; ++i) {
+        contacts->is_seen[contacts->near_misses[i]] = 1;
+        queue_constraint(network, contacts, contacts->near_misses[i], h, 0.0, &fastest);
+    }
+    if (any_fast)
+        queue_constraints(network, contacts, h, 0.0, true, &fastest);
+    flush_or_end(contacts, h);
+    for (uint32_t i = before; i < contacts->constraint_count; ++i) {
+        const mspringi_contact_constraint *t = &contacts->constraints[i];
+        if (t->gap + h * mspringi_normal_speed(t, contacts->nodes.v) < 0.0)
+            return true;
+    }
+    return false;
+}
+
+bool mspringi_contact_moves_are_short(const mspringi_contacts *contacts, double h) {
+    const double most = MAX_MOVE * contacts->thickness / h;
+    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
+        const mspringi_contact_constraint *t = &contacts->constraints[i];
+        if (any_fast(contacts, t->p, t->a, t->b) &&
+            max_square_speed(&contacts->nodes, t->p, t->a, t->b) > most * most)
+            return false;
+    }
+    return true;
+}

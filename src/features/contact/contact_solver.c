@@ -1,0 +1,182 @@
+/// Contact in a substep: make constraints, find impulses, add constraints of pairs that these made fast.
+///
+/// A substep is divided into intervals in which no node moves further than the thickness.
+#include <math.h>
+#include <string.h>
+
+#include "features/contact/contacts.h"
+#include "store/network.h"
+
+/// Most intervals of a substep.
+#define MAX_INTERVALS 64
+
+/// Most subdivisions of the remaining intervals in a substep.
+#define MAX_CUTS 6
+
+/// Most rounds of added constraints and further sweeps in an interval.
+#define MAX_ROUNDS 8
+
+/// Work of a substep for each of its constraints that is not counted: what intervals take that are not divided.
+#define WORK_OF_CONSTRAINT 256u
+
+static void begin(const mspring_network *network, const mspringi_contact_nodes *k) {
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
+        k->v[i].x = (double)network->state.vx[slot];
+        k->v[i].y = (double)network->state.vy[slot];
+        k->shift_x[i] = k->shift_y[i] = 0.0;
+    }
+}
+
+// Mark the particles whose velocities contact changed so much that pairs beyond the near misses may come into
+// reach. Return true if there are any.
+static bool mark_fast(const mspringi_contacts *contacts, double h) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const double least = 0.25 * MSPRINGI_NEAR_MISS_FRACTION * contacts->thickness / h;
+    uint8_t any = 0;
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        const double x = k->v[i].x - k->v_before[i].x, y = k->v[i].y - k->v_before[i].y;
+        k->is_fast[i] = x * x + y * y > least * least;
+        any |= k->is_fast[i];
+    }
+    memset(k->is_fast + k->particle_count, 0, k->count - k->particle_count);
+    return any;
+}
+
+// Solve an interval. False: its constraints fail, or its moves are too long.
+static bool solve(const mspring_network *network, mspringi_contacts *contacts, double h) {
+    mspringi_floor_support_begin(contacts, h);
+    for (uint32_t round = 0;; ++round) {
+        const bool holds = mspringi_contact_sweep(contacts, h, round == 0 ? contacts->def.sweeps : 1);
+        const bool any_fast = mark_fast(contacts, h);
+        if (!any_fast && contacts->near_miss_count == 0)
+            return holds;
+        if (round == MAX_ROUNDS)
+            return false;
+        if (!mspringi_contact_add_constraints(network, contacts, h, any_fast))
+            return holds && (!any_fast || mspringi_contact_moves_are_short(contacts, h));
+    }
+}
+
+void mspringi_contact_count_impulses(const mspring_network *network, mspringi_contacts *contacts) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < contacts->constraint_count && contacts->events.capacity > 0; ++i)
+        if (contacts->constraints[i].normal_impulse > 0.0)
+            mspringi_contact_events_add_impulse(network, contacts, &contacts->constraints[i]);
+    mspringi_contact_events_begin_interval(contacts);
+    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
+        const mspringi_contact_constraint *t = &contacts->constraints[i];
+        if (t->collider != MSPRING_NONE)
+            mspringi_colliders_add_impulse(contacts, t);
+        count += t->normal_impulse > 0.0;
+        contacts->deepest = -t->gap > contacts->deepest ? -t->gap : contacts->deepest;
+    }
+    contacts->touching = count > contacts->touching ? count : contacts->touching;
+}
+
+static void keep_velocities(const mspringi_contact_nodes *k) {
+    memcpy(k->v_before, k->v, k->particle_count * sizeof *k->v);
+}
+
+static void restore_velocities(const mspringi_contact_nodes *k) {
+    memcpy(k->v, k->v_before, k->particle_count * sizeof *k->v);
+}
+
+// Move the nodes for an interval of h seconds. The displacement by contact is kept apart. The next interval bounces
+// at the velocities that this one leaves.
+static void advance(const mspring_network *network, const mspringi_contact_nodes *k, double h, bool is_last) {
+    for (uint32_t i = 0; i < k->particle_count && !is_last; ++i) {
+        k->v_start[i].x += k->v[i].x - k->v_before[i].x;
+        k->v_start[i].y += k->v[i].y - k->v_before[i].y;
+    }
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
+        k->shift_x[i] += h * (k->v[i].x - (double)network->state.vx[slot]);
+        k->shift_y[i] += h * (k->v[i].y - (double)network->state.vy[slot]);
+    }
+    for (uint32_t i = 0; i < k->count && !is_last; ++i) {
+        k->x[i] += h * k->v[i].x;
+        k->y[i] += h * k->v[i].y;
+    }
+}
+
+// Store velocities and displacements. Return the largest speed from contact relative to the outline's mean, m/s.
+static double put_back(const mspring_network *network, const mspringi_contacts *contacts) {
+    const mspringi_state *s = &network->state;
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    double most = 0.0;
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
+        if (k->shift_x[i] == 0.0 && k->shift_y[i] == 0.0 && k->v[i].x == (double)s->vx[slot] &&
+            k->v[i].y == (double)s->vy[slot])
+            continue;
+        const double x = k->v[i].x - contacts->mean_vx, y = k->v[i].y - contacts->mean_vy, square = x * x + y * y;
+        most = square > most ? square : most;
+        s->vx[slot] = (float)k->v[i].x;
+        s->vy[slot] = (float)k->v[i].y;
+        mspringi_move_by(s, slot, (float)k->shift_x[i], (float)k->shift_y[i]);
+    }
+    return sqrt(most);
+}
+
+// Solve intervals of equal length. Divide the remaining ones if one fails.
+static void solve_in_intervals(const mspring_network *network, mspringi_contacts *contacts, double h,
+                               uint32_t pieces) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    bool is_made = pieces == 1;
+    for (uint32_t left = pieces, cuts = 0; left > 0;) {
+        const double piece = h / left;
+        if (!is_made)
+            (void)mspringi_contact_make_constraints(network, contacts, piece, 0.0, MSPRINGI_MAX_PENDING);
+        is_made = false;
+        keep_velocities(k);
+        const bool is_solved = solve(network, contacts, piece);
+        if (mspringi_contact_is_too_much(contacts))
+            return;
+        if (!is_solved && cuts < MAX_CUTS && left < MAX_INTERVALS) {
+            restore_velocities(k);
+            left = 2 * left < MAX_INTERVALS ? 2 * left : MAX_INTERVALS;
+            ++cuts;
+            continue;
+        }
+        mspringi_contact_count_impulses(network, contacts);
+        mspringi_floor_support_end(network, contacts);
+        advance(network, k, piece, left == 1);
+        h -= piece;
+        --left;
+    }
+}
+
+// Refresh the list if contact made nodes faster than the last scan allows. If pairs may be missing in this substep
+// already, repeat the step, with this speed in its scan.
+static void count_thrown(mspringi_contacts *contacts, double speed) {
+    const double spare = MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt;
+    if (speed > MSPRINGI_SPEED_MARGIN * contacts->speed + spare)
+        contacts->valid = 1;
+    if (speed > 3.0 * contacts->speed + 0.25 * contacts->thickness / (double)contacts->h) {
+        contacts->is_missed = true;
+        contacts->extra_speed = speed > contacts->extra_speed ? speed : contacts->extra_speed;
+    }
+}
+
+bool mspringi_contact_solve_nodes(const mspring_network *network, mspringi_contacts *contacts, double h) {
+    contacts->share = 1.0;
+    const double fastest = mspringi_contact_make_constraints(network, contacts, h, 0.0, MSPRINGI_MAX_PENDING);
+    if (contacts->constraint_count == 0)
+        return false;
+    contacts->most_work += WORK_OF_CONSTRAINT * (uint64_t)contacts->constraint_count;
+    mspringi_floor_support_find(network, contacts);
+    const double thicknesses = h * fastest / contacts->thickness;
+    solve_in_intervals(network, contacts, h,
+                       thicknesses < MAX_INTERVALS ? (uint32_t)thicknesses + 1 : MAX_INTERVALS);
+    return true;
+}
+
+bool mspringi_contact_solve_substep(const mspring_network *network, mspringi_contacts *contacts) {
+    begin(network, &contacts->nodes);
+    contacts->fall_x = contacts->fall_y = 0.0;
+    if (!mspringi_contact_solve_nodes(network, contacts, (double)contacts->h))
+        return false;
+    count_thrown(contacts, put_back(network, contacts));
+    return true;
+}

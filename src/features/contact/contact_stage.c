@@ -1,0 +1,298 @@
+/// Stage of contact between bodies: when to scan, and islands that wake or fall asleep together.
+///
+/// Quiet steps and substeps, in which nothing can touch, take the path without contact. The speeds at the last scan
+/// bound their number. If forces made points so fast that some could have touched, the step is repeated with a scan
+/// after every substep.
+#include "features/contact/contacts.h"
+
+#include <math.h>
+
+#include "features/sleep/sleep.h"
+#include "store/stages.h"
+
+/// Points this near rest on each other, as a share of the thickness.
+#define RESTING_SHARE 0.05
+
+/// Comparisons of points and edges that a step may take, 75 ms, beside what it is given by the size of the network:
+/// with each list (pair_list.c), for constraints (contact_solver.c), and with an implicit substep
+/// (solvers/implicit/work.c).
+#define MOST_WORK ((uint64_t)3 << 20)
+
+static bool is_used(const mspring_network *network) {
+    return network->contacts != NULL;
+}
+
+// A collider moves even where all bodies sleep.
+static bool moves(const mspring_network *network) {
+    const mspringi_colliders *c = &network->contacts->colliders;
+    for (uint32_t i = 0; i < c->count; ++i)
+        if (c->list[i].is_moving)
+            return true;
+    return false;
+}
+
+/* -------------------------------------------------------------------------------------------------------- sleep */
+
+static uint32_t island_of(const mspring_network *network, mspring_id p) {
+    return network->sleep.island[network->topology.slot_of_particle[p]];
+}
+
+typedef struct node_place {
+    double x, y;
+} node_place;
+
+static node_place place_of(const mspring_network *network, const mspringi_contacts *contacts, mspring_id node) {
+    const mspringi_state *s = &network->state;
+    if (mspringi_is_collider_point(contacts, node)) {
+        const uint32_t point = node - contacts->particles;
+        return (node_place){contacts->colliders.x[point], contacts->colliders.y[point]};
+    }
+    const uint32_t slot = network->topology.slot_of_particle[node];
+    return (node_place){mspringi_x_of(s, slot), mspringi_y_of(s, slot)};
+}
+
+bool mspringi_pair_is_resting(const mspring_network *network, const mspringi_contacts *contacts,
+                              const mspringi_pair *pair, double way) {
+    const mspringi_outline *o = &contacts->outline;
+    const node_place p = place_of(network, contacts, pair->point),
+                     a = place_of(network, contacts, o->a[pair->edge]),
+                     b = place_of(network, contacts, o->b[pair->edge]);
+    const mspringi_closest_point at = mspringi_closest_point_on_edge(p.x, p.y, a.x, a.y, b.x, b.y);
+    const double distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_radius_of(contacts, pair->point, pair->edge);
+    return distance <= (1.0 + RESTING_SHARE) * contacts->thickness + way;
+}
+
+// The two sides of a pair: islands, and for how long each has been still. A collider that moves never is, and one
+// that stands still is no side.
+typedef struct pair_sides {
+    uint32_t island[2]; // MSPRING_NONE: a collider
+    double still[2];
+    bool are_two;
+} pair_sides;
+
+static pair_sides sides_of(const mspring_network *network, const mspringi_contacts *contacts,
+                           const mspringi_pair *pair) {
+    const mspring_id nodes[2] = {pair->point, contacts->outline.a[pair->edge]};
+    pair_sides s = {.are_two = true};
+    for (int i = 0; i < 2; ++i) {
+        const bool is_collider = mspringi_is_collider_point(contacts, nodes[i]);
+        s.island[i] = is_collider ? MSPRING_NONE : island_of(network, nodes[i]);
+        s.still[i] = is_collider ? 0.0 : network->sleep.still[s.island[i]];
+        s.are_two &= !is_collider || mspringi_collider_of(contacts, nodes[i])->is_moving;
+    }
+    return s;
+}
+
+// Wake what sleeps where something that is awake comes.
+static void wake_touched(mspring_network *network, const mspringi_contacts *contacts) {
+    const uint64_t naps = network->edits.sleep_changes;
+    if (network->sleep.sleeping == 0)
+        return;
+    for (bool again = true; again;) {
+        again = false;
+        for (uint32_t i = 0; i < contacts->count; ++i) {
+            const pair_sides s = sides_of(network, contacts, &contacts->list[i]);
+            if (!s.are_two || (s.still[0] < 0.0) == (s.still[1] < 0.0) ||
+                !mspringi_pair_is_resting(network, contacts, &contacts->list[i],
+                                          2.0 * contacts->dt * contacts->speed))
+                continue;
+            mspringi_sleep_wake_island(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
+            again = true;
+        }
+    }
+    mspringi_sleep_finish_waking(network, naps);
+}
+
+// Islands that rest on each other have been still for as long as the one that was still for the shortest time: they
+// fall asleep together.
+static void share_stillness(mspring_network *network, const mspringi_contacts *contacts) {
+    if (!(network->settings.sleep_speed > 0.0f) || mspringi_sleep_is_whole(network))
+        return;
+    mspringi_islands_find(network);
+    for (bool again = true; again;) {
+        again = false;
+        for (uint32_t i = 0; i < contacts->count; ++i) {
+            const pair_sides s = sides_of(network, contacts, &contacts->list[i]);
+            if (!s.are_two || s.still[0] == s.still[1] || s.still[0] < 0.0 || s.still[1] < 0.0 ||
+                !mspringi_pair_is_resting(network, contacts, &contacts->list[i], 0.0))
+                continue;
+            const double least = s.still[0] < s.still[1] ? s.still[0] : s.still[1];
+            for (int k = 0; k < 2; ++k)
+                if (s.island[k] != MSPRING_NONE)
+                    network->sleep.still[s.island[k]] = least;
+            again = true;
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ stage */
+
+// Before substeps are taken, or taken once more. Returns whether all pairs have room.
+static bool begin_substeps(mspring_network *network, uint32_t substeps) {
+    mspringi_contacts *contacts = network->contacts;
+    contacts->is_missed = contacts->is_pair_list_full = contacts->is_out_of_room = false;
+    contacts->substeps_done = contacts->touching = 0;
+    contacts->substeps_since_scan = 0;
+    contacts->deepest = contacts->extra_speed = 0.0;
+    mspringi_colliders_begin(network, contacts, substeps);
+    return mspringi_pair_list_scan(network, contacts);
+}
+
+// True if the step will be rejected.
+static bool has_failed(const mspringi_contacts *contacts) {
+    return contacts->is_pair_list_full || contacts->is_out_of_room;
+}
+
+static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_contacts *contacts = network->contacts;
+    mspringi_outline_update(network, contacts);
+    contacts->h = attempt->h;
+    contacts->dt = attempt->dt;
+    contacts->is_second_try = false;
+    contacts->work = 0;
+    contacts->most_work = MOST_WORK;
+    contacts->has_sleepers = network->sleep.sleeping > 0;
+    if (begin_substeps(network, attempt->substeps))
+        wake_touched(network, contacts);
+    mspringi_contact_events_begin(network, contacts);
+}
+
+static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
+    return network->contacts->quiet_substeps >= attempt->substeps;
+}
+
+static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    const uint32_t quiet = network->contacts->quiet_substeps, left = attempt->substeps - substep;
+    return quiet == 0 ? 1 : quiet < left ? quiet : left;
+}
+
+static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
+                                     mspringi_field base) {
+    mspringi_contacts *contacts = network->contacts;
+    (void)attempt;
+    contacts->first_substep = substep;
+    if (contacts->quiet_substeps == 0) {
+        mspringi_colliders_move_points(network, contacts, substep);
+        mspringi_contact_begin_substep(network, contacts);
+    }
+    return base;
+}
+
+static void look(mspring_network *network, mspringi_contacts *contacts) {
+    contacts->is_fresh = false;
+    (void)mspringi_pair_list_scan(network, contacts);
+}
+
+// After so many quiet substeps: with the speeds that there are now, some pair could have touched.
+static void look_back(mspring_network *network, mspringi_contacts *contacts, uint32_t count) {
+    const double room = contacts->room;
+    look(network, contacts);
+    contacts->is_missed |= !(2.0 * (double)contacts->h * (double)count * contacts->speed <= room) ||
+                           contacts->nearest < contacts->thickness;
+}
+
+static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
+    mspringi_contacts *contacts = network->contacts;
+    const uint32_t count = substep + 1 - contacts->first_substep;
+    contacts->substeps_done += count;
+    if (has_failed(contacts))
+        return;
+    contacts->is_fresh = false;
+    if (contacts->quiet_substeps > 0) {
+        contacts->quiet_substeps = contacts->quiet_substeps > count ? contacts->quiet_substeps - count : 0;
+        contacts->substeps_since_scan += count;
+        if (contacts->quiet_substeps == 0 && contacts->substeps_done < attempt->substeps) {
+            look_back(network, contacts, contacts->substeps_since_scan);
+            contacts->substeps_since_scan = 0;
+        }
+        return;
+    }
+    if (network->running->ops->has_implicit_contact || !mspringi_contact_solve_substep(network, contacts) ||
+        contacts->is_second_try)
+        look(network, contacts);
+    else if (--contacts->valid == 0 && contacts->substeps_done < attempt->substeps) // a step begins with a look
+        (void)mspringi_pair_list_refresh(network, contacts);
+}
+
+// The last substeps may have been quiet; all were, if they were taken at once.
+static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_contacts *contacts = network->contacts;
+    const uint32_t count = contacts->substeps_done == 0 ? attempt->substeps : contacts->substeps_since_scan;
+    contacts->substeps_done = attempt->substeps;
+    if (count > 0 && !has_failed(contacts))
+        look_back(network, contacts, count);
+    if (!contacts->is_missed || contacts->is_second_try || has_failed(contacts))
+        return false;
+    contacts->is_second_try = true;
+    return true;
+}
+
+// Particle with the most edges of the outline.
+static mspring_id hub_of(const mspringi_contacts *contacts, uint32_t *edges) {
+    const uint32_t *first = contacts->outline.first;
+    mspring_id hub = 0;
+    for (mspring_id p = 1; p < contacts->particles; ++p)
+        hub = first[p + 1] - first[p] > first[hub + 1] - first[hub] ? p : hub;
+    *edges = first[hub + 1] - first[hub];
+    return hub;
+}
+
+static mspring_result report_work(mspring_network *network) {
+    const mspringi_contacts *contacts = network->contacts;
+    uint32_t edges;
+    const mspring_id hub = hub_of(contacts, &edges);
+    network->outcome.particle = hub;
+    return mspringi_fail(
+        &network->message, MSPRING_ERROR_LIMIT,
+        "over %.3g comparisons of outline points and edges in a step, or impulses and solutions that "
+        "take as long, as many of %u edges are within %g m of many points, or at one particle (%u at "
+        "particle %u): set contact with less thickness, take a shorter dt, or divide long springs",
+        (double)contacts->most_work, (unsigned)contacts->outline.edge_count, contacts->reach, (unsigned)edges,
+        (unsigned)hub);
+}
+
+static mspring_result verify(mspring_network *network) {
+    const mspringi_contacts *contacts = network->contacts;
+    if (!has_failed(contacts))
+        return MSPRING_OK;
+    if (contacts->work > contacts->most_work)
+        return report_work(network);
+    return mspringi_fail(
+        &network->message, MSPRING_ERROR_LIMIT,
+        "more than %u pairs of an outline point and an outline edge %s each other: set "
+        "contact with a larger capacity, or less thickness",
+        (unsigned)(contacts->is_pair_list_full ? contacts->capacity : contacts->constraint_capacity),
+        contacts->is_pair_list_full ? "are near" : "may touch");
+}
+
+// The state is that of before the step. If the step is repeated, perhaps for another stage, it begins with a look.
+static void roll_back(mspring_network *network) {
+    mspringi_contacts *contacts = network->contacts;
+    contacts->is_fresh = false;
+    mspringi_contact_events_discard_step(contacts);
+    if (!has_failed(contacts)) // else the next step begins with one
+        (void)begin_substeps(network, contacts->colliders.substeps);
+}
+
+static void after_step(mspring_network *network, double dt) {
+    mspringi_contacts *contacts = network->contacts;
+    (void)dt;
+    contacts->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
+    mspringi_colliders_move_points(network, contacts, contacts->colliders.substeps);
+    share_stillness(network, contacts);
+    mspringi_contact_events_finish_step(network, contacts);
+    mspringi_colliders_finish_step(network, contacts);
+}
+
+const mspringi_stage mspringi_stage_contacts = {.is_used = is_used,
+                                                .moves = moves,
+                                                .writes_state = true,
+                                                .before_step = before_step,
+                                                .is_quiet = is_quiet,
+                                                .free_substeps = free_substeps,
+                                                .before_substep = before_substep,
+                                                .after_substep = after_substep,
+                                                .must_repeat = must_repeat,
+                                                .verify = verify,
+                                                .roll_back = roll_back,
+                                                .after_step = after_step};

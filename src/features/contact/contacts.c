@@ -1,0 +1,512 @@
+/// Definition of contact between bodies, set by the host, and memory for it.
+#include "features/contact/contacts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/array_table.h"
+#include "base/cpu.h"
+#include "features/contact/floor.h"
+#include "store/changed.h"
+#include "store/feature.h"
+#include "store/id_pool.h"
+
+#define THICKEST 1e6
+#define THICKNESS_SHARE 0.9
+#define MOST_SWEEPS 64
+#define MOST_PAIRS ((uint32_t)1 << 26)
+
+/// Pairs that there is room for: for each particle, for each one of the outline, and besides. (Soft discs that fall
+/// at 25 m/s with one or two substeps a step have 45 for a particle of the outline.)
+#define PAIRS_OF_PARTICLE 2
+#define PAIRS_OF_OUTLINE 64
+#define PAIRS_BESIDES 4096
+
+/// For each point of a collider.
+#define PAIRS_OF_POINT 8
+
+/// Comparisons that the outline may take (50 ms), and for each spring besides: others have 10 at most.
+#define MOST_TRIES ((uint64_t)1 << 24)
+#define TRIES_OF_SPRING 32
+
+/// Rows that there is room for, as a part of the pairs, and besides.
+#define PAIRS_OF_ROW 8
+#define ROWS_BESIDES 1024
+
+/* ----------------------------------------------------------------------------------------------------- checking */
+
+static mspring_result check_numbers(const mspring_contact_def *def, mspringi_message *message) {
+    const struct {
+        const char *name;
+        double value, most;
+    } values[] = {{"friction", (double)def->friction, 1e6},
+                  {"restitution", (double)def->restitution, 1.0},
+                  {"push_speed", (double)def->push_speed, 1e6},
+                  {"thickness", def->thickness, THICKEST}};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
+        if (!(values[i].value >= 0.0 && values[i].value <= values[i].most))
+            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the contact's %s is %g, it must be 0 to %g",
+                                 values[i].name, values[i].value, values[i].most);
+    if (def->sweeps < 1 || def->sweeps > MOST_SWEEPS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the contact's sweeps are %u, they must be 1 to %d",
+                             (unsigned)def->sweeps, MOST_SWEEPS);
+    if (def->capacity > MOST_PAIRS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the contact's capacity is %u, it must be at most %u",
+                             (unsigned)def->capacity, (unsigned)MOST_PAIRS);
+    if (def->flags & ~(uint32_t)MSPRING_CONTACT_SELF)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "contact flags %#x are unknown",
+                             (unsigned)def->flags);
+    return MSPRING_OK;
+}
+
+// Fill in the defaults.
+static mspring_result check_def(const mspring_network *network, mspring_contact_def *def,
+                                mspringi_message *message) {
+    const double shortest = network->shortest;
+    const bool touches_itself = def->flags & MSPRING_CONTACT_SELF;
+    mspring_result result = check_numbers(def, message);
+    if (result != MSPRING_OK)
+        return result;
+    if (def->thickness == 0.0)
+        def->thickness = 0.5 * shortest;
+    if (!(def->thickness <= THICKEST))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the contact's thickness is 0, and the network has no spring to tell it by");
+    if (touches_itself && def->thickness > THICKNESS_SHARE * shortest)
+        return mspringi_fail(
+            message, MSPRING_ERROR_ARGUMENT,
+            "the contact's thickness is %g m, it must be at most 0.9 of the shortest spring, %g m, "
+            "for bodies that touch themselves",
+            def->thickness, shortest);
+    return MSPRING_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ memory */
+
+#define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_contacts, member, MSPRINGI_ARRAY)
+#define VIEW(member) MSPRINGI_ARRAY_ENTRY(mspringi_contacts, member, MSPRINGI_VIEW)
+static const mspringi_array_entry members[] = {
+    ARRAY(groups),
+    VIEW(masks),
+    ARRAY(materials),
+    ARRAY(outline.is_edge),
+    ARRAY(outline.is_known),
+    ARRAY(outline.shape_x),
+    VIEW(outline.shape_y),
+    ARRAY(outline.a),
+    VIEW(outline.b),
+    VIEW(outline.points),
+    VIEW(outline.first),
+    VIEW(outline.at),
+    VIEW(outline.body),
+    ARRAY(cells.first),
+    ARRAY(cells.long_edges),
+    VIEW(cells.found),
+    ARRAY(cells.edges),
+    ARRAY(list),
+    ARRAY(seen_x),
+    VIEW(seen_y),
+    VIEW(x),
+    VIEW(y),
+    ARRAY(stamp),
+    ARRAY(excluded_edges),
+    ARRAY(nodes.particles),
+    VIEW(nodes.number),
+    ARRAY(nodes.x),
+    VIEW(nodes.y),
+    VIEW(nodes.inverse_mass),
+    VIEW(nodes.shift_x),
+    VIEW(nodes.shift_y),
+    VIEW(nodes.extra_vx),
+    VIEW(nodes.extra_vy),
+    ARRAY(nodes.is_fast),
+    ARRAY(nodes.v),
+    VIEW(nodes.v_start),
+    VIEW(nodes.v_before),
+    ARRAY(constraints),
+    ARRAY(colours),
+    ARRAY(supports),
+    ARRAY(implicit_constraints),
+    ARRAY(candidates),
+    ARRAY(is_seen),
+    ARRAY(near_misses),
+    ARRAY(events.list),
+    ARRAY(events.ring),
+    ARRAY(colliders.list),
+    ARRAY(colliders.shape),
+    ARRAY(colliders.x),
+    VIEW(colliders.y),
+    VIEW(colliders.vx),
+    VIEW(colliders.vy),
+    ARRAY(colliders.owner),
+};
+#undef ARRAY
+#undef VIEW
+static const mspringi_array_table columns = MSPRINGI_ARRAY_TABLE(members);
+
+static void destroy(mspringi_contacts *contacts, mspringi_memory *memory) {
+    if (!contacts)
+        return;
+    mspringi_array_table_free(columns, contacts, memory);
+    mspringi_free(memory, contacts);
+}
+
+const mspringi_feature_state mspringi_state_of_contacts = {MSPRINGI_ARRAY_TABLE(members), NULL};
+
+// count arrays of so many elements, one behind the other. False: there is no memory.
+static bool reserve_doubles(mspringi_memory *memory, size_t elements, double **const arrays[], size_t count) {
+    double *block = mspringi_alloc(memory, elements * count, sizeof *block);
+    for (size_t i = 0; i < count && block; ++i)
+        *arrays[i] = block + i * elements;
+    return block != NULL;
+}
+
+// For particles, and for nodes: these and points of colliders.
+static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size_t particles, size_t nodes) {
+    mspringi_outline *o = &made->outline;
+    mspringi_contact_nodes *k = &made->nodes;
+    double **const shape[] = {&o->shape_x, &o->shape_y};
+    double **const places[] = {&made->seen_x, &made->seen_y, &made->x, &made->y};
+    double **const motion[] = {&k->x,       &k->y,        &k->inverse_mass, &k->shift_x,
+                               &k->shift_y, &k->extra_vx, &k->extra_vy};
+    made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
+    made->stamp = mspringi_alloc(memory, particles, sizeof *made->stamp);
+    made->excluded_edges =
+        mspringi_alloc(memory, MSPRINGI_EXCLUDED_EDGES * particles, sizeof *made->excluded_edges);
+    o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
+    k->particles = mspringi_alloc(memory, 2 * nodes, sizeof *k->particles);
+    k->is_fast = mspringi_alloc(memory, nodes, sizeof *k->is_fast);
+    k->v = mspringi_alloc(memory, 3 * nodes, sizeof *k->v);
+    made->colours = mspringi_alloc(memory, nodes, sizeof *made->colours);
+    made->supports = mspringi_alloc(memory, MSPRINGI_MAX_SUPPORTS * nodes, sizeof *made->supports);
+    if (!made->groups || !made->stamp || !made->excluded_edges || !o->is_known || !k->particles || !k->is_fast ||
+        !k->v || !made->colours || !made->supports)
+        return false;
+    k->v_start = k->v + nodes;
+    k->v_before = k->v_start + nodes;
+    made->masks = made->groups + nodes;
+    k->number = k->particles + nodes;
+    return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 4) &&
+           reserve_doubles(memory, nodes, motion, 7);
+}
+
+static bool reserve_edges(mspringi_contacts *made, mspringi_memory *memory, size_t nodes, size_t springs) {
+    mspringi_outline *o = &made->outline;
+    mspringi_edge_grid *c = &made->cells;
+    const size_t edges = nodes + springs;
+    made->edge_capacity = edges;
+    c->bucket_capacity = 1;
+    while (c->bucket_capacity < edges && c->bucket_capacity < (uint32_t)1 << 30)
+        c->bucket_capacity *= 2;
+    o->is_edge = mspringi_alloc(memory, springs, sizeof *o->is_edge);
+    o->a = mspringi_alloc(memory, 4 * edges + 3 * nodes + 1, sizeof *o->a);
+    c->first = mspringi_alloc(memory, (size_t)c->bucket_capacity + 1, sizeof *c->first);
+    c->edges = mspringi_alloc(memory, edges, sizeof *c->edges);
+    c->long_edges = mspringi_alloc(memory, 2 * edges + 1, sizeof *c->long_edges);
+    if (!o->is_edge || !o->a || !c->first || !c->edges || !c->long_edges)
+        return false;
+    o->b = o->a + edges;
+    o->at = o->b + edges;
+    o->points = o->at + 2 * edges;
+    o->body = o->points + nodes;
+    o->first = o->body + nodes;
+    c->found = c->long_edges + edges;
+    return true;
+}
+
+static bool reserve_points(mspringi_contacts *made, mspringi_memory *memory, uint32_t points) {
+    mspringi_colliders *c = &made->colliders;
+    double **const motion[] = {&c->x, &c->y, &c->vx, &c->vy};
+    c->point_capacity = points;
+    if (points == 0)
+        return true;
+    c->shape = mspringi_alloc(memory, points, 2 * sizeof *c->shape);
+    c->owner = mspringi_alloc(memory, points, sizeof *c->owner);
+    return c->shape && c->owner && reserve_doubles(memory, points, motion, 4);
+}
+
+static bool needs_holds(const mspring_network *network) {
+    const mspringi_solver_ops *fallback = network->fallback.ops;
+    return network->solver.ops->has_implicit_contact || (fallback && fallback->has_implicit_contact);
+}
+
+static bool reserve_holds(mspringi_contacts *contacts, mspringi_memory *memory) {
+    if (!contacts->implicit_constraints)
+        contacts->implicit_constraints =
+            mspringi_alloc(memory, contacts->constraint_capacity, sizeof *contacts->implicit_constraints);
+    return contacts->implicit_constraints != NULL;
+}
+
+// By what the outline is, and what it may come to be. Most pairs that are near do not touch.
+static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory, size_t particles) {
+    const uint32_t own = made->outline.point_count - made->colliders.listed_points;
+    const uint64_t usual =
+        PAIRS_OF_OUTLINE * (uint64_t)own + PAIRS_OF_PARTICLE * (uint64_t)particles + PAIRS_BESIDES;
+    if (made->def.capacity == 0)
+        made->def.capacity = usual < MOST_PAIRS ? (uint32_t)usual : MOST_PAIRS;
+    made->capacity = made->def.capacity + PAIRS_OF_POINT * made->colliders.point_capacity;
+    const uint32_t rows = made->capacity / PAIRS_OF_ROW + ROWS_BESIDES;
+    made->constraint_capacity = rows < made->capacity ? rows : made->capacity;
+    made->list = mspringi_alloc(memory, made->capacity, sizeof *made->list);
+    made->candidates = mspringi_alloc(memory, made->capacity, sizeof *made->candidates);
+    made->is_seen = mspringi_alloc(memory, made->capacity, sizeof *made->is_seen);
+    made->near_misses = mspringi_alloc(memory, made->capacity, sizeof *made->near_misses);
+    made->constraints = mspringi_alloc(memory, made->constraint_capacity, sizeof *made->constraints);
+    return made->list && made->candidates && made->constraints && made->is_seen && made->near_misses;
+}
+
+static void set_def(mspringi_contacts *contacts, const mspring_contact_def *def) {
+    contacts->def = *def;
+    contacts->thickness = def->thickness;
+    contacts->push = (double)def->push_speed;
+    contacts->touches_itself = def->flags & MSPRING_CONTACT_SELF;
+}
+
+// Take over what the host has set, and the outline as it was found.
+static void take_over(mspringi_contacts *made, const mspringi_contacts *had, size_t springs) {
+    const size_t particles = made->particles, points = had->colliders.point_count, nodes = particles + points;
+    mspringi_outline *o = &made->outline;
+    const mspringi_outline *from = &had->outline;
+    mspringi_colliders *c = &made->colliders;
+    const mspringi_colliders was = *c;
+    memcpy(made->groups, had->groups, nodes * sizeof *made->groups);
+    memcpy(made->masks, had->masks, nodes * sizeof *made->masks);
+    memcpy(o->is_edge, from->is_edge, springs * sizeof *o->is_edge);
+    memcpy(o->is_known, from->is_known, particles * sizeof *o->is_known);
+    memcpy(o->shape_x, from->shape_x, particles * sizeof *o->shape_x);
+    memcpy(o->shape_y, from->shape_y, particles * sizeof *o->shape_y);
+    o->origin_x = from->origin_x;
+    o->origin_y = from->origin_y;
+    o->is_found = from->is_found;
+    o->links = from->links;
+    o->growth = from->growth;
+    *c = had->colliders;
+    c->point_capacity = was.point_capacity;
+    c->shape = was.shape, c->owner = was.owner;
+    c->x = was.x, c->y = was.y, c->vx = was.vx, c->vy = was.vy;
+    if (points > 0) {
+        memcpy(c->shape, had->colliders.shape, 2 * points * sizeof *c->shape);
+        memcpy(c->owner, had->colliders.owner, points * sizeof *c->owner);
+    }
+    c->is_placed = false;
+    c->are_new = true;
+    made->materials = had->materials;
+    made->events = had->events;
+    made->touching = had->touching;
+    made->deepest = had->deepest;
+}
+
+// Another has the arrays that do not depend on how much room there is.
+static void hand_over(mspringi_contacts *contacts) {
+    contacts->materials = NULL;
+    contacts->colliders.list = NULL;
+    contacts->events.list = NULL;
+    contacts->events.ring = NULL;
+}
+
+// The particle with most springs.
+static mspring_id find_hub(const mspring_network *network) {
+    const uint32_t *first = network->incidence.first;
+    mspring_id hub = 0;
+    for (mspring_id p = 1; p < network->topology.particle_count; ++p)
+        if (first[p + 1] - first[p] > first[hub + 1] - first[hub])
+            hub = p;
+    return hub;
+}
+
+// Find the outline. A network that contact comes to anew may have too many springs at too many particles.
+static mspring_result find_outline(mspring_network *network, mspringi_contacts *made, bool is_anew) {
+    mspringi_outline *o = &made->outline;
+    const uint32_t springs = network->topology.spring_count;
+    const uint64_t most = MOST_TRIES + TRIES_OF_SPRING * (uint64_t)springs;
+    o->most_tries = is_anew ? most : UINT64_MAX;
+    mspringi_outline_update(network, made);
+    o->most_tries = UINT64_MAX;
+    if (!is_anew || o->tries <= most)
+        return MSPRING_OK;
+    const mspring_id hub = find_hub(network);
+    return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                         "to find the outline of %u springs takes over %.3g comparisons, as particle %u has %u "
+                         "springs and others are like it: contact needs particles with fewer springs",
+                         (unsigned)springs, (double)most, (unsigned)hub,
+                         (unsigned)(network->incidence.first[hub + 1] - network->incidence.first[hub]));
+}
+
+// With room for so many points of colliders; had: what is to go on, or NULL. MEMORY has no message.
+static mspring_result make(mspring_network *network, const mspring_contact_def *def, uint32_t points,
+                           const mspringi_contacts *had, mspringi_contacts **contacts) {
+    const size_t particles = network->topology.reserve.particle_end, springs = network->topology.reserve.spring_end,
+                 nodes = particles + points;
+    mspringi_memory *memory = &network->memory;
+    mspringi_contacts *made = mspringi_alloc(memory, 1, sizeof *made);
+    if (!made)
+        return MSPRING_ERROR_MEMORY;
+    set_def(made, def);
+    made->particles = (uint32_t)particles;
+    bool ok = reserve_nodes(made, memory, particles, nodes) && reserve_edges(made, memory, nodes, springs) &&
+              reserve_points(made, memory, points);
+    for (size_t p = 0; ok && p < nodes; ++p) {
+        made->groups[p] = 1;
+        made->masks[p] = UINT32_MAX;
+        made->nodes.number[p] = MSPRING_NONE;
+    }
+    made->outline.origin_x = network->origin_x;
+    made->outline.origin_y = network->origin_y;
+    if (ok && had)
+        take_over(made, had, springs);
+    mspring_result result = ok ? find_outline(network, made, !had) : MSPRING_ERROR_MEMORY;
+    if (result == MSPRING_OK &&
+        (!reserve_pairs(made, memory, particles) || (needs_holds(network) && !reserve_holds(made, memory)) ||
+         !mspringi_constraints_reserve(network, MSPRINGI_CONTACT_CONSTRAINT, (size_t)2 * made->constraint_capacity,
+                                       (size_t)6 * made->constraint_capacity)))
+        result = MSPRING_ERROR_MEMORY;
+    if (result == MSPRING_OK) {
+        *contacts = made;
+        return MSPRING_OK;
+    }
+    if (had)
+        hand_over(made); // they are still those of the other
+    destroy(made, memory);
+    return result;
+}
+
+// Apply another definition, or room for more collider points, to existing contact. On error nothing has changed.
+static mspring_result replace(mspring_network *network, const mspring_contact_def *def, uint32_t points) {
+    mspringi_contacts *had = network->contacts;
+    mspringi_contacts *made;
+    const mspring_result result = make(network, def, points, had, &made);
+    if (result != MSPRING_OK)
+        return result;
+    if (had)
+        hand_over(had);
+    destroy(had, &network->memory);
+    network->contacts = made;
+    return MSPRING_OK;
+}
+
+bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points) {
+    return replace(network, &network->contacts->def, points) == MSPRING_OK;
+}
+
+mspring_result mspringi_contacts_reserve_implicit(mspring_network *network) {
+    if (!network->contacts || reserve_holds(network->contacts, &network->memory))
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for contact in the solver's system");
+}
+
+/* ------------------------------------------------------------------------------------------------- the setting */
+
+static mspring_contact_def def_of(const mspring_network *network) {
+    mspring_contact_def def;
+    (void)mspring_contact_def_init(&def, sizeof def);
+    return network->contacts ? network->contacts->def : def;
+}
+
+mspring_result mspring_network_get_contact(const mspring_network *network, mspring_contact_def *def) {
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_contact_def, def);
+    if (result != MSPRING_OK)
+        return result;
+    const mspring_contact_def had = def_of(network);
+    mspringi_put_contact_def(def, &had);
+    return MSPRING_OK;
+}
+
+static mspring_result remove_contact(mspring_network *network) {
+    destroy(network->contacts, &network->memory);
+    network->contacts = NULL;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
+    return MSPRING_OK;
+}
+
+// True if two definitions differ in their capacity for pairs at most, which moves nothing.
+static bool are_alike(const mspring_contact_def *a, const mspring_contact_def *b) {
+    return a->flags == b->flags && a->thickness == b->thickness && a->friction == b->friction &&
+           a->restitution == b->restitution && a->push_speed == b->push_speed && a->sweeps == b->sweeps;
+}
+
+static mspring_result use(mspring_network *network, const mspring_contact_def *def) {
+    const bool is_new = !network->contacts || !are_alike(&network->contacts->def, def);
+    const uint32_t points = network->contacts ? network->contacts->colliders.point_capacity : 0;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    mspring_result result = mspringi_incidence_reserve(network);
+    if (result == MSPRING_OK)
+        result = replace(network, def, points);
+    if (result == MSPRING_ERROR_MEMORY)
+        result = mspringi_fail(
+            &network->message, MSPRING_ERROR_MEMORY, "no memory for contact of %u particles and %u springs",
+            (unsigned)network->topology.particle_count, (unsigned)network->topology.spring_count);
+    mspringi_fp_leave(before);
+    if (result == MSPRING_OK && is_new)
+        mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
+    return result;
+}
+
+mspring_result mspring_network_set_contact(mspring_network *network, const mspring_contact_def *def) {
+    mspring_contact_def used;
+    mspring_result result = mspringi_check_call(network);
+    if (result != MSPRING_OK || (!def && !network->contacts))
+        return result;
+    if (!def)
+        return remove_contact(network);
+    result = mspringi_take_contact_def(&network->message, &def, &used);
+    if (result == MSPRING_OK)
+        result = mspringi_check_reserved(&network->message, "mspring_contact_def", used.reserved);
+    if (result == MSPRING_OK)
+        result = check_def(network, &used, &network->message);
+    return result == MSPRING_OK ? use(network, &used) : result;
+}
+
+mspring_result mspring_network_set_contact_groups(mspring_network *network, mspring_id first, uint32_t count,
+                                                  uint32_t groups, uint32_t masks) {
+    mspring_result result = mspringi_check_call(network);
+    if (result == MSPRING_OK && !network->contacts)
+        result =
+            mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "groups are of contact, and there is none");
+    if (result == MSPRING_OK)
+        result = mspringi_check_range(network, "particle", first, count, network->topology.particle_count);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_contacts *contacts = network->contacts;
+    for (mspring_id p = first; p < first + count; ++p) {
+        contacts->groups[p] = groups;
+        contacts->masks[p] = masks;
+    }
+    contacts->is_listed = contacts->is_fresh = false;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_get_contact_info(const mspring_network *network, mspring_contact_info *info) {
+    const mspring_result result = mspringi_check_report(network, &mspringi_struct_contact_info, info);
+    if (result != MSPRING_OK)
+        return result;
+    mspring_contact_info found = {0};
+    const mspringi_contacts *contacts = network->contacts;
+    if (contacts) {
+        found.edges = contacts->outline.edge_count - contacts->colliders.listed_sides;
+        found.points = contacts->outline.point_count - contacts->colliders.listed_points;
+        found.pairs = contacts->count;
+        found.touching = contacts->touching;
+        found.deepest = contacts->deepest;
+    }
+    mspringi_put_contact_info(info, &found);
+    return MSPRING_OK;
+}
+
+void mspringi_contact_react(mspring_network *network, mspringi_change change, uint32_t index) {
+    if (change != MSPRINGI_CHANGED_SLOT)
+        return;
+    if (network->floor)
+        mspringi_floor_clear_slot(network->floor, index);
+    if (network->contacts)
+        mspringi_outline_clear_slot(network, index);
+}
+
+void mspringi_contact_discard_step(mspring_network *network) {
+    mspringi_floor_roll_back(network->floor);
+    if (!network->contacts)
+        return;
+    mspringi_colliders_discard_step(network->contacts);
+    mspringi_contact_events_discard_step(network->contacts);
+    network->contacts->is_listed = false; // it may be of places that were none
+}

@@ -1,0 +1,519 @@
+/// @file contacts.h
+/// Contact between bodies, and of a body with itself: outline points against outline edges with a thickness.
+///
+/// In the order of a step:
+///
+///   contacts.c           definition of contact, set by the host; memory
+///   outline.c            outline: edges and points
+///   edge_grid.c          broad phase: edges in a hashed grid
+///   pair_list.c          Verlet list of near pairs, candidates, substeps without contact
+///   constraints.c        narrow phase: contact constraints of an interval, in a fixed order
+///   contact_solver.c     intervals of a substep, and motion in them
+///   gauss_seidel.c       impulses: projected Gauss-Seidel
+///   floor_support.c      floor below bodies, in the same sweeps
+///   contact_events.c     begin and end events for the host
+///   contact_stage.c      stage: when to scan; islands that wake or fall asleep together
+///   piles.c              islands that sleep on each other
+///   contact_materials.c  friction and restitution of single particles
+///   colliders.c          shapes of the host: adding, moving, reading
+///   collider_motion.c    motion of colliders in a step, and impulses on them
+///
+/// Order of a substep: forces, velocities, positions, contact. Constraints take positions from before the substep
+/// and velocities from after it, and correct both.
+///
+/// An *interval* is a part of a substep, often all of it. A *node* is a particle or a collider point. A *pair* is a
+/// point near an edge, a *candidate* a pair that may touch before the next scan.
+///
+/// State kept between steps follows from positions and from the shape of the outline. Lists hold spare pairs.
+/// Results do not depend on when a list was made.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_CONTACTS_H
+#define MSPRINGI_CONTACTS_H
+
+#include <massspring/massspring_contact.h>
+
+#include "store/network.h"
+
+/// Outline: springs with a free side, their ends, and particles without springs, as edges of length 0. Edges are
+/// numbered by rising ids: springs, particles, then sides of colliders. Collider points are nodes, numbered behind
+/// the particles. A collider of one point is an edge of length 0.
+typedef struct mspringi_outline {
+    uint8_t *is_edge;          ///< [springs] 1: live, and not inside
+    uint8_t *is_known;         ///< [particles] 1: in the shape
+    double *shape_x, *shape_y; ///< [particles] position when contact was set, or when the particle was added, m
+    double origin_x, origin_y; ///< origin of the shape
+    mspring_id *a, *b;         ///< [springs + nodes] ends of each edge; equal for a particle
+    mspring_id *points;        ///< [nodes]
+    uint32_t *first, *at;      ///< [nodes + 1], [2 (springs + nodes)]: edges at a node, by rising number
+    uint32_t *body;            ///< [nodes] lowest node of the body; the node itself if bodies touch themselves
+    uint32_t edge_count, point_count;
+    bool is_found;
+    bool are_bodies_found;      ///< body is up to date
+    uint64_t links, growth;     ///< counters of edits at the last update
+    uint64_t tries, most_tries; ///< particles tried for a triangle, or listed, in the last update; their limit
+} mspringi_outline;
+
+/// Pair of an outline point and a near outline edge.
+typedef struct mspringi_pair {
+    mspring_id point;
+    uint32_t edge;
+    uint16_t tested_bits, excluded_bits; ///< a bit for each edge at both ends: tested; never touched
+} mspringi_pair;
+
+/// Pair that may touch before the next scan, with its nodes.
+typedef struct mspringi_candidate {
+    uint32_t pair, p, a, b;
+} mspringi_candidate;
+
+/// Edge as a search reads it: a cache line.
+typedef struct mspringi_sought_edge {
+    double x, y;             ///< one end, m
+    double along_x, along_y; ///< direction from there, of length 1, or 0
+    double length, slack;    ///< m; radius of a collider's side, with rounding, m
+    uint32_t edge;
+    uint32_t below; ///< only points below this number form a pair with the edge
+    int32_t row;    ///< of its cell
+    uint32_t reserved;
+} mspringi_sought_edge;
+
+/// Edges by grid cell, in hash buckets (edge_grid.c).
+typedef struct mspringi_edge_grid {
+    uint32_t *first;             ///< [bucket_count + 1]
+    mspringi_sought_edge *edges; ///< [edges] by bucket; then those too long for a cell
+    uint32_t *long_edges;        ///< [edges] edges too long for a cell
+    uint32_t *found; ///< [edges + 1] results of the last search; while the grid is filled, bucket of each edge
+    double size;     ///< side of a cell, m
+    double reach;    ///< largest distance from a point to the midpoint of a near edge, m
+    uint32_t bucket_count, bucket_capacity, long_count;
+} mspringi_edge_grid;
+
+/// Velocity of a node, m/s. Both coordinates lie side by side, as sweeps load them.
+typedef struct mspringi_velocity {
+    double x, y;
+} mspringi_velocity;
+
+/// Nodes of candidates and of neighbouring edges, numbered densely.
+typedef struct mspringi_contact_nodes {
+    mspring_id *particles;          ///< [nodes]
+    uint32_t *number;               ///< [nodes] dense number; MSPRING_NONE without one
+    double *x, *y;                  ///< [nodes] position at the start of the interval, m
+    mspringi_velocity *v_start;     ///< [nodes] before the substep's forces
+    mspringi_velocity *v_before;    ///< [nodes] before contact in this interval
+    mspringi_velocity *v;           ///< [nodes] current
+    double *inverse_mass;           ///< [nodes] 1/kg
+    double *shift_x, *shift_y;      ///< [nodes] displacement by contact, m
+    uint8_t *is_fast;               ///< [nodes] contact changed the velocity by much
+    double *extra_vx, *extra_vy;    ///< [nodes] velocity from contact, for isolated particles, m/s
+    uint32_t particle_count, count; ///< particles; all nodes, collider points last
+} mspringi_contact_nodes;
+
+/// Contact constraint: a point and an edge that touch, or may touch, in this interval.
+typedef struct mspringi_contact_constraint {
+    // Members read by sweeps: two cache lines.
+    uint32_t p, a, b; ///< dense numbers of the point and of the edge's ends
+    float friction;
+    double nx, ny;             ///< normal from the edge to the point, of length 1
+    double bary_a, bary_b;     ///< barycentric weights of the closest point of the edge
+    double clear_speed;        ///< normal speed that just keeps the gap open, m/s; DBL_MAX if it is closed
+    double target_speed;       ///< lower bound of the normal speed after contact, m/s
+    double normal_mass;        ///< normal impulse per change of normal speed, kg
+    double couple_x, couple_y; ///< couple of friction on the ends of the edge, per unit of tangential impulse
+    double couple_response;    ///< tangential speed from that couple, per unit of normal impulse, 1/kg
+    double tangent_mass;       ///< tangential impulse per change of tangential speed, kg; 0 without friction
+    double surface_speed;      ///< tangential speed of a turning collider's surface, m/s
+    double normal_impulse, tangent_impulse; ///< accumulated, N s
+
+    double gap, distance; ///< distance minus thickness and radius; distance between point and edge, m
+    uint32_t candidate;   ///< index of its candidate
+    uint32_t collider;    ///< index of the collider of the point or edge, or MSPRING_NONE
+    bool is_bounce;       ///< target_speed comes from restitution
+} mspringi_contact_constraint;
+
+/// Closest point of an edge to a point.
+typedef struct mspringi_closest_point {
+    double x, y;     ///< vector from it to the point, m
+    double fraction; ///< position between a (0) and b (1)
+} mspringi_closest_point;
+
+/// Most pending constraints that are ordered together.
+#define MSPRINGI_MAX_PENDING 64u
+
+/// Pending constraint: its place in the order is not known yet.
+typedef struct mspringi_pending_constraint {
+    mspringi_closest_point at;
+    double resistance; ///< effective inverse mass, 1/kg
+    uint32_t candidate, colour;
+} mspringi_pending_constraint;
+
+/// Floor support: constraint of a particle that other bodies may press into the floor.
+typedef struct mspringi_floor_support {
+    uint32_t p, slot; ///< dense number and slot of the particle
+    double nx, ny, friction;
+    double room;          ///< distance to the surface at the end of the substep, without contact, m
+    double free_speed;    ///< speed away from the surface without contact, m/s
+    double min_speed;     ///< lower bound of that speed with contact, m/s
+    double across, along; ///< accumulated changes of normal and tangential speed, m/s
+} mspringi_floor_support;
+
+/// Most supports of a particle: two where surfaces meet.
+#define MSPRINGI_MAX_SUPPORTS 2u
+
+/// Contact constraint in the linear system (solvers/implicit/implicit_contact.c). Index 0 is the point, 1 and 2 are
+/// the ends of the edge.
+typedef struct mspringi_implicit_constraint {
+    uint32_t slots[3];                ///< MSPRING_NONE: not an unknown of the system
+    uint32_t listed;                  ///< its push in the list of constraints; MSPRING_NONE: it acts by impulses
+    double across[3][2], along[3][2]; ///< Jacobians of the normal and the tangential displacement
+    double spare;                     ///< slack before a bouncing constraint becomes active, m
+    double friction;                  ///< 0: it has no friction in the system
+    bool is_active;                   ///< in the active set at the prediction
+} mspringi_implicit_constraint;
+
+/// Pose of a collider, world coordinates.
+typedef struct mspringi_pose {
+    double x, y, angle;
+} mspringi_pose;
+
+/// Collider: a shape that the host moves.
+typedef struct mspringi_collider {
+    mspring_collider_def def; ///< as given, except for points; position and angle are current
+    mspring_id id;
+    uint32_t first, count; ///< range of its points
+    uint32_t sides;
+    double radius;
+    mspringi_pose target;                 ///< at the end of the next step
+    bool is_moving;                       ///< target differs from the current pose
+    double impulse_x, impulse_y, angular; ///< in the last step, N s and N m s
+    double pushed_x, pushed_y, turned;    ///< in the present step so far, N s and N m s
+} mspringi_collider;
+
+/// All colliders by rising id, with their points end to end.
+typedef struct mspringi_colliders {
+    mspringi_collider *list; ///< [capacity]
+    size_t capacity;
+    uint32_t count, point_count, point_capacity;
+    uint32_t listed_points, listed_sides; ///< points and sides in the outline
+    double *shape;                        ///< [point_capacity][2] points in the collider's frame, m
+    uint32_t *owner;                      ///< [point_capacity] index of the collider
+    double *x, *y;                        ///< [point_capacity] local coordinates after `done` substeps, m
+    double *vx, *vy;                      ///< [point_capacity] in the next substep, m/s
+    uint32_t done, substeps;
+    double origin_x, origin_y; ///< of x and y
+    bool is_placed;            ///< x and y are up to date for colliders at rest
+    bool are_new;              ///< the outline lacks new colliders
+    bool are_moving;           ///< at least one moves in this step
+    uint64_t reported;         ///< step of the reported impulses
+} mspringi_colliders;
+
+/// Location of a contact, world coordinates.
+typedef struct mspringi_contact_location {
+    mspring_id a, b; ///< ends of the edge; MSPRING_NONE for a collider's
+    double x, y, nx, ny;
+} mspringi_contact_location;
+
+/// Ongoing contact, from its begin event to its end event: of a particle with another body or a collider, or of a
+/// collider's corners with a body.
+typedef struct mspringi_ongoing_contact {
+    mspring_id point;                    ///< MSPRING_NONE for a collider's corners
+    mspring_id other;                    ///< lowest particle of the other body; MSPRING_NONE for a collider
+    mspring_id collider;                 ///< id, or MSPRING_NONE
+    bool is_new;                         ///< began in this step
+    double largest;                      ///< largest impulse of a constraint in an interval of this step, N s
+    double impulse, friction;            ///< sums of normal and tangential impulses in this step, N s
+    mspringi_contact_location now, last; ///< of the largest impulse; of the last step with one
+} mspringi_ongoing_contact;
+
+/// Ongoing contacts by point, collider and other, and a ring of unread events.
+typedef struct mspringi_contact_events {
+    mspringi_ongoing_contact *list; ///< [capacity]
+    mspring_contact_event *ring;    ///< [capacity]
+    uint32_t capacity, count, first, waiting;
+    uint32_t dropped, max_dropped; ///< constraints without room in the interval; most in one of the step
+    uint64_t lost;
+    bool is_known; ///< false: contacts at rest get no begin event, as they began before
+} mspringi_contact_events;
+
+/// Friction and restitution of a contact.
+typedef struct mspringi_contact_material {
+    float friction, restitution; ///< of a particle, < 0 means the value of the definition
+} mspringi_contact_material;
+
+/// Remembered edges that a point never touches: neighbours on a straight outline.
+#define MSPRINGI_EXCLUDED_EDGES 6u
+
+struct mspringi_contacts {
+    mspring_contact_def def;
+    double thickness, push;
+    bool touches_itself;
+    uint32_t particles;                   ///< capacity: ids, spare ones included
+    size_t edge_capacity;                 ///< springs and nodes
+    uint32_t *groups, *masks;             ///< [nodes]
+    mspringi_contact_material *materials; ///< [particles]; NULL without values of single particles
+    mspringi_outline outline;
+    mspringi_edge_grid cells;
+    mspringi_colliders colliders;
+    mspringi_contact_events events;
+
+    // Verlet list: all near pairs.
+    mspringi_pair *list; ///< [capacity]
+    uint32_t count, capacity;
+    mspringi_candidate *candidates; ///< [capacity] pairs that may touch before the next scan
+    uint32_t candidate_count;
+    bool is_listed, is_pair_list_full;
+    uint64_t work, most_work; ///< comparisons of points with edges in this step, or what takes as long; their limit
+    double reach;             ///< the list held all pairs nearer than this when it was made, m
+    double *seen_x, *seen_y;  ///< [nodes] positions when the list was made, m
+    uint32_t *stamp;          ///< [particles] springs between the particle and stamp_of (outline.c)
+    uint32_t stamp_of;
+    bool are_all_stamped;     ///< false: particles two springs away are stamped on request
+    uint32_t *excluded_edges; ///< [particles][MSPRINGI_EXCLUDED_EDGES] edges that the particle never touches, or
+                              ///< MSPRING_NONE
+
+    // The last scan.
+    double *x, *y; ///< [nodes] positions, m
+    double mean_vx, mean_vy;
+    double speed;                  ///< largest speed relative to the mean, m/s
+    double moved;                  ///< largest displacement relative to the mean since the list was made, m
+    double nearest;                ///< distance of the nearest pair in the list, m
+    bool is_fresh;                 ///< nothing moved since
+    uint64_t state, sleep_changes; ///< counters of edits at the scan
+    float scan_h;
+    double scan_dt;
+
+    // A step.
+    float h;
+    double dt;
+    uint32_t quiet_substeps;      ///< substeps in which nothing can touch
+    uint32_t valid;               ///< substeps until the next refresh of the list
+    uint32_t first_substep;       ///< first of the substeps now taken together
+    uint32_t substeps_done;       ///< substeps finished
+    bool has_sleepers;            ///< islands slept when the step began; bodies that reach them wake them
+    uint32_t substeps_since_scan; ///< quiet substeps since the last scan
+    double room;                  ///< gap of the nearest pair at the last scan, m
+    double extra_speed;           ///< speed from contact beyond the scan's assumption, m/s
+    bool is_missed;               ///< pairs could touch in a quiet substep: repeat the step
+    bool is_second_try;           ///< repeated step: scan after each substep
+
+    mspringi_contact_nodes nodes;
+    mspringi_contact_constraint *constraints; ///< [constraint_capacity]
+    uint32_t *colours;                        ///< [nodes] colours of its pending constraints, as bits
+    uint8_t *is_seen;                         ///< [capacity] candidates with a constraint, while more are added
+    uint32_t *near_misses;                    ///< [capacity] candidates just out of reach
+    uint32_t constraint_count, near_miss_count, constraint_capacity;
+    mspringi_pending_constraint pending[MSPRINGI_MAX_PENDING];
+    uint32_t pending_count, max_pending;
+    bool is_out_of_room; ///< constraint_capacity or most_work was exceeded: the step will be rejected
+    mspringi_implicit_constraint *implicit_constraints; ///< [constraint_capacity] the same constraints in a linear
+                                                        ///< system; NULL unless a solver has one
+    double passed;                                      ///< time taken in intervals of an implicit substep, s
+    double fall_x, fall_y; ///< change of velocity by gravity in an implicit interval, m/s; 0 after forces
+    double share;          ///< length of an implicit interval as a share of its substep; else 1
+    mspringi_floor_support *supports; ///< [MSPRINGI_MAX_SUPPORTS * nodes]
+    uint32_t support_count;
+    uint32_t touching; ///< largest number of pushing constraints in an interval
+    double deepest;    ///< deepest overlap, m
+};
+
+typedef struct mspringi_contacts mspringi_contacts;
+
+/// Edges at a particle that cost nothing to visit. More count as comparisons: hubs of thousands would take their
+/// square.
+#define MSPRINGI_FREE_EDGES 64u
+
+/// True if the step has taken too much work. Then it will be rejected, and nothing more is done for it.
+static inline bool mspringi_contact_is_too_much(mspringi_contacts *contacts) {
+    if (contacts->work <= contacts->most_work)
+        return false;
+    contacts->is_out_of_room = true;
+    contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
+    return true;
+}
+
+/// Count visits of outline edges at one particle.
+static inline void mspringi_contact_count_visits(mspringi_contacts *contacts, uint32_t visits) {
+    if (visits <= MSPRINGI_FREE_EDGES)
+        return;
+    contacts->work += visits;
+    contacts->is_out_of_room |= contacts->work > contacts->most_work;
+}
+
+/* outline.c */
+
+/// Remove a slot from the shape, because another particle takes it.
+void mspringi_outline_clear_slot(const mspring_network *network, uint32_t slot);
+/// Add a particle to the shape at its present position: when contact is set, and when the particle is added.
+void mspringi_outline_take_in(const mspring_network *network, mspringi_outline *outline, mspring_id particle);
+/// Find the outline, or update it after edits. Allocates nothing.
+void mspringi_outline_update(const mspring_network *network, mspringi_contacts *contacts);
+/// Find the ends of a spring, by rising id.
+void mspringi_outline_ends(const mspring_network *network, mspring_id spring, mspring_id ends[2]);
+/// True if two particles are equal or at most two live springs apart. Cheapest for consecutive calls with the same
+/// p.
+bool mspringi_outline_are_neighbours(const mspring_network *network, mspringi_contacts *contacts, mspring_id p,
+                                     mspring_id q);
+
+/* edge_grid.c */
+
+/// Sort the edges into cells for searches of this reach, m. Long edges stay outside.
+void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *contacts, double reach);
+/// Find edges that may form a pair with a point. Return their number.
+uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_contacts *contacts, mspring_id p);
+
+/* pair_list.c */
+
+/// Allowed growth until the next scan: of the speed, as a factor; of the way in a step, as a share of the
+/// thickness.
+#define MSPRINGI_SPEED_MARGIN 1.5
+#define MSPRINGI_DRIFT_FRACTION 0.05
+
+static inline mspringi_closest_point mspringi_closest_point_on_edge(double px, double py, double ax, double ay,
+                                                                    double bx, double by) {
+    const double ex = bx - ax, ey = by - ay, square = ex * ex + ey * ey;
+    double share = 0.0;
+    if (square > 0.0) {
+        share = ((px - ax) * ex + (py - ay) * ey) / square;
+        share = share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
+    }
+    return (mspringi_closest_point){px - ax - share * ex, py - ay - share * ey, share};
+}
+
+/// Make a new list if pairs may be missing. False: the capacity is too small.
+bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts);
+/// Measure distances, and count the quiet substeps. False: the capacity is too small.
+bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts);
+/// Replace the list by all pairs nearer than a distance, m. The next scan makes its own list.
+void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
+
+/* constraints.c */
+
+/// Near misses: pairs out of reach by less than this share of the thickness. Small impulses may bring them in
+/// reach.
+#define MSPRINGI_NEAR_MISS_FRACTION 0.01
+
+/// Save the nodes before a substep.
+void mspringi_contact_begin_substep(const mspring_network *network, mspringi_contacts *contacts);
+/// Load the nodes before an interval.
+void mspringi_contact_load_nodes(const mspring_network *network, mspringi_contacts *contacts);
+/// Make the constraints of an implicit interval of h seconds, with a larger reach, because springs and other bodies
+/// may push in it. Return the largest speed, m/s.
+double mspringi_contact_prepare_implicit(const mspring_network *network, mspringi_contacts *contacts, double h);
+/// Make the constraints of an interval of h seconds: of pairs that may touch at their own speed or at `given`. At
+/// most `pending` are ordered together. Return the largest speed, m/s.
+double mspringi_contact_make_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
+                                         double given, uint32_t pending);
+/// Add constraints of pairs that may touch after the sweeps. Return true if one closes.
+bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
+                                      bool any_fast);
+/// True if no fast node of a constraint would move too far in the interval.
+bool mspringi_contact_moves_are_short(const mspringi_contacts *contacts, double h);
+
+/* contact_solver.c */
+
+/// Solve contact after an explicit substep. Return false if there was no constraint.
+bool mspringi_contact_solve_substep(const mspring_network *network, mspringi_contacts *contacts);
+/// Solve contact of the loaded nodes in double precision, without a change of the state. Floor supports read
+/// positions from the network.
+bool mspringi_contact_solve_nodes(const mspring_network *network, mspringi_contacts *contacts, double h);
+/// Record the impulses of an accepted interval: events, colliders, statistics.
+void mspringi_contact_count_impulses(const mspring_network *network, mspringi_contacts *contacts);
+
+/* floor_support.c */
+
+/// Find the supports of nodes near the floor, if there are contact constraints.
+void mspringi_floor_support_find(const mspring_network *network, mspringi_contacts *contacts);
+/// Begin an interval of h seconds.
+void mspringi_floor_support_begin(const mspringi_contacts *contacts, double h);
+/// Sweep the supports once.
+void mspringi_floor_support_sweep(const mspringi_contacts *contacts);
+/// Add the impulses of the interval to the floor's.
+void mspringi_floor_support_end(const mspring_network *network, const mspringi_contacts *contacts);
+
+/* gauss_seidel.c */
+
+/// Relative normal speed of the point and the closest point of the edge, m/s; > 0 opens the gap.
+static inline double mspringi_normal_speed(const mspringi_contact_constraint *t, const mspringi_velocity *v) {
+    return t->nx * (v[t->p].x - t->bary_a * v[t->a].x - t->bary_b * v[t->b].x) +
+           t->ny * (v[t->p].y - t->bary_a * v[t->a].y - t->bary_b * v[t->b].y);
+}
+/// Find the impulses of an interval of h seconds, and count the work. False: some constraints would still get much
+/// deeper.
+bool mspringi_contact_sweep(mspringi_contacts *contacts, double h, uint32_t sweeps);
+
+/* piles.c */
+
+/// Find the piles: islands that sleep on each other.
+void mspringi_piles_find(mspring_network *network);
+
+/* contact_stage.c */
+
+/// True if point and edge rest on each other, or may after `way` metres.
+bool mspringi_pair_is_resting(const mspring_network *network, const mspringi_contacts *contacts,
+                              const mspringi_pair *pair, double way);
+
+/* contact_events.c */
+
+/// Begin an attempt: discard the results of an earlier one.
+void mspringi_contact_events_begin(const mspring_network *network, mspringi_contacts *contacts);
+void mspringi_contact_events_discard_step(mspringi_contacts *contacts);
+/// Add the impulses of a constraint; call begin_interval after all constraints of an interval.
+void mspringi_contact_events_begin_interval(mspringi_contacts *contacts);
+void mspringi_contact_events_add_impulse(const mspring_network *network, mspringi_contacts *contacts,
+                                         const mspringi_contact_constraint *touch);
+/// Queue the events of an accepted step.
+void mspringi_contact_events_finish_step(const mspring_network *network, mspringi_contacts *contacts);
+/// Drop the events after a change of state. Bodies at rest on each other count as in contact already.
+void mspringi_contact_events_reset(mspringi_contacts *contacts);
+
+/* contact_materials.c */
+
+/// Material of a pair, if particles have their own. collider: that of the pair, or NULL.
+mspringi_contact_material mspringi_contact_material_mix(const mspringi_contacts *contacts,
+                                                        const mspringi_pair *pair,
+                                                        const mspringi_collider *collider);
+
+/* collider_motion.c */
+
+/// True if a node is a collider point.
+static inline bool mspringi_is_collider_point(const mspringi_contacts *contacts, mspring_id node) {
+    return node >= contacts->particles;
+}
+static inline const mspringi_collider *mspringi_collider_of(const mspringi_contacts *contacts, mspring_id node) {
+    const mspringi_colliders *c = &contacts->colliders;
+    return &c->list[c->owner[node - contacts->particles]];
+}
+/// Radius of the pair's collider, m; 0 without one.
+static inline double mspringi_radius_of(const mspringi_contacts *contacts, mspring_id point, uint32_t edge) {
+    const mspring_id a = contacts->outline.a[edge];
+    return mspringi_is_collider_point(contacts, point) ? mspringi_collider_of(contacts, point)->radius
+           : mspringi_is_collider_point(contacts, a)   ? mspringi_collider_of(contacts, a)->radius
+                                                       : 0.0;
+}
+
+/// Begin a step.
+void mspringi_colliders_begin(const mspring_network *network, mspringi_contacts *contacts, uint32_t substeps);
+/// Move all points to their positions after `done` substeps.
+void mspringi_colliders_move_points(const mspring_network *network, mspringi_contacts *contacts, uint32_t done);
+/// Angular and linear velocity in a step of dt, 1/s and m/s; 0 at rest.
+double mspringi_collider_spin(const mspringi_collider *collider, double dt);
+void mspringi_collider_velocity(const mspringi_collider *collider, double dt, double *vx, double *vy);
+/// Discard the impulses of the step so far.
+void mspringi_colliders_discard_step(mspringi_contacts *contacts);
+/// Distance from a constraint's point to the surface where friction acts, m: the collider's radius, or 0.
+double mspringi_collider_friction_offset(const mspringi_contacts *contacts,
+                                         const mspringi_contact_constraint *touch);
+/// Tangential speed of a turning collider's surface, m/s. Sides have it in the velocities of their ends.
+double mspringi_collider_surface_speed(const mspringi_contacts *contacts, const mspringi_contact_constraint *touch);
+/// Add a constraint's impulses to its collider.
+void mspringi_colliders_add_impulse(mspringi_contacts *contacts, const mspringi_contact_constraint *touch);
+/// Finish an accepted step: poses become the targets.
+void mspringi_colliders_finish_step(const mspring_network *network, mspringi_contacts *contacts);
+
+/* contacts.c */
+
+/// Reserve collider points. False: no memory, and nothing changed.
+bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points);
+/// Reserve implicit constraints, for solvers with contact in their system. Does nothing without contact.
+mspring_result mspringi_contacts_reserve_implicit(mspring_network *network);
+
+#endif

@@ -1,0 +1,216 @@
+/// @file floor.h
+/// Floor: half-planes and a field of heights that particles cannot enter.
+///
+///   floor.c            definition, set by the host; memory
+///   floor_surface.c    surface: distances, straight parts, first hit
+///   floor_clearance.c  distance from strips and from the whole network
+///   floor_bounce.c     bounce of one particle
+///   floor_explicit.c   floor in explicit substeps, and particles without springs
+///   floor_implicit.c   floor after an implicit substep; within it: solvers/implicit/implicit_floor.c
+///   floor_support.c    floor below bodies in contact
+///   silt.c             silt above the heights; kernels/silt_kernel.h for whole blocks
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_FLOOR_H
+#define MSPRINGI_FLOOR_H
+
+#include "kernels/bounce_kernel.h"
+#include "store/network.h"
+#include "store/safe_box.h"
+
+typedef struct mspringi_half_plane {
+    double x, y;   ///< a point on its border, world coordinates
+    double nx, ny; ///< of length 1
+} mspringi_half_plane;
+
+/// Levels of the maximum pyramid over MSPRING_MAX_HEIGHTS heights.
+#define MSPRINGI_HEIGHT_LEVELS 27
+
+/// Field of heights: straight lines from (x + i spacing, y + heights[i]) to the next; level beyond both ends.
+typedef struct mspringi_heights {
+    double x, y, spacing; ///< world coordinates
+    double local_x, local_y;
+    uint32_t count; ///< 0: there are none
+    float *heights;
+    double *normals;                        ///< [count - 1][2] of each straight part
+    float *frictions, *restitutions;        ///< [count - 1] likewise; NULL: all have the floor's
+    double friction, restitution;           ///< the floor's
+    double silt_depth, silt_rate;           ///< m and 1/s; if either is 0 there is none
+    float *highest[MSPRINGI_HEIGHT_LEVELS]; ///< [level][i]: the highest of 2^level of them from i 2^level on;
+                                            ///< highest[0] is heights
+} mspringi_heights;
+
+/// Clearance of a strip's slots.
+typedef struct mspringi_clearance {
+    mspringi_bounds clear; ///< box without surface and silt
+    float bare;            ///< lower bound of a box without surface, instead of clear.min_y
+    bool is_far;           ///< the strip stays in it for the substeps of the last survey
+} mspringi_clearance;
+
+/// Most surfaces that hold a particle in an implicit substep, the nearest ones: where these meet it has one place.
+#define MSPRINGI_MAX_FLOOR_CONTACTS 2u
+
+typedef struct mspringi_floor {
+    mspringi_half_plane planes[MSPRING_MAX_PLANES];
+    double given[MSPRING_MAX_PLANES][4];         ///< definition of the host
+    float *plane_frictions, *plane_restitutions; ///< [plane_count]; NULL: the next two hold for all
+    mspringi_line lines[MSPRING_MAX_PLANES];     ///< in local coordinates
+    uint32_t plane_count;
+    mspringi_heights heights;
+    double friction, restitution;
+    mspringi_clearance *clearances; ///< [strip_count], and behind them the marks of blocks: floor_explicit.c
+    mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
+    mspringi_state before;  ///< [slot_count] before a substep: velocities, or all of particles without springs
+    mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
+    mspringi_field previous_impulse; ///< [slot_count] in the step before, while a step is taken
+    size_t slot_count;
+    double seconds;         ///< length of the substeps of the last survey or of the step out of reach, s
+    double reach;           ///< twice the longest way in the substeps of the last survey, m
+    bool is_near;           ///< a strip may reach the surface in them, or there was no survey yet
+    bool is_missed;         ///< forces moved a strip farther than the survey assumed: repeat the step
+    bool is_second_try;     ///< repeated step: no strip is left out
+    mspringi_safe_box room; ///< safe box of the whole network
+    mspringi_bounds clear;  ///< box without surface around the network before an implicit substep
+    bool has_impulse;       ///< impulse is not all zero
+    bool had_impulse;       ///< previous_impulse is not all zero
+} mspringi_floor;
+
+/// Particle with its start and its end of a substep, local coordinates.
+typedef struct mspringi_moved_particle {
+    double start_x, start_y, x, y, vx, vy;
+} mspringi_moved_particle;
+
+void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
+
+/// Make the floor of another layout of the same particles. Both share the definition. NULL: no memory.
+mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *from);
+
+/// Free a floor that shares its definition with another. NULL is allowed.
+void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory);
+
+/// Restore the impulses of the previous step. NULL is allowed.
+void mspringi_floor_roll_back(mspringi_floor *floor);
+/// Clear the impulses of a slot, because another particle takes it.
+void mspringi_floor_clear_slot(const mspringi_floor *floor, uint32_t slot);
+
+/* floor_surface.c */
+
+/// Move lines and heights to the local origin.
+void mspringi_floor_set_origin(mspringi_floor *floor, double origin_x, double origin_y);
+
+/// Distance below which a particle at (x, y) touches a surface: rounding of its coordinates.
+double mspringi_floor_slop(double x, double y);
+
+/// The straight parts of a field of heights are numbered by their left ends; the level ones beyond its ends are -1
+/// and count - 1.
+mspringi_line mspringi_heights_line(const mspringi_heights *heights, int64_t part);
+
+/// Part below x.
+int64_t mspringi_heights_segment_below(const mspringi_heights *heights, double x);
+
+/// First part that a particle meets from (start_x, start_y) to (x, y); if it meets none, the part below the end.
+int64_t mspringi_heights_first_hit(const mspringi_heights *heights, double start_x, double start_y, double x,
+                                   double y);
+
+/// Largest height between two x, their next knots included.
+double mspringi_heights_highest(const mspringi_heights *heights, double low, double high);
+
+/// Smallest signed distance from a surface, < 0 inside. Above the heights, the line below (x, y) counts.
+double mspringi_floor_distance(const mspringi_floor *floor, double x, double y);
+
+/* floor_clearance.c */
+
+/// Survey: find the clearance of each strip, and the strips that stay clear for so many seconds.
+void mspringi_floor_update_clearances(mspring_network *network, double seconds);
+
+/// True if a block of a strip near the surface may reach it in the same substeps.
+bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block);
+
+/// True if no particle can reach the surface in a step of so many seconds. Then the clearances of the last survey
+/// hold for each strip, too.
+bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds);
+
+/// True if no particle did reach it in that step of substeps of h, by bounds from the outcome. A particle is missed
+/// that forces drive in and out of it in between, if all are as slow before and after the step as the survey
+/// assumed.
+bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen);
+
+/// The same test for other surfaces in local coordinates, with their own safe box. way: longest way at the largest
+/// speed, m.
+bool mspringi_safe_box_suffices(const mspring_network *network, const mspringi_floor *surfaces,
+                                mspringi_safe_box *room, double seconds);
+bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_safe_box *room, double way,
+                                mspringi_extrema seen);
+
+/* floor_bounce.c */
+
+/// Project a point inside the floor onto the surface. Return true if it was inside.
+bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *y);
+
+/// Bounce a particle that a leapfrog substep of h seconds moves from (x, y) at (vx, vy), and that came
+/// there at (from_vx, from_vy). Return false if nothing happens; else it ends at p->x + h p->vx.
+bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx, double from_vy,
+                           mspringi_bouncing_particle *p);
+
+/// Move a free particle past the surface for p->left seconds. Return true if it bounced. (*vx, *vy) is the velocity
+/// of how->skew ago.
+bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const mspringi_bounce_params *how,
+                                       mspringi_free_particle *p, double *vx, double *vy);
+
+/* silt.c */
+
+static inline bool mspringi_has_silt(const mspringi_heights *heights) {
+    return heights->count > 0 && heights->silt_depth > 0.0 && heights->silt_rate > 0.0;
+}
+
+/// Share of the velocity that silt removes from a particle at (x, y) in so many seconds.
+double mspringi_silt_damping(const mspringi_heights *heights, double x, double y, double seconds);
+
+/// Brake a particle in silt after a substep of h seconds.
+void mspringi_silt_brake(const mspring_network *network, size_t slot, double h);
+
+/* floor_explicit.c */
+
+/// Mark the blocks of a strip near heights in which a particle is not clear.
+void mspringi_floor_mark_blocks(const mspring_network *network, const mspringi_strip *strip);
+
+/// True if a strip may reach the surface in the substeps of the last survey.
+bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip);
+
+/// Save the velocities of whole blocks before explicit substeps. Strips that stay clear are left out, here and
+/// below.
+void mspringi_floor_save_velocities(const mspring_network *network, const mspringi_strip *strip,
+                                    const mspringi_span *spans, uint32_t span_count);
+
+/// Apply the floor to the particles of whole blocks after an explicit substep: to those with springs, or to those
+/// without.
+void mspringi_floor_apply(const mspring_network *network, const mspringi_strip *strip, const mspringi_span *spans,
+                          uint32_t span_count, const mspringi_sweep *substep);
+void mspringi_floor_apply_loose(const mspring_network *network, const mspringi_strip *strip,
+                                const mspringi_span *span, const mspringi_sweep *substep);
+
+/// Check that the strips left out have stayed clear.
+void mspringi_floor_check_clear(const mspring_network *network);
+
+/// True if no spring acts on a particle, with a solver other than the explicit one: a loose particle, or one with
+/// broken springs only. (With the clamped solver, loose ones only.)
+bool mspringi_floor_is_isolated(const mspring_network *network, size_t slot);
+
+/// Save the isolated particles, then take `count` substeps of theirs alone in these force fields: exact parabolas.
+/// For solvers other than the explicit one.
+void mspringi_floor_save_isolated(const mspring_network *network);
+void mspringi_floor_step_isolated(mspring_network *network, float h, mspringi_field base, uint32_t count);
+
+/* floor_implicit.c */
+
+/// Apply the surface to a particle that an implicit substep of h seconds has moved.
+void mspringi_floor_collide(const mspringi_floor *floor, mspringi_moved_particle *body, double h);
+
+/// Save the positions before an implicit substep of h, and apply the floor to particles with springs after it.
+void mspringi_floor_save_positions(mspring_network *network, float h);
+void mspringi_floor_apply_all(mspring_network *network, float h);
+
+/// Brake particles in silt after that.
+void mspringi_floor_apply_silt(const mspring_network *network, float h);
+
+#endif

@@ -1,0 +1,39 @@
+/// @file hooks.h
+/// Host functions that are called in the course of a step.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_HOOKS_H
+#define MSPRINGI_HOOKS_H
+
+#include "store/network.h"
+#include "store/safe_box.h"
+
+/// Whether any particle may come below the height of a hook with MSPRING_HOOK_BELOW in a step.
+typedef enum mspringi_distance { MSPRINGI_UNKNOWN, MSPRINGI_AWAY, MSPRINGI_CLOSE } mspringi_distance;
+
+typedef struct mspringi_hook {
+    mspring_hook_def def;
+    uint32_t number;
+    mspringi_field held; ///< forces of a hook that is not called before every substep; else none
+    mspringi_distance distance;
+    mspringi_safe_box room; ///< above its height, that all of the network was in
+} mspringi_hook;
+
+typedef struct mspringi_hooks {
+    mspringi_hook *list; ///< [count]
+    size_t count, capacity;
+    uint32_t next_number;
+} mspringi_hooks;
+
+static inline size_t mspringi_hook_count(const mspring_network *network) {
+    return network->hooks ? network->hooks->count : 0;
+}
+
+/// Make the hooks of another layout of the same particles.
+mspring_result mspringi_hooks_move(mspring_network *to, const mspring_network *from);
+/// Free hooks; NULL is allowed.
+void mspringi_hooks_destroy(mspringi_hooks *hooks, mspringi_memory *memory);
+/// Remove all hooks.
+void mspringi_hooks_clear(mspring_network *network);
+
+#endif

@@ -1,0 +1,141 @@
+/// Ramps of rest lengths.
+#include "features/ramps/ramps.h"
+
+#include <math.h>
+
+#include "features/yield/plastic.h"
+#include "store/feature.h"
+#include "store/rest_lengths.h"
+#include "store/springs.h"
+#include "store/stages.h"
+
+/// Shortest rest length that a ramp starts from, as a fraction of the spring's own: strain divides by it.
+#define SHORTEST_START 1e-3
+
+// A spring yields again, or no more.
+static void follow(mspring_network *network, mspring_id spring) {
+    if (network->plastic.nominal)
+        mspringi_plastic_renew(network, mspringi_slot_of_spring(&network->topology, spring));
+}
+
+static bool grow(mspring_network *network, size_t count) {
+    if (!network->ramps)
+        network->ramps = mspringi_alloc(&network->memory, 1, sizeof *network->ramps);
+    mspringi_ramps *ramps = network->ramps;
+    void *list = ramps ? ramps->list : NULL;
+    const bool grown = ramps && mspringi_grow(&network->memory, &list, &ramps->capacity, ramps->count + count,
+                                              sizeof *ramps->list);
+    if (grown)
+        ramps->list = list;
+    return grown;
+}
+
+mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
+    mspring_result result = mspringi_rest_lengths_unshare(network);
+    if (result != MSPRING_OK)
+        return result;
+    return grow(network, count) ? MSPRING_OK
+                                : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                                                "no memory for the ramps of %zu springs", count);
+}
+
+void mspringi_ramp_add(mspring_network *network, const mspringi_ramp *ramp) {
+    network->ramps->list[network->ramps->count++] = *ramp;
+    follow(network, ramp->spring);
+}
+
+void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double seconds) {
+    const mspringi_state *s = &network->state;
+    const mspringi_spring_values values = mspringi_spring_get(network, spring);
+    if (values.rest_length == MSPRINGI_WELD)
+        return; // on its way it would be strained by its rest length, and then by the metre
+    const double dx = (double)s->x[values.tip] - (double)s->x[values.base];
+    const double dy = (double)s->y[values.tip] - (double)s->y[values.base];
+    const double length = sqrt(dx * dx + dy * dy), shortest = SHORTEST_START * (double)values.rest_length;
+    const mspringi_ramp ramp = {.spring = spring,
+                                .from = length > shortest ? length : shortest,
+                                .to = values.rest_length,
+                                .seconds = seconds};
+    mspringi_ramp_add(network, &ramp);
+    mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, spring),
+                                         (float)ramp.from);
+}
+
+bool mspringi_has_ramp(const mspring_network *network, mspring_id spring) {
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i)
+        if (network->ramps->list[i].spring == spring)
+            return true;
+    return false;
+}
+
+void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
+    mspringi_ramps *ramps = network->ramps;
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i) {
+        if (ramps->list[i].spring != spring)
+            continue;
+        mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, spring),
+                                             ramps->list[i].to);
+        ramps->list[i] = ramps->list[--ramps->count];
+        follow(network, spring);
+        return;
+    }
+}
+
+void mspringi_ramps_clear(mspring_network *network) {
+    mspringi_ramps *ramps = network->ramps;
+    const size_t count = mspringi_ramp_count(network);
+    if (count == 0)
+        return;
+    for (size_t i = 0; i < count; ++i)
+        mspringi_spring_slot_set_rest_length(
+            network, mspringi_slot_of_spring(&network->topology, ramps->list[i].spring), ramps->list[i].to);
+    ramps->count = 0;
+    for (size_t i = 0; i < count; ++i)
+        follow(network, ramps->list[i].spring);
+}
+
+void mspringi_ramps_apply(mspring_network *network, double dt) {
+    for (size_t i = 0; i < mspringi_ramp_count(network); ++i) {
+        const mspringi_ramp *ramp = &network->ramps->list[i];
+        const double passed = (ramp->passed + dt) / ramp->seconds;
+        const double rest_length = ramp->from + ((double)ramp->to - ramp->from) * passed;
+        mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, ramp->spring),
+                                             passed < 1.0 ? (float)rest_length : ramp->to);
+    }
+}
+
+// Let dt seconds pass, and forget the ramps that have come to their end.
+static void pass(mspring_network *network, double dt) {
+    mspringi_ramps *ramps = network->ramps;
+    const size_t count = ramps->count;
+    size_t kept = 0;
+    for (size_t i = 0; i < count; ++i) {
+        mspringi_ramp ramp = ramps->list[i];
+        ramp.passed += dt;
+        ramps->list[i] = ramps->list[kept];
+        ramps->list[kept] = ramp;
+        kept += ramp.passed < ramp.seconds;
+    }
+    ramps->count = kept;
+    for (size_t i = kept; i < count; ++i)
+        follow(network, ramps->list[i].spring);
+}
+
+static const mspringi_array_entry arrays[] = {MSPRINGI_ARRAY_ENTRY(mspringi_ramps, list, MSPRINGI_ARRAY)};
+const mspringi_feature_state mspringi_state_of_ramps = {MSPRINGI_ARRAY_TABLE(arrays), NULL};
+
+bool mspringi_ramps_vary(const mspring_network *network) {
+    return mspringi_ramp_count(network) > 0;
+}
+
+static void go_along(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_ramps_apply(network, attempt->dt);
+}
+
+static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
+    (void)attempt;
+    mspringi_ramps_apply(network, 0.0);
+}
+
+const mspringi_stage mspringi_stage_ramps = {
+    .is_used = mspringi_ramps_vary, .before_step = go_along, .after_step = pass, .undo = go_back};

@@ -1,0 +1,33 @@
+#include "store/elements.h"
+
+static const mspringi_element_ops *const elements[] = {
+#define ELEMENT(table) &table,
+#include "store/elements.def"
+#undef ELEMENT
+};
+#define ELEMENT_COUNT (sizeof elements / sizeof elements[0])
+
+bool mspringi_elements_are_used(const mspring_network *network) {
+    bool any = false;
+    for (size_t i = 0; i < ELEMENT_COUNT && !any; ++i)
+        any = elements[i]->is_used(network);
+    return any;
+}
+
+void mspringi_elements_stiffen(const mspring_network *network) {
+    for (size_t i = 0; i < ELEMENT_COUNT; ++i)
+        if (elements[i]->add_terms && elements[i]->is_used(network))
+            elements[i]->add_terms(network);
+}
+
+void mspringi_elements_list_constraints(mspring_network *network) {
+    for (size_t i = 0; i < ELEMENT_COUNT; ++i)
+        if (elements[i]->list_constraints && elements[i]->is_used(network))
+            elements[i]->list_constraints(network);
+}
+
+void mspringi_elements_add_energy(const mspring_network *network) {
+    for (size_t i = 0; i < ELEMENT_COUNT; ++i)
+        if (elements[i]->add_energy && elements[i]->is_used(network))
+            elements[i]->add_energy(network);
+}

@@ -1,0 +1,28 @@
+/// @file elements.h
+/// Elements: forces between particles of a body, besides springs, that linear systems have in them. A table of
+/// functions for each; in other solvers, a stage pushes (stages.h).
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_ELEMENTS_H
+#define MSPRINGI_ELEMENTS_H
+
+#include "store/network.h"
+
+/// What an element does not do is NULL.
+typedef struct mspringi_element_ops {
+    bool (*is_used)(const mspring_network *network);
+    void (*add_terms)(const mspring_network *network);  ///< to the assembled system, each time
+    void (*list_constraints)(mspring_network *network); ///< once a substep, as predicted; room is reserved
+    void (*add_energy)(const mspring_network *network); ///< to the components' budgets
+} mspringi_element_ops;
+
+#define ELEMENT(table) extern const mspringi_element_ops table;
+#include "store/elements.def"
+#undef ELEMENT
+
+bool mspringi_elements_are_used(const mspring_network *network);
+void mspringi_elements_stiffen(const mspring_network *network);
+void mspringi_elements_list_constraints(mspring_network *network);
+void mspringi_elements_add_energy(const mspring_network *network);
+
+#endif

@@ -1,0 +1,53 @@
+/// What is done to the states of all features alike.
+#include "store/feature.h"
+
+#include <string.h>
+
+static const struct {
+    size_t offset; // of the pointer in the network
+    const mspringi_feature_state *state;
+} states[] = {
+#define STATE(name) {offsetof(mspring_network, name), &mspringi_state_of_##name},
+#include "store/features.def"
+};
+
+#define STATES (sizeof states / sizeof states[0])
+
+static void set_pointer(mspring_network *network, size_t offset, void *state) {
+    memcpy((char *)network + offset, &state, sizeof state);
+}
+
+static void *get_pointer(const mspring_network *network, size_t offset) {
+    void *state;
+    memcpy(&state, (const char *)network + offset, sizeof state);
+    return state;
+}
+
+void mspringi_features_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to) {
+    for (size_t i = 0; i < STATES; ++i) {
+        void *state = mspringi_memory_relocate(from, to, get_pointer(network, states[i].offset));
+        set_pointer(network, states[i].offset, state);
+        if (!state)
+            continue;
+        mspringi_array_table_relocate(states[i].state->arrays, state, from, to);
+        if (states[i].state->relocate)
+            states[i].state->relocate(state, from, to);
+    }
+}
+
+void mspringi_features_forget(mspring_network *network) {
+    for (size_t i = 0; i < STATES; ++i)
+        set_pointer(network, states[i].offset, NULL);
+}
+
+bool mspringi_features_vary(const mspring_network *network) {
+    bool any = false;
+#define VARIES(function) any = any || function(network);
+#include "store/features.def"
+    return any;
+}
+
+void mspringi_features_discard_step(mspring_network *network) {
+#define DISCARDS(function) function(network);
+#include "store/features.def"
+}

@@ -1,0 +1,37 @@
+/// @file feature.h
+/// What is done to the states of all features alike. The table of features is features.def.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_FEATURE_H
+#define MSPRINGI_FEATURE_H
+
+#include "base/array_table.h"
+#include "store/changed.h"
+
+/// The arrays that a feature's state holds, none of them by slot or place.
+typedef struct mspringi_feature_state {
+    mspringi_array_table arrays;
+    void (*relocate)(void *state, const mspringi_memory *from,
+                     const mspringi_memory *to); ///< pointers that are in no table; after the arrays. NULL: none
+} mspringi_feature_state;
+
+#define STATE(name) extern const mspringi_feature_state mspringi_state_of_##name;
+#define REACTS(function) void function(mspring_network *network, mspringi_change change, uint32_t index);
+#define VARIES(function) bool function(const mspring_network *network);
+#define LOADS(function) void function(mspring_network *network);
+#define LOADED(function) void function(mspring_network *network);
+#define DISCARDS(function) void function(mspring_network *network);
+#include "store/features.def"
+
+/// Have a copied network's states lie in its own memory, with all that they point to.
+void mspringi_features_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to);
+/// Forget all states: those of a copy are another network's.
+void mspringi_features_forget(mspring_network *network);
+
+/// Forget what the end of a step gave: the guard has put it back.
+void mspringi_features_discard_step(mspring_network *network);
+
+/// True if stiffness or rest lengths of springs follow from the time in the next step.
+bool mspringi_features_vary(const mspring_network *network);
+
+#endif

@@ -1,0 +1,107 @@
+/// @file test_heights.c
+/// Where a way meets a field of heights: what a walk from knot to knot finds, on short ways and on ones across
+/// thousands of knots.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+
+#include "features/contact/floor.h"
+#include "support.h"
+
+enum { MOST_KNOTS = 3000, WAYS = 4000 };
+
+static float heights[MOST_KNOTS];
+static uint64_t seed = 1;
+
+static double between(double low, double high) {
+    return support_random_between(&seed, low, high);
+}
+
+/// Rough ground, gentle slopes, terraces, or a plain with a few peaks.
+static float height_of(uint32_t kind, uint32_t i) {
+    switch (kind) {
+    case 0:
+        return (float)between(-1, 1);
+    case 1:
+        return 0.01f * (float)i;
+    case 2:
+        return (float)(i / 16 % 4);
+    default:
+        return i % 401 == 7 ? 3.0f : 0.0f;
+    }
+}
+
+static mspring_network *make_ground(uint32_t kind, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        heights[i] = height_of(kind, i);
+    }
+    mspring_builder *builder = support_builder();
+    (void)support_particle(builder, 0, 10, 1);
+    const mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.heights = heights;
+    floor.height_count = count;
+    floor.heights_x = -3.7;
+    floor.spacing = 0.3;
+    check_ok(mspring_network_set_floor(network, &floor));
+    mspringi_floor_set_origin(network->floor, network->origin_x, network->origin_y);
+    return network;
+}
+
+static bool passes_below(const mspringi_heights *h, int64_t knot, const double from[2], const double to[2]) {
+    const double share = (h->local_x + (double)knot * h->spacing - from[0]) / (to[0] - from[0]);
+    const double height = h->local_y + (double)h->heights[knot];
+    return from[1] + share * (to[1] - from[1]) < height - mspringi_floor_slop(to[0], to[1]);
+}
+
+/// One knot after the other.
+static int64_t walk(const mspringi_heights *h, const double from[2], const double to[2]) {
+    const int64_t last = mspringi_heights_segment_below(h, to[0]);
+    int64_t part = mspringi_heights_segment_below(h, from[0]);
+    const int64_t onward = part < last ? 1 : -1;
+    while (part != last && !passes_below(h, onward > 0 ? part + 1 : part, from, to)) {
+        part += onward;
+    }
+    return part;
+}
+
+/// Short hops, long flights, ways that begin or end beyond the field, steep and level ones, and upright ones.
+static void take_way(const mspringi_heights *h, double from[2], double to[2]) {
+    const double width = h->spacing * h->count;
+    const double reach = support_random(&seed) % 2 ? 4 * h->spacing : 1.5 * width;
+    const double rise = pow(10, between(-3, 1.5));
+    from[0] = h->local_x + between(-0.2, 1.2) * width;
+    to[0] = support_random(&seed) % 32 ? from[0] + between(-reach, reach) : from[0];
+    from[1] = h->local_y + between(-1, 5);
+    to[1] = from[1] + between(-rise, rise);
+}
+
+static void a_way_meets_what_a_walk_from_knot_to_knot_meets(void **state) {
+    (void)state;
+    const uint32_t counts[] = {2, 3, 17, 64, 1000, MOST_KNOTS};
+    uint32_t met = 0;
+    for (uint32_t kind = 0; kind < 4; kind++) {
+        for (size_t c = 0; c < COUNT_OF(counts); c++) {
+            mspring_network *network = make_ground(kind, counts[c]);
+            const mspringi_heights *h = &network->floor->heights;
+            for (uint32_t i = 0; i < WAYS; i++) {
+                double from[2], to[2];
+                take_way(h, from, to);
+                const int64_t part = mspringi_heights_first_hit(h, from[0], from[1], to[0], to[1]);
+                assert_int_equal(part, walk(h, from, to));
+                met += part != mspringi_heights_segment_below(h, to[0]);
+            }
+            mspring_network_destroy(network);
+        }
+    }
+    assert_in_range(met, 10000, 80000); // of 96,000 ways: both answers are common
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_way_meets_what_a_walk_from_knot_to_knot_meets),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
