@@ -322,8 +322,9 @@ typedef struct mspringi_violence_sweep {
 /// end.
 typedef uint32_t (*mspringi_violence_fn)(const mspringi_violence_sweep *sweep, uint32_t first, uint32_t end);
 
-/// Springs that a clamped step clamps: ratio beyond which, and square of the way of the ends against each other in a
-/// substep, in squares of the length. See solvers/clamped/clamp.c.
+/// Clamped steps (solvers/clamped/clamp.c): ratio above which springs are clamped, and the share of a substep ahead
+/// at which they act; square of the way of a violent spring's ends against each other in a substep, in squares of
+/// its length.
 #define MSPRINGI_CLAMP_RATIO 1.375f
 #define MSPRINGI_CLAMP_AHEAD 0.1875f
 #define MSPRINGI_CLAMP_WAY 0.0625f
