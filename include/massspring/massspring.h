@@ -355,6 +355,19 @@ typedef enum mspring_integrator {
 #define MSPRING_SUBSTEPS_EVEN 0xfffffffeu
 
 /// Solver and its settings. Fill with mspring_solver_def_init() first. A solver ignores what it does not use.
+///
+/// Work is counted, never timed: an explicit substep is 1, a clamped one 3, an implicit or direct one 1 for each 8
+/// products with its matrix and for each pass of its active set. A calm step has the substeps that were set or, with
+/// MSPRING_SUBSTEPS_AUTO and _EVEN, those that stability asks for, and repeats nothing. For MSPRING_GUARD_RETRY it has at
+/// least the substeps that are stable in any shape, up to max_substeps. Four things come on top of most_work:
+///  - A step that the guard rejects may end with one by the fallback, with the substeps of calm motion:
+///    MSPRING_GUARD_CLAMP, _IMPLICIT, _CLAMP_BOUNDS.
+///  - A step that counted on what did not hold, as on no floor within reach, is repeated: once at most for each of floor,
+///    contact, grips, hooks, one-way springs and yielding.
+///  - With groups of particles, a step is repeated at most twice for each group that ends out of bounds or with NaN. No
+///    group is held because many others go wrong.
+///  - The implicit and the direct solver repeat parts of a substep after impacts. They end that themselves after 16,384
+///    products, and 32 for each of the iterations asked for.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
@@ -367,8 +380,9 @@ typedef struct mspring_solver_def {
                             ///< 256; 0, the default: chosen by the plan
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
                             ///< if the network turns little in them; 0, the default: 1
-    uint32_t most_work; ///< times the substeps of calm motion that MSPRING_SUBSTEPS_AUTO and _EVEN may take in violent
-                        ///< motion, at most MSPRING_MAX_SUBSTEPS; default 4; 0: up to max_substeps
+    uint32_t most_work; ///< work in a step, in calm steps, up to which MSPRING_SUBSTEPS_AUTO and _EVEN take more
+                        ///< substeps for violent motion and MSPRING_GUARD_RETRY repeats; at most MSPRING_MAX_SUBSTEPS;
+                        ///< default 4; 0: no bound but max_substeps. See below
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
@@ -403,17 +417,20 @@ typedef enum mspring_guard {
     /// Reject a step whose substeps exceed the stability limit (mspring_network_stable_dt()), or make motion grow.
     /// Steps within the limit are never rejected, not even where uneven dt or violent motion adds energy step by step.
     MSPRING_GUARD_GROWTH = 0,
-    /// Repeat a step that would be rejected, with twice as many substeps, up to max_substeps. Later steps keep that
-    /// number until mspring_network_set_solver(). Hooks are called again. Relative springs gain nothing by it.
+    /// Repeat a step that would be rejected, with twice as many substeps, up to max_substeps and as long as
+    /// mspring_solver_def.most_work lasts: where that ends it, the step fails, and the next one begins with the number
+    /// that would have followed. Later steps keep the number until mspring_network_set_solver(). Hooks are called again.
+    /// Relative springs gain nothing by it.
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2, ///< check the bounds only
     /// Repeat a step that would be rejected, by one substep of implicit Euler. The 15 steps after it use that, too. It
     /// is slower and softer, but stable at nearly any stiffness. Hooks are called again. The network reserves memory.
     MSPRING_GUARD_IMPLICIT = 3,
     /// Repeat a step that would be rejected, with clamped strain rates; unless the solver is implicit, also the 15
-    /// steps after it. Springs act one after another, by impulses that never push a spring past its rest length.
-    /// Unphysical: stiff springs turn soft, and motion along springs is damped. Small motion never grows. Hooks are
-    /// called again. Uses one thread and no memory. The default.
+    /// steps after it. Springs that are too stiff for the substep, or in violent motion, act with a part of their force;
+    /// others act as ever. Unphysical: stiff springs turn soft, and motion along them is damped. Small motion never grows.
+    /// A substep takes as long as 3 explicit ones (10 where springs are irregular). Hooks are called again. Uses one
+    /// thread and no memory. The default.
     MSPRING_GUARD_CLAMP = 4,
     /// Check nothing, and put back particles that end out of bounds. Speeds become at most max_speed, local
     /// coordinates at most MSPRING_MAX_COORDINATE. A particle with NaN or infinity goes back to its place before the
@@ -673,6 +690,8 @@ typedef struct mspring_step_info {
     double largest_speed;    ///< length of the fastest particle's velocity now, m/s
     double time_left;        ///< with MSPRING_SUBSTEPS_EVEN, dt that steps were given and have not taken yet, s; < 0:
                              ///< they are ahead
+    double work;             ///< of the last step, even if it failed, in calm steps (mspring_solver_def.most_work): 1 if
+                             ///< nothing was repeated or raised; 0 if nothing was computed
 } mspring_step_info;
 
 /// Read the report of the last step. Takes a pass over the velocities.

@@ -1,7 +1,7 @@
 /// @file kernel_table.h
 /// Table of an instruction set, and the variants of its kernels: lattice(), chain(), irregular(), bundle(),
 /// loose(), attached(), pack(), largest(), extrema_of(), bounce(), bounce_free(), brake(), lattice_strain(),
-/// chain_strain(), lattice_yield(), chain_yield(), lattice_violence(), bound_ and image_lattice() and _chain(),
+/// chain_strain(), lattice_yield(), chain_yield(), lattice_violence(), bound_, image_ and clamp_lattice() and _chain(),
 /// take_checksum(). Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
@@ -144,6 +144,8 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .bound_chain = bound_chain,
     .image_lattice = image_lattice,
     .image_chain = image_chain,
+    .clamp_lattice = clamp_lattice,
+    .clamp_chain = clamp_chain,
     .checksum = take_checksum,
     .system = MSPRINGI_SYSTEM_TABLE,
 };

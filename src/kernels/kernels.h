@@ -322,6 +322,13 @@ typedef struct mspringi_violence_sweep {
 /// end.
 typedef uint32_t (*mspringi_violence_fn)(const mspringi_violence_sweep *sweep, uint32_t first, uint32_t end);
 
+/// Clamped steps (solvers/clamped/clamp.c): ratio above which springs are clamped, and the share of a substep ahead
+/// at which they act; square of the way of a violent spring's ends against each other in a substep, in squares of
+/// its length.
+#define MSPRINGI_CLAMP_RATIO 1.375f
+#define MSPRINGI_CLAMP_AHEAD 0.1875f
+#define MSPRINGI_CLAMP_WAY 0.0625f
+
 /// Arguments of the stability limit's passes: see limit_kernel.h. Arrays by slot, and springs as in mspringi_sweep.
 typedef struct mspringi_stability_limit {
     const float *x, *y, *inverse_mass;
@@ -331,8 +338,9 @@ typedef struct mspringi_stability_limit {
     uint32_t lattice_first, lattice_blocks, chain_first, chain_blocks;
     bool is_damped;           ///< springs have damping
     float stiffness, damping; ///< factors on a spring's at the substep
-    const float *in[2];       ///< operand at both ends: weights, or a displacement
+    const float *in[3];       ///< operand at both ends: weights; a displacement; velocities and ratios
     float *out[3];            ///< sums to add to
+    float h;                  ///< of clamped springs, s
 } mspringi_stability_limit;
 typedef void (*mspringi_stability_limit_fn)(const mspringi_stability_limit *border);
 
@@ -376,6 +384,7 @@ typedef struct mspringi_kernels {
     mspringi_yield_fn lattice_yield, chain_yield;
     mspringi_violence_fn lattice_violence;
     mspringi_stability_limit_fn bound_lattice, bound_chain, image_lattice, image_chain;
+    mspringi_stability_limit_fn clamp_lattice, clamp_chain;
     mspringi_checksum_fn checksum;
     mspringi_system_kernels system;
 } mspringi_kernels;

@@ -57,6 +57,7 @@ mspring_result mspring_network_get_step_info(const mspring_network *network, msp
         .fallback_count = steps->fallback_count,
         .time = steps->time,
         .time_left = steps->pace.left,
+        .work = steps->outcome.work,
         .largest_speed = largest_speed(network),
     };
     mspringi_put_step_info(info, &made);

@@ -190,7 +190,7 @@ bool mspringi_guard_checks_limit(mspring_guard policy) {
 
 mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard policy) {
     mspring_result result = MSPRING_OK;
-    if (mspringi_guard_checks_limit(policy))
+    if (policy != MSPRING_GUARD_BOUNDS) // the clamped solver works in the same arrays
         result = mspringi_stability_limit_reserve(network);
     return result == MSPRING_OK && policy == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network, 0)
                                                                     : result;

@@ -5,8 +5,7 @@
 #ifndef MSPRINGI_GUARD_H
 #define MSPRINGI_GUARD_H
 
-#include "store/network.h"
-#include "store/solver.h"
+#include "store/attempt.h"
 
 /// Return an error for an unknown policy.
 mspring_result mspringi_guard_check(mspring_guard policy, mspringi_message *message);

@@ -26,21 +26,6 @@ static single_spring linearise(const mspringi_stability_limit *b, const mspringi
     return s;
 }
 
-static single_spring linearise_irregular(const mspring_network *network, const mspringi_stability_limit *b,
-                                         uint32_t irregular) {
-    const mspringi_topology *t = &network->topology;
-    const uint32_t at = t->irregular.entry[2 * (size_t)irregular], parts = network->parts;
-    const float *record = network->irregular_springs + (size_t)(at / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts;
-    record += at % MSPRINGI_WIDTH;
-    return linearise(b, &(mspringi_spring_values){.base = t->irregular_a[irregular],
-                                                  .tip = t->irregular_b[irregular],
-                                                  .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                                                  .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
-                                                  .damping = parts > MSPRINGI_DAMPING
-                                                                 ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH]
-                                                                 : 0.0f});
-}
-
 // Linearise the surcharge on a one-way spring: MSPRINGI_ONE_WAY_SHARE minus the spring itself.
 static single_spring linearise_surcharge(const mspring_network *network, const mspringi_stability_limit *b,
                                          mspring_id spring) {
@@ -97,8 +82,10 @@ static void add_image(const mspringi_stability_limit *b, single_spring s) {
 
 static void visit_others(const mspring_network *network, const mspringi_stability_limit *b,
                          void (*visit)(const mspringi_stability_limit *b, single_spring s)) {
-    for (uint32_t i = 0; i < network->topology.irregular_count; ++i)
-        visit(b, linearise_irregular(network, b, i));
+    for (uint32_t i = 0; i < network->topology.irregular_count; ++i) {
+        const mspringi_spring_values values = mspringi_irregular_spring(network, i);
+        visit(b, linearise(b, &values));
+    }
     for (mspring_id i = 0; network->one_way && i < network->topology.reserve.first_spring; ++i)
         if (mspringi_side_of(network, i) != 0 && mspringi_spring_exists(network, i))
             visit(b, linearise_surcharge(network, b, i));

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_STABILITY_LIMIT_H
 #define MSPRINGI_STABILITY_LIMIT_H
 
-#include "store/network.h"
+#include "store/springs.h"
 
 /// Reserve the scratch arrays unless they exist: 20 bytes a slot.
 mspring_result mspringi_stability_limit_reserve(mspring_network *network);
@@ -32,6 +32,20 @@ void mspringi_stability_limit_image(const mspring_network *network, const msprin
 /// Add the part of the areas to both (stability_areas.c). square: h^2, of which limit has a float.
 void mspringi_areas_bound(const mspring_network *network, const mspringi_stability_limit *limit);
 void mspringi_areas_image(const mspring_network *network, const mspringi_stability_limit *limit, double square);
+
+/// Values of a spring outside lattices and chains.
+static inline mspringi_spring_values mspringi_irregular_spring(const mspring_network *network, uint32_t irregular) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t at = t->irregular.entry[2 * (size_t)irregular], parts = network->parts;
+    const float *record =
+        network->irregular_springs + (size_t)(at / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts + at % MSPRINGI_WIDTH;
+    return (mspringi_spring_values){.base = t->irregular_a[irregular],
+                                    .tip = t->irregular_b[irregular],
+                                    .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                                    .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
+                                    .damping = parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH]
+                                                                        : 0.0f};
+}
 
 /// Number of scratch arrays, by slot.
 #define MSPRINGI_STABILITY_LIMIT_SCRATCH 4

@@ -12,17 +12,26 @@
 /// energy. A free lattice of 4 x 4 gains up to 1.3 times its energy at a quarter, 5,000 times at 0.4.
 #define VIOLENT_SHARE 0.25
 
+// A choice of substeps.
+typedef struct choice {
+    double dt, limit;
+    bool may_raise; ///< for violent motion
+    uint32_t calm;  ///< substeps without that
+    double need;    ///< substeps that motion needs; 0: not looked at
+} choice;
+
 // More substeps where violent motion needs them, as many as it may have. Relative springs would become firmer with
-// them. need is what it needs, 0 if it was not looked at.
-static uint32_t raised(const mspring_network *network, double dt, uint32_t calm, double *need) {
+// them.
+static uint32_t raised(const mspring_network *network, choice *made, uint32_t calm) {
+    const double dt = made->dt;
     const double work = network->most_work > 0 ? (double)network->most_work * (double)calm : INFINITY,
                  most = fmin(work, (double)network->max_substeps);
-    *need = 0.0;
-    if (network->fractions.values || (double)calm > most ||
+    made->calm = calm;
+    if (!made->may_raise || network->fractions.values || (double)calm > most ||
         dt * mspringi_violence_bound(network) <= VIOLENT_SHARE * (double)calm)
         return calm;
-    *need = -floor(-dt * mspringi_violence(network) / VIOLENT_SHARE);
-    return *need > most ? (uint32_t)most : *need > (double)calm ? (uint32_t)*need : calm;
+    made->need = -floor(-dt * mspringi_violence(network) / VIOLENT_SHARE);
+    return made->need > most ? (uint32_t)most : made->need > (double)calm ? (uint32_t)made->need : calm;
 }
 
 // Flag a step that takes fewer substeps than it needs.
@@ -67,12 +76,12 @@ static uint32_t uneven_substeps(const mspring_network *network, double dt, doubl
 // Keep the length of substeps, and carry the rest of dt to the next step: the nearest whole number of them, at
 // least one. Where one is too many, as the state is ahead, the length is chosen anew; a dt far below the limit is
 // taken as it is, and the length stays. (Lengths near the limit that come and go make energy.)
-static uint32_t even_substeps(mspring_network *network, double dt, double limit) {
+static uint32_t even_substeps(mspring_network *network, choice *made) {
+    const double dt = made->dt, limit = made->limit;
     const mspringi_pace *had = &network->steps.pace;
     mspringi_pace *pace = &network->next_pace;
-    double need;
     const uint32_t most = network->max_substeps, calm = mspringi_substeps_within(dt, limit, most),
-                   fewest = raised(network, dt, calm, &need);
+                   fewest = raised(network, made, calm);
     const double h = had->h, whole = fmax(floor((dt + had->left) / h + 0.5), 1.0),
                  left = dt + had->left - whole * h, times = whole / (double)fewest;
     const bool is_ahead = dt < h && left < -MOST_AHEAD * h;
@@ -86,32 +95,36 @@ static uint32_t even_substeps(mspring_network *network, double dt, double limit)
         pace->dt = dt;
         pace->h = (double)(float)(dt / (double)fewest);
         pace->steps = 0;
-        return flagged(network, fewest, need);
+        return flagged(network, fewest, made->need);
     }
     if (is_ahead)
-        return flagged(network, fewest, need);
+        return flagged(network, fewest, made->need);
     pace->left = left;
     network->step_time = whole * h;
-    return flagged(network, (uint32_t)whole, need);
+    made->calm = fewest > calm ? calm : (uint32_t)whole;
+    return flagged(network, (uint32_t)whole, made->need);
 }
 
 /* ------------------------------------------------------------------------------------------------------ both */
 
-static uint32_t preferred_substeps(mspring_network *network, double dt, double limit) {
+static uint32_t preferred_substeps(mspring_network *network, choice *made) {
+    const double dt = made->dt, limit = made->limit;
     if (network->auto_substeps == MSPRINGI_SUBSTEPS_EVEN)
-        return even_substeps(network, dt, limit);
-    double need;
+        return even_substeps(network, made);
     const uint32_t calm = network->steps.uneven_steps > 0 || changes_dt(network, dt)
                               ? uneven_substeps(network, dt, limit)
                               : mspringi_substeps_within(dt, limit, network->max_substeps);
-    const uint32_t substeps = raised(network, dt, calm, &need);
-    return flagged(network, substeps, need);
+    const uint32_t substeps = raised(network, made, calm);
+    return flagged(network, substeps, made->need);
 }
 
-mspring_result mspringi_pace_choose(mspring_network *network, double dt) {
+mspring_result mspringi_pace_choose(mspring_network *network, double dt, bool may_raise, uint32_t *calm) {
     mspring_id spring;
     const double limit = mspringi_stable_in_any_shape(network, &spring);
-    uint32_t substeps = preferred_substeps(network, dt, limit);
+    choice made = {.dt = dt, .limit = limit, .may_raise = may_raise};
+    network->step_time = dt;
+    network->next_pace = network->steps.pace;
+    uint32_t substeps = preferred_substeps(network, &made);
     if (substeps > network->max_substeps && network->fractions.values)
         substeps = mspringi_substeps_within(dt, mspringi_stable_with_relative(network), network->max_substeps);
     if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS && substeps > network->max_substeps)
@@ -131,6 +144,7 @@ mspring_result mspringi_pace_choose(mspring_network *network, double dt) {
                              dt, limit, (unsigned)tightest, (unsigned)network->max_substeps);
     }
     network->substeps = substeps;
+    *calm = made.calm < substeps ? made.calm : substeps;
     return MSPRING_OK;
 }
 

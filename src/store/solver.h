@@ -27,15 +27,7 @@ typedef struct mspringi_solver {
     void *object;                   ///< NULL if it keeps nothing
 } mspringi_solver;
 
-/// One try at a step. It travels through the step's stages; what the network says of substeps is a setting.
-typedef struct mspringi_attempt {
-    double dt; ///< s
-    float h;   ///< length of a substep, s
-    uint32_t substeps;
-    const mspringi_solver *solver; ///< the one that runs, which may be the fallback
-    const struct mspringi_stages *stages;
-    float relative_h; ///< substep that relative springs were derived for before, s
-} mspringi_attempt;
+typedef struct mspringi_attempt mspringi_attempt; ///< store/attempt.h
 
 /// What an object was made for: masses, rest lengths and springs of that time, which edits do not change.
 typedef struct mspringi_solver_basis {
@@ -91,6 +83,11 @@ struct mspringi_solver_ops {
     void (*substeps)(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count);
     void (*end)(mspring_network *network);
 
+    // Work, in explicit substeps or what counts as one. calm_work: of a substep in which nothing is repeated;
+    // NULL: 1. count_work: of the substeps since keep(); NULL: each was calm.
+    double (*calm_work)(const void *object);
+    double (*count_work)(const void *object);
+
     // Undo. keep: before a step. restore: to what was kept. forget: a new motion begins. is_finite: all numbers are
     // finite that it carries to the next step.
     void (*keep)(void *object);
@@ -137,6 +134,7 @@ mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *ne
                                     const mspring_solver_def *def, uint32_t tile_size);
 void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory);
 void mspringi_solver_forget(const mspringi_solver *solver);
+double mspringi_solver_calm_work(const mspringi_solver *solver);
 mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver);
 
 /// Let a solver take over what another one knows, which has the same settings and another layout.

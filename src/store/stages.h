@@ -22,7 +22,7 @@
 #ifndef MSPRINGI_STAGES_H
 #define MSPRINGI_STAGES_H
 
-#include "store/network.h"
+#include "store/attempt.h"
 
 /// Parts of equal length in a substep. An interval is some of them.
 #define MSPRINGI_SUBSTEP_PARTS 16u

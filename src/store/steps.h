@@ -13,6 +13,7 @@
 typedef struct mspringi_outcome {
     mspring_id particle, spring; ///< to blame
     uint32_t flags;
+    double work; ///< of all attempts, in calm steps
 } mspringi_outcome;
 
 /// Pace of MSPRING_SUBSTEPS_EVEN.

@@ -462,7 +462,7 @@ const struct output outputs[] = {
     OUTPUT(area_info, fill_area_info),
     OUTPUT(collider_def, fill_collider),
     OUTPUT_ONCE(contact_event, fill_contact_event),
-    {"step_info", sizeof(mspring_step_info), 8, fill_step_info, true}, // time_left
+    {"step_info", sizeof(mspring_step_info), 16, fill_step_info, true}, // time_left, work
     OUTPUT(plasticity, fill_plasticity),
     OUTPUT(spring_info, fill_spring_info),
     OUTPUT(plan, fill_plan),

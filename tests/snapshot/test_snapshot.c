@@ -420,6 +420,9 @@ static mspring_network *eventful(const recipe *made, mspring_guard guard, msprin
     if (solver != MSPRING_SOLVER_EXPLICIT) {
         snapshots_use_solver(network, solver, MSPRING_INTEGRATOR_BDF2, 2);
     }
+    mspring_solver_def most = support_solver(network);
+    most.most_work = 0; // else MSPRING_GUARD_RETRY may keep more substeps after a step that fails
+    check_ok(mspring_network_set_solver(network, &most));
     return network;
 }
 

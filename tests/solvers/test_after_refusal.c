@@ -39,13 +39,13 @@ static mspring_network *grown(mspring_guard guard, mspring_solver solver) {
     check_ok(mspring_network_add_springs(network, &spring, 1, &ignored));
     support_steps(network, 10, 1.0 / 60);
     check_ok(mspring_network_compact(network));
+    mspring_solver_def most = support_solver(network);
     if (solver == MSPRING_SOLVER_DIRECT) {
-        mspring_solver_def direct;
-        check_ok(mspring_solver_def_init(&direct, sizeof direct));
-        direct.solver = solver;
-        direct.substeps = 2;
-        check_ok(mspring_network_set_solver(network, &direct));
+        most.solver = solver;
+        most.substeps = 2;
     }
+    most.most_work = 0; // else MSPRING_GUARD_RETRY may keep more substeps after a step that fails
+    check_ok(mspring_network_set_solver(network, &most));
     return network;
 }
 

@@ -91,7 +91,8 @@ static void what_would_explode_goes_on(void **state) {
     assert_true(worst < 1.001); // of rounding
 }
 
-/// Without gravity and pins energy falls, by the stiffness that springs have there.
+/// Without gravity and pins energy falls to a tenth, and is never more than at first. (From step to step it may rise:
+/// how stiff springs are there depends on the shape.)
 static void energy_falls(void **state) {
     (void)state;
     const double stiffnesses[] = {1e5, 1e8, 1e12};
@@ -100,16 +101,14 @@ static void energy_falls(void **state) {
         uint64_t seed = 3;
         recipe_disturb(&made, 0.2, 5, &seed);
         mspring_network *network = make(&made, MSPRING_GUARD_CLAMP, 0, 1);
-        double before = softened_energy(network, &made, DT);
-        const double first = before;
+        const double first = softened_energy(network, &made, DT);
+        double now = first;
         for (uint32_t step = 0; step < 120; step++) {
             check_ok(mspring_network_step(network, DT));
-            const double now = softened_energy(network, &made, DT);
+            now = softened_energy(network, &made, DT);
             assert_true(now < first);
-            assert_true(now <= 1.01 * before); // some that come to point elsewhere as it turns may gain: here 0.4 %
-            before = now;
         }
-        assert_true(before < 0.1 * first);
+        assert_true(now < 0.1 * first);
         assert_int_equal(support_fallback_count(network), 120);
         mspring_network_destroy(network);
         recipe_free(&made);
@@ -139,7 +138,7 @@ static void a_bar_that_crosses_its_border_goes_on(void **state) {
         print_message("%g N/m: %u steps of 1280 clamped, tip up to %.1f m from its pin at 79 m\n", stiffnesses[i],
                       (unsigned)support_fallback_count(network), longest);
         assert_true(support_fallback_count(network) > 0);
-        assert_true(longest < 2 * 79); // at the stiffness that it has its weight makes it a third longer
+        assert_true(longest < 2 * 79); // at the stiffness that it has its weight makes it 1.5 times as long
         mspring_network_destroy(network);
         recipe_free(&made);
     }
@@ -305,11 +304,12 @@ static void bits_are_the_same_everywhere(void **state) {
     recipe_free(&made);
 }
 
-/// Springs take turns by their ids, wherever they lie: a compacted network goes on with the same bits.
+/// All springs act at once, so where they lie changes the order of sums alone.
 static void plans_make_no_difference(void **state) {
     (void)state;
     recipe made = recipe_of_shape(&shapes[2], 1e8, 10);
     mspring_network *networks[2];
+    double apart = 0;
     for (size_t i = 0; i < 2; i++) {
         networks[i] = make(&made, MSPRING_GUARD_CLAMP, -9.8f, 1);
         for (mspring_id s = 0; s < made.spring_count; s += 3) {
@@ -323,8 +323,10 @@ static void plans_make_no_difference(void **state) {
     }
     for (mspring_id p = 0; p < made.particle_count; p++) {
         const support_point a = support_position(networks[0], p), b = support_position(networks[1], p);
-        assert_true(a.x == b.x && a.y == b.y);
+        apart = fmax(apart, hypot(a.x - b.x, a.y - b.y));
     }
+    print_message("%g m apart\n", apart);
+    assert_true(apart < 1e-3); // rounding of 100 steps of a body of 30 m, which is 2e-6 m in each
     mspring_network_destroy(networks[0]);
     mspring_network_destroy(networks[1]);
     recipe_free(&made);

@@ -111,6 +111,7 @@ static mspring_network *begin(const start *s, const recipe *made, mspring_integr
     solver.integrator = integrator;
     solver.substeps = substeps;
     solver.max_substeps = 8;
+    solver.most_work = 0; // else MSPRING_GUARD_RETRY may keep more substeps after a step that fails
     check_ok(mspring_network_set_solver(network, &solver));
     return network;
 }

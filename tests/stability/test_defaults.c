@@ -22,8 +22,8 @@ typedef struct matter {
 static const matter matters[] = {
     {"soft", 0, 10, 0, false, 1},
     {"iron", 0, 6.76e5f, 0, false, 0},
-    {"as stiff as numbers go", 0, 1e14f, 0, true, 10},
-    {"overdamped", 0, 100, 1e9f, true, 10},
+    {"as stiff as numbers go", 0, 1e14f, 0, true, 333},
+    {"overdamped", 0, 100, 1e9f, true, 333},
     {"relative", MSPRING_SPRING_RELATIVE, 0.4f, 0.01f, false, 1},
     {"relative, too stiff for any shape", MSPRING_SPRING_RELATIVE, 0.7f, 0, false, 1},
     {"relative, too stiff", MSPRING_SPRING_RELATIVE, 3, 0, true, 1},

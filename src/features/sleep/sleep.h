@@ -8,8 +8,7 @@
 #ifndef MSPRINGI_SLEEP_H
 #define MSPRINGI_SLEEP_H
 
-#include "store/network.h"
-#include "store/solver.h"
+#include "store/attempt.h"
 
 /// Part of a strip that is swept.
 typedef enum mspringi_strip_sleep {

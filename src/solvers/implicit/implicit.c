@@ -449,7 +449,7 @@ void mspringi_implicit_keep(mspringi_implicit *n) {
     n->has_changed = false;
     n->kept_age = n->has_constraints_in_coarse ? 0 : n->age;
     n->kept_restarts = n->history.restarts;
-    n->solves = 0;
+    n->solves = n->pass_count = 0;
     if (n->kept_age > 0)
         mspringi_coarse_keep(&n->coarse);
 }

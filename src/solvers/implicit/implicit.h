@@ -74,6 +74,7 @@ typedef struct mspringi_implicit {
     uint32_t kept_restarts;         ///< restarts of the history before the step
     uint32_t retry_count;           ///< intervals of this substep that were undone
     uint32_t solves;                ///< products with A or its inverse in this step
+    uint32_t pass_count;            ///< solutions in this step
     double scale;                   ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup: before the step, once the step has changed it

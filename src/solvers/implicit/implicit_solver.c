@@ -86,6 +86,20 @@ static void substeps(mspring_network *network, void *object, float h, mspringi_f
     mspringi_implicit_run_substeps(network, h, base, count);
 }
 
+/// Products that count as one of work.
+#define PRODUCTS_OF_ONE 8.0
+
+static double calm_work(const void *object) {
+    const mspringi_implicit *n = object;
+    return 1.0 + (n->is_direct ? 1.0 : (double)(n->iterations - 1)) / PRODUCTS_OF_ONE; // the last step takes none
+}
+
+static double count_work(const void *object) {
+    const mspringi_implicit *n = object;
+    const uint32_t products = n->solves + (n->is_direct ? n->pass_count : 0); // each solution is one, uncounted
+    return (double)n->pass_count + (double)products / PRODUCTS_OF_ONE;
+}
+
 static void keep(void *object) {
     mspringi_implicit_keep(object);
 }
@@ -192,10 +206,11 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
     .takes_one_substep = true, .has_implicit_grips = true, .has_implicit_contact = true,                           \
     .has_implicit_areas = true, .create = create, .build = build, .fits = fits, .adjust = adjust,                  \
     .destroy = destroy, .relocate = relocate, .reserve = reserve, .get_def = get_def, .take_over = take_over,      \
-    .get_basis = get_basis, .set_basis = set_basis, .substeps = substeps, .keep = keep, .restore = restore,        \
-    .forget = forget, .is_finite = is_finite, .clear_slot = clear_slot, .rest_slot = rest_slot,                    \
-    .clear_spring = clear_spring, .new_floor = new_floor, .is_isolated = is_isolated,                              \
-    .has_isolated = has_isolated, .describe = describe, .save = save, .check = check, .load = load
+    .get_basis = get_basis, .set_basis = set_basis, .substeps = substeps, .calm_work = calm_work,                  \
+    .count_work = count_work, .keep = keep, .restore = restore, .forget = forget, .is_finite = is_finite,          \
+    .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring, .new_floor = new_floor,        \
+    .is_isolated = is_isolated, .has_isolated = has_isolated, .describe = describe, .save = save, .check = check,  \
+    .load = load
 
 const mspringi_solver_ops mspringi_implicit_ops = {.can_add = true, BOTH};
 

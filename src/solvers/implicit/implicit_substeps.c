@@ -28,7 +28,10 @@ static void follow_edits(mspring_network *network) {
 
 // Find d = displacement + alpha direction. Returns alpha; NaN if numbers overflowed.
 static float solve(const mspringi_implicit_substep *substep, mspringi_team_member *member) {
-    if (!mspringi_implicit_of(substep->network)->is_direct)
+    mspringi_implicit *n = mspringi_implicit_of(substep->network);
+    if (member->index == 0)
+        n->pass_count++;
+    if (!n->is_direct)
         return mspringi_solve(substep, member);
     mspringi_team_barrier(member);
     if (member->index == 0)

@@ -1,0 +1,265 @@
+/// An attempt at a step: substeps with the forces that act in them, and the way back if it goes wrong.
+#include "step/ladder.h"
+
+#include <string.h>
+
+#include "base/cpu.h"
+#include "features/hooks/hooks.h"
+#include "features/sleep/sleep.h"
+#include "stability/guard.h"
+#include "stability/stability.h"
+#include "step/held_groups.h"
+#include "store/id_pool.h"
+#include "store/stages.h"
+
+typedef struct copying {
+    const float *from;
+    float *to;
+    size_t slot_count, arrays;
+} copying;
+
+static void copy_range(void *argument, size_t first, size_t end) {
+    const copying *all = argument;
+    for (size_t i = 0; i < all->arrays; ++i)
+        memcpy(all->to + i * all->slot_count + first, all->from + i * all->slot_count + first,
+               (end - first) * sizeof *all->to);
+}
+
+static void copy_state(const mspring_network *network, const mspringi_state *from, const mspringi_state *to) {
+    copying all = {from->x, to->x, mspringi_slot_count(network), mspringi_state_arrays(network)};
+    mspringi_tasks_run_ranges(network->tasks, mspringi_used_slots(network), MSPRINGI_WIDTH, copy_range, &all);
+}
+
+/* -------------------------------------------------------------------------------------------------- substeps */
+
+// Take a substep, or count of them. A single one may have to be taken in pieces.
+static void run_solver(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force,
+                       uint32_t count) {
+    const mspringi_solver *solver = attempt->solver;
+    for (uint32_t left = MSPRINGI_SUBSTEP_PARTS, shares; left > 0; left -= shares) {
+        shares = count > 1 ? left : mspringi_stages_max_parts(network, attempt, left);
+        const float h = attempt->h * ((float)shares / (float)MSPRINGI_SUBSTEP_PARTS);
+        network->added_substeps += shares < left;
+        solver->ops->substeps(network, solver->object, h, force, count);
+        network->lag = network->full_lag = h;
+    }
+}
+
+static void run_substeps(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
+                         bool is_cut) {
+    const mspringi_stages *stages = attempt->stages;
+    for (uint32_t substep = 0, count; substep < attempt->substeps; substep += count) {
+        count = mspringi_stages_free_substeps(network, attempt, substep);
+        network->first_substep = substep;
+        mspringi_field outside;
+        const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base, &outside);
+        if (substep == 0 && is_cut)
+            mspringi_stages_forces_known(network, attempt, outside);
+        if (stages->follow_substeps)
+            mspringi_sleep_hold(network);
+        if (!mspringi_sleep_is_whole(network))
+            run_solver(network, attempt, force, count);
+        if (stages->follow_substeps)
+            mspringi_sleep_put_back(network);
+        mspringi_stages_after_substep(network, attempt, substep + count - 1);
+    }
+}
+
+void mspringi_drop_stale_lows(const mspring_network *network) {
+    const size_t slots = mspringi_used_slots(network);
+    const float *restrict x = network->state.x, *restrict y = network->state.y;
+    float *restrict low_x = network->state.low_x, *restrict low_y = network->state.low_y;
+    for (size_t slot = 0; slot < slots; ++slot) {
+        low_x[slot] = mspringi_low_of(x[slot], low_x[slot], network->state.grid);
+        low_y[slot] = mspringi_low_of(y[slot], low_y[slot], network->state.grid);
+    }
+}
+
+// Contact may leave a velocity with the low word of another: that is no reason to drop it, but one written by a
+// host is.
+static void drop_stale_low_velocities(const mspring_network *network) {
+    const mspringi_state *s = &network->state;
+    const size_t slots = network->is_precise ? mspringi_used_slots(network) : 0;
+    for (size_t slot = 0; slot < slots; ++slot) {
+        s->low_vx[slot] = mspringi_low_of(s->vx[slot], s->low_vx[slot], 0.0f);
+        s->low_vy[slot] = mspringi_low_of(s->vy[slot], s->low_vy[slot], 0.0f);
+    }
+}
+
+void mspringi_clear_unused_slots(const mspring_network *network) {
+    const size_t slots = mspringi_slot_count(network), used = mspringi_used_slots(network);
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
+        memset(network->state.x + i * slots + used, 0, (slots - used) * sizeof *network->state.x);
+}
+
+// Put in order what somebody outside may have written to.
+static void tidy(const mspring_network *network) {
+    if (!network->is_open)
+        return;
+    if (network->has_host_view)
+        mspringi_clear_unused_slots(network);
+    mspringi_clear_empty_slots(network);
+    mspringi_drop_stale_lows(network);
+    drop_stale_low_velocities(network);
+}
+
+// Set the lag with which a step begins. After an edit, the last substep may be too long a time for springs to act,
+// and relative springs are as stiff as this step's substeps allow. A reset takes groups back to velocities that
+// count as half a substep old.
+static void begin_lag(mspring_network *network, const mspringi_attempt *attempt) {
+    const float h = attempt->h, lag = network->steps.lag;
+    mspring_id spring;
+    network->lag = network->full_lag = network->groups.count > 0 ? h : lag;
+    if (!attempt->solver->ops->lags || network->groups.count > 0)
+        return;
+    if (network->fractions.values && lag > 0.0f)
+        network->lag = network->full_lag = h;
+    else if (lag > h)
+        network->lag =
+            fminf(lag, fmaxf((float)fmin(mspringi_stable_in_any_shape(network, &spring), (double)FLT_MAX), h));
+}
+
+// Keep the state in the backup, run all substeps, and look at what they have led to.
+static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_solver_ops *ops = attempt->solver->ops;
+    const bool is_cut = attempt->is_cut;
+    mspringi_extrema extrema = {0.0f, 0.0f, 0.0f};
+    mspringi_field base = {NULL, NULL};
+    network->added_substeps = 0;
+    network->first_substep = 0;
+    network->step_substeps = attempt->substeps;
+    begin_lag(network, attempt);
+    tidy(network);
+    if (ops->begin)
+        ops->begin(network);
+    if (!is_cut) {
+        base = mspringi_stages_forces(network, attempt);
+        mspringi_stages_forces_known(network, attempt, base);
+        if (mspringi_sleep_is_whole(network))
+            return extrema;
+        if (ops->run_step && ops->run_step(network, attempt, base, &extrema)) {
+            network->lag = network->full_lag = attempt->h;
+            return extrema;
+        }
+        if (network->plastic.yields) // in substeps that were undone, as they met the floor
+            mspringi_stage_yielding.roll_back(network);
+    }
+    copy_state(network, &network->state, &network->backup);
+    network->backup_is_start = !is_cut && network->sleep.sleeping == 0;
+    if (ops->keep)
+        ops->keep(attempt->solver->object);
+    if (is_cut)
+        base = mspringi_stages_forces(network, attempt);
+    run_substeps(network, attempt, base, is_cut);
+    if (network->is_open)
+        mspringi_clear_empty_slots(network);
+    if (ops->end)
+        ops->end(network);
+    if (!ops->has_stability_limit) // the explicit solver sweeps rows, others all slots
+        mspringi_clear_unused_slots(network);
+    return mspringi_guard_extrema_of_all(network);
+}
+
+/* ---------------------------------------------------------------------------------------------------- attempts */
+
+void mspringi_clear_empty_slots(const mspring_network *network) {
+    const mspringi_topology *t = &network->topology;
+    const mspringi_state *s = &network->state;
+    const size_t slots = mspringi_slot_count(network);
+    for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
+        for (uint32_t run = 0; run < t->empty_run_count; ++run)
+            memset(s->x + i * slots + t->empty_runs[run].first_slot, 0,
+                   t->empty_runs[run].slot_count * sizeof *s->x);
+    if (network->growth.particles)
+        mspringi_id_pool_clear_slots(network);
+}
+
+// To the state of before the step.
+static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_solver *solver = attempt->solver;
+    copy_state(network, &network->backup, &network->state);
+    if (solver->ops->restore)
+        solver->ops->restore(network, solver->object);
+    mspringi_stages_roll_back(network, attempt);
+    mspringi_clear_unused_slots(network);
+    mspringi_clear_empty_slots(network);
+}
+
+// Count the work of substeps that were taken, whatever comes of them.
+static void count_work(mspringi_attempt *attempt, uint32_t substeps) {
+    const mspringi_solver *solver = attempt->solver;
+    attempt->work += solver->ops->count_work ? solver->ops->count_work(solver->object)
+                                             : (double)substeps * mspringi_solver_calm_work(solver);
+}
+
+// Undo what an attempt has done; the state is that of before.
+static void undo(mspring_network *network, const mspringi_attempt *attempt) {
+    network->guard = attempt->guard;
+    mspringi_stages_undo(network, attempt);
+}
+
+void mspringi_attempt_take_back(mspring_network *network, const mspringi_attempt *attempt) {
+    go_back(network, attempt);
+    undo(network, attempt);
+}
+
+// True if a step has nothing to do at all.
+static bool is_idle(const mspring_network *network, const mspringi_stages *stages) {
+    return mspringi_sleep_is_idle(network) && !stages->give_forces && !stages->cut_substeps && !stages->move;
+}
+
+// Until substeps are taken. A step in which all sleeps takes none.
+static mspring_result begin(mspring_network *network, mspringi_attempt *attempt) {
+    if (attempt->kind != MSPRINGI_WITHOUT_SUSPECTS && attempt->kind != MSPRINGI_WITH_DOUBTFUL)
+        mspringi_sleep_begin(network, attempt);
+    attempt->is_idle = is_idle(network, attempt->stages);
+    if (attempt->is_idle) {
+        tidy(network);
+        network->full_lag = network->steps.lag;
+        return MSPRING_OK;
+    }
+    if (attempt->kind == MSPRINGI_AS_CHOSEN && network->groups.count > 0)
+        mspringi_groups_begin(network);
+    attempt->guard = network->guard;
+    mspringi_stages_before_step(network, attempt);
+    const mspring_result result = mspringi_guard_begin(network, attempt);
+    if (result != MSPRING_OK)
+        undo(network, attempt);
+    return result;
+}
+
+// Take the substeps, or leave everything as it is.
+static mspring_result take(mspring_network *network, mspringi_attempt *attempt) {
+    attempt->is_cut = mspringi_stages_split_step(network, attempt);
+    const mspringi_extrema extrema = run(network, attempt);
+    if (!mspringi_sleep_is_whole(network))
+        count_work(attempt, attempt->substeps + network->added_substeps);
+    if (mspringi_hook_count(network) > 0)
+        network->seen = mspringi_guard_bound(network, attempt->h, extrema);
+    attempt->has_missed =
+        mspringi_stages_must_repeat(network, attempt) && attempt->missed_count < attempt->stages->count;
+    if (attempt->has_missed) {
+        go_back(network, attempt);
+        return MSPRING_OK;
+    }
+    mspring_result result = mspringi_stages_verify(network, attempt);
+    if (result == MSPRING_OK)
+        result = mspringi_guard_end(network, attempt, extrema);
+    if (result == MSPRING_OK)
+        return MSPRING_OK;
+    if (network->groups.count > 0)
+        mspringi_groups_suspect(network);
+    mspringi_attempt_take_back(network, attempt);
+    return result;
+}
+
+void mspringi_attempt_make(mspring_network *network, mspringi_attempt *attempt) {
+    if (attempt->result != MSPRING_OK)
+        return;
+    network->running = attempt->solver;
+    if (!attempt->has_missed)
+        attempt->result = begin(network, attempt);
+    if (attempt->result == MSPRING_OK && !attempt->is_idle)
+        attempt->result = take(network, attempt);
+    network->running = NULL;
+}

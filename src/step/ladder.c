@@ -1,0 +1,171 @@
+/// The attempt that follows another one, and what all of them may spend.
+#include "step/ladder.h"
+
+#include <float.h>
+
+#include "stability/guard.h"
+#include "stability/stability.h"
+#include "step/held_groups.h"
+#include "step/pace.h"
+
+/* ------------------------------------------------------------------------------------------------- one attempt */
+
+// Choose solver and substeps. Each substep must be a number.
+static bool prepare(mspring_network *network, mspringi_attempt *attempt, mspringi_attempt_kind kind,
+                    const mspringi_solver *solver, uint32_t substeps) {
+    attempt->kind = kind;
+    attempt->solver = solver;
+    attempt->substeps = substeps;
+    attempt->dt = network->step_time;
+    attempt->h = (float)(network->step_time / (double)substeps);
+    attempt->relative_h = network->relative_h;
+    attempt->missed_count = 0;
+    attempt->result =
+        attempt->h >= FLT_MIN && attempt->h <= FLT_MAX
+            ? MSPRING_OK
+            : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                            "dt is %g s (substeps: %u): each substep must be a finite number of at least 1.2e-38 s",
+                            attempt->dt, (unsigned)substeps);
+    return attempt->result == MSPRING_OK;
+}
+
+// Substeps of the next attempt with the host's solver: as set, or chosen for this step.
+static mspring_result choose_substeps(mspring_network *network, double dt, bool may_raise, uint32_t *calm) {
+    if (mspringi_can_choose_substeps(network))
+        return mspringi_pace_choose(network, dt, may_raise, calm);
+    *calm = network->substeps;
+    return MSPRING_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------- a fallback */
+
+// The solver for steps that the chosen one cannot take, or NULL.
+static const mspringi_solver *fallback_of(const mspring_network *network) {
+    if (network->settings.guard == MSPRING_GUARD_CLAMP || network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS)
+        return &mspringi_clamped;
+    return network->settings.guard == MSPRING_GUARD_IMPLICIT && network->solver.ops->has_stability_limit
+               ? &network->fallback
+               : NULL;
+}
+
+// It takes the substeps of calm motion. Where even these are more than max_substeps, it takes as many as cost that
+// many of the explicit solver: no frame is late for it. It has no history.
+static bool fall_back(mspring_network *network, mspringi_attempt *attempt, const mspringi_solver *fallback) {
+    uint32_t substeps;
+    if (choose_substeps(network, attempt->given_dt, false, &substeps) != MSPRING_OK)
+        substeps = (uint32_t)((double)network->max_substeps / mspringi_solver_calm_work(fallback));
+    substeps = fallback->ops->takes_one_substep || substeps == 0 ? 1 : substeps;
+    mspringi_solver_forget(fallback);
+    return prepare(network, attempt, MSPRINGI_BY_FALLBACK, fallback, substeps);
+}
+
+// A new motion begins for the chosen solver, and the guard looks before it is asked again.
+static void accept_fallback(mspring_network *network, const mspringi_attempt *attempt) {
+    mspringi_guard *guard = &network->guard;
+    const bool takes_one = attempt->solver->ops->takes_one_substep,
+               is_single = !network->solver.ops->has_stability_limit ||
+                           network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS;
+    mspringi_solver_forget(&network->solver);
+    if (!takes_one)
+        network->substeps = attempt->substeps;
+    if (attempt->is_idle)
+        return;
+    guard->h = 0.0f;
+    guard->fallback_steps = guard->fallback_steps > 0 ? guard->fallback_steps - 1
+                            : is_single               ? 0
+                                                      : MSPRINGI_FALLBACK_STEPS;
+    network->outcome.flags |= takes_one ? MSPRING_STEP_FALLBACK : MSPRING_STEP_CLAMPED;
+}
+
+/* ----------------------------------------------------------------------------------------------- more substeps */
+
+// Work of a calm step for MSPRING_GUARD_RETRY: of what was set or, if they are more, of the substeps that are
+// stable in any shape.
+static double asked_work(mspring_network *network, const mspringi_attempt *attempt) {
+    mspring_id spring;
+    if (!attempt->solver->ops->has_stability_limit)
+        return attempt->calm_work;
+    const double limit = mspringi_stable_in_any_shape(network, &spring);
+    const uint32_t asked = mspringi_substeps_within(attempt->dt, limit, network->max_substeps);
+    return fmax(attempt->calm_work, (double)(asked < network->max_substeps ? asked : network->max_substeps));
+}
+
+// Where the work ends first, the next step begins with the substeps that this one cannot take any more.
+static bool take_more(mspring_network *network, mspringi_attempt *attempt) {
+    const uint32_t most = network->max_substeps, twice = 2 * network->substeps, more = twice < most ? twice : most;
+    if (network->settings.guard != MSPRING_GUARD_RETRY || network->substeps >= most)
+        return false;
+    const double left = (double)network->most_work * asked_work(network, attempt) - attempt->work;
+    network->substeps = more;
+    if (network->most_work > 0 && (double)more * mspringi_solver_calm_work(&network->solver) > left) {
+        attempt->keeps_substeps = true;
+        attempt->result = mspringi_fail(
+            &network->message, MSPRING_ERROR_UNSTABLE,
+            "unstable: %u substeps are too few, and %u more than most_work, %u, allows in one step. The next step "
+            "begins with these. Use a larger most_work, more substeps, a shorter dt or lower stiffness.",
+            (unsigned)attempt->substeps, (unsigned)more, (unsigned)network->most_work);
+        return false;
+    }
+    network->outcome.flags |= MSPRING_STEP_RETRIED;
+    return prepare(network, attempt, MSPRINGI_WITH_MORE_SUBSTEPS, &network->solver, more);
+}
+
+/* ------------------------------------------------------------------------------------------------------ groups */
+
+// Hold all groups that went wrong. Then release, one by one, those that may have done so because of others. Each
+// attempt holds or clears one group at least, and a group is held once: so these attempts have no other bound.
+static bool try_groups(mspring_network *network, mspringi_attempt *attempt) {
+    const bool is_taken = attempt->result == MSPRING_OK, is_trial = attempt->kind == MSPRINGI_WITH_DOUBTFUL;
+    if (!is_taken && !is_trial)
+        return attempt->result == MSPRING_ERROR_UNSTABLE && mspringi_groups_hold_suspects(network) &&
+               prepare(network, attempt, MSPRINGI_WITHOUT_SUSPECTS, attempt->solver, attempt->substeps);
+    if (!is_taken)
+        mspringi_groups_hold(network, attempt->group);
+    attempt->group = mspringi_groups_next_doubtful(network, attempt->group + is_trial);
+    const bool is_last = attempt->group == network->groups.count;
+    if (is_taken && is_last)
+        return false;
+    if (is_taken)
+        mspringi_attempt_take_back(network, attempt);
+    if (!is_last)
+        mspringi_groups_release(network, attempt->group);
+    return prepare(network, attempt, is_last ? MSPRINGI_WITHOUT_SUSPECTS : MSPRINGI_WITH_DOUBTFUL, attempt->solver,
+                   attempt->substeps);
+}
+
+/* ------------------------------------------------------------------------------------------------ all attempts */
+
+mspringi_attempt mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages) {
+    mspringi_attempt first = {.given_dt = dt, .stages = stages, .solver = &network->solver};
+    const mspringi_solver *fallback = fallback_of(network);
+    uint32_t calm = network->substeps;
+    if (fallback && network->guard.fallback_steps > 0) {
+        (void)fall_back(network, &first, fallback);
+        first.calm_work = (double)first.substeps;
+        return first;
+    }
+    first.result = choose_substeps(network, dt, true, &calm);
+    first.calm_work = (double)calm * mspringi_solver_calm_work(&network->solver);
+    if (first.result == MSPRING_OK)
+        (void)prepare(network, &first, MSPRINGI_AS_CHOSEN, &network->solver, network->substeps);
+    return first;
+}
+
+bool mspringi_attempt_next(mspring_network *network, mspringi_attempt *attempt) {
+    if (attempt->has_missed)
+        return ++attempt->missed_count > 0;
+    if (network->groups.count > 0 && network->settings.guard != MSPRING_GUARD_CLAMP_BOUNDS)
+        return !attempt->is_idle && try_groups(network, attempt);
+    if (attempt->result != MSPRING_ERROR_UNSTABLE || attempt->kind == MSPRINGI_BY_FALLBACK)
+        return false;
+    const mspringi_solver *fallback = fallback_of(network);
+    return fallback ? fall_back(network, attempt, fallback) : take_more(network, attempt);
+}
+
+void mspringi_attempt_accept(mspring_network *network, const mspringi_attempt *attempt) {
+    network->steps.lag = attempt->solver->ops->lags ? network->full_lag : network->steps.lag;
+    if (attempt->kind == MSPRINGI_BY_FALLBACK)
+        accept_fallback(network, attempt);
+    if (network->groups.count > 0)
+        network->outcome = mspringi_outcome_none();
+}
