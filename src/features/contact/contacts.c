@@ -514,3 +514,19 @@ void mspringi_contact_discard_step(mspring_network *network) {
     mspringi_contact_events_discard_step(network->contacts);
     network->contacts->is_listed = false; // the rejected positions may have been NaN
 }
+
+bool mspringi_contact_acts(const mspring_network *network) {
+    return network->floor || network->contacts;
+}
+
+bool mspringi_contact_is_finite(const mspring_network *network) {
+    bool finite = true;
+    for (size_t i = 0; network->floor && network->floor->impulse.x && i < mspringi_used_slots(network); ++i)
+        finite = finite && isfinite(network->floor->impulse.x[i]) && isfinite(network->floor->impulse.y[i]);
+    for (uint32_t i = 0; network->contacts && i < network->contacts->colliders.count; ++i) {
+        const mspringi_collider *c = &network->contacts->colliders.list[i];
+        finite = finite && isfinite(c->impulse_x) && isfinite(c->impulse_y) && isfinite(c->angular) &&
+                 isfinite(c->def.x) && isfinite(c->def.y) && isfinite(c->def.angle);
+    }
+    return finite;
+}

@@ -22,7 +22,7 @@
 #include "store/feature.h"
 #include "store/stages.h"
 
-static bool is_used(const mspring_network *network) {
+bool mspringi_grips_act(const mspring_network *network) {
     return mspringi_grip_count(network) > 0;
 }
 
@@ -274,7 +274,7 @@ static void after_step(mspring_network *network, double dt) {
     mspringi_grips_finish_step(network);
 }
 
-const mspringi_stage mspringi_stage_grips = {.is_used = is_used,
+const mspringi_stage mspringi_stage_grips = {.is_used = mspringi_grips_act,
                                              .before_step = before_step,
                                              .is_quiet = is_quiet,
                                              .free_substeps = free_substeps,

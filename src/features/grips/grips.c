@@ -47,6 +47,16 @@ void mspringi_grips_finish_step(mspring_network *network) {
     }
 }
 
+bool mspringi_grips_are_finite(const mspring_network *network) {
+    bool finite = true;
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
+        const mspringi_grip *grip = &network->grips->list[i];
+        finite = finite && isfinite(grip->impulse_x) && isfinite(grip->impulse_y) && isfinite(grip->from_x) &&
+                 isfinite(grip->from_y);
+    }
+    return finite;
+}
+
 const mspringi_feature_state mspringi_state_of_grips = {{NULL, 0}, NULL};
 
 /* ------------------------------------------------------------------------------------------------- the setting */

@@ -1,13 +1,13 @@
 /// @file grips.h
 /// Grips: springs and dampers from a particle to a moving target of the host.
 ///
-///   grips.c          definition, set by the host; target and bound of the force
-///   grip_stage.c     stage; action of grips after an explicit substep
-///   snapshot_grips.c snapshot
+///   grips.c           definition, set by the host; target and bound of the force
+///   grip_stage.c      stage; action of grips after an explicit substep
+///   implicit_grips.c  grips in the linear system of an implicit substep
+///   snapshot_grips.c  snapshot
 ///
-/// Solvers with a linear system have grips in it (solvers/implicit/implicit_grips.c), but for those of isolated
-/// particles: grip_stage.c applies these, too. All use the force at the end of the substep, so a grip is stable
-/// however stiff it is.
+/// Solvers with a linear system have grips in it, but for those of isolated particles: grip_stage.c applies these,
+/// too. All use the force at the end of the substep, so a grip is stable however stiff it is.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_GRIPS_H
@@ -67,8 +67,6 @@ bool mspringi_grip_is_active(const mspring_network *network, const mspringi_grip
 mspring_result mspringi_grips_reserve(mspring_network *network);
 /// Reset to a network that never had a grip.
 void mspringi_grips_clear(mspring_network *network);
-/// Remove the grips of a particle that is removed.
-void mspringi_grips_forget(mspring_network *network, mspring_id particle);
 /// Accept a step: impulses are final, and targets are reached.
 void mspringi_grips_finish_step(mspring_network *network);
 

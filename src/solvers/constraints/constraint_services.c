@@ -320,7 +320,8 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
     if (pass == 0) {
         if (network->floor && !mspringi_floor_list_constraints(network, h))
             return false;
-        mspringi_grips_list_constraints(network, h);
+#define SYSTEM(name) mspringi_##name##_list_constraints(network, h);
+#include "store/features.def"
         mspringi_implicit_contact_list_constraints(network, h);
     }
     // Factor the coarse matrix in each solution with active constraints, which come and go, and in the next one.
