@@ -1,14 +1,13 @@
 /// @file grips.h
 /// Grips: springs and dampers from a particle to a moving target of the host.
 ///
-///   grips.c          definition, set by the host; target and bound of the force
-///   grip_stage.c     stage; action of grips after an explicit substep
-///   implicit_grips.c grips in the linear system of an implicit substep
-///   snapshot_grips.c snapshot
+///   grips.c           definition, set by the host; target and bound of the force
+///   grip_stage.c      stage; action of grips after an explicit substep
+///   implicit_grips.c  grips in the linear system of an implicit substep
+///   snapshot_grips.c  snapshot
 ///
-/// Solvers with a linear system have grips in it, but for those of isolated
-/// particles: grip_stage.c applies these, too. All use the force at the end of the substep, so a grip is stable
-/// however stiff it is.
+/// Solvers with a linear system have grips in it, but for those of isolated particles: grip_stage.c applies these,
+/// too. All use the force at the end of the substep, so a grip is stable however stiff it is.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_GRIPS_H

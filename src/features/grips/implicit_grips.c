@@ -62,7 +62,7 @@ void mspringi_grips_list_constraints(mspring_network *network, float h) {
     }
 }
 
-// Find the next pair of constraints of a grip, from *at on; NULL at the end.
+// Find the next pair of constraints of a grip, from *at on; NULL at the end. Grips alone have pairs.
 static const mspringi_constraint *next_pair(const mspring_network *network, uint32_t *at) {
     const mspringi_constraints *all = &network->constraints;
     while (*at < all->count && all->list[*at].bounded != MSPRINGI_BOUND_OF_PAIR)

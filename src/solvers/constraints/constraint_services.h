@@ -15,9 +15,9 @@
 ///   mspringi_direct_solve_constraints        in the direct solver
 ///   mspringi_constraints_update_active_set   forces; solve again if it changes
 ///
-/// Then owners store the forces: mspringi_grips_store_forces, mspringi_implicit_contact_store_impulses and
-/// mspringi_floor_record_impulses. The functions that the list names are in constraint_list.h, implicit_terms.h and
-/// direct.h, too.
+/// Then owners store the forces: mspringi_NAME_store_forces of features, mspringi_implicit_contact_store_impulses
+/// and mspringi_floor_record_impulses. The functions that the list names are in constraint_list.h, implicit_terms.h
+/// and direct.h, too.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CONSTRAINT_SERVICES_H
