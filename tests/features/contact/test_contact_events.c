@@ -262,7 +262,8 @@ static void loads_and_clones_go_on(void **state) {
         assert_int_equal(read_events(network), 0);
         uint32_t loaded;
         (void)hash_of_events(network, 40, &loaded);
-        assert_true(loaded <= count + 4 && count <= loaded + 4); // what was between 1 and 1.05 of the thickness
+        // What was between 1 and 1.05 of the thickness may begin anew: 5 of 50 at most were seen.
+        assert_true(loaded <= count + 8 && count <= loaded + 8);
         free(frame.bytes);
         mspring_network_destroy(network);
         mspring_network_destroy(clone);
