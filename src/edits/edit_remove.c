@@ -1,10 +1,9 @@
 /// Removal of particles and springs, and recycling of their ids.
-#include "features/areas/areas.h"
 #include "features/breaking/breaking.h"
-#include "features/grips/grips.h"
 #include "layout/emit/spare.h"
 #include "store/changed.h"
 #include "store/events.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 #include "store/selection.h"
 #include "store/springs.h"
@@ -25,8 +24,8 @@ static void remove_particle(mspring_network *network, mspring_id particle) {
     mspringi_incident_springs around = mspringi_incident_springs_begin(network, particle);
     for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;)
         remove_spring(network, s, particle);
-    mspringi_grips_forget(network, particle);
-    mspringi_areas_forget(network, particle);
+#define FORGETS(function) function(network, particle);
+#include "store/features.def"
     mspringi_id_pool_take_particle(network, particle);
     network->growth.particles[particle] = MSPRINGI_GONE;
     mspringi_fingerprint(network, MSPRINGI_EDIT_REMOVED_PARTICLE, particle);

@@ -7,9 +7,8 @@
 #include <string.h>
 
 #include "base/decay.h"
-#include "features/grips/grips.h"
-#include "features/hooks/hooks.h"
 #include "query/measure.h"
+#include "store/feature.h"
 #include "store/springs.h"
 
 enum { CHUNK = 1024, MOST_RUNS = 256 };
@@ -91,9 +90,10 @@ static double energy_of(const mspring_network *network, mspring_id particle, dou
 
 // True if springs, gravity and global damping are all that acts.
 static bool is_plain(const mspring_network *network) {
-    return !network->floor && !network->contacts && network->areas.count == 0 &&
-           mspringi_grip_count(network) == 0 && mspringi_hook_count(network) == 0 && network->sleep.sleeping == 0 &&
-           network->groups.count == 0;
+    bool acts = false;
+#define ACTS(function) acts = acts || function(network);
+#include "store/features.def"
+    return !acts;
 }
 
 static double stored_energy(const mspring_network *network) {

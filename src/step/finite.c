@@ -3,9 +3,7 @@
 
 #include <math.h>
 
-#include "features/contact/contacts.h"
-#include "features/contact/floor.h"
-#include "features/grips/grips.h"
+#include "store/feature.h"
 #include "store/springs.h"
 
 static bool are_finite(const float *values, size_t count) {
@@ -26,8 +24,7 @@ static bool is_motion_finite(const mspring_network *network) {
 
 static bool are_forces_finite(const mspring_network *network) {
     const mspringi_field fields[] = {
-        network->forces.held, network->sleep.sleeping > 0 ? network->sleep.force : (mspringi_field){NULL, NULL},
-        network->floor ? network->floor->impulse : (mspringi_field){NULL, NULL}};
+        network->forces.held, network->sleep.sleeping > 0 ? network->sleep.force : (mspringi_field){NULL, NULL}};
     const size_t used = mspringi_used_slots(network);
     bool finite = true;
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)
@@ -35,18 +32,10 @@ static bool are_forces_finite(const mspring_network *network) {
     return finite;
 }
 
-static bool are_contacts_finite(const mspring_network *network) {
+static bool are_features_finite(const mspring_network *network) {
     bool finite = true;
-    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
-        const mspringi_grip *grip = &network->grips->list[i];
-        finite = finite && isfinite(grip->impulse_x) && isfinite(grip->impulse_y) && isfinite(grip->from_x) &&
-                 isfinite(grip->from_y);
-    }
-    for (uint32_t i = 0; network->contacts && i < network->contacts->colliders.count; ++i) {
-        const mspringi_collider *c = &network->contacts->colliders.list[i];
-        finite = finite && isfinite(c->impulse_x) && isfinite(c->impulse_y) && isfinite(c->angular) &&
-                 isfinite(c->def.x) && isfinite(c->def.y) && isfinite(c->def.angle);
-    }
+#define FINITE(function) finite = finite && function(network);
+#include "store/features.def"
     return finite;
 }
 
@@ -66,6 +55,6 @@ static bool are_springs_finite(const mspring_network *network) {
 
 bool mspringi_is_finite(const mspring_network *network) {
     const mspringi_solver *solver = &network->solver;
-    return is_motion_finite(network) && are_forces_finite(network) && are_contacts_finite(network) &&
+    return is_motion_finite(network) && are_forces_finite(network) && are_features_finite(network) &&
            are_springs_finite(network) && (!solver->ops->is_finite || solver->ops->is_finite(solver->object));
 }

@@ -5,6 +5,7 @@
 bool mspringi_constraints_allocate(mspring_network *network) {
     mspringi_constraints *all = &network->constraints;
     void *list = all->list, *entries = all->entries, *multipliers = all->multipliers, *active = all->active;
+    // Other kinds have one particle each: see mspringi_constraint_is_unknown().
     const size_t unknowns = all->reserved[MSPRINGI_ANGLE_CONSTRAINT] + all->reserved[MSPRINGI_CONTACT_CONSTRAINT];
     size_t count = 0, entry_count = 0;
     for (int kind = 0; kind < MSPRINGI_CONSTRAINT_KINDS; ++kind) {
@@ -28,6 +29,7 @@ bool mspringi_constraints_reserve(mspring_network *network, mspringi_constraint_
                                   size_t entries) {
     mspringi_constraints *all = &network->constraints;
     const mspringi_solver_ops *solver = network->solver.ops, *fallback = network->fallback.ops;
+    // Solvers with a linear system are those that have grips in it.
     const bool has_system = (solver && solver->has_implicit_grips) || (fallback && fallback->has_implicit_grips);
     const size_t had = all->reserved[kind], had_entries = all->reserved_entries[kind];
     all->reserved[kind] = count > had ? count : had;

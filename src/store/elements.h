@@ -17,8 +17,7 @@ typedef struct mspringi_element_ops {
 } mspringi_element_ops;
 
 #define ELEMENT(table) extern const mspringi_element_ops table;
-#include "store/elements.def"
-#undef ELEMENT
+#include "store/features.def"
 
 bool mspringi_elements_are_used(const mspring_network *network);
 void mspringi_elements_stiffen(const mspring_network *network);

@@ -21,6 +21,9 @@ typedef struct mspringi_feature_state {
 #define LOADS(function) void function(mspring_network *network);
 #define LOADED(function) void function(mspring_network *network);
 #define DISCARDS(function) void function(mspring_network *network);
+#define FORGETS(function) void function(mspring_network *network, mspring_id particle);
+#define ACTS(function) bool function(const mspring_network *network);
+#define FINITE(function) bool function(const mspring_network *network);
 #include "store/features.def"
 
 /// Have a copied network's states lie in its own memory, with all that they point to.

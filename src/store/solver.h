@@ -46,7 +46,7 @@ struct mspringi_solver_ops {
     bool is_staggered;         ///< velocities are those of half a substep before the positions, as of leapfrog
     bool has_bundles;          ///< sweeps small trees in bundles
     bool can_add;              ///< springs may be added
-    bool has_implicit_grips;   ///< its substeps have grips in them, but for those of particles that are alone
+    bool has_implicit_grips;   ///< has a linear system, with all grips in it but those of isolated particles
     bool has_implicit_areas;   ///< its substeps have areas in them that springs are all around
     bool has_implicit_contact; ///< its substeps have contact between bodies in them
 
@@ -73,9 +73,10 @@ struct mspringi_solver_ops {
     mspringi_solver_basis (*get_basis)(const void *object);
     void (*set_basis)(void *object, const mspring_network *network, const mspringi_solver_basis *basis);
 
-    // A step. begin: before forces are known. whole: take all substeps at once, with the copy into the backup and
-    // the extrema of what comes out; false: it cannot, and has done nothing. substeps (never NULL): count of them,
-    // with the same forces from outside (x NULL: none), and with the floor. end: after the last.
+    // A step. begin: before forces are known. run_step: take all substeps at once, copy the old state into the
+    // backup, and find the extrema of the new one; false: it cannot, and has done nothing. substeps (never NULL):
+    // take `count` of them with the same forces from outside (x NULL: none), and with the floor. end: after the
+    // last one.
     void (*begin)(mspring_network *network);
     bool (*run_step)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
                      mspringi_extrema *extrema);

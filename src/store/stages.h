@@ -1,21 +1,22 @@
 /// @file stages.h
-/// What happens in a step besides the solver: a table of functions for each stage, one for each place in a step
-/// that it acts in. A step goes through the stages that its network uses; what a network does not use costs one
-/// look. A stage that is quiet in a step does not keep its substeps from being taken all at once.
+/// Stages: everything in a step besides the solver. A stage is a table of functions, one for each place in a step
+/// where it acts. A step calls the stages that its network uses; an unused one costs a check. A stage that is quiet
+/// in a step lets its substeps be taken all at once.
 ///
-///   before_step      once, before the guard: values for this substep
-///   forces           add forces from outside, the same in all substeps; forces.base has been reserved for that
-///   forces_known     once, with those of the first substep
-///   before_substep   each substep, or each free group of them; returns the forces that act in them
-///   shares           before each piece of a substep that follows no other: how long it may be
-///   after_substep    as before_substep
-///   must_repeat       after the substeps: it counted on what did not hold, so they are undone and repeated. In the
-///                    next run it does not count on that, so it says so once a step
-///   judge            after the substeps, or what stands for them: whether it could do what it is for (only
-///                    if some stage can be quiet or can miss something)
-///   after_step       once the step is taken, and will not be undone
-///   roll_back        the substeps were undone, and the state is that of before: in reverse order
-///   undo             what before_step did is to be undone: in reverse order
+///   before_step      once, before the guard: derive values for this substep
+///   forces           add forces from outside, the same in all substeps; forces.base is reserved
+///   forces_known     once, with the forces of the first substep
+///   before_substep   before each substep, or each free group of them; returns the forces that act in them
+///   max_parts        before each interval of a substep that is taken alone: the most parts it may have
+///   after_substep    after each substep, or each free group of them
+///   must_repeat      after the substeps: true if an assumption failed, so that they are undone and repeated
+///   without
+///                    it. True at most once a step
+///   verify           after the substeps: an error if the stage failed. Called only if some stage can be quiet or
+///                    must_repeat
+///   after_step       once the step is accepted, and will not be undone
+///   roll_back        after the substeps were undone; the state is that before them. In reverse order
+///   undo             undo before_step. In reverse order
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_STAGES_H
@@ -23,7 +24,7 @@
 
 #include "store/attempt.h"
 
-/// Parts of equal length that a substep has. A piece of it is some of them.
+/// Parts of equal length in a substep. An interval is some of them.
 #define MSPRINGI_SUBSTEP_PARTS 16u
 
 /// Places where a stage does nothing are NULL.
@@ -45,7 +46,7 @@ typedef struct mspringi_stage {
                                      mspringi_field base);
     uint32_t (*max_parts)(
         mspring_network *network, const mspringi_attempt *attempt,
-        uint32_t left); ///< of MSPRINGI_SUBSTEP_PARTS, that may be taken at once; NULL: all that are left
+        uint32_t left); ///< most parts that may be taken at once, of those left; NULL: all of them
     void (*after_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep);
     bool (*must_repeat)(mspring_network *network, const mspringi_attempt *attempt);
     mspring_result (*verify)(mspring_network *network);
@@ -70,10 +71,9 @@ typedef struct mspringi_stages {
     size_t count;
     bool give_forces;     ///< some stage does
     bool move;            ///< something of some stage does
-    bool cut_substeps;    ///< substeps cannot be taken all at once, in whatever step
+    bool cut_substeps;    ///< substeps are never taken all at once
     bool follow_substeps; ///< some stage acts after substeps
-    bool can_be_quiet;    ///< some stage is asked whether it is quiet, whether it has missed something, and how it
-                          ///< went
+    bool can_be_quiet;    ///< some stage has is_quiet or must_repeat
 } mspringi_stages;
 
 mspringi_stages mspringi_stages_of(const mspring_network *network);

@@ -21,17 +21,6 @@ static mspring_settle_result settled(mspring_network *network) {
     return result;
 }
 
-static recipe bar(uint32_t columns, uint32_t rows, double stiffness) {
-    uint64_t seed = 1;
-    const recipe_stuff iron = {.mass = {73.3975, 73.3975}, .stiffness = {stiffness, stiffness}};
-    recipe made = {0};
-    recipe_lattice(&made, columns, rows, 0, 0, 1, &iron, &seed);
-    for (uint32_t row = 0; row < rows; row++) {
-        made.particles[row * columns].flags = MSPRING_PARTICLE_PINNED;
-    }
-    return made;
-}
-
 static mspring_network *network_of(const recipe *made, double gravity_y) {
     const mspring_network_def def = support_def((float)gravity_y, 1);
     return recipe_network(made, &def);
@@ -161,7 +150,7 @@ static void pendulum_upside_down_falls(void **state) {
 
 // Bending of bars as found by another implementation of Newton's method; 4 * 6.7643e7 is what "2.706e8" is there.
 static void check_bending(uint32_t columns, uint32_t rows, double stiffness, double bending) {
-    recipe made = bar(columns, rows, stiffness);
+    recipe made = recipe_bar(columns, rows, stiffness);
     mspring_network *network = network_of(&made, -gravity);
     const mspring_id probe = columns * rows - 1;
     const mspring_settle_result result = settled(network);
@@ -289,7 +278,7 @@ static void springs_and_weights_of_all_sizes(void **state) {
 
 static void hangs_the_same_far_from_the_origin(void **state) {
     (void)state;
-    recipe here = bar(30, 4, 1e8), there = bar(30, 4, 1e8);
+    recipe here = recipe_bar(30, 4, 1e8), there = recipe_bar(30, 4, 1e8);
     for (uint32_t p = 0; p < there.particle_count; p++) {
         there.particles[p].x += 1e7;
         there.particles[p].y -= 3e6;
@@ -327,7 +316,7 @@ static void broken_springs_bear_nothing(void **state) {
 /// step went on where the energy fell further. Rounding may cost or spare a few.
 static void a_soft_bar_takes_few_iterations(void **state) {
     (void)state;
-    recipe made = bar(68, 9, 8678);
+    recipe made = recipe_bar(68, 9, 8678);
     mspring_network *network = network_of(&made, -gravity);
     const mspring_settle_result result = settled(network);
     print_message("%u iterations\n", (unsigned)result.iterations);
@@ -339,7 +328,7 @@ static void a_soft_bar_takes_few_iterations(void **state) {
 
 static void relative_springs_follow_a_substep(void **state) {
     (void)state;
-    recipe made = bar(12, 3, 0.3);
+    recipe made = recipe_bar(12, 3, 0.3);
     for (uint32_t s = 0; s < made.spring_count; s++) {
         made.springs[s].flags = MSPRING_SPRING_RELATIVE;
     }
@@ -412,7 +401,7 @@ static void bad_starts(void **state) {
     uint64_t seed = 5;
     for (size_t k = 0; k < COUNT_OF(stiffness); k++) {
         for (start kind = 0; kind < STARTS; kind++) {
-            recipe made = bar(50, 5, stiffness[k]);
+            recipe made = recipe_bar(50, 5, stiffness[k]);
             mspring_network *network = network_of(&made, -gravity);
             double elastic, potential, elastic_after, potential_after;
             move_to_start(network, &made, kind, 50, &seed);
@@ -436,7 +425,7 @@ static void floating_parts(void **state) {
     (void)state;
     uint64_t seed = 1;
     const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1e4, 1e4}};
-    recipe made = bar(10, 3, 1e6);
+    recipe made = recipe_bar(10, 3, 1e6);
     const mspring_id loose = recipe_lattice(&made, 4, 4, 0, 20, 1, &stuff, &seed);
     recipe_disturb(&made, 0.1, 1, &seed);
     mspring_network *network = network_of(&made, -gravity);
@@ -508,7 +497,7 @@ static void out_of_bounds(void **state) {
 
 static void too_few_iterations(void **state) {
     (void)state;
-    recipe made = bar(80, 5, 6.7643e7);
+    recipe made = recipe_bar(80, 5, 6.7643e7);
     mspring_network *network = network_of(&made, -gravity);
     const uint64_t before = support_hash(network);
     mspring_settle_result result = {.struct_size = sizeof result, .iterations = 77};
@@ -532,7 +521,7 @@ static void settle_in_a_hook(const mspring_hook_args *args, void *user) {
 
 static void bad_input(void **state) {
     (void)state;
-    recipe made = bar(6, 3, 1e6);
+    recipe made = recipe_bar(6, 3, 1e6);
     mspring_network *network = network_of(&made, -gravity);
     mspring_settle_def good, def;
     check_error(mspring_settle_def_init(NULL, sizeof good), MSPRING_ERROR_ARGUMENT);
@@ -578,7 +567,7 @@ static void same_bits_at_every_level(void **state) {
     mspring_simd levels[MSPRING_SIMD_AVX512];
     const uint32_t count = support_levels(levels);
     uint64_t expected = 0, seed = 6;
-    recipe made = bar(60, 9, 1e8);
+    recipe made = recipe_bar(60, 9, 1e8);
     recipe_random_springs(&made, 40, &(recipe_stuff){.stiffness = {1e3, 1e7}}, &seed);
     for (uint32_t i = 0; i < count; i++) {
         mspring_network_def def = support_def((float)-gravity, 1);
@@ -596,7 +585,7 @@ static void same_bits_at_every_level(void **state) {
 
 static void every_allocation_may_fail(void **state) {
     (void)state;
-    recipe made = bar(12, 4, 1e7);
+    recipe made = recipe_bar(12, 4, 1e7);
     watched_allocator watched = {0};
     const mspring_allocator allocator = watched_interface(&watched);
     mspring_network_def def = support_def((float)-gravity, 1);

@@ -1,7 +1,7 @@
 /// @file test_proof.c
 /// An element that the library does not have, a triangle with the energy of St. Venant and Kirchhoff, can be added
-/// without changing it: triangle.c and triangle.h, and a line in each of three tables, which stand in store/ before
-/// the library's own. All solvers have it. A wind takes two: step/house/wind.c and a line.
+/// without changing it: triangle.c and triangle.h, and three lines of two tables, which stand in store/ before
+/// the library's own. All solvers have it. A wind takes step/house/wind.c and two lines.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>

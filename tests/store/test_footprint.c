@@ -129,6 +129,49 @@ static void frames_are_smaller(void **state) {
     }
 }
 
+// Bytes of a network with a floor: planes 0 for none.
+static double bytes_with_floor(const recipe *made, mspring_solver solver, uint32_t planes, float friction) {
+    static const double sides[][4] = {{0, -9, 0, 1}, {-9, 0, 1, 0}, {9, 0, -1, 0}};
+    mspring_network_def def = support_def(0, 1);
+    def.solver = solver;
+    mspring_network *network = recipe_network(made, &def);
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.planes = sides[0], floor.plane_count = planes, floor.friction = friction;
+    if (planes > 0)
+        check_ok(mspring_network_set_floor(network, &floor));
+    const double bytes = (double)mspring_network_memory_used(network);
+    mspring_network_destroy(network);
+    return bytes;
+}
+
+/// A constraint, its entry and what its product reads: 56, 24 and 16 bytes. Each particle may push and rub; a
+/// quarter of them may do so at two planes.
+static void floors_take_little_of_a_linear_system(void **state) {
+    (void)state;
+    const struct {
+        uint32_t planes;
+        float friction;
+        double most;
+    } cases[] = {{1, 0, 97}, {1, 0.5f, 193}, {3, 0, 122}, {3, 0.5f, 242}};
+    uint64_t seed = 5;
+    recipe made = {0};
+    recipe_lattice(&made, 128, 128, 0, 0, 1, &stuff, &seed);
+    const double none = bytes_with_floor(&made, MSPRING_SOLVER_EXPLICIT, 0, 0);
+    const double none_of_system = bytes_with_floor(&made, MSPRING_SOLVER_IMPLICIT, 0, 0);
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        const uint32_t planes = cases[i].planes;
+        const double floor = bytes_with_floor(&made, MSPRING_SOLVER_EXPLICIT, planes, cases[i].friction) - none;
+        const double of_system =
+            bytes_with_floor(&made, MSPRING_SOLVER_IMPLICIT, planes, cases[i].friction) - none_of_system;
+        const double bytes = (of_system - floor) / made.particle_count;
+        print_message("%u planes, friction %g: %.1f bytes per particle of a linear system\n", (unsigned)planes,
+                      (double)cases[i].friction, bytes);
+        assert_true(bytes <= cases[i].most);
+    }
+    recipe_free(&made);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(full_lattices_are_small),
@@ -137,6 +180,7 @@ int main(void) {
         cmocka_unit_test(order_is_not_needed),
         cmocka_unit_test(spare_room_is_small),
         cmocka_unit_test(frames_are_smaller),
+        cmocka_unit_test(floors_take_little_of_a_linear_system),
     };
     return cmocka_run_group_tests_name("footprint", tests, NULL, NULL);
 }

@@ -248,6 +248,17 @@ mspring_network *recipe_solved(const recipe *made, const mspring_network_def *de
     return network;
 }
 
+recipe recipe_bar(uint32_t columns, uint32_t rows, double stiffness) {
+    uint64_t seed = 1;
+    const recipe_stuff iron = {.mass = {73.3975, 73.3975}, .stiffness = {stiffness, stiffness}};
+    recipe made = {0};
+    recipe_lattice(&made, columns, rows, 0, 0, 1, &iron, &seed);
+    for (uint32_t row = 0; row < rows; row++) {
+        made.particles[row * columns].flags = MSPRING_PARTICLE_PINNED;
+    }
+    return made;
+}
+
 recipe recipe_rows(uint64_t seed, uint32_t spring_flags, double least, double most) {
     const bool relative = spring_flags & MSPRING_SPRING_RELATIVE;
     const double scale = relative ? 0.01 : 1;

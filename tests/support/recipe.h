@@ -57,6 +57,9 @@ void recipe_disturb(recipe *made, double distance, double speed, uint64_t *seed)
 /// Rows of every kind, relative springs and others, dampers, pins and a loose particle.
 recipe recipe_mixed(uint64_t seed);
 
+/// A lattice whose first column is pinned, 73.3975 kg a particle.
+recipe recipe_bar(uint32_t columns, uint32_t rows, double stiffness);
+
 /// A lattice with holes, a rope to a pin, and springs at random. Damping from `least` to `most`, N s/m; relative
 /// springs have a hundredth of these numbers.
 recipe recipe_rows(uint64_t seed, uint32_t spring_flags, double least, double most);

@@ -67,13 +67,16 @@ double mspringi_statics_area_forces(mspringi_statics *statics);
 double mspringi_statics_area_change(const mspringi_statics *statics, double t, double *size);
 void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped);
 
-/// Add an angle: its pairs become edges.
-void mspringi_statics_add_angle(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle);
-/// Add the angle's part, as above.
-double mspringi_statics_angle_forces(mspringi_statics *statics, const mspringi_area *angle);
-double mspringi_statics_angle_change(const mspringi_statics *statics, const mspringi_area *angle, double t,
-                                     double *size);
-void mspringi_statics_angle_stiffness(mspringi_statics *statics, const mspringi_area *angle, bool clamped);
+/// What settling does with areas that are angles: add one, whose pairs become edges; add its part, as above.
+typedef struct mspringi_statics_element {
+    void (*add)(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle);
+    double (*forces)(mspringi_statics *statics, const mspringi_area *angle);
+    double (*change)(const mspringi_statics *statics, const mspringi_area *angle, double t, double *size);
+    void (*stiffness)(mspringi_statics *statics, const mspringi_area *angle, bool clamped);
+} mspringi_statics_element;
+
+#define STATICS(table) extern const mspringi_statics_element table;
+#include "store/features.def"
 
 /// Analyse the stiffness matrix, after particles and springs are filled in.
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,

@@ -11,6 +11,12 @@
 #include "base/shoelace.h"
 #include "store/springs.h"
 
+// What is done with angles; NULL in a build without.
+#define STATICS(table) &table +
+static const mspringi_statics_element *const angles =
+#include "store/features.def"
+    0;
+
 // Number the springs with stiffness.
 static void number_springs(const mspring_network *network, uint32_t *numbers) {
     uint32_t count = 0;
@@ -22,7 +28,7 @@ static mspring_result find_sides(mspringi_statics *statics, mspring_network *net
     const mspringi_areas *a = &network->areas;
     for (size_t i = 0; i < a->count; ++i)
         if (a->list[i].is_angle && !a->list[i].is_open)
-            mspringi_statics_add_angle(statics, a, &a->list[i]);
+            angles->add(statics, a, &a->list[i]);
     for (size_t i = 0; i < a->count; ++i)
         for (size_t c = a->list[i].first;
              !a->list[i].is_open && !a->list[i].is_angle && c < a->list[i].first + a->list[i].count; ++c) {
@@ -120,7 +126,7 @@ double mspringi_statics_area_forces(mspringi_statics *statics) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
         if (area->is_angle) {
-            largest = fmax(largest, mspringi_statics_angle_forces(statics, area));
+            largest = fmax(largest, angles->forces(statics, area));
             continue;
         }
         const double half = 0.5 * mspringi_area_pressure(area, size_of(statics, area));
@@ -142,7 +148,7 @@ double mspringi_statics_area_change(const mspringi_statics *statics, double t, d
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
         if (area->is_angle) {
-            change += mspringi_statics_angle_change(statics, area, t, size);
+            change += angles->change(statics, area, t, size);
             continue;
         }
         const double energy =
@@ -182,7 +188,7 @@ void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
         if (area->is_angle) {
-            mspringi_statics_angle_stiffness(statics, area, clamped);
+            angles->stiffness(statics, area, clamped);
             continue;
         }
         const double c = mspringi_area_stiffness(area, size_of(statics, area));

@@ -3,7 +3,7 @@
 
 #include "analysis/tune/reference.h"
 #include "base/shoelace.h"
-#include "features/angles/angles.h"
+#include "features/areas/areas.h"
 
 typedef struct point {
     double x, y;
@@ -28,7 +28,7 @@ static double size_of(const mspringi_reference *r, const mspringi_area *area) {
     if (area->is_angle) {
         const point before = vector_between(r, area, 0, 1), next = vector_between(r, area, 1, 2);
         const double u[2] = {before.x, before.y}, w[2] = {next.x, next.y};
-        return mspringi_angle_size_by(area, u, w);
+        return mspringi_angles->size_by(area, u, w);
     }
     for (uint32_t i = 1; i < area->count; ++i) {
         const point here = vector_between(r, area, 0, i);

@@ -48,7 +48,7 @@ mspringi_area mspringi_angle_make(float stiffness, float damping, double rest_an
     return made;
 }
 
-double mspringi_angle_size(const mspring_network *network, const mspringi_area *angle) {
+static double angle_size(const mspring_network *network, const mspringi_area *angle) {
     const uint32_t middle = mspringi_area_slot(network, angle, 1);
     const arm u = arm_of(network, mspringi_area_slot(network, angle, 0), middle),
               w = arm_of(network, middle, mspringi_area_slot(network, angle, 2));
@@ -72,8 +72,7 @@ double mspringi_angle_energy(const mspringi_area *angle, double size) {
     return 0.5 * (double)angle->stiffness * size * size;
 }
 
-mspringi_area_end mspringi_angle_end_of(const mspring_network *network, const mspringi_area *angle,
-                                        uint32_t corner) {
+static mspringi_area_end angle_end_of(const mspring_network *network, const mspringi_area *angle, uint32_t corner) {
     const uint32_t middle = mspringi_area_slot(network, angle, 1);
     const uint32_t ends[2] = {mspringi_area_slot(network, angle, 0), mspringi_area_slot(network, angle, 2)};
     mspringi_area_end all[3] = {{ends[0], 0.0, 0.0}, {middle, 0.0, 0.0}, {ends[1], 0.0, 0.0}};
@@ -96,7 +95,7 @@ static double rate_of(const mspring_network *network, const arm *along, uint32_t
            along->square;
 }
 
-void mspringi_angle_push(const mspring_network *network, const mspringi_area *angle, double share,
+static void push_corners(const mspring_network *network, const mspringi_area *angle, double share,
                          mspringi_field field) {
     const mspringi_corner *corners = network->areas.corners + angle->first;
     const uint32_t a = corners[0].slot, b = corners[1].slot, c = corners[2].slot;
@@ -122,7 +121,11 @@ double mspringi_angle_between(const mspring_network *network, uint32_t a, uint32
     return turn_of(&u, &w, &turn) ? mspringi_angle_of(turn) : 0.0;
 }
 
-double mspringi_angle_of_area(const mspring_network *network, const mspringi_area *angle) {
+static double angle_between_arms(const mspring_network *network, const mspringi_area *angle) {
     return mspringi_angle_between(network, mspringi_area_slot(network, angle, 0),
                                   mspringi_area_slot(network, angle, 1), mspringi_area_slot(network, angle, 2));
 }
+
+const mspringi_angle_law mspringi_law_of_angles = {
+    angle_size,   mspringi_angle_size_by, mspringi_angle_torque, mspringi_angle_stiffness, mspringi_angle_energy,
+    angle_end_of, push_corners,           angle_between_arms};

@@ -28,18 +28,11 @@ void mspringi_angle_set_rest(mspringi_area *angle, double rest_angle);
 /// z by the ways along both arms.
 double mspringi_angle_size_by(const mspringi_area *angle, const double u[2], const double w[2]);
 
-/// What areas have functions of these names for.
-double mspringi_angle_size(const mspring_network *network, const mspringi_area *angle);
 double mspringi_angle_torque(const mspringi_area *angle, double size);
 double mspringi_angle_stiffness(const mspringi_area *angle, double size);
 double mspringi_angle_energy(const mspringi_area *angle, double size);
-mspringi_area_end mspringi_angle_end_of(const mspring_network *network, const mspringi_area *angle,
-                                        uint32_t corner);
-void mspringi_angle_push(const mspring_network *network, const mspringi_area *angle, double share,
-                         mspringi_field field);
 
 /// The angle between three slots now, rad; 0 if there is none.
 double mspringi_angle_between(const mspring_network *network, uint32_t a, uint32_t b, uint32_t c);
-double mspringi_angle_of_area(const mspring_network *network, const mspringi_area *angle);
 
 #endif

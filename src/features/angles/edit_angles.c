@@ -193,7 +193,7 @@ mspring_result mspring_network_get_angle_info(const mspring_network *network, ms
         .a = corners[0].particle,
         .b = corners[1].particle,
         .c = corners[2].particle,
-        .angle = mspringi_angle_of_area(network, found),
+        .angle = mspringi_angles->between_arms(network, found),
         .torque = is_open ? 0.0 : mspringi_angle_torque(found, size),
         .energy = is_open ? 0.0 : mspringi_angle_energy(found, size),
     };

@@ -4,9 +4,9 @@
 
 #include "base/shoelace.h"
 #include "builder/builder.h"
-#include "features/angles/angles.h"
 #include "features/one_way/one_way.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -16,9 +16,15 @@
 
 /* --------------------------------------------------------------------------------------------------------- law */
 
+// The table that there is, or NULL.
+#define ANGLES(table) &table +
+const mspringi_angle_law *const mspringi_angles =
+#include "store/features.def"
+    0;
+
 double mspringi_area_size(const mspring_network *network, const mspringi_area *area) {
     if (area->is_angle)
-        return mspringi_angle_size(network, area);
+        return mspringi_angles->size(network, area);
     const mspringi_state *s = &network->state;
     const uint32_t first = mspringi_area_slot(network, area, 0);
     mspringi_shoelace polygon = {0};
@@ -32,7 +38,7 @@ double mspringi_area_size(const mspring_network *network, const mspringi_area *a
 
 double mspringi_area_pressure(const mspringi_area *area, double size) {
     if (area->is_angle)
-        return mspringi_angle_torque(area, size);
+        return mspringi_angles->torque(area, size);
     const double share = size / area->rest_area, fill = (double)area->fill, pressure = (double)area->pressure;
     return area->kind == MSPRING_AREA_GAS ? pressure * fill / fmax(share, SMALLEST)
                                           : pressure + (double)area->stiffness * (fill - share);
@@ -40,7 +46,7 @@ double mspringi_area_pressure(const mspringi_area *area, double size) {
 
 double mspringi_area_stiffness(const mspringi_area *area, double size) {
     if (area->is_angle)
-        return mspringi_angle_stiffness(area, size);
+        return mspringi_angles->stiffness(area, size);
     const double share = size / area->rest_area;
     if (area->kind == MSPRING_AREA_ELASTIC)
         return (double)area->stiffness / area->rest_area;
@@ -68,7 +74,7 @@ static double logarithm(double x) {
 
 double mspringi_area_energy(const mspringi_area *area, double size) {
     if (area->is_angle)
-        return mspringi_angle_energy(area, size);
+        return mspringi_angles->energy(area, size);
     const double share = size / area->rest_area, fill = (double)area->fill, lacks = fill - share;
     const double pressure = (double)area->pressure * area->rest_area;
     if (area->kind == MSPRING_AREA_ELASTIC)
@@ -88,7 +94,7 @@ double mspringi_area_energy_change(const mspringi_area *area, double size, doubl
 
 mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner) {
     if (area->is_angle)
-        return mspringi_angle_end_of(network, area, corner);
+        return mspringi_angles->end_of(network, area, corner);
     const mspringi_state *s = &network->state;
     const uint32_t before = mspringi_area_slot(network, area, corner > 0 ? corner - 1 : area->count - 1);
     const uint32_t behind = mspringi_area_slot(network, area, corner + 1 < area->count ? corner + 1 : 0);
@@ -100,7 +106,7 @@ mspringi_area_end mspringi_area_end_of(const mspring_network *network, const msp
 void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
                         mspringi_field field) {
     if (area->is_angle) {
-        mspringi_angle_push(network, area, share, field);
+        mspringi_angles->push(network, area, share, field);
         return;
     }
     const mspringi_state *s = &network->state;
@@ -439,4 +445,8 @@ mspring_result mspringi_areas_of_builder(mspring_network *network, const mspring
     for (size_t i = 0; result == MSPRING_OK && i < builder->area_count; ++i)
         mspringi_area_add(network, builder->areas[i], builder->corners + builder->areas[i].first);
     return result;
+}
+
+bool mspringi_areas_act(const mspring_network *network) {
+    return network->areas.count > 0;
 }

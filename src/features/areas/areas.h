@@ -11,7 +11,7 @@
 /// An elastic area of four corners that a lattice row's sweep has in its registers is computed there: with both
 /// diagonals D, D' of the cell, A = D x D' / 2, and the forces act along pairs that the diagonals join (kernels/).
 ///
-/// Angle springs are in the same list, and have the same functions (angles.h).
+/// Angle springs are in the same list, and have the same functions (features/angles/).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_AREAS_H
@@ -30,8 +30,6 @@ mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, si
 void mspringi_areas_append(mspring_network *network, const mspringi_area *area, const mspring_id *particles);
 /// Take one out of the list.
 void mspringi_areas_drop(mspring_network *network, mspringi_area *area);
-/// Take out those that a particle which is removed is a corner of.
-void mspringi_areas_forget(mspring_network *network, mspring_id particle);
 /// There is none any more.
 void mspringi_areas_clear(mspring_network *network);
 
@@ -86,6 +84,24 @@ typedef struct mspringi_area_end {
     double x, y;
 } mspringi_area_end;
 mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner);
+
+/// What the functions of these names do where the area is an angle; size_by: by the ways along both arms.
+typedef struct mspringi_angle_law {
+    double (*size)(const mspring_network *network, const mspringi_area *angle);
+    double (*size_by)(const mspringi_area *angle, const double u[2], const double w[2]);
+    double (*torque)(const mspringi_area *angle, double size);
+    double (*stiffness)(const mspringi_area *angle, double size);
+    double (*energy)(const mspringi_area *angle, double size);
+    mspringi_area_end (*end_of)(const mspring_network *network, const mspringi_area *angle, uint32_t corner);
+    void (*push)(const mspring_network *network, const mspringi_area *angle, double share, mspringi_field field);
+    double (*between_arms)(const mspring_network *network, const mspringi_area *angle); ///< rad
+} mspringi_angle_law;
+
+#define ANGLES(table) extern const mspringi_angle_law table;
+#include "store/features.def"
+
+/// NULL: a build without angles, so no area is one.
+extern const mspringi_angle_law *const mspringi_angles;
 
 /// The sums of the weights of springs that bound an area in the shape that it was added in, N/m, added to those by
 /// slot; and those of dampers that bound that of an angle, N s/m.

@@ -6,7 +6,7 @@
 
 #include "base/cpu.h"
 #include "base/shoelace.h"
-#include "features/angles/angles.h"
+#include "features/areas/areas.h"
 #include "store/changed.h"
 
 #define STRONGEST 1e30f
@@ -405,7 +405,7 @@ mspring_result mspringi_areas_measure(const mspring_network *network, bool is_an
         if (ids)
             ids[found - 1] = a->id;
         if (sizes)
-            sizes[found - 1] = is_angle ? mspringi_angle_of_area(network, a) : size;
+            sizes[found - 1] = is_angle ? mspringi_angles->between_arms(network, a) : size;
         if (pressures)
             pressures[found - 1] = mspringi_area_is_open(network, a) ? 0.0 : mspringi_area_pressure(a, size);
     }

@@ -1,5 +1,5 @@
 /// Snapshot of areas and angle springs.
-#include "features/angles/angles.h"
+#include "features/areas/areas.h"
 
 #include <math.h>
 
@@ -52,7 +52,10 @@ static mspringi_area read_area(mspringi_io *io) {
     record r;
     hand_area(io, &r);
     if (r.kind == ANGLE_KIND) {
-        area = mspringi_angle_make(r.stiffness, r.pressure, fabs(r.rest) <= MSPRINGI_MAX_ANGLE ? r.rest : 0.0);
+        area = (mspringi_area){
+            .is_angle = true, .stiffness = r.stiffness, .damping = r.pressure, .fill = 1.0f, .rest_area = 1.0};
+        if (fabs(r.rest) <= MSPRINGI_MAX_ANGLE)
+            area.rest = mspringi_rotation_by(r.rest);
         area.rest_angle = r.rest;
     } else {
         area = (mspringi_area){.kind = r.kind == MSPRING_AREA_GAS ? MSPRING_AREA_GAS : MSPRING_AREA_ELASTIC,
@@ -62,7 +65,7 @@ static mspringi_area read_area(mspringi_io *io) {
                                .rest_area = r.rest};
     }
     area.id = r.id;
-    area.count = r.kind <= ANGLE_KIND ? r.count : 0;
+    area.count = r.kind < ANGLE_KIND || (r.kind == ANGLE_KIND && mspringi_angles) ? r.count : 0;
     return area;
 }
 
@@ -202,52 +205,3 @@ static void areas_load(mspring_network *network, const uint8_t *from, size_t siz
 
 const mspringi_section mspringi_section_areas = {"area",     "areas",     true,       NULL,
                                                  areas_save, areas_check, areas_load, areas_check_against};
-
-/* ------------------------------------------------------------------------------------------------- rest angles */
-
-// In frames, too, since the host may set them before each step.
-static void rest_angles_save(const mspring_network *network, mspringi_writer *to) {
-    for (size_t i = 0; i < network->areas.count; ++i)
-        if (network->areas.list[i].is_angle)
-            mspringi_put(to, &network->areas.list[i].rest_angle, 1, sizeof(double));
-}
-
-static mspring_result rest_angles_check(mspring_network *network, const uint8_t *from, size_t size) {
-    const mspringi_section *section = &mspringi_section_rest_angles;
-    for (size_t i = 0; i < size / sizeof(double); ++i) {
-        double value;
-        from = mspringi_get(from, &value, 1, sizeof value);
-        if (!(fabs(value) <= MSPRINGI_MAX_ANGLE))
-            return mspringi_section_fail(network, section, "one is %g rad", value);
-    }
-    return mspringi_section_check_size(network, section, size % sizeof(double), 0);
-}
-
-static mspring_result rest_angles_check_against(mspring_network *network, const mspringi_saved *saved,
-                                                const uint8_t *from, size_t size) {
-    (void)from;
-    return mspringi_section_check_size(network, &mspringi_section_rest_angles, size,
-                                       saved->angle_count * sizeof(double));
-}
-
-// Load after the areas, which have their number.
-static void rest_angles_load(mspring_network *network, const uint8_t *from, size_t size) {
-    size_t left = size / sizeof(double);
-    for (size_t i = 0; i < network->areas.count && left > 0; ++i) {
-        double value;
-        if (!network->areas.list[i].is_angle)
-            continue;
-        from = mspringi_get(from, &value, 1, sizeof value);
-        mspringi_angle_set_rest(&network->areas.list[i], value);
-        --left;
-    }
-}
-
-const mspringi_section mspringi_section_rest_angles = {"angl",
-                                                       "rest angles",
-                                                       false,
-                                                       NULL,
-                                                       rest_angles_save,
-                                                       rest_angles_check,
-                                                       rest_angles_load,
-                                                       rest_angles_check_against};

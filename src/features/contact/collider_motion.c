@@ -28,7 +28,7 @@ static mspringi_pose pose_after(const mspringi_collider *c, uint32_t done, uint3
                            now.angle + part * (c->target.angle - now.angle)};
 }
 
-// Points of a pose, local coordinates.
+// Find the points of a collider in a pose, local coordinates.
 static void put_points(const mspringi_colliders *all, const mspringi_collider *c, mspringi_pose pose, double *x,
                        double *y) {
     const mspringi_rotation turn = mspringi_rotation_by(pose.angle);

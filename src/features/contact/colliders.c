@@ -120,7 +120,7 @@ static void write_shape(const mspring_collider_def *def, double *shape) {
         shape[0] = shape[1] = 0.0;
 }
 
-// Points are those of the collider that has them by rising id.
+// Set owner, groups and masks of all points: colliders have them in the order of ids.
 static void number_points(mspringi_contacts *contacts) {
     mspringi_colliders *all = &contacts->colliders;
     for (uint32_t i = 0; i < all->count; ++i) {
@@ -133,8 +133,8 @@ static void number_points(mspringi_contacts *contacts) {
     }
 }
 
-// The list is another, and all wakes.
-static void renew(mspring_network *network) {
+// Update everything that follows from the list of colliders, and wake all bodies.
+static void update_after_change(mspring_network *network) {
     mspringi_colliders *all = &network->contacts->colliders;
     number_points(network->contacts);
     all->are_new = true;
@@ -179,7 +179,7 @@ static void append(mspring_network *network, const mspring_collider_def *def) {
                              .target = {def->x, def->y, def->angle}};
     write_shape(def, all->shape + 2 * (size_t)all->point_count);
     all->point_count += count;
-    renew(network);
+    update_after_change(network);
 }
 
 mspring_result mspring_network_add_collider(mspring_network *network, const mspring_collider_def *def,
@@ -250,7 +250,7 @@ mspring_result mspring_network_remove_collider(mspring_network *network, mspring
         *c = c[1];
         c->first -= count;
     }
-    renew(network);
+    update_after_change(network);
     return MSPRING_OK;
 }
 

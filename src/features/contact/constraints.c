@@ -9,6 +9,10 @@
 ///
 /// The order of constraints follows from ids and from the pairs alone. Results do not depend on when the list was
 /// made.
+///
+/// mspringi_contact_make_constraints goes through the candidates: filter_candidates() drops most,
+/// queue_constraint() makes the others pending, flush_pending() orders those and makes their constraints
+/// (make_constraint()).
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -35,7 +39,7 @@
 #define FILTER_BATCH 256u
 #define FILTER_MARGIN 0.05
 
-/// Edges at each end of a pair's edge with a bit of their own.
+/// Edges at each end of a pair's edge for which the pair remembers the answer of is_excluded(), a bit each.
 #define REMEMBERED 8
 
 /* ------------------------------------------------------------------------------------------------------- nodes */
@@ -75,9 +79,10 @@ void mspringi_contact_begin_substep(const mspring_network *network, mspringi_con
     contacts->passed = 0.0;
 }
 
-/* --------------------------------------------------------------------------------------------------------- rows */
+/* -------------------------------------------------------------------------------------------------- constraints */
 
-// True if the point never touches another edge at this end of the pair's edge. The pair caches the answer.
+// True if the point never touches the edge with this number at an end of the pair's edge, because its other end
+// `other` is a neighbour of the point. The pair remembers the answer.
 static bool is_excluded(const mspring_network *network, mspringi_contacts *contacts, mspringi_pair *pair,
                         uint32_t end, uint32_t number, mspring_id other) {
     const uint32_t bit = number < REMEMBERED ? 1u << (end * REMEMBERED + number) : 0;
@@ -86,10 +91,10 @@ static bool is_excluded(const mspring_network *network, mspringi_contacts *conta
         return false;
     if (pair->tested_bits & bit)
         return pair->excluded_bits & bit;
-    const bool apart = mspringi_outline_are_neighbours(network, contacts, pair->point, other);
+    const bool is_neighbour = mspringi_outline_are_neighbours(network, contacts, pair->point, other);
     pair->tested_bits |= (uint16_t)bit;
-    pair->excluded_bits |= (uint16_t)(apart ? bit : 0);
-    return apart;
+    pair->excluded_bits |= (uint16_t)(is_neighbour ? bit : 0);
+    return is_neighbour;
 }
 
 // True if another edge at the same corner takes the contact: a nearer one, else the one with the lower number.
@@ -182,8 +187,8 @@ static const mspringi_collider *collider_of_pair(const mspringi_contacts *contac
                                                              : NULL;
 }
 
-// Effective inverse mass of the point and the closest point of the edge, 1/kg.
-static double resistance_of(const mspringi_contact_nodes *k, const mspringi_candidate *c, double share) {
+// Inverse mass of the point and the closest point of the edge, which is `share` of the way from a to b, 1/kg.
+static double inverse_mass_of(const mspringi_contact_nodes *k, const mspringi_candidate *c, double share) {
     const double of_a = 1.0 - share;
     return k->inverse_mass[c->p] + of_a * of_a * k->inverse_mass[c->a] + share * share * k->inverse_mass[c->b];
 }
@@ -221,7 +226,7 @@ static void make_constraint(const mspringi_contacts *contacts, const mspringi_pe
     t->ny = pending->at.y * per_distance;
     t->bary_a = 1.0 - pending->at.fraction;
     t->bary_b = pending->at.fraction;
-    t->normal_mass = 1.0 / pending->resistance;
+    t->normal_mass = 1.0 / pending->inverse_mass;
     t->friction = material.friction;
     t->couple_x = t->couple_y = t->couple_response = t->tangent_mass = t->surface_speed = t->normal_impulse =
         t->tangent_impulse = 0.0;
@@ -303,11 +308,11 @@ static void queue_constraint(const mspring_network *network, mspringi_contacts *
     const double thickness = collider ? contacts->thickness + collider->radius : contacts->thickness;
     const double still = thickness + MSPRINGI_NEAR_MISS_FRACTION * contacts->thickness;
     const double square_way = 4.0 * h * h * (to_ends > given * given ? to_ends : given * given);
-    if (square > 2.0 * (still * still + square_way)) // further than the border: most are, and need no root
+    if (square > 2.0 * (still * still + square_way)) // beyond the near misses: most are, and need no root
         return;
     const double speed = sqrt(to_ends), way = 2.0 * h * (speed > given ? speed : given);
-    const double reach = thickness + way, border = still + way;
-    if (!(square < border * border) || square == 0.0)
+    const double reach = thickness + way, miss = still + way;
+    if (!(square < miss * miss) || square == 0.0)
         return;
     if (!(square < reach * reach)) {
         contacts->near_misses[contacts->near_miss_count++] = candidate;
@@ -320,19 +325,19 @@ static void queue_constraint(const mspring_network *network, mspringi_contacts *
         contacts->is_out_of_room = true;
         return;
     }
-    const double resistance = resistance_of(k, c, at.fraction);
-    if (!(resistance > 0.0))
+    const double inverse_mass = inverse_mass_of(k, c, at.fraction);
+    if (!(inverse_mass > 0.0))
         return;
     if (contacts->pending_count == contacts->max_pending ||
         (contacts->pending_count > 0 && !is_beside_last(contacts, pair->point)))
         flush_pending(contacts, h);
     contacts->pending[contacts->pending_count++] =
-        (mspringi_pending_constraint){.at = at, .resistance = resistance, .candidate = candidate};
+        (mspringi_pending_constraint){.at = at, .inverse_mass = inverse_mass, .candidate = candidate};
     *fastest = speed > *fastest ? speed : *fastest;
 }
 
-// True if two particles are too far apart for a constraint. No root: a way w is at most (L + w^2 / L) / 2 for any
-// length L.
+// True if two particles are too far is_neighbour for a constraint. No root: a way w is at most (L + w^2 / L) / 2
+// for any length L.
 MSPRINGI_ALWAYS_INLINE bool are_far(const mspringi_contact_nodes *k, const mspringi_candidate *c, double still,
                                     double per_square) {
     const double dx = k->x[c->p] - k->x[c->a], dy = k->y[c->p] - k->y[c->a];
@@ -345,7 +350,7 @@ static uint32_t filter_end(const mspringi_contacts *contacts, uint32_t first) {
     return contacts->candidate_count - first < FILTER_BATCH ? contacts->candidate_count : first + FILTER_BATCH;
 }
 
-// Collect candidates that may need a constraint. Branch-free, since most need none.
+// Collect the candidates of a batch that may need a constraint. Branch-free, since most need none.
 static uint32_t filter_candidates(const mspringi_contacts *contacts, uint32_t first, double h, double given,
                                   uint32_t *kept) {
     const double length = 2.0 * FILTER_MARGIN * contacts->thickness, per_square = 2.0 * h * h / length;
@@ -360,11 +365,11 @@ static uint32_t filter_candidates(const mspringi_contacts *contacts, uint32_t fi
 }
 
 static bool any_fast(const mspringi_contacts *contacts, uint32_t p, uint32_t a, uint32_t b) {
-    const uint8_t *thrown = contacts->nodes.is_fast;
-    return thrown[p] | thrown[a] | thrown[b];
+    const uint8_t *is_fast = contacts->nodes.is_fast;
+    return is_fast[p] | is_fast[a] | is_fast[b];
 }
 
-// Collect fast candidates without a constraint.
+// Collect the candidates of a batch that have a fast node and no constraint yet.
 static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, uint32_t *kept) {
     uint32_t count = 0;
     for (uint32_t i = first, end = filter_end(contacts, first); i < end; ++i) {
@@ -388,7 +393,7 @@ static void queue_constraints(const mspring_network *network, mspringi_contacts 
     }
 }
 
-// Make what is pending. If there was no room, the step will be rejected: do nothing more for it.
+// Make the pending constraints. If there was no room, the step will be rejected, so drop them all.
 static void flush_or_end(mspringi_contacts *contacts, double h) {
     flush_pending(contacts, h);
     if (contacts->is_out_of_room)
@@ -417,7 +422,7 @@ double mspringi_contact_prepare_implicit(const mspring_network *network, mspring
     return fastest;
 }
 
-/* -------------------------------------------------------------------------------------------- what is thrown */
+/* ------------------------------------------------------------------------------------- added after the sweeps */
 
 bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
                                       bool any_fast) {

@@ -4,9 +4,16 @@
 /// slides from edge to edge stays in the same contact. It begins with an impulse. It ends after a step without one,
 /// once the two no longer rest on each other.
 ///
-/// An impulse comes from mspringi_contact_count_impulses (contact_solver.c), or from
-/// mspringi_implicit_contact_count_impulses, after each accepted interval. Contacts are ordered by ids. Results of
-/// an attempt become final, and events are queued, after the step.
+/// In the order of a step:
+///
+///   mspringi_contact_events_begin         discard an earlier attempt, and follow bodies that broke
+///   mspringi_contact_events_add_impulse   for each constraint of an accepted interval; all solvers call it by
+///                                         mspringi_contact_count_impulses (contact_solver.c)
+///   mspringi_contact_events_end_interval  after these
+///   mspringi_contact_events_finish_step   queue events, end contacts
+///
+/// Ongoing contacts are ordered by ids. A contact that an attempt begins is new until the step is accepted, so
+/// discarding an attempt removes it.
 #include "features/contact/contacts.h"
 
 #include <string.h>
@@ -23,7 +30,7 @@ static bool is_before(const mspringi_ongoing_contact *m, const mspringi_ongoing_
                                         : m->other < n->other;
 }
 
-// A contact of a node and an edge.
+// Key of the contact of a node and an edge: point, other, collider. now.a and now.b are the edge, by rising id.
 static mspringi_ongoing_contact contact_of(const mspringi_contacts *contacts, mspring_id point, mspring_id a,
                                            mspring_id b) {
     mspringi_ongoing_contact m = {.point = point,
@@ -43,7 +50,7 @@ static mspringi_ongoing_contact contact_of(const mspringi_contacts *contacts, ms
     return m;
 }
 
-// The number that a contact has, or is to have.
+// Index of a contact in the list, or the index at which to insert it.
 static uint32_t index_of(const mspringi_contact_events *all, const mspringi_ongoing_contact *wanted) {
     uint32_t low = 0, high = all->count;
     while (low < high) {
@@ -56,7 +63,7 @@ static uint32_t index_of(const mspringi_contact_events *all, const mspringi_ongo
     return low;
 }
 
-// Find a contact, or add it. NULL: there is no room.
+// Find a contact, or add it. NULL: no room.
 static mspringi_ongoing_contact *find_or_add(mspringi_contact_events *all, const mspringi_ongoing_contact *wanted) {
     const uint32_t at = index_of(all, wanted);
     mspringi_ongoing_contact *m = &all->list[at];
@@ -105,7 +112,7 @@ void mspringi_contact_events_add_impulse(const mspring_network *network, mspring
     m->friction += t->tangent_impulse < 0.0 ? -t->tangent_impulse : t->tangent_impulse;
 }
 
-void mspringi_contact_events_begin_interval(mspringi_contacts *contacts) {
+void mspringi_contact_events_end_interval(mspringi_contacts *contacts) {
     mspringi_contact_events *all = &contacts->events;
     all->max_dropped = all->dropped > all->max_dropped ? all->dropped : all->max_dropped;
     all->dropped = 0;
@@ -129,7 +136,8 @@ void mspringi_contact_events_discard_step(mspringi_contacts *contacts) {
     all->dropped = all->max_dropped = 0;
 }
 
-// Bodies that break get other numbers. Of contacts that become one the first is kept.
+// Give contacts the present numbers of bodies, which change where bodies break. Contacts that become one keep the
+// first.
 static void renumber_bodies(mspringi_contacts *contacts) {
     mspringi_contact_events *all = &contacts->events;
     const uint32_t count = all->count;
@@ -142,8 +150,8 @@ static void renumber_bodies(mspringi_contacts *contacts) {
     }
 }
 
-// After a load all that rests on each other has begun before.
-static void mark_existing(const mspring_network *network, mspringi_contacts *contacts) {
+// After a load, add a contact for each pair that rests on each other. They get no begin event.
+static void add_existing(const mspring_network *network, mspringi_contacts *contacts) {
     mspringi_contact_events *all = &contacts->events;
     for (uint32_t i = 0; i < contacts->count; ++i) {
         const mspringi_pair *pair = &contacts->list[i];
@@ -166,7 +174,7 @@ void mspringi_contact_events_begin(const mspring_network *network, mspringi_cont
     mspringi_contact_events_discard_step(contacts);
     renumber_bodies(contacts);
     if (!contacts->events.is_known)
-        mark_existing(network, contacts);
+        add_existing(network, contacts);
 }
 
 /* ----------------------------------------------------------------------------------------------------- events */
@@ -193,7 +201,7 @@ static void queue_event(mspringi_contact_events *all, mspring_contact_event_kind
     all->waiting++;
 }
 
-// The first pair of a node, or of one behind it. Pairs lie by their points.
+// Index of the first pair whose point is `node` or higher. The list is ordered by points.
 static uint32_t first_pair(const mspringi_contacts *contacts, mspring_id node) {
     uint32_t low = 0, high = contacts->count;
     while (low < high) {
@@ -206,6 +214,7 @@ static uint32_t first_pair(const mspringi_contacts *contacts, mspring_id node) {
     return low;
 }
 
+// True if a pair of the contact rests on each other, so that it has not ended.
 static bool is_resting(const mspring_network *network, const mspringi_contacts *contacts,
                        const mspringi_ongoing_contact *m) {
     const bool is_of_corners = m->point == MSPRING_NONE;
@@ -214,9 +223,10 @@ static bool is_resting(const mspring_network *network, const mspringi_contacts *
         const mspringi_pair *pair = &contacts->list[i];
         if (!is_of_corners && pair->point != m->point)
             return false;
-        const mspringi_ongoing_contact is =
+        const mspringi_ongoing_contact found =
             contact_of(contacts, pair->point, contacts->outline.a[pair->edge], contacts->outline.b[pair->edge]);
-        if (!is_before(&is, m) && !is_before(m, &is) && mspringi_pair_is_resting(network, contacts, pair, 0.0))
+        if (!is_before(&found, m) && !is_before(m, &found) &&
+            mspringi_pair_is_resting(network, contacts, pair, 0.0))
             return true;
     }
     return false;
@@ -226,7 +236,7 @@ void mspringi_contact_events_finish_step(const mspring_network *network, mspring
     mspringi_contact_events *all = &contacts->events;
     if (all->capacity == 0)
         return;
-    mspringi_contact_events_begin_interval(contacts);
+    mspringi_contact_events_end_interval(contacts);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < all->count; ++i) {
         mspringi_ongoing_contact *m = &all->list[i];

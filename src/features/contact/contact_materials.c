@@ -1,4 +1,4 @@
-/// Friction and restitution of particles of their own.
+/// Friction and restitution of single particles.
 #include <math.h>
 
 #include "features/contact/contacts.h"
@@ -8,7 +8,7 @@
 
 /* --------------------------------------------------------------------------------------------------------- rule */
 
-// A node's own values, or what stands for them.
+// A node's own values, or `other` for those it does not have.
 static mspringi_contact_material of_node(const mspringi_contacts *contacts, mspring_id node,
                                          mspringi_contact_material other) {
     if (mspringi_is_collider_point(contacts, node))
@@ -18,7 +18,7 @@ static mspringi_contact_material of_node(const mspringi_contacts *contacts, mspr
                                        own.restitution < 0.0f ? other.restitution : own.restitution};
 }
 
-// The root of a square is exact, so values that are the contact's own change no bits.
+// The root of a square is exact, so equal values give the same bits as without values of particles.
 mspringi_contact_material mspringi_contact_material_mix(const mspringi_contacts *contacts,
                                                         const mspringi_pair *pair,
                                                         const mspringi_collider *collider) {

@@ -1,6 +1,7 @@
 /// Contact in a substep: make constraints, find impulses, add constraints of pairs that these made fast.
 ///
-/// A substep is divided into intervals in which no node moves further than the thickness.
+/// A substep is divided into intervals in which no node moves further than the thickness. In the order of an
+/// interval: mspringi_contact_make_constraints, solve_interval(), mspringi_contact_count_impulses, advance().
 #include <math.h>
 #include <string.h>
 
@@ -16,10 +17,10 @@
 /// Most rounds of added constraints and further sweeps in an interval.
 #define MAX_ROUNDS 8
 
-/// Work of a substep for each of its constraints that is not counted: what intervals take that are not divided.
+/// Work allowed to a substep for each of its constraints: as much as undivided intervals take.
 #define WORK_OF_CONSTRAINT 256u
 
-static void begin(const mspring_network *network, const mspringi_contact_nodes *k) {
+static void load_velocities(const mspring_network *network, const mspringi_contact_nodes *k) {
     for (uint32_t i = 0; i < k->particle_count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         k->v[i].x = (double)network->state.vx[slot];
@@ -43,8 +44,9 @@ static bool mark_fast(const mspringi_contacts *contacts, double h) {
     return any;
 }
 
-// Solve an interval. False: its constraints fail, or its moves are too long.
-static bool solve(const mspring_network *network, mspringi_contacts *contacts, double h) {
+// Solve an interval, and add constraints for nodes that it made fast. False: constraints end too deep, or moves are
+// too long.
+static bool solve_interval(const mspring_network *network, mspringi_contacts *contacts, double h) {
     mspringi_floor_support_begin(contacts, h);
     for (uint32_t round = 0;; ++round) {
         const bool holds = mspringi_contact_sweep(contacts, h, round == 0 ? contacts->def.sweeps : 1);
@@ -63,7 +65,7 @@ void mspringi_contact_count_impulses(const mspring_network *network, mspringi_co
     for (uint32_t i = 0; i < contacts->constraint_count && contacts->events.capacity > 0; ++i)
         if (contacts->constraints[i].normal_impulse > 0.0)
             mspringi_contact_events_add_impulse(network, contacts, &contacts->constraints[i]);
-    mspringi_contact_events_begin_interval(contacts);
+    mspringi_contact_events_end_interval(contacts);
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
         if (t->collider != MSPRING_NONE)
@@ -74,7 +76,7 @@ void mspringi_contact_count_impulses(const mspring_network *network, mspringi_co
     contacts->touching = count > contacts->touching ? count : contacts->touching;
 }
 
-static void keep_velocities(const mspringi_contact_nodes *k) {
+static void save_velocities(const mspringi_contact_nodes *k) {
     memcpy(k->v_before, k->v, k->particle_count * sizeof *k->v);
 }
 
@@ -82,8 +84,8 @@ static void restore_velocities(const mspringi_contact_nodes *k) {
     memcpy(k->v, k->v_before, k->particle_count * sizeof *k->v);
 }
 
-// Move the nodes for an interval of h seconds. The displacement by contact is kept apart. The next interval bounces
-// at the velocities that this one leaves.
+// Move the nodes for an interval of h seconds, and add up the displacement by contact. The next interval bounces at
+// the velocities that this one leaves.
 static void advance(const mspring_network *network, const mspringi_contact_nodes *k, double h, bool is_last) {
     for (uint32_t i = 0; i < k->particle_count && !is_last; ++i) {
         k->v_start[i].x += k->v[i].x - k->v_before[i].x;
@@ -101,7 +103,7 @@ static void advance(const mspring_network *network, const mspringi_contact_nodes
 }
 
 // Store velocities and displacements. Return the largest speed from contact relative to the outline's mean, m/s.
-static double put_back(const mspring_network *network, const mspringi_contacts *contacts) {
+static double store_nodes(const mspring_network *network, const mspringi_contacts *contacts) {
     const mspringi_state *s = &network->state;
     const mspringi_contact_nodes *k = &contacts->nodes;
     double most = 0.0;
@@ -121,16 +123,16 @@ static double put_back(const mspring_network *network, const mspringi_contacts *
 
 // Solve intervals of equal length. Divide the remaining ones if one fails.
 static void solve_in_intervals(const mspring_network *network, mspringi_contacts *contacts, double h,
-                               uint32_t pieces) {
+                               uint32_t intervals) {
     const mspringi_contact_nodes *k = &contacts->nodes;
-    bool is_made = pieces == 1;
-    for (uint32_t left = pieces, cuts = 0; left > 0;) {
-        const double piece = h / left;
+    bool is_made = intervals == 1; // by the caller
+    for (uint32_t left = intervals, cuts = 0; left > 0;) {
+        const double interval = h / left;
         if (!is_made)
-            (void)mspringi_contact_make_constraints(network, contacts, piece, 0.0, MSPRINGI_MAX_PENDING);
+            (void)mspringi_contact_make_constraints(network, contacts, interval, 0.0, MSPRINGI_MAX_PENDING);
         is_made = false;
-        keep_velocities(k);
-        const bool is_solved = solve(network, contacts, piece);
+        save_velocities(k);
+        const bool is_solved = solve_interval(network, contacts, interval);
         if (mspringi_contact_is_too_much(contacts))
             return;
         if (!is_solved && cuts < MAX_CUTS && left < MAX_INTERVALS) {
@@ -141,15 +143,15 @@ static void solve_in_intervals(const mspring_network *network, mspringi_contacts
         }
         mspringi_contact_count_impulses(network, contacts);
         mspringi_floor_support_end(network, contacts);
-        advance(network, k, piece, left == 1);
-        h -= piece;
+        advance(network, k, interval, left == 1);
+        h -= interval;
         --left;
     }
 }
 
 // Refresh the list if contact made nodes faster than the last scan allows. If pairs may be missing in this substep
 // already, repeat the step, with this speed in its scan.
-static void count_thrown(mspringi_contacts *contacts, double speed) {
+static void check_speed(mspringi_contacts *contacts, double speed) {
     const double spare = MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt;
     if (speed > MSPRINGI_SPEED_MARGIN * contacts->speed + spare)
         contacts->valid = 1;
@@ -173,10 +175,10 @@ bool mspringi_contact_solve_nodes(const mspring_network *network, mspringi_conta
 }
 
 bool mspringi_contact_solve_substep(const mspring_network *network, mspringi_contacts *contacts) {
-    begin(network, &contacts->nodes);
+    load_velocities(network, &contacts->nodes);
     contacts->fall_x = contacts->fall_y = 0.0;
     if (!mspringi_contact_solve_nodes(network, contacts, (double)contacts->h))
         return false;
-    count_thrown(contacts, put_back(network, contacts));
+    check_speed(contacts, store_nodes(network, contacts));
     return true;
 }

@@ -1,5 +1,8 @@
 /// Stage of contact between bodies: when to scan, and islands that wake or fall asleep together.
 ///
+/// before_step scans. An explicit substep that is not quiet is solved in after_substep; an implicit one has contact
+/// in its linear system (solvers/implicit/implicit_contact.c), and only scans there. after_step queues events.
+///
 /// Quiet steps and substeps, in which nothing can touch, take the path without contact. The speeds at the last scan
 /// bound their number. If forces made points so fast that some could have touched, the step is repeated with a scan
 /// after every substep.
@@ -13,9 +16,8 @@
 /// Points this near rest on each other, as a share of the thickness.
 #define RESTING_SHARE 0.05
 
-/// Comparisons of points and edges that a step may take, 75 ms, beside what it is given by the size of the network:
-/// with each list (pair_list.c), for constraints (contact_solver.c), and with an implicit substep
-/// (solvers/implicit/work.c).
+/// Comparisons of points and edges allowed to a step: 75 ms. More are allowed with each list (pair_list.c), each
+/// constraint (contact_solver.c) and each implicit substep (solvers/implicit/work.c).
 #define MOST_WORK ((uint64_t)3 << 20)
 
 static bool is_used(const mspring_network *network) {
@@ -37,33 +39,34 @@ static uint32_t island_of(const mspring_network *network, mspring_id p) {
     return network->sleep.island[network->topology.slot_of_particle[p]];
 }
 
-typedef struct node_place {
+typedef struct node_position {
     double x, y;
-} node_place;
+} node_position;
 
-static node_place place_of(const mspring_network *network, const mspringi_contacts *contacts, mspring_id node) {
+static node_position position_of(const mspring_network *network, const mspringi_contacts *contacts,
+                                 mspring_id node) {
     const mspringi_state *s = &network->state;
     if (mspringi_is_collider_point(contacts, node)) {
         const uint32_t point = node - contacts->particles;
-        return (node_place){contacts->colliders.x[point], contacts->colliders.y[point]};
+        return (node_position){contacts->colliders.x[point], contacts->colliders.y[point]};
     }
     const uint32_t slot = network->topology.slot_of_particle[node];
-    return (node_place){mspringi_x_of(s, slot), mspringi_y_of(s, slot)};
+    return (node_position){mspringi_x_of(s, slot), mspringi_y_of(s, slot)};
 }
 
 bool mspringi_pair_is_resting(const mspring_network *network, const mspringi_contacts *contacts,
                               const mspringi_pair *pair, double way) {
     const mspringi_outline *o = &contacts->outline;
-    const node_place p = place_of(network, contacts, pair->point),
-                     a = place_of(network, contacts, o->a[pair->edge]),
-                     b = place_of(network, contacts, o->b[pair->edge]);
+    const node_position p = position_of(network, contacts, pair->point),
+                        a = position_of(network, contacts, o->a[pair->edge]),
+                        b = position_of(network, contacts, o->b[pair->edge]);
     const mspringi_closest_point at = mspringi_closest_point_on_edge(p.x, p.y, a.x, a.y, b.x, b.y);
     const double distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_radius_of(contacts, pair->point, pair->edge);
     return distance <= (1.0 + RESTING_SHARE) * contacts->thickness + way;
 }
 
-// The two sides of a pair: islands, and for how long each has been still. A collider that moves never is, and one
-// that stands still is no side.
+// Both sides of a pair: islands, and the time for which each was still, s; < 0: it sleeps. A moving collider has
+// time 0. A resting collider is no side, so the pair has one side only.
 typedef struct pair_sides {
     uint32_t island[2]; // MSPRING_NONE: a collider
     double still[2];
@@ -83,9 +86,9 @@ static pair_sides sides_of(const mspring_network *network, const mspringi_contac
     return s;
 }
 
-// Wake what sleeps where something that is awake comes.
+// Wake islands that an awake one, or a moving collider, can reach in this step.
 static void wake_touched(mspring_network *network, const mspringi_contacts *contacts) {
-    const uint64_t naps = network->edits.sleep_changes;
+    const uint64_t changes = network->edits.sleep_changes;
     if (network->sleep.sleeping == 0)
         return;
     for (bool again = true; again;) {
@@ -100,11 +103,11 @@ static void wake_touched(mspring_network *network, const mspringi_contacts *cont
             again = true;
         }
     }
-    mspringi_sleep_finish_waking(network, naps);
+    mspringi_sleep_finish_waking(network, changes);
 }
 
-// Islands that rest on each other have been still for as long as the one that was still for the shortest time: they
-// fall asleep together.
+// Give islands that rest on each other the shortest time for which one of them was still, so that they fall asleep
+// together.
 static void share_stillness(mspring_network *network, const mspringi_contacts *contacts) {
     if (!(network->settings.sleep_speed > 0.0f) || mspringi_sleep_is_whole(network))
         return;
@@ -127,7 +130,7 @@ static void share_stillness(mspring_network *network, const mspringi_contacts *c
 
 /* ------------------------------------------------------------------------------------------------------ stage */
 
-// Before substeps are taken, or taken once more. Returns whether all pairs have room.
+// Begin the substeps of an attempt, or their repetition. Return true if all pairs have room.
 static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     mspringi_contacts *contacts = network->contacts;
     contacts->is_missed = contacts->is_pair_list_full = contacts->is_out_of_room = false;
@@ -178,15 +181,15 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
     return base;
 }
 
-static void look(mspring_network *network, mspringi_contacts *contacts) {
+static void rescan(mspring_network *network, mspringi_contacts *contacts) {
     contacts->is_fresh = false;
     (void)mspringi_pair_list_scan(network, contacts);
 }
 
-// After so many quiet substeps: with the speeds that there are now, some pair could have touched.
-static void look_back(mspring_network *network, mspringi_contacts *contacts, uint32_t count) {
+// Scan after `count` quiet substeps. They were missed if some pair could have touched at the speeds of now.
+static void check_quiet_substeps(mspring_network *network, mspringi_contacts *contacts, uint32_t count) {
     const double room = contacts->room;
-    look(network, contacts);
+    rescan(network, contacts);
     contacts->is_missed |= !(2.0 * (double)contacts->h * (double)count * contacts->speed <= room) ||
                            contacts->nearest < contacts->thickness;
 }
@@ -202,25 +205,25 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
         contacts->quiet_substeps = contacts->quiet_substeps > count ? contacts->quiet_substeps - count : 0;
         contacts->substeps_since_scan += count;
         if (contacts->quiet_substeps == 0 && contacts->substeps_done < attempt->substeps) {
-            look_back(network, contacts, contacts->substeps_since_scan);
+            check_quiet_substeps(network, contacts, contacts->substeps_since_scan);
             contacts->substeps_since_scan = 0;
         }
         return;
     }
     if (network->running->ops->has_implicit_contact || !mspringi_contact_solve_substep(network, contacts) ||
         contacts->is_second_try)
-        look(network, contacts);
-    else if (--contacts->valid == 0 && contacts->substeps_done < attempt->substeps) // a step begins with a look
+        rescan(network, contacts);
+    else if (--contacts->valid == 0 && contacts->substeps_done < attempt->substeps) // a step begins with a scan
         (void)mspringi_pair_list_refresh(network, contacts);
 }
 
-// The last substeps may have been quiet; all were, if they were taken at once.
+// Check quiet substeps since the last scan. If substeps_done is 0, all were taken at once.
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_contacts *contacts = network->contacts;
     const uint32_t count = contacts->substeps_done == 0 ? attempt->substeps : contacts->substeps_since_scan;
     contacts->substeps_done = attempt->substeps;
     if (count > 0 && !has_failed(contacts))
-        look_back(network, contacts, count);
+        check_quiet_substeps(network, contacts, count);
     if (!contacts->is_missed || contacts->is_second_try || has_failed(contacts))
         return false;
     contacts->is_second_try = true;
@@ -265,12 +268,12 @@ static mspring_result verify(mspring_network *network) {
         contacts->is_pair_list_full ? "are near" : "may touch");
 }
 
-// The state is that of before the step. If the step is repeated, perhaps for another stage, it begins with a look.
+// The state is that before the step. If the step is repeated, perhaps for another stage, it begins with a scan.
 static void roll_back(mspring_network *network) {
     mspringi_contacts *contacts = network->contacts;
     contacts->is_fresh = false;
     mspringi_contact_events_discard_step(contacts);
-    if (!has_failed(contacts)) // else the next step begins with one
+    if (!has_failed(contacts)) // else the next step scans
         (void)begin_substeps(network, contacts->colliders.substeps);
 }
 

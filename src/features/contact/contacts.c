@@ -16,22 +16,23 @@
 #define MOST_SWEEPS 64
 #define MOST_PAIRS ((uint32_t)1 << 26)
 
-/// Pairs that there is room for: for each particle, for each one of the outline, and besides. (Soft discs that fall
-/// at 25 m/s with one or two substeps a step have 45 for a particle of the outline.)
+/// Room for pairs: for each particle, for each particle of the outline, and a constant. (Soft discs that fall at
+/// 25 m/s with one or two substeps a step have 45 for a particle of the outline.)
 #define PAIRS_OF_PARTICLE 2
 #define PAIRS_OF_OUTLINE 64
 #define PAIRS_BESIDES 4096
 
-/// For each point of a collider.
+/// Room for pairs of each collider point.
 #define PAIRS_OF_POINT 8
 
-/// Comparisons that the outline may take (50 ms), and for each spring besides: others have 10 at most.
+/// Most comparisons to find the outline: a constant (50 ms), and more for each spring. Usual networks take 10 for
+/// each.
 #define MOST_TRIES ((uint64_t)1 << 24)
 #define TRIES_OF_SPRING 32
 
-/// Rows that there is room for, as a part of the pairs, and besides.
-#define PAIRS_OF_ROW 8
-#define ROWS_BESIDES 1024
+/// Room for constraints: pairs for each of them, and a constant.
+#define PAIRS_OF_CONSTRAINT 8
+#define CONSTRAINTS_BESIDES 1024
 
 /* ----------------------------------------------------------------------------------------------------- checking */
 
@@ -153,7 +154,7 @@ static void destroy(mspringi_contacts *contacts, mspringi_memory *memory) {
 
 const mspringi_feature_state mspringi_state_of_contacts = {MSPRINGI_ARRAY_TABLE(members), NULL};
 
-// count arrays of so many elements, one behind the other. False: there is no memory.
+// Allocate `count` arrays of `elements` values in one block. False: no memory.
 static bool reserve_doubles(mspringi_memory *memory, size_t elements, double **const arrays[], size_t count) {
     double *block = mspringi_alloc(memory, elements * count, sizeof *block);
     for (size_t i = 0; i < count && block; ++i)
@@ -161,7 +162,7 @@ static bool reserve_doubles(mspringi_memory *memory, size_t elements, double **c
     return block != NULL;
 }
 
-// For particles, and for nodes: these and points of colliders.
+// Reserve arrays of particles, and of nodes: particles and collider points.
 static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size_t particles, size_t nodes) {
     mspringi_outline *o = &made->outline;
     mspringi_contact_nodes *k = &made->nodes;
@@ -225,19 +226,20 @@ static bool reserve_points(mspringi_contacts *made, mspringi_memory *memory, uin
     return c->shape && c->owner && reserve_doubles(memory, points, motion, 4);
 }
 
-static bool needs_holds(const mspring_network *network) {
+static bool has_implicit_contact_solver(const mspring_network *network) {
     const mspringi_solver_ops *fallback = network->fallback.ops;
     return network->solver.ops->has_implicit_contact || (fallback && fallback->has_implicit_contact);
 }
 
-static bool reserve_holds(mspringi_contacts *contacts, mspringi_memory *memory) {
+static bool reserve_implicit_constraints(mspringi_contacts *contacts, mspringi_memory *memory) {
     if (!contacts->implicit_constraints)
         contacts->implicit_constraints =
             mspringi_alloc(memory, contacts->constraint_capacity, sizeof *contacts->implicit_constraints);
     return contacts->implicit_constraints != NULL;
 }
 
-// By what the outline is, and what it may come to be. Most pairs that are near do not touch.
+// Reserve pairs by the size of the outline, and of what it may become. Constraints are fewer: most pairs do not
+// touch.
 static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory, size_t particles) {
     const uint32_t own = made->outline.point_count - made->colliders.listed_points;
     const uint64_t usual =
@@ -245,8 +247,8 @@ static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory, size
     if (made->def.capacity == 0)
         made->def.capacity = usual < MOST_PAIRS ? (uint32_t)usual : MOST_PAIRS;
     made->capacity = made->def.capacity + PAIRS_OF_POINT * made->colliders.point_capacity;
-    const uint32_t rows = made->capacity / PAIRS_OF_ROW + ROWS_BESIDES;
-    made->constraint_capacity = rows < made->capacity ? rows : made->capacity;
+    const uint32_t constraints = made->capacity / PAIRS_OF_CONSTRAINT + CONSTRAINTS_BESIDES;
+    made->constraint_capacity = constraints < made->capacity ? constraints : made->capacity;
     made->list = mspringi_alloc(memory, made->capacity, sizeof *made->list);
     made->candidates = mspringi_alloc(memory, made->capacity, sizeof *made->candidates);
     made->is_seen = mspringi_alloc(memory, made->capacity, sizeof *made->is_seen);
@@ -262,7 +264,7 @@ static void set_def(mspringi_contacts *contacts, const mspring_contact_def *def)
     contacts->touches_itself = def->flags & MSPRING_CONTACT_SELF;
 }
 
-// Take over what the host has set, and the outline as it was found.
+// Copy the host's settings and the outline from former contact, and share the arrays that hand_over() names.
 static void take_over(mspringi_contacts *made, const mspringi_contacts *had, size_t springs) {
     const size_t particles = made->particles, points = had->colliders.point_count, nodes = particles + points;
     mspringi_outline *o = &made->outline;
@@ -296,7 +298,7 @@ static void take_over(mspringi_contacts *made, const mspringi_contacts *had, siz
     made->deepest = had->deepest;
 }
 
-// Another has the arrays that do not depend on how much room there is.
+// Drop the arrays that do not depend on the room reserved, because other contact owns them now.
 static void hand_over(mspringi_contacts *contacts) {
     contacts->materials = NULL;
     contacts->colliders.list = NULL;
@@ -314,7 +316,7 @@ static mspring_id find_hub(const mspring_network *network) {
     return hub;
 }
 
-// Find the outline. A network that contact comes to anew may have too many springs at too many particles.
+// Find the outline. A network that gets contact for the first time may have too many springs at too many particles.
 static mspring_result find_outline(mspring_network *network, mspringi_contacts *made, bool is_anew) {
     mspringi_outline *o = &made->outline;
     const uint32_t springs = network->topology.spring_count;
@@ -332,7 +334,8 @@ static mspring_result find_outline(mspring_network *network, mspringi_contacts *
                          (unsigned)(network->incidence.first[hub + 1] - network->incidence.first[hub]));
 }
 
-// With room for so many points of colliders; had: what is to go on, or NULL. MEMORY has no message.
+// Make contact with room for `points` collider points, which continues `had` unless that is NULL. The error MEMORY
+// has no message.
 static mspring_result make(mspring_network *network, const mspring_contact_def *def, uint32_t points,
                            const mspringi_contacts *had, mspringi_contacts **contacts) {
     const size_t particles = network->topology.reserve.particle_end, springs = network->topology.reserve.spring_end,
@@ -356,7 +359,8 @@ static mspring_result make(mspring_network *network, const mspring_contact_def *
         take_over(made, had, springs);
     mspring_result result = ok ? find_outline(network, made, !had) : MSPRING_ERROR_MEMORY;
     if (result == MSPRING_OK &&
-        (!reserve_pairs(made, memory, particles) || (needs_holds(network) && !reserve_holds(made, memory)) ||
+        (!reserve_pairs(made, memory, particles) ||
+         (has_implicit_contact_solver(network) && !reserve_implicit_constraints(made, memory)) ||
          !mspringi_constraints_reserve(network, MSPRINGI_CONTACT_CONSTRAINT, (size_t)2 * made->constraint_capacity,
                                        (size_t)6 * made->constraint_capacity)))
         result = MSPRING_ERROR_MEMORY;
@@ -365,7 +369,7 @@ static mspring_result make(mspring_network *network, const mspring_contact_def *
         return MSPRING_OK;
     }
     if (had)
-        hand_over(made); // they are still those of the other
+        hand_over(made); // `had` still owns them
     destroy(made, memory);
     return result;
 }
@@ -389,7 +393,7 @@ bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points)
 }
 
 mspring_result mspringi_contacts_reserve_implicit(mspring_network *network) {
-    if (!network->contacts || reserve_holds(network->contacts, &network->memory))
+    if (!network->contacts || reserve_implicit_constraints(network->contacts, &network->memory))
         return MSPRING_OK;
     return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for contact in the solver's system");
 }
@@ -508,5 +512,21 @@ void mspringi_contact_discard_step(mspring_network *network) {
         return;
     mspringi_colliders_discard_step(network->contacts);
     mspringi_contact_events_discard_step(network->contacts);
-    network->contacts->is_listed = false; // it may be of places that were none
+    network->contacts->is_listed = false; // the rejected positions may have been NaN
+}
+
+bool mspringi_contact_acts(const mspring_network *network) {
+    return network->floor || network->contacts;
+}
+
+bool mspringi_contact_is_finite(const mspring_network *network) {
+    bool finite = true;
+    for (size_t i = 0; network->floor && network->floor->impulse.x && i < mspringi_used_slots(network); ++i)
+        finite = finite && isfinite(network->floor->impulse.x[i]) && isfinite(network->floor->impulse.y[i]);
+    for (uint32_t i = 0; network->contacts && i < network->contacts->colliders.count; ++i) {
+        const mspringi_collider *c = &network->contacts->colliders.list[i];
+        finite = finite && isfinite(c->impulse_x) && isfinite(c->impulse_y) && isfinite(c->angular) &&
+                 isfinite(c->def.x) && isfinite(c->def.y) && isfinite(c->def.angle);
+    }
+    return finite;
 }

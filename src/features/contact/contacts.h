@@ -22,7 +22,8 @@
 /// and velocities from after it, and correct both.
 ///
 /// An *interval* is a part of a substep, often all of it. A *node* is a particle or a collider point. A *pair* is a
-/// point near an edge, a *candidate* a pair that may touch before the next scan.
+/// point near an edge, a *candidate* a pair that may touch before the next scan. A *constraint* is a candidate that
+/// may touch in an interval. An *ongoing contact* joins a particle to another body or a collider, for events.
 ///
 /// State kept between steps follows from positions and from the shape of the outline. Lists hold spare pairs.
 /// Results do not depend on when a list was made.
@@ -58,7 +59,8 @@ typedef struct mspringi_outline {
 typedef struct mspringi_pair {
     mspring_id point;
     uint32_t edge;
-    uint16_t tested_bits, excluded_bits; ///< a bit for each edge at both ends: tested; never touched
+    uint16_t tested_bits, excluded_bits; ///< a bit for each neighbouring edge at both ends: tested; never touched
+                                         ///< by the point (constraints.c)
 } mspringi_pair;
 
 /// Pair that may touch before the next scan, with its nodes.
@@ -103,14 +105,14 @@ typedef struct mspringi_contact_nodes {
     mspringi_velocity *v;           ///< [nodes] current
     double *inverse_mass;           ///< [nodes] 1/kg
     double *shift_x, *shift_y;      ///< [nodes] displacement by contact, m
-    uint8_t *is_fast;               ///< [nodes] contact changed the velocity by much
+    uint8_t *is_fast;               ///< [nodes] contact changed the velocity so much that near misses may touch
     double *extra_vx, *extra_vy;    ///< [nodes] velocity from contact, for isolated particles, m/s
     uint32_t particle_count, count; ///< particles; all nodes, collider points last
 } mspringi_contact_nodes;
 
 /// Contact constraint: a point and an edge that touch, or may touch, in this interval.
 typedef struct mspringi_contact_constraint {
-    // Members read by sweeps: two cache lines.
+    // Members that a sweep reads: two cache lines.
     uint32_t p, a, b; ///< dense numbers of the point and of the edge's ends
     float friction;
     double nx, ny;             ///< normal from the edge to the point, of length 1
@@ -142,7 +144,7 @@ typedef struct mspringi_closest_point {
 /// Pending constraint: its place in the order is not known yet.
 typedef struct mspringi_pending_constraint {
     mspringi_closest_point at;
-    double resistance; ///< effective inverse mass, 1/kg
+    double inverse_mass; ///< of point and closest point of the edge together, 1/kg
     uint32_t candidate, colour;
 } mspringi_pending_constraint;
 
@@ -163,7 +165,7 @@ typedef struct mspringi_floor_support {
 /// the ends of the edge.
 typedef struct mspringi_implicit_constraint {
     uint32_t slots[3];                ///< MSPRING_NONE: not an unknown of the system
-    uint32_t listed;                  ///< its push in the list of constraints; MSPRING_NONE: it acts by impulses
+    uint32_t listed;                  ///< index of its push in network->constraints; MSPRING_NONE: impulses only
     double across[3][2], along[3][2]; ///< Jacobians of the normal and the tangential displacement
     double spare;                     ///< slack before a bouncing constraint becomes active, m
     double friction;                  ///< 0: it has no friction in the system
@@ -185,7 +187,7 @@ typedef struct mspringi_collider {
     mspringi_pose target;                 ///< at the end of the next step
     bool is_moving;                       ///< target differs from the current pose
     double impulse_x, impulse_y, angular; ///< in the last step, N s and N m s
-    double pushed_x, pushed_y, turned;    ///< in the present step so far, N s and N m s
+    double pushed_x, pushed_y, turned;    ///< impulse and angular impulse in the present step so far, N s, N m s
 } mspringi_collider;
 
 /// All colliders by rising id, with their points end to end.
@@ -215,23 +217,25 @@ typedef struct mspringi_contact_location {
 /// Ongoing contact, from its begin event to its end event: of a particle with another body or a collider, or of a
 /// collider's corners with a body.
 typedef struct mspringi_ongoing_contact {
-    mspring_id point;                    ///< MSPRING_NONE for a collider's corners
-    mspring_id other;                    ///< lowest particle of the other body; MSPRING_NONE for a collider
-    mspring_id collider;                 ///< id, or MSPRING_NONE
-    bool is_new;                         ///< began in this step
-    double largest;                      ///< largest impulse of a constraint in an interval of this step, N s
-    double impulse, friction;            ///< sums of normal and tangential impulses in this step, N s
-    mspringi_contact_location now, last; ///< of the largest impulse; of the last step with one
+    mspring_id point;         ///< MSPRING_NONE for a collider's corners
+    mspring_id other;         ///< lowest particle of the other body; MSPRING_NONE for a collider
+    mspring_id collider;      ///< id, or MSPRING_NONE
+    bool is_new;              ///< began in this step
+    double largest;           ///< largest normal impulse of a constraint in an interval of this step, N s
+    double impulse, friction; ///< sums of normal and tangential impulses in this step, N s
+    mspringi_contact_location now, last; ///< where `largest` acted; the same of the last step with an impulse
 } mspringi_ongoing_contact;
 
 /// Ongoing contacts by point, collider and other, and a ring of unread events.
 typedef struct mspringi_contact_events {
     mspringi_ongoing_contact *list; ///< [capacity]
     mspring_contact_event *ring;    ///< [capacity]
-    uint32_t capacity, count, first, waiting;
-    uint32_t dropped, max_dropped; ///< constraints without room in the interval; most in one of the step
-    uint64_t lost;
-    bool is_known; ///< false: contacts at rest get no begin event, as they began before
+    uint32_t capacity;              ///< of both
+    uint32_t count;                 ///< ongoing contacts
+    uint32_t first, waiting;        ///< oldest event in the ring; unread events
+    uint32_t dropped, max_dropped;  ///< constraints without room in the interval; most in an interval of the step
+    uint64_t lost;                  ///< events and contacts without room since the reservation
+    bool is_known;                  ///< false: contacts at rest get no begin event, as they began before
 } mspringi_contact_events;
 
 /// Friction and restitution of a contact.
@@ -244,7 +248,7 @@ typedef struct mspringi_contact_material {
 
 struct mspringi_contacts {
     mspring_contact_def def;
-    double thickness, push;
+    double thickness, push; ///< m; largest speed of push-out, m/s
     bool touches_itself;
     uint32_t particles;                   ///< capacity: ids, spare ones included
     size_t edge_capacity;                 ///< springs and nodes
@@ -277,14 +281,14 @@ struct mspringi_contacts {
     double moved;                  ///< largest displacement relative to the mean since the list was made, m
     double nearest;                ///< distance of the nearest pair in the list, m
     bool is_fresh;                 ///< nothing moved since
-    uint64_t state, sleep_changes; ///< counters of edits at the scan
+    uint64_t state, sleep_changes; ///< counters of network->edits at the scan
     float scan_h;
     double scan_dt;
 
     // A step.
-    float h;
-    double dt;
-    uint32_t quiet_substeps;      ///< substeps in which nothing can touch
+    float h;                      ///< length of a substep, s
+    double dt;                    ///< length of the step, s
+    uint32_t quiet_substeps;      ///< next substeps in which nothing can touch
     uint32_t valid;               ///< substeps until the next refresh of the list
     uint32_t first_substep;       ///< first of the substeps now taken together
     uint32_t substeps_done;       ///< substeps finished
@@ -378,11 +382,11 @@ static inline mspringi_closest_point mspringi_closest_point_on_edge(double px, d
     return (mspringi_closest_point){px - ax - share * ex, py - ay - share * ey, share};
 }
 
-/// Make a new list if pairs may be missing. False: the capacity is too small.
+/// Make a new list if pairs may be missing, and collect the candidates. False: the capacity is too small.
 bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts);
-/// Measure distances, and count the quiet substeps. False: the capacity is too small.
+/// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. False: likewise.
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts);
-/// Replace the list by all pairs nearer than a distance, m. The next scan makes its own list.
+/// Replace the list by all pairs nearer than `reach`, m, for piles. The next scan makes its own list.
 void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
 
 /* constraints.c */
@@ -410,12 +414,12 @@ bool mspringi_contact_moves_are_short(const mspringi_contacts *contacts, double 
 
 /* contact_solver.c */
 
-/// Solve contact after an explicit substep. Return false if there was no constraint.
+/// Solve contact after an explicit substep, and count its impulses. Return false if there was no constraint.
 bool mspringi_contact_solve_substep(const mspring_network *network, mspringi_contacts *contacts);
 /// Solve contact of the loaded nodes in double precision, without a change of the state. Floor supports read
 /// positions from the network.
 bool mspringi_contact_solve_nodes(const mspring_network *network, mspringi_contacts *contacts, double h);
-/// Record the impulses of an accepted interval: events, colliders, statistics.
+/// Add the impulses of an accepted interval to ongoing contacts, colliders and statistics. For all solvers.
 void mspringi_contact_count_impulses(const mspring_network *network, mspringi_contacts *contacts);
 
 /* floor_support.c */
@@ -453,13 +457,14 @@ bool mspringi_pair_is_resting(const mspring_network *network, const mspringi_con
 
 /* contact_events.c */
 
-/// Begin an attempt: discard the results of an earlier one.
+/// Begin an attempt; discard it if the step is rolled back.
 void mspringi_contact_events_begin(const mspring_network *network, mspringi_contacts *contacts);
 void mspringi_contact_events_discard_step(mspringi_contacts *contacts);
-/// Add the impulses of a constraint; call begin_interval after all constraints of an interval.
-void mspringi_contact_events_begin_interval(mspringi_contacts *contacts);
+/// Add the impulses of a constraint in an accepted interval to its ongoing contact.
 void mspringi_contact_events_add_impulse(const mspring_network *network, mspringi_contacts *contacts,
-                                         const mspringi_contact_constraint *touch);
+                                         const mspringi_contact_constraint *t);
+/// End an accepted interval: count the constraints that had no room.
+void mspringi_contact_events_end_interval(mspringi_contacts *contacts);
 /// Queue the events of an accepted step.
 void mspringi_contact_events_finish_step(const mspring_network *network, mspringi_contacts *contacts);
 /// Drop the events after a change of state. Bodies at rest on each other count as in contact already.
@@ -500,12 +505,11 @@ void mspringi_collider_velocity(const mspringi_collider *collider, double dt, do
 /// Discard the impulses of the step so far.
 void mspringi_colliders_discard_step(mspringi_contacts *contacts);
 /// Distance from a constraint's point to the surface where friction acts, m: the collider's radius, or 0.
-double mspringi_collider_friction_offset(const mspringi_contacts *contacts,
-                                         const mspringi_contact_constraint *touch);
+double mspringi_collider_friction_offset(const mspringi_contacts *contacts, const mspringi_contact_constraint *t);
 /// Tangential speed of a turning collider's surface, m/s. Sides have it in the velocities of their ends.
-double mspringi_collider_surface_speed(const mspringi_contacts *contacts, const mspringi_contact_constraint *touch);
+double mspringi_collider_surface_speed(const mspringi_contacts *contacts, const mspringi_contact_constraint *t);
 /// Add a constraint's impulses to its collider.
-void mspringi_colliders_add_impulse(mspringi_contacts *contacts, const mspringi_contact_constraint *touch);
+void mspringi_colliders_add_impulse(mspringi_contacts *contacts, const mspringi_contact_constraint *t);
 /// Finish an accepted step: poses become the targets.
 void mspringi_colliders_finish_step(const mspring_network *network, mspringi_contacts *contacts);
 

@@ -18,10 +18,10 @@
 #define ROUNDING 1e-6
 #define ROUNDING_ALONG 1e-12
 
-/// Edges that a search passes in the time that a comparison takes.
+/// Edges that a search skips in the time of a comparison.
 #define PASSED_OF_WORK 4
 
-/// Beyond this many cells all lies in one.
+/// Cells in each direction from the origin; the last one has everything beyond.
 #define MOST_CELLS 1e9
 
 /// A point that has springs, or is a corner of a collider, is below all limits but that of edges with a length.
@@ -34,14 +34,14 @@ static int32_t cell_of(double coordinate, double size) {
                                                    : -(int32_t)MOST_CELLS;
 }
 
-// Where a row begins.
+// Bucket of a cell.
 static uint32_t bucket_of(const mspringi_edge_grid *cells, int32_t row, uint32_t column) {
     uint32_t hash = (uint32_t)row * 0x9E3779B1u;
     hash ^= hash >> 15;
     return (hash + column) & (cells->bucket_count - 1);
 }
 
-// Groups that stand in the same place lie in other cells, unless there are colliders, which they share.
+// Column of a node. Groups in the same place get different columns, unless there are colliders, which they share.
 static uint32_t column_of(const mspring_network *network, const mspringi_contacts *contacts, mspring_id node,
                           double x) {
     const uint32_t *group = network->groups.of_particle, column = (uint32_t)cell_of(x, contacts->cells.size);
@@ -49,10 +49,9 @@ static uint32_t column_of(const mspring_network *network, const mspringi_contact
     return is_apart ? column + group[node] * 0x9E3779B1u : column;
 }
 
-/* ------------------------------------------------------------------------------------------------------- filling
- */
+/* ----------------------------------------------------------------------------------------------------- filling */
 
-// With what the surface of a collider lies beyond its ends.
+// Length of an edge, m; of a collider's with its radius at both ends.
 static double length_of(const mspringi_contacts *contacts, uint32_t edge) {
     const mspring_id a = contacts->outline.a[edge], b = contacts->outline.b[edge];
     const double ex = contacts->x[b] - contacts->x[a], ey = contacts->y[b] - contacts->y[a],
@@ -61,7 +60,7 @@ static double length_of(const mspringi_contacts *contacts, uint32_t edge) {
                                                    : length;
 }
 
-// Set the long edges apart, and say how large cells are for the others.
+// List the long edges, and choose the size of cells for the others.
 static void size_cells(mspringi_contacts *contacts, double reach) {
     mspringi_edge_grid *cells = &contacts->cells;
     double sum = 0.0, longest = 0.0;
@@ -131,19 +130,17 @@ void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- searching
- */
+/* --------------------------------------------------------------------------------------------------- searching */
 
 /// Arguments of a search.
 typedef struct search {
     double x, y, reach;
     uint32_t point;
     bool is_wide;     ///< all rows count
-    uint64_t *passed; ///< edges that were looked at
+    uint64_t *passed; ///< edges visited
 } search;
 
-// Take what is near of edges that lie one behind the other: branch-free, and in a few nanoseconds, for many are
-// not.
+// Collect the near edges of a run. Branch-free, in a few nanoseconds each, since many are not near.
 static uint32_t sieve(const mspringi_edge_grid *cells, const search *s, int32_t row, uint32_t from, uint32_t to,
                       uint32_t count) {
     *s->passed += to - from;

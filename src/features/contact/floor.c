@@ -285,11 +285,22 @@ mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *
     return made;
 }
 
-// Reserve the constraints of an implicit substep: with friction, for each particle.
+static bool has_friction(const mspringi_floor *floor) {
+    const mspringi_heights *heights = &floor->heights;
+    bool any = floor->friction > 0.0;
+    for (uint32_t i = 0; floor->plane_frictions && i < floor->plane_count; ++i)
+        any = any || floor->plane_frictions[i] > 0.0f;
+    for (uint32_t i = 0; heights->frictions && i + 1 < heights->count; ++i)
+        any = any || heights->frictions[i] > 0.0f;
+    return any;
+}
+
+// Reserve the constraints of an implicit substep: each particle may lie on a surface, some where two meet.
 static bool reserve_constraints(const mspringi_floor *floor, mspring_network *network) {
     const uint32_t surfaces = floor->plane_count + (floor->heights.count > 0);
-    const uint32_t contacts = surfaces < MSPRINGI_MAX_FLOOR_CONTACTS ? surfaces : MSPRINGI_MAX_FLOOR_CONTACTS;
-    const size_t count = (size_t)2 * contacts * network->topology.reserve.particle_end;
+    const size_t particles = network->topology.reserve.particle_end;
+    const size_t contacts = particles + (surfaces > 1 ? mspringi_floor_max_second_contacts(particles) : 0);
+    const size_t count = has_friction(floor) ? 2 * contacts : contacts;
     return mspringi_constraints_reserve(network, MSPRINGI_FLOOR_CONSTRAINT, count, count);
 }
 
@@ -395,7 +406,7 @@ static void exchange_impulses(mspringi_floor *floor) {
     floor->had_impulse = has_impulse;
 }
 
-// The floor goes on bearing what sleeps on it.
+// Keep the impulses on sleeping particles, which rest on the floor.
 static void keep_impulses(const mspring_network *network) {
     mspringi_floor *floor = network->floor;
     for (size_t slot = 0; slot < mspringi_used_slots(network); ++slot) {
@@ -455,7 +466,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     network->floor->is_missed = network->floor->is_second_try = false;
 }
 
-// A strip that was left out may have met the surface, and what has become of it there is lost.
+// Repeat the step if a strip that was left out may have met the surface.
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_floor *floor = network->floor;
     (void)attempt;

@@ -30,12 +30,12 @@ typedef struct mspringi_half_plane {
 typedef struct mspringi_heights {
     double x, y, spacing; ///< world coordinates
     double local_x, local_y;
-    uint32_t count; ///< 0: there are none
+    uint32_t count; ///< 0: no heights
     float *heights;
     double *normals;                        ///< [count - 1][2] of each straight part
-    float *frictions, *restitutions;        ///< [count - 1] likewise; NULL: all have the floor's
+    float *frictions, *restitutions;        ///< [count - 1] of each straight part; NULL: all have the floor's
     double friction, restitution;           ///< the floor's
-    double silt_depth, silt_rate;           ///< m and 1/s; if either is 0 there is none
+    double silt_depth, silt_rate;           ///< m and 1/s; no silt if either is 0
     float *highest[MSPRINGI_HEIGHT_LEVELS]; ///< [level][i]: the highest of 2^level of them from i 2^level on;
                                             ///< highest[0] is heights
 } mspringi_heights;
@@ -47,21 +47,28 @@ typedef struct mspringi_clearance {
     bool is_far;           ///< the strip stays in it for the substeps of the last survey
 } mspringi_clearance;
 
-/// Most surfaces that hold a particle in an implicit substep, the nearest ones: where these meet it has one place.
+/// Most surfaces with constraints of one particle in an implicit substep, the nearest ones. Two fix its position.
 #define MSPRINGI_MAX_FLOOR_CONTACTS 2u
+
+/// Most particles with constraints for a second surface: those near corners. Others have them for the nearest
+/// surface only. mspringi_floor_apply_all() keeps particles out of all surfaces after the substep.
+static inline size_t mspringi_floor_max_second_contacts(size_t particles) {
+    const size_t most = particles / 4 + 64;
+    return most < particles ? most : particles;
+}
 
 typedef struct mspringi_floor {
     mspringi_half_plane planes[MSPRING_MAX_PLANES];
     double given[MSPRING_MAX_PLANES][4];         ///< definition of the host
-    float *plane_frictions, *plane_restitutions; ///< [plane_count]; NULL: the next two hold for all
+    float *plane_frictions, *plane_restitutions; ///< [plane_count]; NULL: all have those of the floor
     mspringi_line lines[MSPRING_MAX_PLANES];     ///< in local coordinates
     uint32_t plane_count;
     mspringi_heights heights;
-    double friction, restitution;
+    double friction, restitution;   ///< of surfaces without their own
     mspringi_clearance *clearances; ///< [strip_count], and behind them the marks of blocks: floor_explicit.c
     mspringi_field start;           ///< [slot_count] positions before an implicit substep, m
     mspringi_state before;  ///< [slot_count] before a substep: velocities, or all of particles without springs
-    mspringi_field impulse; ///< [slot_count] N s on each slot in the last step
+    mspringi_field impulse; ///< [slot_count] on each slot in the last step, or in the present one so far, N s
     mspringi_field previous_impulse; ///< [slot_count] in the step before, while a step is taken
     size_t slot_count;
     double seconds;         ///< length of the substeps of the last survey or of the step out of reach, s
@@ -120,14 +127,14 @@ double mspringi_floor_distance(const mspringi_floor *floor, double x, double y);
 
 /* floor_clearance.c */
 
-/// Survey: find the clearance of each strip, and the strips that stay clear for so many seconds.
+/// Survey: find the clearance of each strip, and the strips that stay clear for `seconds`.
 void mspringi_floor_update_clearances(mspring_network *network, double seconds);
 
 /// True if a block of a strip near the surface may reach it in the same substeps.
 bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block);
 
-/// True if no particle can reach the surface in a step of so many seconds. Then the clearances of the last survey
-/// hold for each strip, too.
+/// True if no particle can reach the surface in a step of `seconds`. Then the clearances of the last survey hold
+/// for each strip, too.
 bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds);
 
 /// True if no particle did reach it in that step of substeps of h, by bounds from the outcome. A particle is missed
@@ -163,7 +170,7 @@ static inline bool mspringi_has_silt(const mspringi_heights *heights) {
     return heights->count > 0 && heights->silt_depth > 0.0 && heights->silt_rate > 0.0;
 }
 
-/// Share of the velocity that silt removes from a particle at (x, y) in so many seconds.
+/// Share of the velocity that silt removes from a particle at (x, y) in `seconds`.
 double mspringi_silt_damping(const mspringi_heights *heights, double x, double y, double seconds);
 
 /// Brake a particle in silt after a substep of h seconds.
@@ -210,7 +217,7 @@ void mspringi_floor_collide(const mspringi_floor *floor, mspringi_moved_particle
 void mspringi_floor_save_positions(mspring_network *network, float h);
 void mspringi_floor_apply_all(mspring_network *network, float h);
 
-/// Brake particles in silt after that.
+/// Brake particles in silt after mspringi_floor_apply_all().
 void mspringi_floor_apply_silt(const mspring_network *network, float h);
 
 #endif

@@ -20,7 +20,7 @@ static mspringi_line line_below(const mspringi_heights *heights, double x) {
     return mspringi_heights_line(heights, mspringi_heights_segment_below(heights, x));
 }
 
-// Deep in a narrow corner, where surfaces push to and fro: up to where all of them end.
+// Lift a point out of a narrow corner in which surfaces push it to and fro.
 static void lift(const mspringi_floor *floor, double *x, double *y) {
     for (uint32_t i = 0; i < floor->plane_count; ++i)
         put_onto(&floor->lines[i], x, y);
@@ -67,7 +67,7 @@ static double bounce_at(const mspringi_line *line, double h, double allowed, msp
     return mspringi_bounce(line->nx, line->ny, line->offset, line->friction, line->restitution, h, allowed, p);
 }
 
-// The part of the heights that it meets on its way, or else the one that it would end below.
+// Apply the part of the heights that the particle meets on its way, or else the one below its end.
 static double bounce_at_heights(const mspringi_floor *floor, double h, double allowed,
                                 mspringi_bouncing_particle *p) {
     const double x = p->x + h * p->vx, y = p->y + h * p->vy;
@@ -88,8 +88,8 @@ static bool bounce_at_surfaces(const mspringi_floor *floor, double h, double all
     return any > 0.0;
 }
 
-// No faster, in step, than before. (What has risen by rounding and lands again comes out of it by rounding faster:
-// turned back for that, whole bodies stopped that slid down a slope.)
+// Limit the speed to that before the bounce. A particle that rounding lifted and that lands again gets faster by
+// rounding. (When such particles were turned back instead, whole bodies that slid down a slope stopped.)
 static void slow_down(double most, mspringi_bouncing_particle *p) {
     const double square = mspringi_bouncing_particle_square(p);
     if (!(square > most * MSPRINGI_GROWTH_MARGIN))
@@ -111,7 +111,7 @@ bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx
         slow_down(most, p);
     if (!acts || is_free_way(floor, p->x, p->y, p->x + h * p->vx, p->y + h * p->vy))
         return acts;
-    // A corner that leads nowhere: back to where it came from, which takes and gives no energy, or no further.
+    // A corner without a free way: turn the particle back, which changes no energy, or else stop it.
     p->vx = -from_vx;
     p->vy = -from_vy;
     if (!is_free_way(floor, p->x, p->y, p->x + h * p->vx, p->y + h * p->vy))
@@ -121,13 +121,14 @@ bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx
 
 /* ---------------------------------------------------------------------------------------------- without springs */
 
-/// Where a particle meets a surface.
+/// Surface that a free particle meets, and when.
 typedef struct hit {
     mspringi_line line;
     double time;
 } hit;
 
-// (A part of the heights that it is below ends before it, where it would be lifted for nothing.)
+// Replace *first if the particle meets this line earlier. A line above the particle does not count: that part of
+// the heights ends before it.
 static void find_hit(const mspringi_line *line, double slop, const mspringi_free_particle *p, hit *first) {
     if (distance_from(line, p->x, p->y) < -mspringi_floor_slop(p->x, p->y))
         return;
@@ -156,7 +157,8 @@ static hit find_first_hit(const mspringi_floor *floor, double slop, const msprin
     return first;
 }
 
-// Pay for a lift with kinetic energy.
+// Push a free particle out of the surface, and take the energy of the lift from its speed. Return true if it was
+// inside.
 static bool push_out_free_particle(const mspringi_floor *floor, mspringi_free_particle *p) {
     const double x = p->x, y = p->y, square = p->wx * p->wx + p->wy * p->wy;
     if (!mspringi_floor_put_outside(floor, &p->x, &p->y))
@@ -168,9 +170,9 @@ static bool push_out_free_particle(const mspringi_floor *floor, mspringi_free_pa
     return true;
 }
 
-// Share of its end velocity that a particle may keep. One on a surface has the velocity of the end of the substep
-// at once, and may meet another surface with it. (Kernels leave such ones: free_kernel.h.) 0: it would rise above
-// its energy.
+// Share of its end velocity that a sliding particle may keep. It has the velocity of the end of the substep at
+// once, and may meet another surface with it. (Kernels leave such particles to this file: free_kernel.h.) 0: even
+// at rest it would end with more energy than it began with.
 static double kept_of(const mspringi_free_particle *start, const mspringi_free_particle *end, double since,
                       double x, double y) {
     const double vx = end->wx + since * end->ax, vy = end->wy + since * end->ay, square = vx * vx + vy * vy;
@@ -202,7 +204,7 @@ static bool leave_segment(const mspringi_floor *floor, const mspringi_bounce_par
     return lay;
 }
 
-// A particle that slid off its surface gets back the velocity of half a substep ago, across the way, too.
+// Correct the velocity of a particle that slid off its surface: half a substep ago, also across its way.
 static void leave_surface(const mspringi_floor *floor, const mspringi_bounce_params *how,
                           const mspringi_free_particle *start, const mspringi_free_particle *end, double *vx,
                           double *vy) {
@@ -244,7 +246,7 @@ bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const msprin
     if (acts && how->skew > 0.0)
         leave_surface(floor, how, &start, p, vx, vy);
     if (acts && (keep == 0.0 || !(mspringi_floor_distance(floor, x, y) >= -mspringi_floor_slop(x, y)))) {
-        // A corner that leads nowhere: it stays, and turns back as fast as it bounces.
+        // A corner without a free way: keep the position, and turn the velocity back by the restitution.
         const double e = restitution > MSPRINGI_MIN_RESTITUTION ? restitution : 0.0;
         p->x = start.x;
         p->y = start.y;

@@ -78,7 +78,7 @@ static box cover_strip(const mspring_network *network, const mspringi_strip *str
     return end_extent(&e, fastest);
 }
 
-// Take the part of a box where a line is not, as far as that is a box.
+// Cut a box down to a part that is clear of a line.
 static void keep_clear_of(const mspringi_line *line, box *clear) {
     if (line->ny == 0.0) {
         const double x = -line->offset / line->nx;
@@ -96,13 +96,14 @@ static void keep_clear_of(const mspringi_line *line, box *clear) {
         clear->max_y = fmin(clear->max_y, fmin(left, right));
 }
 
-// In single precision; far beyond all coordinates it does not matter where.
+// Round a bound to single precision. Bounds far beyond all coordinates are clamped.
 static float bound(double value) {
     return (float)fmax(-1e30, fmin(value, 1e30));
 }
 
-// The box around a strip, and reach metres on, less what the surface is in, less what rounding may do.
-static mspringi_clearance look_around(const mspringi_floor *floor, const box *strip, double reach) {
+// Find the clear box around a strip: its bounding box widened by `reach`, m, cut down to be clear of the surface,
+// less a margin for rounding.
+static mspringi_clearance find_clearance(const mspringi_floor *floor, const box *strip, double reach) {
     box clear = {strip->min_x - reach, strip->max_x + reach, -INFINITY, INFINITY};
     for (uint32_t i = 0; i < floor->plane_count; ++i)
         keep_clear_of(&floor->lines[i], &clear);
@@ -143,7 +144,8 @@ static double hardest_push(const mspring_network *network) {
     return (double)all;
 }
 
-// Half of it is twice as far as a particle gets by its speed, gravity and forces from outside.
+// Reach of a survey, m: four times the way of a particle by its speed, gravity and forces from outside. A strip is
+// far if half of it is clear, so that particles may be twice as fast as assumed.
 static double reach_of(const mspring_network *network, float fastest, double seconds) {
     const double push = fabs((double)network->settings.gravity_x) + fabs((double)network->settings.gravity_y) +
                         hardest_push(network);
@@ -173,7 +175,7 @@ void mspringi_floor_update_clearances(mspring_network *network, double seconds) 
             continue;
         const mspringi_bounds *b = &floor->clearances[i].clear;
         const box strip = {(double)b->min_x, (double)b->max_x, (double)b->min_y, (double)b->max_y};
-        floor->clearances[i] = look_around(floor, &strip, reach);
+        floor->clearances[i] = find_clearance(floor, &strip, reach);
         floor->is_near |= !floor->clearances[i].is_far;
         if (floor->heights.count > 0 && !floor->clearances[i].is_far)
             mspringi_floor_mark_blocks(network, &t->strips[i]);
@@ -187,30 +189,31 @@ bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi
     const size_t first = (size_t)block * MSPRINGI_WIDTH;
     const mspringi_bounds *all = &floor->clearances[strip - network->topology.strips].clear;
     const double way = 0.5 * floor->reach;
-    // Where the whole strip is clear, if that is enough.
+    // Usually the clear box of the whole strip is enough.
     const mspringi_bounds within = {bound((double)all->min_x + way), bound((double)all->max_x - way),
                                     bound((double)all->min_y + way), bound((double)all->max_y - way)};
     if (network->kernels->beyond(s->x, s->y, first, first + MSPRINGI_WIDTH, &within) != first)
         return false;
     float fastest = 0.0f;
     const box around = cover(network, first, first + MSPRINGI_WIDTH, &fastest);
-    return !look_around(floor, &around, floor->reach).is_far;
+    return !find_clearance(floor, &around, floor->reach).is_far;
 }
 
 /* ------------------------------------------------------------------------------------------- the whole network */
 
-/// Farthest that anybody looks for the surface, m.
+/// Largest reach of a search for the surface, m.
 #define FARTHEST 1e9
 
-// Find a box around the network that leaves it as much room again on all sides, at least for that reach.
+// Find a safe box around the network: a quarter of the free distance on all sides. Its reach is 0 if the surface is
+// nearer than twice `reach`.
 static mspringi_safe_box find_box(const mspring_network *network, const mspringi_floor *floor, double reach) {
     float fastest = 0.0f;
     double free = 0.0;
     const box all = cover(network, 0, mspringi_used_slots(network), &fastest);
-    for (double way = 2.0 * reach; way < FARTHEST && look_around(floor, &all, way).is_far; way *= 2.0)
+    for (double way = 2.0 * reach; way < FARTHEST && find_clearance(floor, &all, way).is_far; way *= 2.0)
         free = way;
     for (double more = 0.5 * free, least = 0.1 * free; more > least; more *= 0.5)
-        free += look_around(floor, &all, free + more).is_far ? more : 0.0;
+        free += find_clearance(floor, &all, free + more).is_far ? more : 0.0;
     const double quarter = 0.25 * free;
     const box around = {all.min_x - quarter, all.max_x + quarter, all.min_y - quarter, all.max_y + quarter};
     const double coordinate = fmin(fmin(-around.min_x, around.max_x), fmin(-around.min_y, around.max_y));
@@ -222,14 +225,14 @@ static mspringi_safe_box find_box(const mspring_network *network, const mspringi
         .origin_y = network->origin_y};
 }
 
-// True if all particles are in the box. place: bound on coordinates.
+// True if all particles are in the box. coordinate: bound on theirs.
 static bool is_in_box(const mspring_network *network, const mspringi_safe_box *room, float coordinate) {
     const mspringi_state *s = &network->state;
     const size_t slots = mspringi_used_slots(network);
     return coordinate < room->coordinate || network->kernels->beyond(s->x, s->y, 0, slots, &room->box) == slots;
 }
 
-// At least the largest part of a velocity; NaN if there is one.
+// Upper bound of all velocity components, m/s; NaN if one is NaN.
 static float fastest_of(const mspring_network *network) {
     const mspringi_guard *guard = &network->guard;
     const mspringi_largest_fn largest = network->kernels->largest;

@@ -33,9 +33,10 @@ void mspringi_floor_save_velocities(const mspring_network *network, const msprin
     memcpy(before->vy + slots.first, s->vy + slots.first, size);
 }
 
-/* -------------------------------------------------------------------------------------------------- what acts */
+/* ----------------------------------------------------------------------------------------------- one particle */
 
-static void put(const mspring_network *network, size_t slot, double x, double y, double vx, double vy) {
+// Store a particle's new state, and add the change to the floor's impulses.
+static void store_slot(const mspring_network *network, size_t slot, double x, double y, double vx, double vy) {
     const mspringi_state *s = &network->state;
     const mspringi_floor *floor = network->floor;
     const float after_x = (float)vx, after_y = (float)vy, mass = 1.0f / network->inverse_mass[slot];
@@ -52,7 +53,7 @@ static void bounce_slot(const mspring_network *network, const mspringi_floor_arg
         mspringi_bouncing_particle_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot],
                                         (double)g->vy[slot], from_vx, from_vy, g->damping, g->h, g->per_length);
     if (mspringi_floor_bounce(network->floor, g->h, from_vx, from_vy, &p))
-        put(network, slot, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
+        store_slot(network, slot, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
 }
 
 static void fly_slot(const mspring_network *network, const mspringi_floor_args *g, size_t slot) {
@@ -62,10 +63,10 @@ static void fly_slot(const mspring_network *network, const mspringi_floor_args *
         (double)g->from_vy[slot], g->damping, g->h);
     double vx, vy;
     if (mspringi_floor_move_free_particle(network->floor, &how, &p, &vx, &vy))
-        put(network, slot, p.x, p.y, vx, vy);
+        store_slot(network, slot, p.x, p.y, vx, vy);
 }
 
-// Of velocities that lose such a share while forces act for so long, before they move for h.
+// Damping of velocities that lose the share `loss` while forces act for `time`, before they move for h.
 static mspringi_damping damping_of(const mspring_network *network, float h, float time, float loss) {
     return (mspringi_damping){.keep = 1.0 - (double)loss,
                               .scale = (double)h / (double)mspringi_gain(network->settings.global_damping, time)};
@@ -115,7 +116,8 @@ static mspringi_floor_args args_of(const mspring_network *network, const mspring
     };
 }
 
-// bare: where there is no surface, but may be silt. may_pass: a particle may have come from below.
+// Apply the floor to a block. bare: box without surface, but perhaps with silt. may_pass: a particle may have come
+// from below the surface.
 static void touch_block(const mspring_network *network, const mspringi_floor_args *args,
                         const mspringi_bounds *bare, bool may_pass, bool is_loose, size_t block) {
     const mspringi_floor_fn act = is_loose ? network->kernels->bounce_free : network->kernels->bounce;
@@ -150,8 +152,8 @@ static size_t next_marked(const mspring_network *network, size_t block, size_t n
     return block < next ? block : next;
 }
 
-// Look at the blocks that are not clear, or were not before the substep: heights may be in the way to a place that
-// is clear. next: the first one that is not clear.
+// Apply the floor to blocks that are not clear, or were not before the substep: a particle may have passed a ridge
+// on its way to a clear place. next: the first block that is not clear.
 static void touch_marked(const mspring_network *network, const mspringi_floor_args *args,
                          const mspringi_bounds *bare, bool is_loose, slot_range slots, size_t next) {
     const mspringi_beyond_fn beyond = network->kernels->beyond;
@@ -166,7 +168,7 @@ static void touch_marked(const mspring_network *network, const mspringi_floor_ar
     }
 }
 
-// Look at the blocks of a strip that are not clear.
+// Apply the floor to the blocks of a strip that are not clear.
 static void touch_slots(const mspring_network *network, const mspringi_strip *strip, bool is_loose,
                         slot_range slots, const mspringi_sweep *substep) {
     const mspringi_bounds *clear = clear_of(network, strip);
@@ -200,7 +202,7 @@ void mspringi_floor_apply_loose(const mspring_network *network, const mspringi_s
         touch_slots(network, strip, true, slots_of(span, 1), substep);
 }
 
-/* ------------------------------------------------------------------------------------------------ what is clear */
+/* ---------------------------------------------------------------------------------------------------- clearance */
 
 // Slots of a strip's rows.
 static slot_range row_slots_of(const mspring_network *network, const mspringi_strip *strip) {
@@ -267,8 +269,8 @@ bool mspringi_floor_is_isolated(const mspring_network *network, size_t slot) {
     return solver->ops->is_isolated(network, solver->object, slot);
 }
 
-// From the first slot on that may be alone.
-static slot_range alone_slots(const mspring_network *network) {
+// Slots from the first that may have an isolated particle.
+static slot_range isolated_slots(const mspring_network *network) {
     const mspringi_solver *solver = network->running;
     slot_range slots = loose_slots(network);
     if (solver->ops->has_isolated && solver->ops->has_isolated(solver->object))
@@ -277,7 +279,7 @@ static slot_range alone_slots(const mspring_network *network) {
 }
 
 void mspringi_floor_save_isolated(const mspring_network *network) {
-    const slot_range slots = alone_slots(network);
+    const slot_range slots = isolated_slots(network);
     const mspringi_state *s = &network->state, *before = &network->floor->before;
     const size_t size = (slots.end - slots.first) * sizeof *s->x;
     memcpy(before->x + slots.first, s->x + slots.first, size);
@@ -326,7 +328,7 @@ static void fly_free(const mspring_network *network, size_t slot, const gliding 
     p.wx -= taken * p.wx;
     p.wy -= taken * p.wy;
     if (mspringi_floor_move_free_particle(network->floor, &g->how, &p, &to_vx, &to_vy) || taken > 0.0) {
-        put(network, slot, p.x, p.y, g->after * to_vx, g->after * to_vy);
+        store_slot(network, slot, p.x, p.y, g->after * to_vx, g->after * to_vy);
         return;
     }
     mspringi_set_x(s, slot, p.x);
@@ -335,7 +337,7 @@ static void fly_free(const mspring_network *network, size_t slot, const gliding 
 
 void mspringi_floor_step_isolated(mspring_network *network, float h, mspringi_field base, uint32_t count) {
     const mspringi_state *s = &network->state, *before = &network->floor->before;
-    const slot_range slots = alone_slots(network);
+    const slot_range slots = isolated_slots(network);
     const float *inverse_mass = mspringi_active_inverse_mass(network);
     const gliding how = glide(network, h);
     for (size_t slot = slots.first; slot < slots.end; ++slot) {

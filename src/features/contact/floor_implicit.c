@@ -1,13 +1,16 @@
-/// Floor after an implicit substep: projection of particles with springs.
+/// Floor after an implicit substep: projection of particles with springs onto the surface.
 ///
-/// A particle that touches the surface (after Moreau, 1988, and Stewart and Trinkle, 1996: contact as a condition
-/// on the velocity at the end of a substep) does not move into it, and what friction takes from its velocity along
-/// the surface is at most friction times what the surface has given it across:
+/// Within the substep, constraints of the linear system keep particles out (solvers/implicit/implicit_floor.c).
+/// They give way a little, and some particles have none, so this corrects the state afterwards.
+///
+/// Contact is a condition on the velocity at the end of a substep (Moreau, 1988; Stewart and Trinkle, 1996). A
+/// particle at the surface does not move into it. Friction changes its tangential speed by at most the coefficient
+/// times the change of its normal speed:
 ///
 ///     v_n' = max(v_n, 0);   |v_t - v_t'| <= friction (v_n' - v_n)
 ///
-/// with v_t' = 0 where that is enough. The position follows: the particle lies on the surface, less far along it by
-/// what friction has taken. It is the springs that throw a structure back, and not the speed of a particle of it.
+/// with v_t' = 0 if that bound allows it. The particle is then put onto the surface, and back along it by the
+/// change of the tangential speed. There is no restitution: springs throw a structure back.
 #include "features/contact/floor.h"
 
 #include <math.h>
@@ -19,7 +22,7 @@
 #define ROUNDS 4
 
 // Apply one straight surface to a particle. Return true if it acted.
-static bool touch(const mspringi_line *line, mspringi_moved_particle *b, double h, double slop) {
+static bool collide_line(const mspringi_line *line, mspringi_moved_particle *b, double h, double slop) {
     const double distance = line->nx * b->x + line->ny * b->y + line->offset;
     if (!(distance < slop))
         return false;
@@ -40,22 +43,22 @@ static bool touch(const mspringi_line *line, mspringi_moved_particle *b, double 
     return approaches || distance < 0.0;
 }
 
-static bool touch_all(const mspringi_floor *floor, mspringi_moved_particle *b, double h, double slop) {
+static bool collide_lines(const mspringi_floor *floor, mspringi_moved_particle *b, double h, double slop) {
     const mspringi_heights *heights = &floor->heights;
     bool any = false;
     for (uint32_t i = 0; i < floor->plane_count; ++i)
-        any |= touch(&floor->lines[i], b, h, slop);
+        any |= collide_line(&floor->lines[i], b, h, slop);
     if (heights->count > 0) {
         const int64_t part = mspringi_heights_first_hit(heights, b->start_x, b->start_y, b->x, b->y);
         const mspringi_line line = mspringi_heights_line(heights, part);
-        any |= touch(&line, b, h, slop);
+        any |= collide_line(&line, b, h, slop);
     }
     return any;
 }
 
 void mspringi_floor_collide(const mspringi_floor *floor, mspringi_moved_particle *b, double h) {
     const double slop = mspringi_floor_slop(b->x, b->y);
-    for (int round = 0; round < ROUNDS && touch_all(floor, b, h, slop);)
+    for (int round = 0; round < ROUNDS && collide_lines(floor, b, h, slop);)
         ++round;
     if (!(mspringi_floor_distance(floor, b->x, b->y) < -slop))
         return;
@@ -105,7 +108,7 @@ static void act_on_block(const mspring_network *network, size_t first, const msp
     }
 }
 
-// Returns whether any particle was looked at.
+// Return true if any particle was checked.
 static bool act_on_spans(const mspring_network *network, const mspringi_bounds *clear, const mspringi_span *spans,
                          uint32_t span_count, double h, act_fn act) {
     const mspringi_state *s = &network->state;

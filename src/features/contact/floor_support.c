@@ -9,8 +9,9 @@
 #include "features/contact/contacts.h"
 #include "features/contact/floor.h"
 
-static void add(mspringi_contacts *contacts, const mspringi_line *line, uint32_t p, uint32_t slot, double x,
-                double y, double vx, double vy) {
+// Add the support of a particle by a surface, if it is within the thickness.
+static void add_support(mspringi_contacts *contacts, const mspringi_line *line, uint32_t p, uint32_t slot, double x,
+                        double y, double vx, double vy) {
     const double room = line->nx * x + line->ny * y + line->offset;
     if (!(room < contacts->thickness))
         return;
@@ -38,11 +39,11 @@ void mspringi_floor_support_find(const mspring_network *network, mspringi_contac
             continue;
         for (uint32_t l = 0; l < floor->plane_count && contacts->support_count < before + MSPRINGI_MAX_SUPPORTS;
              ++l)
-            add(contacts, &floor->lines[l], i, slot, x, y, k->v[i].x, k->v[i].y);
+            add_support(contacts, &floor->lines[l], i, slot, x, y, k->v[i].x, k->v[i].y);
         if (floor->heights.count > 0 && contacts->support_count < before + MSPRINGI_MAX_SUPPORTS) {
             const mspringi_line line =
                 mspringi_heights_line(&floor->heights, mspringi_heights_segment_below(&floor->heights, x));
-            add(contacts, &line, i, slot, x, y, k->v[i].x, k->v[i].y);
+            add_support(contacts, &line, i, slot, x, y, k->v[i].x, k->v[i].y);
         }
     }
 }

@@ -3,9 +3,9 @@
 
 #include <math.h>
 
-/// Most looks at a field of heights on the way of one particle in one substep; a way that grazes a long slope is
-/// one that could take more.
-#define MOST_LOOKS 4096
+/// Most blocks of heights checked for one particle in a substep. Only a way that grazes a long slope could take
+/// more.
+#define MOST_CHECKS 4096
 
 /// Knot number of a way that meets no knot.
 #define NO_KNOT ((int64_t)-1)
@@ -66,7 +66,7 @@ mspringi_line mspringi_heights_line(const mspringi_heights *h, int64_t part) {
     return line;
 }
 
-/// The way of a particle, straight from its start.
+/// Straight way of a particle above the heights.
 typedef struct passage {
     const mspringi_heights *heights;
     double start_x, start_y, along_x, along_y;
@@ -87,13 +87,13 @@ static bool may_meet(const passage *w, int64_t first, uint32_t level) {
     return is_below(w, first, highest) || is_below(w, last, highest);
 }
 
-// The first knot that the way comes below, on the way from one edge between knots to another; edge i is left of
-// knot i. NO_KNOT: none. Looks at blocks of knots that double while the way is above them: an explosion above
-// 60,000 heights looks at 30 blocks a particle, not at thousands of knots.
+// Find the first knot below which the way passes between two edges; edge i is left of knot i. NO_KNOT: none. Blocks
+// of knots double in size while the way is above them: an explosion above 60,000 heights checks 30 blocks a
+// particle, not thousands of knots.
 static int64_t knot_met(const passage *w, int64_t edge, int64_t stop) {
     const int64_t onward = edge < stop ? 1 : -1;
     uint32_t level = 0;
-    for (uint32_t looks = 0; edge != stop && looks < MOST_LOOKS; ++looks) {
+    for (uint32_t checks = 0; edge != stop && checks < MOST_CHECKS; ++checks) {
         const int64_t size = (int64_t)1 << level, first = onward > 0 ? edge : edge - size;
         const bool fits = size <= onward * (stop - edge);
         if (fits && !may_meet(w, first, level)) {
@@ -119,7 +119,7 @@ int64_t mspringi_heights_first_hit(const mspringi_heights *h, double start_x, do
     return first < last ? knot - 1 : knot;
 }
 
-// The highest of the knots first ... end - 1.
+// Highest of the knots first to end - 1.
 static float highest_among(const mspringi_heights *h, uint32_t first, uint32_t end) {
     float highest = h->heights[first];
     for (uint32_t level = 0; first < end; ++level, first /= 2, end /= 2) {

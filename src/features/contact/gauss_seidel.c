@@ -4,38 +4,41 @@
 /// Accumulated impulses are clamped, so a later sweep may take back impulses of an earlier one (Catto 2005).
 /// Friction acts on the surface, at a distance from the edge. Its couple on the edge conserves angular momentum.
 ///
-/// A heavy body that presses a light one against another needs more sweeps. Constraints that would get deeper are
-/// swept until none does. Bodies at rest on each other have none.
+/// mspringi_contact_sweep has three parts:
 ///
-/// Several bounces together may add energy, because one throws a point at another edge. Then all of them bounce
-/// less.
+/// 1. sweep_all() visits all constraints, and floor supports, a given number of times.
+/// 2. Several bounces together may add energy, because one throws a point at another edge. Then all of them bounce
+///    less, and are swept again.
+/// 3. A heavy body that presses a light one against another needs more sweeps. So resolve_penetration() sweeps
+///    constraints that would get deeper until none does. Bodies at rest on each other have none.
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
 
-/// Overlap that bodies may keep, as a share of the thickness. Deeper constraints, and all of colliders, may close
-/// at this speed at most, in thicknesses per substep.
-#define GIVEN_SHARE 0.05
-#define GIVEN_SPEED 1e-3
+/// Overlap up to which bodies may get deeper, as a share of the thickness; colliders: none. Beyond it, a constraint
+/// may close at this speed at most, in thicknesses per substep.
+#define KEPT_DEPTH_SHARE 0.05
+#define CLOSING_SPEED 1e-3
 
-/// Limits on sweeps of penetrating constraints: most sweeps, least sweeps, visits of constraints, and last sweeps
-/// of colliders alone.
-#define MOST_GIVEN_SWEEPS 256
-#define LEAST_GIVEN_SWEEPS 16
-#define MOST_LOOKS 16384
+/// Sweeps of penetrating constraints: most and least of them; between these, visits of constraints. Then most
+/// sweeps of colliders alone.
+#define MOST_DEPTH_SWEEPS 256
+#define LEAST_DEPTH_SWEEPS 16
+#define DEPTH_VISITS 16384
 #define MOST_COLLIDER_SWEEPS 64
 
-/// Factor on bounces that add energy, and rounds until there are none. A smaller share of work is rounding.
+/// Factor on bounces that add energy, and most rounds of it; the last one removes bounces. Work below this share is
+/// rounding.
 #define BOUNCE_SHARE 0.5
 #define MOST_BOUNCES 3
-#define SEEN_SHARE 1e-9
+#define ROUNDING_SHARE 1e-9
 
 /// Depth at the end of a constraint that makes the interval too long, as a share of the thickness.
-#define MOST_SHARE 0.1
+#define DEEPEST_SHARE 0.1
 
 /// Visits of constraints that take as long as a comparison of a point with an edge.
 #define VISITS_OF_WORK 3u
 
-/* --------------------------------------------------------------------------------------------------- one row */
+/* -------------------------------------------------------------------------------------------- one constraint */
 
 // True if a constraint without an impulse needs none.
 MSPRINGI_ALWAYS_INLINE bool is_idle(const mspringi_contact_constraint *t, double speed) {
@@ -59,12 +62,13 @@ MSPRINGI_ALWAYS_INLINE void apply_impulse(const mspringi_contact_nodes *k, const
 // Accumulate the normal impulse. Return the change.
 MSPRINGI_ALWAYS_INLINE double add_normal_impulse(mspringi_contact_constraint *t, double speed) {
     const double sum = t->normal_impulse + (t->target_speed - speed) * t->normal_mass,
-                 across = sum > 0.0 ? sum : 0.0;
-    const double by = across - t->normal_impulse;
-    t->normal_impulse = across;
+                 total = sum > 0.0 ? sum : 0.0;
+    const double by = total - t->normal_impulse;
+    t->normal_impulse = total;
     return by;
 }
 
+// Find and apply the normal impulse alone.
 static void push_apart(const mspringi_contact_nodes *k, mspringi_contact_constraint *t) {
     const double speed = mspringi_normal_speed(t, k->v);
     if (is_idle(t, speed))
@@ -81,7 +85,7 @@ static double tangent_speed(const mspringi_contact_constraint *t, const mspringi
            t->surface_speed;
 }
 
-// Apply normal and tangential impulse together. couple_response tells the effect of the normal one on the
+// Find and apply normal and tangential impulse together. couple_response gives the effect of the normal one on the
 // tangential speed in advance.
 MSPRINGI_ALWAYS_INLINE void solve_constraint(const mspringi_contact_nodes *k, mspringi_contact_constraint *t) {
     const mspringi_velocity p = k->v[t->p], a = k->v[t->a], b = k->v[t->b];
@@ -99,9 +103,10 @@ MSPRINGI_ALWAYS_INLINE void solve_constraint(const mspringi_contact_nodes *k, ms
     const double slide = t->nx * y - t->ny * x + turning + by * t->couple_response,
                  sum = t->tangent_impulse - slide * t->tangent_mass;
     const double not_less = sum > -most ? sum : -most, along = not_less < most ? not_less : most;
-    const double rub = along - t->tangent_impulse;
+    const double tangent = along - t->tangent_impulse;
     t->tangent_impulse = along;
-    apply_impulse(k, t, by * t->nx - rub * t->ny, by * t->ny + rub * t->nx, rub * t->couple_y, -rub * t->couple_x);
+    apply_impulse(k, t, by * t->nx - tangent * t->ny, by * t->ny + tangent * t->nx, tangent * t->couple_y,
+                  -tangent * t->couple_x);
 }
 
 /// Bounds on constraints after the sweeps of an interval.
@@ -111,7 +116,7 @@ typedef struct penetration {
 } penetration;
 
 static penetration penetration_limit(const mspringi_contacts *contacts, double h, double share) {
-    return (penetration){h, GIVEN_SPEED * contacts->thickness / (double)contacts->h, share * contacts->thickness};
+    return (penetration){h, CLOSING_SPEED * contacts->thickness / (double)contacts->h, share * contacts->thickness};
 }
 
 // True if a constraint would end too deep, and deeper than it begins.
@@ -124,7 +129,7 @@ MSPRINGI_ALWAYS_INLINE bool is_penetrating(const mspringi_contacts *contacts, co
 
 // Return true if any constraint penetrated.
 static bool sweep_penetrating(mspringi_contacts *contacts, double h, bool of_colliders) {
-    const penetration of_bodies = penetration_limit(contacts, h, GIVEN_SHARE),
+    const penetration of_bodies = penetration_limit(contacts, h, KEPT_DEPTH_SHARE),
                       of_others = penetration_limit(contacts, h, 0.0);
     bool any = false;
     contacts->work += contacts->constraint_count / VISITS_OF_WORK;
@@ -142,8 +147,8 @@ static bool sweep_penetrating(mspringi_contacts *contacts, double h, bool of_col
 
 // Sweep penetrating constraints until there are none. False: too many sweeps.
 static bool resolve_penetration(mspringi_contacts *contacts, double h) {
-    const uint32_t by_looks = LEAST_GIVEN_SWEEPS + MOST_LOOKS / (contacts->constraint_count + 1);
-    const uint32_t most = by_looks < MOST_GIVEN_SWEEPS ? by_looks : MOST_GIVEN_SWEEPS;
+    const uint32_t by_visits = LEAST_DEPTH_SWEEPS + DEPTH_VISITS / (contacts->constraint_count + 1);
+    const uint32_t most = by_visits < MOST_DEPTH_SWEEPS ? by_visits : MOST_DEPTH_SWEEPS;
     for (uint32_t n = 0; n < most; ++n) {
         if (!sweep_penetrating(contacts, h, false))
             return true;
@@ -180,7 +185,7 @@ static bool gained_energy(const mspringi_contacts *contacts) {
         work += t->tangent_impulse * (tangent_speed(t, k->v_start) + tangent_speed(t, k->v));
         size += t->normal_impulse * t->normal_impulse / t->normal_mass;
     }
-    return work > SEEN_SHARE * size;
+    return work > ROUNDING_SHARE * size;
 }
 
 static void reduce_restitution(const mspringi_contacts *contacts, double share) {
@@ -196,7 +201,7 @@ bool mspringi_contact_sweep(mspringi_contacts *contacts, double h, uint32_t swee
     }
     if (resolve_penetration(contacts, h))
         return true;
-    const penetration most = penetration_limit(contacts, h, MOST_SHARE);
+    const penetration most = penetration_limit(contacts, h, DEEPEST_SHARE);
     for (uint32_t i = 0; i < contacts->constraint_count; ++i)
         if (is_penetrating(contacts, &contacts->constraints[i], &most))
             return false;

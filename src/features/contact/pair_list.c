@@ -3,13 +3,16 @@
 ///
 /// All motion is relative to the mean of the outline. The candidates, and the number of quiet substeps, follow from
 /// positions and velocities alone, not from when the list was made, nor from how far it reaches.
+///
+/// mspringi_pair_list_scan calls mspringi_pair_list_refresh. That measures the points (measure_points()), makes a
+/// new list if the old one may lack pairs (make_list()), and collects the candidates (collect_candidates()).
 #include <math.h>
 #include <string.h>
 
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
 
-/// Reach of a scan beyond the thickness: a share of it, plus the way of so many steps, which is bounded by another
+/// Required reach beyond the thickness: a share of it, plus the way of these steps; together at most another
 /// thickness.
 #define LEAST_SHARE 0.15
 #define STEPS_AHEAD 4.0
@@ -35,7 +38,7 @@
 
 /* ----------------------------------------------------------------------------------------------------- distance */
 
-// Of the point from the edge, or from the surface of a collider.
+// Distance of a point from an edge, or from a collider's surface, m.
 static double distance_of(const mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
     const mspring_id a = contacts->outline.a[edge], b = contacts->outline.b[edge];
     const mspringi_closest_point at = mspringi_closest_point_on_edge(
@@ -51,7 +54,7 @@ typedef struct mean_motion {
     double vx, vy, wx, wy;
 } mean_motion;
 
-// Where colliders are, and how fast.
+// Find positions and velocities of collider points, and add these to the sums.
 static void measure_colliders(const mspring_network *network, mspringi_contacts *contacts, mean_motion *sum) {
     const mspringi_colliders *c = &contacts->colliders;
     if (c->count == 0)
@@ -70,12 +73,12 @@ static void measure_colliders(const mspring_network *network, mspringi_contacts 
     }
 }
 
-// A velocity that is no number makes the mean none, and so all that are compared.
+// Larger of two values; NaN if the found one is. One velocity that is NaN makes the mean NaN, and so all.
 static double max_or_nan(double known, double found) {
     return found <= known ? known : found;
 }
 
-// Largest squares of their motion relative to the mean.
+// Raise the largest squares of motion relative to the mean by those of collider points.
 static void compare_colliders(const mspringi_contacts *contacts, const mean_motion *mean, double *speed,
                               double *moved) {
     const mspringi_colliders *c = &contacts->colliders;
@@ -96,7 +99,8 @@ static void compare_colliders(const mspringi_contacts *contacts, const mean_moti
     }
 }
 
-// Where the points are, how fast beside their mean, and how far they have come since the list was made.
+// Find the points' positions, largest speed and largest displacement since the list was made, both relative to the
+// mean.
 static void measure_points(const mspring_network *network, mspringi_contacts *contacts) {
     const mspringi_outline *o = &contacts->outline;
     const mspringi_state *s = &network->state;
@@ -138,7 +142,7 @@ static void measure_points(const mspring_network *network, mspringi_contacts *co
 
 /* -------------------------------------------------------------------------------------------------------- list */
 
-// Points of colliders are in no group of particles: what is may touch them.
+// Particles of different groups never touch. Collider points are in no group, so all may touch them.
 static bool are_in_one_group(const mspring_network *network, mspring_id p, mspring_id q) {
     const uint32_t *group = network->groups.of_particle, particles = network->topology.particle_count;
     return !group || p >= particles || q >= particles || group[p] == group[q];
@@ -168,7 +172,7 @@ static bool is_excluded(const mspring_network *network, mspringi_contacts *conta
     return true;
 }
 
-// True if a point and an edge are a pair.
+// True if a point and an edge are within reach, and may touch: then they are a pair.
 static bool are_near(const mspring_network *network, mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
     const mspringi_outline *o = &contacts->outline;
     const mspring_id a = o->a[edge], b = o->b[edge];
@@ -188,7 +192,7 @@ static void sift(uint32_t *heap, uint32_t at, uint32_t count) {
     heap[at] = moved;
 }
 
-// Sort by insertion what is in order but for this many moves a number: it is as a rule.
+// Most moves per number of an insertion sort. Edges found are nearly in order as a rule; else a heap sorts them.
 #define FEW_MOVES 8u
 
 static void sort(uint32_t *numbers, uint32_t count) {
@@ -213,7 +217,7 @@ static void sort(uint32_t *numbers, uint32_t count) {
     }
 }
 
-// Add the pairs of a point. False: there is no room for them, or they take too long to find.
+// Add the pairs of a point, by rising edges. False: there is no room for them, or they take too long to find.
 static bool list_pairs_of_point(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
     mspringi_edge_grid *cells = &contacts->cells;
     const uint32_t found = mspringi_edge_grid_search(network, contacts, p),
@@ -232,6 +236,7 @@ static bool list_pairs_of_point(const mspring_network *network, mspringi_contact
     return has_room && is_done;
 }
 
+// Give a node a dense number, unless it has one.
 static void activate(mspringi_contact_nodes *active, mspring_id p) {
     if (active->number[p] != MSPRING_NONE)
         return;
@@ -239,7 +244,7 @@ static void activate(mspringi_contact_nodes *active, mspring_id p) {
     active->particles[active->count++] = p;
 }
 
-// Activate what is joined to a corner below an id.
+// Activate a corner and its neighbours on the outline, if it has an id below `end`.
 static void activate_neighbours(mspringi_contacts *contacts, mspring_id corner, mspring_id end) {
     const mspringi_outline *o = &contacts->outline;
     if (corner >= end)
@@ -251,8 +256,8 @@ static void activate_neighbours(mspringi_contacts *contacts, mspring_id corner, 
     }
 }
 
-// Activate the nodes of candidates below an id, and their neighbours on the outline: corners compare incident
-// edges.
+// Activate the nodes of candidates with ids below `end`, and the neighbours of edge ends, which
+// belongs_to_other_edge() compares.
 static void activate_below(mspringi_contacts *contacts, mspring_id end) {
     mspringi_contact_nodes *active = &contacts->nodes;
     const mspringi_outline *o = &contacts->outline;
@@ -270,7 +275,7 @@ static void activate_below(mspringi_contacts *contacts, mspring_id end) {
     }
 }
 
-// Edges join particles, or points of one collider.
+// Number all nodes of candidates densely, particles first, and store the numbers in the candidates.
 static void activate_all(mspringi_contacts *contacts) {
     mspringi_contact_nodes *active = &contacts->nodes;
     for (uint32_t i = 0; i < active->count; ++i)
@@ -304,7 +309,7 @@ static double guaranteed_reach(const mspringi_contacts *contacts) {
     return contacts->reach - 2.0 * contacts->moved;
 }
 
-// List all pairs this near.
+// List all pairs nearer than `reach`. False: there is no room for them, or they take too long to find.
 static bool make_list(const mspring_network *network, mspringi_contacts *contacts, double reach) {
     const mspringi_outline *o = &contacts->outline;
     contacts->count = 0;
@@ -332,6 +337,7 @@ static double travel_per_substep(const mspringi_contacts *contacts) {
            MSPRINGI_DRIFT_FRACTION * contacts->thickness * h / contacts->dt;
 }
 
+// Substeps for which candidates are collected.
 static double candidate_substeps(const mspringi_contacts *contacts) {
     const double substeps = CANDIDATE_FRACTION * contacts->thickness / (2.0 * travel_per_substep(contacts));
     return substeps > CANDIDATE_SUBSTEPS       ? CANDIDATE_SUBSTEPS
@@ -363,20 +369,20 @@ static void collect_candidates(mspringi_contacts *contacts) {
                           4.0 * MSPRINGI_SPEED_MARGIN * (double)contacts->h * contacts->speed;
     const double complete = required_reach(contacts), most = wanted < complete ? wanted : complete;
     double least = contacts->reach * contacts->reach, square;
-    uint32_t hot = 0;
+    uint32_t count = 0;
     contacts->nearest = contacts->reach;
     for (uint32_t i = 0; i < contacts->count; ++i) {
-        contacts->candidates[hot].pair = i;
+        contacts->candidates[count].pair = i;
         if (are_loose(contacts, &contacts->list[i], &square)) {
             least = square >= least ? least : square;
-            hot += !(square > most * most);
+            count += !(square > most * most);
             continue;
         }
         const double distance = distance_of(contacts, contacts->list[i].point, contacts->list[i].edge);
         contacts->nearest = distance >= contacts->nearest ? contacts->nearest : distance;
-        hot += !(distance > most);
+        count += !(distance > most);
     }
-    contacts->candidate_count = hot;
+    contacts->candidate_count = count;
     least = sqrt(least);
     contacts->nearest = least >= contacts->nearest ? contacts->nearest : least;
     activate_all(contacts);
@@ -401,12 +407,12 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
     }
     collect_candidates(contacts);
     const uint32_t valid = valid_substeps(contacts);
-    const uint32_t hot = (uint32_t)candidate_substeps(contacts);
-    contacts->valid = valid < hot ? valid : hot;
+    const uint32_t planned = (uint32_t)candidate_substeps(contacts);
+    contacts->valid = valid < planned ? valid : planned;
     return true;
 }
 
-/* -------------------------------------------------------------------------------------------------------- look */
+/* -------------------------------------------------------------------------------------------------------- scan */
 
 static uint32_t count_quiet(mspringi_contacts *contacts) {
     const double way = 2.0 * travel_per_substep(contacts);

@@ -1,4 +1,4 @@
-/// Definition of grips, set by the host, and their law.
+/// Definition of grips, set by the host; target and bound of the force.
 #include "features/grips/grips.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 
 #define STRONGEST 1e30f
 
-/* --------------------------------------------------------------------------------------------------------- law */
+/* -------------------------------------------------------------------------------------------- target and bound */
 
 mspringi_grip_target mspringi_grip_target_at(const mspring_network *network, const mspringi_grip *grip,
                                              double share) {
@@ -47,11 +47,21 @@ void mspringi_grips_finish_step(mspring_network *network) {
     }
 }
 
+bool mspringi_grips_are_finite(const mspring_network *network) {
+    bool finite = true;
+    for (uint32_t i = 0; i < mspringi_grip_count(network); ++i) {
+        const mspringi_grip *grip = &network->grips->list[i];
+        finite = finite && isfinite(grip->impulse_x) && isfinite(grip->impulse_y) && isfinite(grip->from_x) &&
+                 isfinite(grip->from_y);
+    }
+    return finite;
+}
+
 const mspringi_feature_state mspringi_state_of_grips = {{NULL, 0}, NULL};
 
 /* ------------------------------------------------------------------------------------------------- the setting */
 
-// NULL if there is none.
+// Find a grip by its id; NULL without one.
 static mspringi_grip *find(const mspring_network *network, mspring_id id) {
     for (uint32_t i = 0; i < mspringi_grip_count(network); ++i)
         if (network->grips->list[i].id == id)
@@ -59,7 +69,7 @@ static mspringi_grip *find(const mspring_network *network, mspring_id id) {
     return NULL;
 }
 
-static void drop(mspringi_grips *grips, mspringi_grip *grip) {
+static void remove_from_list(mspringi_grips *grips, mspringi_grip *grip) {
     mspringi_grip *last = &grips->list[--grips->count];
     for (; grip < last; ++grip)
         *grip = grip[1];
@@ -83,7 +93,7 @@ mspring_result mspringi_grips_reserve(mspring_network *network) {
 void mspringi_grips_forget(mspring_network *network, mspring_id particle) {
     for (uint32_t i = mspringi_grip_count(network); i-- > 0;)
         if (network->grips->list[i].particle == particle)
-            drop(network->grips, &network->grips->list[i]);
+            remove_from_list(network->grips, &network->grips->list[i]);
 }
 
 #define NO_GRIP "there is no grip %s"
@@ -130,12 +140,12 @@ static mspring_result check_grip(mspring_network *network, const mspring_grip_de
     return MSPRING_OK;
 }
 
-// Tell that the force on a grip's particle is another from now on.
-static void tell(mspring_network *network, const mspringi_grip *grip) {
+// Notify a change of the force on a grip's particle.
+static void notify_grip(mspring_network *network, const mspringi_grip *grip) {
     mspringi_notify_change(network, MSPRINGI_CHANGED_GRIP, network->topology.slot_of_particle[grip->particle]);
 }
 
-static mspringi_grip made_of(const mspring_grip_def *def, mspring_id id) {
+static mspringi_grip make_grip(const mspring_grip_def *def, mspring_id id) {
     return (mspringi_grip){.id = id,
                            .particle = def->particle,
                            .stiffness = def->stiffness,
@@ -165,10 +175,10 @@ mspring_result mspring_network_add_grip(mspring_network *network, const mspring_
     if (result != MSPRING_OK)
         return result;
     mspringi_grips *grips = network->grips;
-    grips->list[grips->count] = made_of(def, grips->next_id++);
+    grips->list[grips->count] = make_grip(def, grips->next_id++);
     if (grip)
         *grip = grips->list[grips->count].id;
-    tell(network, &grips->list[grips->count++]);
+    notify_grip(network, &grips->list[grips->count++]);
     return MSPRING_OK;
 }
 
@@ -177,8 +187,8 @@ mspring_result mspring_network_remove_grip(mspring_network *network, mspring_id 
     const mspring_result result = find_or_fail(network, grip, &found);
     if (result != MSPRING_OK)
         return result;
-    tell(network, found);
-    drop(network->grips, found);
+    notify_grip(network, found);
+    remove_from_list(network->grips, found);
     return MSPRING_OK;
 }
 
@@ -191,15 +201,15 @@ mspring_result mspring_network_set_grip(mspring_network *network, mspring_id gri
     if (result != MSPRING_OK)
         return result;
     const mspringi_grip had = *found;
-    tell(network, &had);
-    *found = made_of(def, grip);
+    notify_grip(network, &had);
+    *found = make_grip(def, grip);
     if (had.particle == def->particle) {
         found->from_x = had.from_x;
         found->from_y = had.from_y;
         found->impulse_x = had.impulse_x;
         found->impulse_y = had.impulse_y;
     }
-    tell(network, found);
+    notify_grip(network, found);
     return MSPRING_OK;
 }
 
@@ -212,12 +222,12 @@ mspring_result mspring_network_move_grip(mspring_network *network, mspring_id gr
         return result;
     found->x = x;
     found->y = y;
-    tell(network, found);
+    notify_grip(network, found);
     return MSPRING_OK;
 }
 
-// The same for calls that only read: NULL if there is none, with a message.
-static const mspringi_grip *look_up(const mspring_network *network, mspring_id id) {
+// Find a grip in a call that only reads; NULL, with a message, without one.
+static const mspringi_grip *find_to_read(const mspring_network *network, mspring_id id) {
     const mspringi_grip *found = find(network, id);
     if (!found)
         (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NO_GRIP, MSPRINGI_ID(id));
@@ -228,7 +238,7 @@ mspring_result mspring_network_get_grip(const mspring_network *network, mspring_
     const mspring_result result = mspringi_check_report(network, &mspringi_struct_grip_def, def);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_grip *found = look_up(network, grip);
+    const mspringi_grip *found = find_to_read(network, grip);
     if (!found)
         return MSPRING_ERROR_ID;
     const mspring_grip_def had = {.particle = found->particle,
@@ -247,7 +257,7 @@ mspring_result mspring_network_get_grip_impulse(const mspring_network *network, 
         return MSPRING_ERROR_ARGUMENT;
     if (!x || !y)
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the impulse is NULL");
-    const mspringi_grip *found = look_up(network, grip);
+    const mspringi_grip *found = find_to_read(network, grip);
     if (!found)
         return MSPRING_ERROR_ID;
     *x = found->impulse_x;

@@ -1,11 +1,14 @@
 /// @file grips.h
 /// Grips: springs and dampers from a particle to a moving target of the host.
 ///
-///   grips.c      the definition, given by the host; the law
-///   grip_stage.c    the stage; what a grip does after a leapfrog substep
+///   grips.c          definition, set by the host; target and bound of the force
+///   grip_stage.c     stage; action of grips after an explicit substep
+///   implicit_grips.c grips in the linear system of an implicit substep
+///   snapshot_grips.c snapshot
 ///
-/// The solvers with a linear system have grips in it, see solvers/implicit/implicit_grips.c. All have the force of
-/// the end of the substep, so it is stable however stiff the grip is.
+/// Solvers with a linear system have grips in it, but for those of isolated
+/// particles: grip_stage.c applies these, too. All use the force at the end of the substep, so a grip is stable
+/// however stiff it is.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_GRIPS_H
@@ -13,18 +16,20 @@
 
 #include "store/network.h"
 
-/// A particle that the host holds.
+/// Grip on a particle.
 typedef struct mspringi_grip {
-    mspring_id id;       ///< of the grip
-    mspring_id particle; ///< that it holds
+    mspring_id id;
+    mspring_id particle; ///< held particle
     float stiffness, damping, max_force;
-    double x, y;                 ///< where the target is at the end of the next step, world coordinates
-    double from_x, from_y;       ///< and at its start
-    double impulse_x, impulse_y; ///< that it gave in the last step, N s
-    double sum_x, sum_y;         ///< the same of the step that is being made
-    double force_x, force_y;     ///< in an implicit substep, N
-    double share;                ///< of stiffness and damping that acts in it
-    bool is_bounded;             ///< none does, but the force that is the largest
+    double x, y;                 ///< target at the end of the next step, world coordinates, m
+    double from_x, from_y;       ///< target at its start, m
+    double impulse_x, impulse_y; ///< in the last step, N s
+    double sum_x, sum_y;         ///< impulse in the present step so far, N s
+
+    // An implicit substep.
+    double force_x, force_y; ///< as predicted, then as solved, N
+    double share;    ///< share of stiffness and damping that acts, so that the predicted force is in its bound
+    bool is_bounded; ///< solved with the largest force instead of stiffness and damping
 } mspringi_grip;
 
 typedef struct mspringi_grips {
@@ -33,10 +38,11 @@ typedef struct mspringi_grips {
     mspring_id next_id;
 
     // A step.
-    bool could_act; ///< they could act in it
-    float h;
-    double begin, share; ///< of the step that has passed before its substep, and that the substep is
-    double passed;       ///< of the substep, where an implicit one is taken in pieces
+    bool could_act; ///< a grip was active in one of its substeps
+    float h;        ///< length of a substep, s
+    double begin;   ///< share of the step before the present substep
+    double share;   ///< share of the step in a substep
+    double passed;  ///< share of an implicit substep before the present interval
 } mspringi_grips;
 
 /// Target of a grip, local coordinates.
@@ -62,9 +68,7 @@ bool mspringi_grip_is_active(const mspring_network *network, const mspringi_grip
 mspring_result mspringi_grips_reserve(mspring_network *network);
 /// Reset to a network that never had a grip.
 void mspringi_grips_clear(mspring_network *network);
-/// Remove the grips of a particle that is removed.
-void mspringi_grips_forget(mspring_network *network, mspring_id particle);
-/// Move the grips to their targets at the end of a step.
+/// Accept a step: impulses are final, and targets are reached.
 void mspringi_grips_finish_step(mspring_network *network);
 
 #endif

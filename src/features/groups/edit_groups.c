@@ -4,6 +4,7 @@
 #include "features/contact/contacts.h"
 #include "step/held_groups.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/id_pool.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -187,4 +188,8 @@ mspring_result mspring_network_set_groups(mspring_network *network, const msprin
         mspringi_mark_take(network, &network->groups.start, group);
     look_for_pairs_anew(network);
     return MSPRING_OK;
+}
+
+bool mspringi_groups_act(const mspring_network *network) {
+    return network->groups.count > 0;
 }

@@ -442,3 +442,7 @@ const mspringi_stage mspringi_stage_hooks_after_substep = {.is_used = has_after_
                                                            .after_substep = after_substep,
                                                            .must_repeat = must_repeat,
                                                            .roll_back = roll_back};
+
+bool mspringi_hooks_act(const mspring_network *network) {
+    return mspringi_hook_count(network) > 0;
+}

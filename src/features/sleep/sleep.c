@@ -588,3 +588,7 @@ void mspringi_sleep_react(mspring_network *network, mspringi_change change, uint
         break;
     }
 }
+
+bool mspringi_sleep_acts(const mspring_network *network) {
+    return network->sleep.sleeping > 0;
+}

@@ -1,10 +1,23 @@
 /// @file constraint_services.h
 /// Services for the constraints of a linear system (store/constraint_list.h), each once for all kinds.
 ///
-///   implicit_angles.c, implicit_floor.c,     list the constraints of a kind
-///   implicit_grips.c, implicit_contact.c
+///   implicit_floor.c, implicit_contact.c,    list the constraints of a kind
+///   and those of features
 ///   constraint_services.c                    assembly, product, coarse matrix, active set
 ///   direct_constraints.c                     forces as unknowns beside the direct solver's factor
+///
+/// In the order of a substep (solvers/implicit/implicit_substeps.c):
+///
+///   mspringi_constraints_begin               clear the list
+///   mspringi_elements_add_terms              list elements once; add them to each assembled system
+///   mspringi_constraints_add_terms           list the others once; add the active ones to each assembled system
+///   mspringi_constraints_stiffen, _multiply  in conjugate gradients, or
+///   mspringi_direct_solve_constraints        in the direct solver
+///   mspringi_constraints_update_active_set   forces; solve again if it changes
+///
+/// Then owners store the forces: mspringi_grips_store_forces, mspringi_implicit_contact_store_impulses and
+/// mspringi_floor_record_impulses. The functions that the list names are in constraint_list.h, implicit_terms.h and
+/// direct.h, too.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CONSTRAINT_SERVICES_H
@@ -13,21 +26,21 @@
 #include "kernels/system.h"
 #include "store/network.h"
 
-/// Add constraints first to end - 1 to the right-hand side and the diagonal blocks. is_factored: without those
-/// whose forces are unknowns.
+/// Add constraints first to end - 1 to the right-hand side and the diagonal blocks. is_factored: leave out those
+/// whose forces are unknowns of the direct solver.
 void mspringi_constraints_assemble(const mspringi_constraints *all, uint32_t first, uint32_t end,
                                    const mspringi_system *to, bool is_factored);
-/// List those that are in the matrix: after each change of the list or of the active set.
+/// List the stiff constraints for products. Call it after each change of the list or of the active set.
 void mspringi_constraints_activate(mspringi_constraints *all);
-/// to += J' stiffness J from. Return from . J' stiffness J from.
+/// Multiply: to += J' stiffness J from, over stiff constraints. Return from . J' stiffness J from.
 double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to);
-/// Add them to the coarse matrix of the network's implicit solver.
+/// Add stiff constraints to the coarse matrix of the network's implicit solver.
 void mspringi_constraints_stiffen(const mspring_network *network);
-/// Add those of one particle to diagonal blocks in double precision.
+/// Add stiff constraints of one particle each to the diagonal blocks of a factored matrix, in double precision.
 void mspringi_constraints_add_nodes(const mspringi_constraints *all, double *xx, double *xy, double *yy);
 
-/// Find the forces of the pass-th solution of a substep, u + alpha direction, and update the active set. Return the
-/// kinds, as bits, whose active set has changed.
+/// Find the forces at the solution u + alpha direction, and update the active set. `pass` counts the solutions of
+/// the substep from 0. Return a bit for each kind whose active set changed.
 uint32_t mspringi_constraints_update_active_set(mspringi_constraints *all, mspringi_field u,
                                                 mspringi_field direction, float alpha, uint32_t pass);
 /// True if a contact between bodies, or with a collider, is active.

@@ -1,31 +1,31 @@
-/// Constraints for the factored system.
+/// Constraints of the direct solver.
 ///
-/// A constraint joins particles that no spring need join, so the factor has no entry for it, unless it has one
-/// particle: then it is on the diagonal. The forces of the others are unknowns. With G = root(stiffness) J, and d
-/// without these constraints, the forces root(stiffness) t follow from
+/// A constraint of one particle is on the diagonal of the factored matrix A. Others join particles that no spring
+/// need join, so the factor has no entries for them, and their forces are unknowns. With G = root(stiffness) J, and
+/// with the solution d without these constraints, the forces root(stiffness) t follow from
 ///
 ///     (G A^-1 G' + 1) t = effort / root(stiffness) - G d,
 ///
-/// solved by conjugate gradients, each of which takes one solution with the factor.
+/// solved by conjugate gradients. Each iteration takes one solution with the factor.
 ///
-/// Elements are solved for first, and then in each solution for the others: with one iteration for all, three beams
-/// of 40 that lie on each other took three times as long.
+/// Unknowns of elements are solved for first, and again within each iteration for the others: with one iteration
+/// for all, three beams of 40 that lie on each other took three times as long.
 ///
-/// Constraints with bounds are about as stiff as the network, so few forces differ much: those of bodies as a
-/// whole. Elements are not: in a straight beam springs do not resist what angles do, and A is the masses M there.
-/// So their preconditioner is G M^-1 G' + 1, of which each knows those two before it: the band of a beam whose
-/// angles were added in their order.
+/// Constraints with bounds are about as stiff as the network, so they need no preconditioner. Elements do: springs
+/// of a straight beam do not resist what its angles resist, so A is the mass matrix M there. Their preconditioner
+/// is the band of G M^-1 G' + 1 in which each element is coupled to the two before it: a beam whose angles were
+/// added in order.
 #include <math.h>
 #include <string.h>
 
 #include "solvers/direct/direct.h"
 #include "solvers/implicit/implicit.h"
 
-/// Most iterations; and the product of residuals at which they end, as a part of the first one. What only masses
-/// hold gives way by 10^10 times as much as it does with its elements.
+/// For elements: most iterations, and the product of residuals at which they end, as a share of the first one. It
+/// is small because masses alone give way 10^10 times as much as they do with elements.
 #define MOST_ITERATIONS 1000u
 #define LEAST_PRODUCT 1e-24
-/// Both for constraints with bounds.
+/// The same bounds for the other constraints.
 #define MOST_ITERATIONS_OF_OTHERS 64u
 #define LEAST_PRODUCT_OF_OTHERS 1e-12
 
@@ -34,14 +34,13 @@
 
 typedef mspringi_multiplier multiplier;
 
-/* -------------------------------------------------------------------------------------------- the preconditioner
- */
+/* ---------------------------------------------------------------------------------------------- preconditioner */
 
 static const mspringi_constraint *constraint_of(const mspringi_constraints *all, const multiplier *m) {
     return &all->list[m->constraint];
 }
 
-// Response of one to a unit force of the other, if particles are free.
+// Response of one constraint to a unit force of another, if only masses resist.
 static double shared(const mspring_network *network, const multiplier *one, const multiplier *other) {
     const mspringi_constraints *all = &network->constraints;
     const float *mass = mspringi_implicit_of(network)->mass;
@@ -60,7 +59,7 @@ static bool is_in_band(const mspring_network *network, const multiplier *m) {
     return c->bounded == MSPRINGI_UNBOUNDED && c->count <= MOST_SHARED;
 }
 
-// Factor it, as L D L'. No pivot is below 1, if what the band lacks would not make it so.
+// Factor the band as L D L'. The whole matrix has no pivot below 1; the band alone may have, so clamp it.
 static void factor(const mspring_network *network, multiplier *list, uint32_t count) {
     for (uint32_t i = 0; i < count; ++i) {
         multiplier *m = &list[i];
@@ -84,7 +83,7 @@ static void factor(const mspring_network *network, multiplier *list, uint32_t co
     }
 }
 
-// Apply it to the residuals. Return residual . solution.
+// Apply the preconditioner to the residuals. Return residual . solution.
 static double precondition(multiplier *list, uint32_t count) {
     double sum = 0.0;
     for (uint32_t i = 0; i < count; ++i) {
@@ -101,12 +100,11 @@ static double precondition(multiplier *list, uint32_t count) {
     return sum;
 }
 
-/* ----------------------------------------------------------------------------------------------------- iteration
- */
+/* --------------------------------------------------------------------------------------------------- iteration */
 
-/// Unknowns of an iteration: the forces of elements, or of the others with elements in each solution.
+/// Unknowns of an iteration: forces of elements, or forces of the others, which solve for elements within.
 typedef struct unknowns {
-    const struct unknowns *elements; ///< NULL: these are elements
+    const struct unknowns *elements; ///< unknowns to solve for within; NULL: these are the elements
     multiplier *list, *end;
     mspringi_solve_fn solve;
     double *answer_x, *answer_y; ///< [slots + 1] response to the forces of the search
@@ -125,7 +123,7 @@ static unknowns list_unknowns(const mspring_network *network, mspringi_solve_fn 
     return (unknowns){elements, list, end, solve, answer, answer + nodes};
 }
 
-// G u, of differences where the constraint is closed.
+// G u. A closed constraint takes differences from its first entry.
 static double gather(const mspringi_constraints *all, const multiplier *m, const double *x, const double *y) {
     const mspringi_constraint *c = constraint_of(all, m);
     const mspringi_jacobian_entry *e = all->entries + c->first, *end = e + c->count;
@@ -163,8 +161,8 @@ static double answer_search(mspring_network *network, const unknowns *u) {
     return sum;
 }
 
-// Add to a solution the response to the unknown forces. is_whole: it is the system's, which lacks their efforts,
-// not the response to other forces.
+// Find the unknown forces by conjugate gradients, and add their response to a solution (x, y). is_whole: it solves
+// the system, so efforts act, too; else it is a response to other forces.
 static void iterate(mspring_network *network, const unknowns *u, double *x, double *y, bool is_whole) {
     const mspringi_constraints *all = &network->constraints;
     const size_t nodes = mspringi_slot_count(network) + 1;

@@ -3,6 +3,7 @@
 
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
+#include "solvers/implicit/implicit_terms.h"
 #include "store/roots.h"
 
 mspring_result mspringi_budget_create(mspringi_budget *budget, mspring_network *network) {
@@ -134,4 +135,10 @@ void mspringi_budget_update(mspring_network *network) {
     budget->growth = edits->growth;
     budget->grafts = edits->grafts;
     budget->masses = edits->masses;
+}
+
+void mspringi_budget_find_frames(const mspring_network *network) {
+    (void)network; // a build may have no such feature
+#define SYSTEM(name) mspringi_##name##_find_frames(network);
+#include "store/features.def"
 }

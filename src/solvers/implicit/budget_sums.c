@@ -239,7 +239,8 @@ void mspringi_budget_measure(measuring *all) {
     add_particles(all);
     if (all->is_after) {
         add_contacts(network);
-        mspringi_grips_add_impulses(all);
+#define SYSTEM(name) mspringi_##name##_add_impulses(all);
+#include "store/features.def"
         mspringi_implicit_contact_add_impulses(all);
     }
     if (all->knows_elastic)

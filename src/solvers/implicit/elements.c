@@ -2,8 +2,7 @@
 
 static const mspringi_element_ops *const elements[] = {
 #define ELEMENT(table) &table,
-#include "store/elements.def"
-#undef ELEMENT
+#include "store/features.def"
 };
 #define ELEMENT_COUNT (sizeof elements / sizeof elements[0])
 

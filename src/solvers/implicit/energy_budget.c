@@ -139,7 +139,7 @@ void mspringi_budget_begin(mspring_network *network) {
     for (uint32_t i = 0; i < budget->count; ++i)
         begin_component_budget(network, &budget->components[i]);
     find_frames(network, budget);
-    mspringi_grips_find_frames(network);
+    mspringi_budget_find_frames(network);
     mspringi_budget_sums all = {
         .network = network, .motion = motion_of(network), .knows_elastic = knows_elastic(network)};
     budget->knows_elastic = false;

@@ -10,8 +10,8 @@
 ///   - Its budget is the energy before the substep plus the work of gravity and forces, less the energy of its
 ///     springs now, less the kinetic energy that its momenta need. Work of the floor does not count: the floor only
 ///     takes energy. A free component is seen from its mass centre, where gravity does no work. One whose pins all
-///     move alike is seen from these, and without pins from the targets of its grips (implicit_grips.c). For other
-///     pins, the forces on them give an upper bound of their work.
+///     move alike is seen from these, and without pins from the targets of its grips
+///     (features/grips/implicit_grips.c). For other pins, the forces on them give an upper bound of their work.
 ///   - The floor's impulse on a component without pins is the change of momentum that nothing else explains.
 ///   - Kinetic energy beyond the budget is scaled out of the velocities: about the rigid motion of a free
 ///     component, about the pins or rest in a held one. Momenta stay.
@@ -38,10 +38,8 @@
 
 #include "store/network.h"
 
-/// Most halvings of a substep, and most with bodies in contact. (With 5 there, too, stiff bodies overlapped in 20
-/// of 12,000 collisions by more than 0.63 of the thickness: the shortest substep acts by impulses alone.)
+/// Most halvings of a substep.
 #define MSPRINGI_MOST_HALVINGS 5u
-#define MSPRINGI_MOST_HALVINGS_OF_BODIES 8u
 
 /// Most substeps of implicit Euler after one that gained energy. Without them a falling ship with rigging needed
 /// twice as many substeps again.
@@ -131,10 +129,11 @@ static inline bool mspringi_budget_is_isolated(const mspringi_budget *budget, si
     return budget->of_slot[slot] == MSPRINGI_NO_COMPONENT;
 }
 
+/// See the energies of components without pins in the frames that features give them.
+void mspringi_budget_find_frames(const mspring_network *network);
+
 /// Save the state before a substep.
 void mspringi_budget_begin(mspring_network *network);
-/// See the energies of components without pins from the targets of their grips, where all of these move alike.
-void mspringi_grips_find_frames(const mspring_network *network);
 
 /// Apply the budget after a substep of h seconds and the floor. Return false if the substep should be halved, only
 /// with may_halve. Then mspringi_budget_undo() takes it back.

@@ -108,7 +108,8 @@ static void add_contact(mspring_network *network, const mover *m, const near_sur
     friction->bound_force = slid < 0.0 ? force : -force;
 }
 
-static bool list_contacts(mspring_network *network, const mover *m, double fall) {
+// List the contacts of a particle: with a second surface if one is left of *seconds. Return true if it hits one.
+static bool list_contacts(mspring_network *network, const mover *m, double fall, size_t *seconds) {
     const mspringi_floor *floor = network->floor;
     near_surface nearest[MSPRINGI_MAX_FLOOR_CONTACTS];
     mspringi_line part_line;
@@ -122,7 +123,10 @@ static bool list_contacts(mspring_network *network, const mover *m, double fall)
         part_line = mspringi_heights_line(&floor->heights, part);
         hits |= check_surface(network, m, &part_line, fall, nearest, &count);
     }
-    for (uint32_t i = 0; i < count; ++i)
+    const uint32_t first = count > 1 && *seconds == 0 && nearest[1].straight < nearest[0].straight;
+    const uint32_t end = count > 1 && *seconds == 0 ? first + 1 : count;
+    *seconds -= end - first > 1;
+    for (uint32_t i = first; i < end; ++i)
         add_contact(network, m, &nearest[i]);
     return hits;
 }
@@ -142,13 +146,14 @@ bool mspringi_floor_list_constraints(mspring_network *network, float h) {
     const mspringi_floor *floor = network->floor;
     const float *inverse_mass = mspringi_active_inverse_mass(network);
     const double fall = n->system.force_scale / n->scale; // c
+    size_t seconds = mspringi_floor_max_second_contacts(network->topology.reserve.particle_end);
     bool hits = false;
     for (size_t i = 0; i < count_slots(network); ++i) {
         if (!(inverse_mass[i] > 0.0f))
             continue;
         const mover m = mover_of(network, i, (double)h);
         if (!is_clear(&floor->clear, &m) && !mspringi_floor_is_isolated(network, i))
-            hits |= list_contacts(network, &m, fall);
+            hits |= list_contacts(network, &m, fall, &seconds);
     }
     return !hits || n->uses_euler || n->integrator == MSPRING_INTEGRATOR_EULER;
 }

@@ -1,6 +1,5 @@
 /// Substeps: linear system, active set, floor, energy budget; repeated in halves if the budget is exceeded.
 #include "features/contact/floor.h"
-#include "features/grips/grips.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 #include "stability/guard.h"
@@ -41,9 +40,8 @@ static float solve(const mspringi_implicit_substep *substep, mspringi_team_membe
     return 0.0f;
 }
 
-// Most solutions of a substep while the active set changes: of the floor, of bodies.
-#define MOST_PASSES 4
-#define MOST_PASSES_OF_BODIES 16
+// Most solutions of a substep while the active set changes.
+#define MOST_PASSES 16
 
 // True if an impact needs implicit Euler in this substep, but another integrator began it.
 static bool must_begin_anew(const mspringi_implicit *n) {
@@ -65,8 +63,7 @@ static bool update_active_set(mspring_network *network, float alpha, uint32_t pa
 static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_team_member *member, float *alpha) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    const uint32_t passes = mspringi_implicit_contact_is_near(network) ? MOST_PASSES_OF_BODIES : MOST_PASSES;
-    for (uint32_t pass = 0; pass < passes; ++pass) {
+    for (uint32_t pass = 0; pass < MOST_PASSES; ++pass) {
         if (pass > 0) {
             mspringi_predict(substep, member);
             mspringi_assemble(substep, member);
@@ -89,11 +86,20 @@ static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_
             break;
     }
     if (member->index == 0) {
-        mspringi_grips_store_forces(network);
+#define SYSTEM(name) mspringi_##name##_store_forces(network);
+#include "store/features.def"
         mspringi_implicit_contact_store_impulses(network, substep->h);
     }
     mspringi_team_barrier(member);
     return true;
+}
+
+static bool has_constraints(const mspring_network *network) {
+    bool any = false;
+    (void)network; // a build may have no such feature
+#define SYSTEM(name) any = any || mspringi_##name##_act(network);
+#include "store/features.def"
+    return any;
 }
 
 // A worker's part of a substep.
@@ -104,7 +110,7 @@ static void run_share(void *argument, uint32_t index, uint32_t worker) {
     mspringi_predict(substep, &member);
     mspringi_assemble(substep, &member);
     float alpha = 0.0f;
-    if (!substep->network->floor && mspringi_grip_count(substep->network) == 0 &&
+    if (!substep->network->floor && !has_constraints(substep->network) &&
         !mspringi_implicit_contact_is_near(substep->network))
         alpha = solve(substep, &member);
     else if (!solve_with_terms(substep, &member, &alpha))
@@ -185,8 +191,8 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     if (mspringi_implicit_is_too_much(network))
         return;
     const bool are_near = mspringi_implicit_contact_is_near(network), watches = substep->watches || are_near;
-    const bool may_halve = tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS) &&
-                           n->retry_count < MOST_RETAKEN && mspringi_may_iterate(n);
+    const bool may_halve =
+        tries <= MSPRINGI_MOST_HALVINGS && n->retry_count < MOST_RETAKEN && mspringi_may_iterate(n);
     if (tries == 0)
         n->contact_mode = mspringi_may_iterate(n) ? MSPRINGI_CONTACT_WITH_FRICTION : MSPRINGI_CONTACT_BY_IMPULSES;
     if (watches)
@@ -200,7 +206,8 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     const bool is_thrown = may_halve && mspringi_implicit_contact_missed_pairs(network, substep->h);
     if (!watches || ((is_sound || is_last) && !is_thrown &&
                      mspringi_budget_end(network, substep->h, substep->base, may_halve))) {
-        mspringi_grips_count_impulses(network, substep->h);
+#define SYSTEM(name) mspringi_##name##_count_impulses(network, substep->h);
+#include "store/features.def"
         mspringi_implicit_contact_count_impulses(network, substep->h);
         return;
     }

@@ -2,14 +2,13 @@
 /// Further terms of an implicit substep's linear system: floor, grips, contact, areas, angle springs.
 ///
 ///   implicit_floor.c    floor
-///   implicit_grips.c    grips
 ///   implicit_contact.c  contact between bodies
 ///   implicit_areas.c    areas
-///   implicit_angles.c   angle springs
+///   features/grips/implicit_grips.c, features/angles/implicit_angles.c
 ///   implicit_one_way.c  energy of one-way springs
 ///
 /// A contact is a stiff spring in the system while it pushes: an active-set method. Functions of the floor with a
-/// const network do nothing without a floor, those of grips nothing without grips.
+/// const network do nothing without a floor, those of features nothing where these are not used.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_IMPLICIT_TERMS_H
@@ -31,13 +30,18 @@ bool mspringi_floor_list_constraints(mspring_network *network, float h);
 /// Add the contact forces of a substep of h to the floor's impulses.
 void mspringi_floor_record_impulses(const mspring_network *network, float h);
 
-/// List the constraints of grips of particles with springs, as predicted. Accept the forces of the last solution.
-void mspringi_grips_list_constraints(mspring_network *network, float h);
-void mspringi_grips_store_forces(mspring_network *network);
-/// Record the impulses of grips in an accepted interval of h.
-void mspringi_grips_count_impulses(mspring_network *network, float h);
-/// Add the impulses of grips to the components' sums after a substep.
-void mspringi_grips_add_impulses(const mspringi_budget_sums *all);
+// Of a feature with constraints (features.def), in this order: true if it has any; list them, as predicted; accept
+// the forces of the last solution; record the impulses of an accepted interval of h; add them to the components'
+// sums after a substep; see the energies of components without pins in the frame in which all that holds them
+// rests.
+#define SYSTEM(name)                                                                                               \
+    bool mspringi_##name##_act(const mspring_network *network);                                                    \
+    void mspringi_##name##_list_constraints(mspring_network *network, float h);                                    \
+    void mspringi_##name##_store_forces(mspring_network *network);                                                 \
+    void mspringi_##name##_count_impulses(mspring_network *network, float h);                                      \
+    void mspringi_##name##_add_impulses(const mspringi_budget_sums *all);                                          \
+    void mspringi_##name##_find_frames(const mspring_network *network);
+#include "store/features.def"
 
 /// Add the constraints of elements to an assembled system, those of others in the pass-th solution of a substep of
 /// h. The first calls in a substep list them.

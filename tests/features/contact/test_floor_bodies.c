@@ -88,7 +88,56 @@ static void no_energy_comes_from_floor_and_contact(void **state) {
     }
 }
 
+/// A chain that moves up and down in a slit: each particle is near both planes.
+static mspring_network *chain_in_slit(mspring_solver solver, uint32_t count, double width) {
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < count; i++) {
+        support_particle(builder, 0.1 * i, 0.5 * width, 1);
+        if (i > 0)
+            support_spring(builder, i - 1, i, 1e4f, 10);
+    }
+    mspring_network_def def = support_def(-9.8f, 2);
+    def.solver = solver;
+    mspring_network *network = support_network(builder, &def);
+    const double planes[][4] = {{0, 0, 0, 1}, {0, width, 0, -1}, {-1, 0, 1, 0}};
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.planes = planes[0], floor.plane_count = 3, floor.friction = 0.5f;
+    check_ok(mspring_network_set_floor(network, &floor));
+    for (uint32_t i = 0; i < count; i++) {
+        const float vx = 1, vy = i % 2 ? 3.0f : -3.0f;
+        check_ok(mspring_network_set_velocities(network, i, 1, &vx, &vy, 0));
+    }
+    return network;
+}
+
+/// The list has room for second surfaces of a quarter of the particles: the nearest one holds the others in the
+/// system, and the floor keeps them above the second one.
+static void slits_hold_more_than_the_list_has_room_for(void **state) {
+    (void)state;
+    const double width = 0.02;
+    for (int i = 0; i < 2; i++) {
+        enum { COUNT = 600 };
+        double x[COUNT], y[COUNT];
+        float vx[COUNT], vy[COUNT];
+        mspring_network *network = chain_in_slit(i ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT, COUNT, width);
+        for (int step = 0; step < 120; step++) {
+            check_ok(mspring_network_step(network, 1.0 / 60));
+            check_ok(mspring_network_get_positions(network, 0, COUNT, x, y, 1));
+            for (int p = 0; p < COUNT; p++) // a step rounds 60 m to 4e-6 m
+                assert_true(y[p] > -1e-5 && y[p] < width + 1e-5);
+        }
+        check_ok(mspring_network_get_velocities(network, 0, COUNT, vx, vy, 1));
+        for (int p = 0; p < COUNT; p++) { // friction has stopped it: 0.2 s at 0.5 g
+            check_near(vx[p], 0, 0.01);
+            check_near(vy[p], 0, 0.01);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_energy_comes_from_floor_and_contact)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(no_energy_comes_from_floor_and_contact),
+                                       cmocka_unit_test(slits_hold_more_than_the_list_has_room_for)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

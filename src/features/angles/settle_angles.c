@@ -15,7 +15,7 @@
 
 #include "analysis/settle/equilibrium.h"
 
-void mspringi_statics_add_angle(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle) {
+static void add_edges(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle) {
     mspringi_statics_springs *s = &statics->springs;
     const mspringi_corner *corners = all->corners + angle->first;
     for (uint32_t pair = 0; pair < 3; ++pair) {
@@ -47,7 +47,7 @@ static double push_particle(mspringi_statics *statics, uint32_t p, double x, dou
     return fmax(fabs(x), fabs(y));
 }
 
-double mspringi_statics_angle_forces(mspringi_statics *statics, const mspringi_area *angle) {
+static double add_forces(mspringi_statics *statics, const mspringi_area *angle) {
     const arm u = arm_of(statics, angle, 0), w = arm_of(statics, angle, 1);
     const double torque = mspringi_angle_torque(angle, mspringi_angle_size_by(angle, u.along, w.along));
     const double at_a = push_particle(statics, u.from, torque * u.x, torque * u.y);
@@ -72,8 +72,7 @@ static bool rotation_of(const mspringi_statics *s, const arm *of, double t, mspr
 
 // With e the change of the angle: k (cos d - cos(d + e)) = k (cos d (1 - cos e) + sin d sin e). The difference of
 // the energies would be lost in rounding.
-double mspringi_statics_angle_change(const mspringi_statics *statics, const mspringi_area *angle, double t,
-                                     double *size) {
+static double energy_change(const mspringi_statics *statics, const mspringi_area *angle, double t, double *size) {
     const arm u = arm_of(statics, angle, 0), w = arm_of(statics, angle, 1);
     const double z = mspringi_angle_size_by(angle, u.along, w.along), k = (double)angle->stiffness;
     mspringi_rotation of_u, of_w;
@@ -112,7 +111,7 @@ static void add_arm(mspringi_statics *statics, uint32_t edge, const arm *of, dou
               k * (of->y * of->y + s[2]) + across);
 }
 
-void mspringi_statics_angle_stiffness(mspringi_statics *statics, const mspringi_area *angle, bool clamped) {
+static void add_stiffness(mspringi_statics *statics, const mspringi_area *angle, bool clamped) {
     const arm u = arm_of(statics, angle, 0), w = arm_of(statics, angle, 1);
     const uint32_t *edges = statics->areas.sides + angle->first;
     const double z = mspringi_angle_size_by(angle, u.along, w.along), k = mspringi_angle_stiffness(angle, z);
@@ -122,3 +121,5 @@ void mspringi_statics_angle_stiffness(mspringi_statics *statics, const mspringi_
     add_arm(statics, edges[1], &w, k, s, -torque);
     add_block(statics, edges[2], -k * s[0], -k * s[1], -k * s[2]);
 }
+
+const mspringi_statics_element mspringi_statics_of_angles = {add_edges, add_forces, energy_change, add_stiffness};
