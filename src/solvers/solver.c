@@ -52,10 +52,6 @@ void mspringi_solver_forget(const mspringi_solver *solver) {
         solver->ops->forget(solver->object);
 }
 
-double mspringi_solver_calm_work(const mspringi_solver *solver) {
-    return solver->ops->calm_work ? solver->ops->calm_work(solver->object) : 1.0;
-}
-
 mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver) {
     if (solver->ops && solver->ops->get_basis)
         return solver->ops->get_basis(solver->object);

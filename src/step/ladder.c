@@ -135,20 +135,27 @@ static bool try_groups(mspring_network *network, mspringi_attempt *attempt) {
 
 /* ------------------------------------------------------------------------------------------------ all attempts */
 
-mspringi_attempt mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages) {
-    mspringi_attempt first = {.given_dt = dt, .stages = stages, .solver = &network->solver};
+void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages,
+                            mspringi_attempt *first) {
     const mspringi_solver *fallback = fallback_of(network);
     uint32_t calm = network->substeps;
+    first->stages = stages;
+    first->solver = &network->solver;
+    first->group = 0;
+    first->has_missed = first->is_idle = first->keeps_substeps = false;
+    first->given_dt = dt;
+    first->work = 0.0;
     if (fallback && network->guard.fallback_steps > 0) {
-        (void)fall_back(network, &first, fallback);
-        first.calm_work = (double)first.substeps;
-        return first;
+        (void)fall_back(network, first, fallback);
+        first->calm_work = (double)first->substeps;
+        return;
     }
-    first.result = choose_substeps(network, dt, true, &calm);
-    first.calm_work = (double)calm * mspringi_solver_calm_work(&network->solver);
-    if (first.result == MSPRING_OK)
-        (void)prepare(network, &first, MSPRINGI_AS_CHOSEN, &network->solver, network->substeps);
-    return first;
+    first->result = choose_substeps(network, dt, true, &calm);
+    first->calm_work = (double)calm * mspringi_solver_calm_work(&network->solver);
+    if (first->result == MSPRING_OK)
+        (void)prepare(network, first, MSPRINGI_AS_CHOSEN, &network->solver, network->substeps);
+    else
+        first->kind = MSPRINGI_AS_CHOSEN;
 }
 
 bool mspringi_attempt_next(mspring_network *network, mspringi_attempt *attempt) {

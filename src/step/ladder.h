@@ -18,7 +18,8 @@
 #include "store/stages.h"
 
 /// First attempt at a step of dt. Its result says if it can be made.
-mspringi_attempt mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages);
+void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages,
+                            mspringi_attempt *first);
 
 /// Make an attempt whose result is MSPRING_OK so far. Unless it succeeds, the state is that of before.
 void mspringi_attempt_make(mspring_network *network, mspringi_attempt *attempt);

@@ -79,7 +79,8 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     network->sleep.has_kept = network->was_in_hook = false;
     network->step_time = dt;
     network->next_pace = network->steps.pace;
-    mspringi_attempt attempt = mspringi_attempt_first(network, dt, &stages);
+    mspringi_attempt attempt;
+    mspringi_attempt_first(network, dt, &stages, &attempt);
     do
         mspringi_attempt_make(network, &attempt);
     while (mspringi_attempt_next(network, &attempt));

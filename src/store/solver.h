@@ -112,6 +112,11 @@ struct mspringi_solver_ops {
     void (*load)(mspring_network *network, void *object, const uint8_t *from, size_t size);
 };
 
+/// Work of a substep in which nothing is repeated.
+static inline double mspringi_solver_calm_work(const mspringi_solver *solver) {
+    return solver->ops->calm_work ? solver->ops->calm_work(solver->object) : 1.0;
+}
+
 #define SOLVER(name, table) extern const mspringi_solver_ops table;
 #include "store/solvers.def"
 #undef SOLVER
@@ -134,7 +139,6 @@ mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *ne
                                     const mspring_solver_def *def, uint32_t tile_size);
 void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory);
 void mspringi_solver_forget(const mspringi_solver *solver);
-double mspringi_solver_calm_work(const mspringi_solver *solver);
 mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver);
 
 /// Let a solver take over what another one knows, which has the same settings and another layout.
