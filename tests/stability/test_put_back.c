@@ -53,8 +53,13 @@ static void hold(mspring_network *network) {
 
 static void check_repeats(mspring_network *network) {
     const saved before = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
-    check_ok(mspring_network_step(network, 1.0 / 64));
+    const mspring_result result = mspring_network_step(network, 1.0 / 64);
     assert_true(mspringi_is_finite(network));
+    if (result == MSPRING_ERROR_LIMIT) { // contact took too long
+        free(before.bytes);
+        return;
+    }
+    check_ok(result);
     const saved after = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     snapshots_load(network, &before);
     check_ok(mspring_network_step(network, 1.0 / 64));
@@ -71,7 +76,7 @@ static void what_explodes_leaves_numbers(void **state) {
     const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};
     const float gravities[] = {-9.8f, 3e38f};
     uint32_t put_back = 0;
-    for (uint64_t seed = 0; seed < (uint64_t)SAMPLE(ROUNDS(12)); seed++) {
+    for (uint64_t seed = 0; seed < (uint64_t)SAMPLE(ROUNDS(10)); seed++) {
         for (size_t i = 0; i < COUNT_OF(solvers) * COUNT_OF(gravities); i++) {
             mspring_network *network = make(seed, solvers[i % COUNT_OF(solvers)], gravities[i / COUNT_OF(solvers)]);
             const float fast = 1e14f;
