@@ -38,8 +38,10 @@
 
 #include "store/network.h"
 
-/// Most halvings of a substep.
+/// Most halvings of a substep, and most with bodies in contact. (With 5 there, too, stiff bodies overlapped in 20
+/// of 12,000 collisions by more than 0.63 of the thickness: the shortest substep acts by impulses alone.)
 #define MSPRINGI_MOST_HALVINGS 5u
+#define MSPRINGI_MOST_HALVINGS_OF_BODIES 8u
 
 /// Most substeps of implicit Euler after one that gained energy. Without them a falling ship with rigging needed
 /// twice as many substeps again.

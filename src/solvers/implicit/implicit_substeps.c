@@ -191,8 +191,8 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     if (mspringi_implicit_is_too_much(network))
         return;
     const bool are_near = mspringi_implicit_contact_is_near(network), watches = substep->watches || are_near;
-    const bool may_halve =
-        tries <= MSPRINGI_MOST_HALVINGS && n->retry_count < MOST_RETAKEN && mspringi_may_iterate(n);
+    const bool may_halve = tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS) &&
+                           n->retry_count < MOST_RETAKEN && mspringi_may_iterate(n);
     if (tries == 0)
         n->contact_mode = mspringi_may_iterate(n) ? MSPRINGI_CONTACT_WITH_FRICTION : MSPRINGI_CONTACT_BY_IMPULSES;
     if (watches)

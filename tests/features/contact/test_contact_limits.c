@@ -201,7 +201,7 @@ static void heaps_of_rods_are_counted(void **state) {
     for (uint32_t solver = MSPRING_SOLVER_IMPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
         mspring_builder *builder = support_builder();
         uint64_t seed = 1;
-        for (mspring_id i = 0; i < 120; i++) {
+        for (mspring_id i = 0; i < 90; i++) {
             const double x = support_random_between(&seed, 0, 3), y = support_random_between(&seed, 0, 3),
                          angle = support_random_between(&seed, 0, 6.28);
             (void)support_particle(builder, x, y, 1);
