@@ -3,8 +3,9 @@
 #
 #   exports.sh symbols      LIBRARY.so HEADER...   it exports what the headers declare, and nothing else
 #   exports.sh dependencies LIBRARY.so          it needs libc, libm and threads at most
-#   exports.sh instructions LIBRARY.a           no fused multiply-add, no approximate reciprocal; wide registers only
-#                                               in the files that are chosen at run time
+#   exports.sh instructions LIBRARY.a           no fused multiply-add, no approximate reciprocal, but in the inverse of
+#                                               src/kernels/inverse_avx512.h; wide registers only in the files that
+#                                               are chosen at run time
 #
 # NM, OBJDUMP and READELF come from the environment if they are not the system's.
 set -eu
@@ -59,11 +60,15 @@ instructions)
   grep -qE 'sqrt|sqebr' "$scratch/code"
   awk '
     /file format/ { member = $1; sub(/:$/, "", member) }
+    # The inverse: four fused operations for each approximation, and no others.
+    member ~ /^avx512\./ && $2 == "vrcp14ps" { ++inverses; next }
+    member ~ /^avx512\./ && $2 ~ /^vfn?madd[123]+ps$/ { ++fused; next }
     $2 ~ /^(vfn?m[as]|fn?m(add|sub)$|fml[as]$|m[as][de]br?$)/ { bad("fused multiply-add", $0) }
     $2 ~ /^(v?rsqrt|v?rcp|vrecp|frsqrt|frecp)/ { bad("approximate reciprocal", $0) }
     /%[yz]mm/ && member !~ /avx/ { bad("wide register outside of the files for it", $0) }
     /%zmm/ && member !~ /avx512/ { bad("512-bit register outside of the file for it", $0) }
     function bad(what, line) { if (++count <= 10) print member ": " what ": " line }
+    END { if (fused != 4 * inverses) bad("fused operations for " inverses + 0 " inverses", fused + 0) }
     END { print count + 0 " bad instructions in " NR " lines"; exit count > 0 }
   ' "$scratch/code"
   ;;

@@ -5,6 +5,8 @@
 
 #include <immintrin.h>
 
+#include "kernels/inverse_avx512.h"
+
 #define LANES 16
 typedef __m512 vec;
 typedef __mmask16 mask; ///< of lanes
@@ -53,11 +55,6 @@ static inline vec maximum(vec a, vec b) {
 }
 static inline vec minimum(vec a, vec b) {
     return _mm512_min_ps(a, b);
-}
-// 1 / square, or 0 without a direction.
-static inline vec inverse_or_zero(vec square) {
-    return _mm512_maskz_div_ps(_mm512_cmp_ps_mask(square, _mm512_set1_ps(MSPRINGI_NO_DIRECTION), _CMP_GT_OQ),
-                               _mm512_set1_ps(1.0f), square);
 }
 // a where selector > 0, else b.
 static inline vec choose_positive(vec selector, vec a, vec b) {
@@ -138,6 +135,7 @@ static inline vec larger_size(vec a, vec b) {
     return _mm512_castsi512_ps(_mm512_max_epi32(_mm512_castps_si512(a), absolute(b)));
 }
 
+#define MSPRINGI_UNDIVIDED_INVERSE inverse_by_steps
 #include "kernels/sweep.h"
 
 // Eight lanes, for parts of tiles.

@@ -2,7 +2,8 @@
 /// Inner loops, a table of them for each instruction set.
 ///
 /// All tables compute the same values by the same operations in the same order, so all give the same bits. The
-/// scalar table is the definition. No table uses fused multiply-add or an approximate reciprocal.
+/// scalar table is the definition. No table uses fused multiply-add or an approximate reciprocal, but where the
+/// result is rounded correctly all the same (inverse_avx512.h).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_KERNELS_H
