@@ -61,7 +61,7 @@ static void energy_stays_whatever_dt_does(void **state) {
             const double first = support_energy(network);
             uint64_t seed = 7;
             double most = 0, asked = 0;
-            for (uint32_t n = 0; asked < SAMPLE(ROUNDS(60)); n++) {
+            for (uint32_t n = 0; asked < SAMPLE(60); n++) {
                 const double dt = dt_of(pattern, n, &seed);
                 check_ok(mspring_network_step(network, dt));
                 asked += dt;
@@ -166,7 +166,7 @@ static void energy_stays_where_dt_falls_below_a_substep(void **state) {
             const double first = support_energy(network);
             uint64_t seed = 7;
             double most = 0, asked = 0;
-            for (uint32_t n = 0; asked < SAMPLE(ROUNDS(20)); n++) {
+            for (uint32_t n = 0; asked < SAMPLE(20); n++) {
                 const double dt = short_dt_of(pattern, n, &seed);
                 check_ok(mspring_network_step(network, dt));
                 asked += dt;

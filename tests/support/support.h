@@ -31,11 +31,11 @@
 /// Whether a test is to sample what takes long: in the sets that each change and each push is judged by.
 bool support_is_quick(void);
 
-/// A number of rounds, of which such a test makes a quarter.
-#define SAMPLE(count) (support_is_quick() ? ((count) + 3) / 4 : (count))
-
 /// Whether rounds are few, so that a test may leave out what repeats itself.
 #define ROUNDS_ARE_FEW (ROUNDS(5) < 5)
+
+/// A number of rounds, of which such a test makes a quarter, unless they are few anyway.
+#define SAMPLE(count) (ROUNDS_ARE_FEW ? ROUNDS(count) : support_is_quick() ? ((count) + 3) / 4 : (count))
 
 /* ------------------------------------------------------------------------------------------------- checks */
 

@@ -10,7 +10,7 @@
 
 /// What contact mends after a substep may lie below the floor. If the next substep is taken in pieces, the floor
 /// must not lift it within one of them: a way of 1 cm in 78 us is 127 m/s.
-#define SCENES SAMPLE(ROUNDS(30u))
+#define SCENES SAMPLE(30u)
 #define STEPS 120
 
 static void add_block(mspring_builder *builder, uint64_t *seed, double y) {
