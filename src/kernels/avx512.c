@@ -5,9 +5,10 @@
 
 #include <immintrin.h>
 
+#define LANES 16
+// Behind code, so that massspring.c has it with the instructions of this file.
 #include "kernels/inverse_avx512.h"
 
-#define LANES 16
 typedef __m512 vec;
 typedef __mmask16 mask; ///< of lanes
 

@@ -1,6 +1,6 @@
 /// @file test_house.c
 /// A solver and a stage that the library does not have can be added without changing it: each is a file in house/
-/// and lines in house/store/, which stand before the library's own table. step.c, solver.c and stages.c are
+/// and lines in house/store/, which stand before the library's own table. solver.c and the files of a step are
 /// compiled with these; all else is the library as it is.
 ///
 /// SPDX-License-Identifier: MIT
