@@ -61,8 +61,8 @@ instructions)
   awk '
     /file format/ { member = $1; sub(/:$/, "", member) }
     # The inverse: four fused operations for each approximation, and no others.
-    member ~ /^avx512\./ && $2 == "vrcp14ps" { ++inverses; next }
-    member ~ /^avx512\./ && $2 ~ /^vfn?madd[123]+ps$/ { ++fused; next }
+    member ~ /(^|[(/])avx512\./ && $2 == "vrcp14ps" { ++inverses; next }
+    member ~ /(^|[(/])avx512\./ && $2 ~ /^vfn?madd[123]+ps$/ { ++fused; next }
     $2 ~ /^(vfn?m[as]|fn?m(add|sub)$|fml[as]$|m[as][de]br?$)/ { bad("fused multiply-add", $0) }
     $2 ~ /^(v?rsqrt|v?rcp|vrecp|frsqrt|frecp)/ { bad("approximate reciprocal", $0) }
     /%[yz]mm/ && member !~ /avx/ { bad("wide register outside of the files for it", $0) }
