@@ -13,7 +13,7 @@
 
 #include <stdint.h>
 
-/// The d of a substep, in a step of so many.
-float mspringi_dither(uint32_t substep, uint32_t substeps);
+/// The d of a substep. Those at the end of a step that are less than four have none.
+float mspringi_dither(uint32_t substep);
 
 #endif

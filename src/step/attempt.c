@@ -119,6 +119,12 @@ static void begin_lag(mspring_network *network, const mspringi_attempt *attempt)
             fminf(lag, fmaxf((float)fmin(mspringi_stable_in_any_shape(network, &spring), (double)FLT_MAX), h));
 }
 
+// Gravity alone is rounded the same way in each substep; precise networks have low words for it.
+static bool has_dither(const mspring_network *network) {
+    const mspring_settings *settings = &network->settings;
+    return !network->is_precise && (settings->gravity_x != 0.0f || settings->gravity_y != 0.0f);
+}
+
 // Keep the state in the backup, run all substeps, and look at what they have led to.
 static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
@@ -127,7 +133,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
     network->first_substep = 0;
-    network->step_substeps = attempt->substeps;
+    network->dithered = has_dither(network) ? attempt->substeps / 4 * 4 : 0;
     begin_lag(network, attempt);
     tidy(network);
     if (ops->begin)

@@ -134,7 +134,7 @@ struct mspring_network {
 
     // State.
     mspringi_state state, backup;
-    uint32_t step_substeps;    ///< of the step that is being made
+    uint32_t dithered;         ///< substeps of the step that is being made with dither (dither.h): fours, or 0
     uint32_t first_substep;    ///< number in the step of the first of the substeps that are being taken
     float lag;                 ///< steps.lag at the first of these, s
     float full_lag;            ///< the same for gravity, whatever is stable

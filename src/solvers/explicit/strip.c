@@ -66,10 +66,9 @@ void mspringi_sweep_set_substep(const mspring_network *network, mspringi_sweep *
         sweep->gravity_h_x = settings->gravity_x * sweep->gravity_kick + 0.0f;
         sweep->gravity_h_y = settings->gravity_y * sweep->gravity_kick + 0.0f;
     }
-    sweep->loss = sweep->damping_loss;
-    if (!network->is_precise && (settings->gravity_x != 0.0f || settings->gravity_y != 0.0f))
-        sweep->loss += mspringi_dither(network->first_substep + i, network->step_substeps);
-    sweep->flushes = (network->first_substep + i) % MSPRINGI_FLUSH_PERIOD == 0;
+    const uint32_t number = network->first_substep + i;
+    sweep->loss = number < network->dithered ? sweep->damping_loss + mspringi_dither(number) : sweep->damping_loss;
+    sweep->flushes = number % MSPRINGI_FLUSH_PERIOD == 0;
 }
 
 void mspringi_substep_reuse(const mspring_network *network, mspringi_substep *substep, uint32_t i, uint32_t count,
