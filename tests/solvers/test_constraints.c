@@ -86,7 +86,7 @@ static void add_push(uint64_t *seed, mspringi_constraint_kind kind) {
 }
 
 static void add_pair(uint64_t *seed) {
-    const mspringi_activity activity = below(seed, 3) ? MSPRINGI_STIFF : MSPRINGI_AT_BOUND;
+    const uint8_t activity = below(seed, 3) ? MSPRINGI_STIFF : MSPRINGI_AT_BOUND;
     add(seed, MSPRINGI_GRIP_CONSTRAINT, MSPRINGI_BOUND_OF_PAIR)->activity = activity;
     add(seed, MSPRINGI_GRIP_CONSTRAINT, MSPRINGI_SECOND_OF_PAIR)->activity = activity;
 }
