@@ -382,7 +382,7 @@ typedef struct mspring_solver_def {
                             ///< if the network turns little in them; 0, the default: 1
     uint32_t most_work; ///< work in a step, in calm steps, up to which MSPRING_SUBSTEPS_AUTO and _EVEN take more
                         ///< substeps for violent motion and MSPRING_GUARD_RETRY repeats; at most MSPRING_MAX_SUBSTEPS;
-                        ///< default 4; 0: no bound but max_substeps. See below
+                        ///< default 4; 0: no bound but max_substeps. See above
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512

@@ -8,7 +8,7 @@
 
 #include "store/network.h"
 
-/// What an element does not do is NULL.
+/// Functions of an element, NULL where it has none.
 typedef struct mspringi_element_ops {
     bool (*is_used)(const mspring_network *network);
     void (*add_terms)(const mspring_network *network);  ///< to the assembled system, each time

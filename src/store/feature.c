@@ -1,4 +1,4 @@
-/// What is done to the states of all features alike.
+/// Operations on the states of all features.
 #include "store/feature.h"
 
 #include <string.h>

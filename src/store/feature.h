@@ -1,5 +1,5 @@
 /// @file feature.h
-/// What is done to the states of all features alike. The table of features is features.def.
+/// Operations on the states of all features. The table of features is features.def.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FEATURE_H

@@ -28,7 +28,7 @@
 #define ROUNDS(count) (count)
 #endif
 
-/// Whether a test is to sample what takes long: in the sets that each change and each push is judged by.
+/// True if a test is to sample long runs, as in the sets that each change and each push is judged by.
 bool support_is_quick(void);
 
 /// Whether rounds are few, so that a test may leave out what repeats itself.

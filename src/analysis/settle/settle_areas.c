@@ -11,7 +11,7 @@
 #include "base/shoelace.h"
 #include "store/springs.h"
 
-// What is done with angles; NULL in a build without.
+// Settling of angles; NULL in a build without them.
 #define STATICS(table) &table +
 static const mspringi_statics_element *const angles =
 #include "store/features.def"

@@ -25,7 +25,7 @@
 /// is small because masses alone give way 10^10 times as much as they do with elements.
 #define MOST_ITERATIONS 1000u
 #define LEAST_PRODUCT 1e-24
-/// The same bounds for the other constraints.
+/// These bounds of the other constraints.
 #define MOST_ITERATIONS_OF_OTHERS 64u
 #define LEAST_PRODUCT_OF_OTHERS 1e-12
 

@@ -262,7 +262,7 @@ static void loads_and_clones_go_on(void **state) {
         assert_int_equal(read_events(network), 0);
         uint32_t loaded;
         (void)hash_of_events(network, 40, &loaded);
-        // What was between 1 and 1.05 of the thickness may begin anew: 5 of 50 at most were seen.
+        // Pairs between 1 and 1.05 of the thickness apart may begin anew: 5 of 50 at most were seen.
         assert_true(loaded <= count + 8 && count <= loaded + 8);
         free(frame.bytes);
         mspring_network_destroy(network);
