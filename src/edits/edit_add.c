@@ -5,16 +5,15 @@
 #include "base/cpu.h"
 #include "base/hash.h"
 #include "features/breaking/breaking.h"
-#include "features/breaking/strain.h"
 #include "features/contact/contacts.h"
 #include "features/contact/floor.h"
 #include "features/ramps/ramps.h"
-#include "features/yield/plastic.h"
 #include "layout/emit/spare.h"
 #include "step/origin.h"
 #include "store/changed.h"
 #include "store/fractions.h"
 #include "store/id_pool.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 
 static mspring_result check_arrays(mspring_network *network, const void *defs, uint32_t count, const void *ids) {
@@ -232,10 +231,8 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
     mspringi_spring_slot_set_rest_length(network, spring_slot, rest_length);
     mspringi_spring_come_live(network, s);
     mspringi_spring_set_nominal(network, s, spring_slot, (mspringi_relative){def->stiffness, damping});
-    mspringi_strain_forget(network, s);
-    mspringi_strain_put_limits(network, s, MSPRINGI_LIMITS_OF(def));
-    mspringi_plastic_forget(network, s);
-    mspringi_plastic_put_limits(network, s, MSPRINGI_LIMITS_OF(def));
+    mspringi_limits_forget(network, s);
+    mspringi_limits_put(network, s, MSPRINGI_LIMITS_OF(def));
     mspringi_extents_turn(network, s);
     mspringi_fingerprint(network, relative ? MSPRINGI_EDIT_ADDED_RELATIVE : MSPRINGI_EDIT_ADDED_SPRING, s);
     mspringi_fingerprint(network, def->a, def->b);
@@ -264,9 +261,7 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         mspring_spring_def def;
         (void)mspringi_take_spring_def_at(NULL, defs, i, &def);
-        result = mspringi_strain_reserve_limits(network, MSPRINGI_LIMITS_OF(&def));
-        if (result == MSPRING_OK)
-            result = mspringi_plastic_reserve_limits(network, MSPRINGI_LIMITS_OF(&def));
+        result = mspringi_limits_reserve(network, MSPRINGI_LIMITS_OF(&def));
     }
     if (result != MSPRING_OK) {
         for (id = g->lowest_spring; linked > 0; --linked, ++id) {

@@ -5,11 +5,11 @@
 #include "features/actuators/actuators.h"
 #include "features/groups/edit_groups.h"
 #include "features/ramps/ramps.h"
-#include "features/yield/plastic.h"
 #include "step/held_groups.h"
 #include "store/changed.h"
 #include "store/id_pool.h"
 #include "store/rest_lengths.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 
 /* --------------------------------------------------------------------------------------------------- marking */
@@ -17,7 +17,7 @@
 void mspringi_mark_take(mspring_network *network, mspringi_mark *mark, uint32_t group) {
     const mspringi_groups *g = &network->groups;
     const mspringi_topology *t = &network->topology;
-    const float *arrays = network->state.x, *nominal = network->plastic.nominal;
+    const float *arrays = network->state.x, *nominal = network->tested.nominal;
     const size_t slots = mspringi_slot_count(network), values = mspringi_state_arrays(network);
     for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p)
         for (size_t i = 0; i < values; ++i)
@@ -133,7 +133,7 @@ static void restore_motion(mspring_network *network, const mspringi_mark *mark, 
 static void put_length_back(mspring_network *network, mspring_id spring, const float lengths[2]) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     const uint32_t *actuator = network->actuators ? network->actuators->of_spring : NULL;
-    float *nominal = network->plastic.nominal;
+    float *nominal = network->tested.nominal;
     const bool is_plain =
         mspringi_actuators_are_plain(network) && spring_slot < network->topology.lattice_spring_slots;
     if (actuator && actuator[spring] != MSPRING_NONE)
@@ -147,7 +147,7 @@ static void put_length_back(mspring_network *network, mspring_id spring, const f
     if (!nominal || !mspringi_spring_exists(network, spring))
         return;
     nominal[spring_slot] = lengths[1];
-    mspringi_plastic_renew(network, spring_slot);
+    mspringi_limits_renew(network, spring_slot);
 }
 
 static void put_back(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
@@ -178,7 +178,7 @@ mspring_result mspring_network_reset_groups(mspring_network *network, const uint
     for (uint32_t i = 0; i < reset.count; ++i)
         put_back(network, mark, chosen(&reset, i));
     mspringi_fp_leave(before);
-    network->plastic.flows_seen++;
+    network->edits.flows++;
     mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
     return MSPRING_OK;
 }

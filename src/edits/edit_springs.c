@@ -7,12 +7,11 @@
 #include "base/cpu.h"
 #include "base/hash.h"
 #include "edits/edit_values.h"
-#include "features/breaking/strain.h"
 #include "features/ramps/ramps.h"
-#include "features/yield/plastic.h"
 #include "store/changed.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
+#include "store/spring_limits.h"
 
 /* --------------------------------------------------------------------------------------------------- comparing */
 
@@ -39,26 +38,14 @@ static inline void fetch(const plane *from, mspringi_spring_slot spring_slot) {
         MSPRINGI_PREFETCH(in_plane(from, spring_slot));
 }
 
-// Thresholds of all springs, or NULL.
-static float *thresholds_of(const mspring_network *network, mspring_property property) {
-    const mspringi_strain *strain = &network->strain;
-    return property == MSPRING_BREAK_STRAIN    ? strain->break_strain
-           : property == MSPRING_STRESS_STRAIN ? strain->stress_strain
-           : property == MSPRING_RELAX_STRAIN  ? strain->relax_strain
-           : property == MSPRING_YIELD_STRAIN  ? network->plastic.yield_strain
-           : property == MSPRING_HARDENING     ? network->plastic.hardening
-           : property == MSPRING_PLASTIC_LIMIT ? network->plastic.plastic_limit
-                                               : NULL;
-}
-
 // Array of a property. All thresholds have one; so have the given rest lengths of yielding springs, rest lengths of
 // lattices unless shared, and stiffness and damping of lattices.
 static plane plane_of(const mspring_network *network, mspring_property property) {
     const mspringi_topology *t = &network->topology;
     const uint32_t planes = network->parts - 1;
-    float *thresholds = thresholds_of(network, property);
-    if (property == MSPRING_REST_LENGTH && mspringi_ramp_count(network) == 0 && network->plastic.nominal)
-        thresholds = network->plastic.nominal;
+    float *thresholds = mspringi_limits_of(network, property);
+    if (property == MSPRING_REST_LENGTH && mspringi_ramp_count(network) == 0 && network->tested.nominal)
+        thresholds = network->tested.nominal;
     if (thresholds)
         return (plane){thresholds, 1, (mspringi_spring_slot)(mspringi_spring_slot_words(t) * MSPRINGI_WIDTH)};
     if (property == MSPRING_STIFFNESS)
@@ -197,18 +184,6 @@ static uint32_t edit_of(mspring_property property) {
     }
 }
 
-static bool is_plastic(mspring_property property) {
-    return property >= MSPRING_YIELD_STRAIN && property <= MSPRING_PLASTIC_STRAIN;
-}
-
-static void store_limit(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
-                        float value) {
-    if (is_plastic(property))
-        mspringi_plastic_store(network, spring_slot, property, value);
-    else
-        mspringi_strain_store(network, spring_slot, property, value);
-}
-
 static mspring_result check_room_for_damping(mspring_network *network, const mspringi_selection *at,
                                              const mspringi_values *values) {
     for (uint32_t i = 0; network->parts <= MSPRINGI_DAMPING && i < at->count; ++i)
@@ -233,10 +208,8 @@ static mspring_result reserve(mspring_network *network, const mspringi_selection
                               uint32_t i) {
     const mspring_property property = values->property;
     const bool is_rest_length = property == MSPRING_REST_LENGTH;
-    if (is_plastic(property))
-        return mspringi_plastic_reserve(network);
     if (!is_rest_length && property != MSPRING_STIFFNESS && property != MSPRING_DAMPING)
-        return mspringi_strain_reserve_for(network, property);
+        return mspringi_limit_reserve(network, property);
     if (is_rest_length ? network->rest_lengths.shared_count == 0 : !network->fractions.of_spring)
         return MSPRING_OK;
     while (i < at->count && !ends_sharing(network, property, mspringi_selected(at, i)))
@@ -263,7 +236,7 @@ static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property
     default:
         if (property == MSPRING_PLASTIC_STRAIN)
             mspringi_ramp_drop(network, spring);
-        store_limit(network, spring_slot, property, value);
+        mspringi_limit_store(network, spring_slot, property, value);
     }
 }
 
@@ -340,10 +313,10 @@ static inline bool set_in_plane(mspring_network *network, const plane *known, ms
     if (*at == value)
         return false;
     if (property != MSPRING_REST_LENGTH) {
-        store_limit(network, spring_slot, property, value);
+        mspringi_limit_store(network, spring_slot, property, value);
         return true;
     }
-    if (network->plastic.nominal) {
+    if (network->tested.nominal) {
         mspringi_spring_slot_give_length(network, spring_slot, value);
         return true;
     }

@@ -90,7 +90,7 @@ static mspring_result append_particle(mspring_builder *builder, const mspring_ne
 
 static mspringi_limits limits_of(const mspring_network *network, mspring_id s) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
-    const float *nominal = network->plastic.nominal;
+    const float *nominal = network->tested.nominal;
     const bool has_flowed =
         nominal && nominal[spring_slot] != mspringi_spring_slot_own_length(network, spring_slot);
     return (mspringi_limits){.break_strain = mspringi_spring_property(network, MSPRING_BREAK_STRAIN, s),

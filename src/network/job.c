@@ -68,10 +68,10 @@ static bool copy_topologies(mspring_job *job, const mspring_network *network) {
 
 // Copy the spring arrays and the live bits, and the masses if a solver is to be built.
 static bool copy_arrays(mspring_job *job, const mspring_network *network) {
-    static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,    MSPRINGI_STORE_IRREGULAR, MSPRINGI_STORE_RESTS,
-                                            MSPRINGI_STORE_STRAIN,  MSPRINGI_STORE_STRESS,    MSPRINGI_STORE_RELAX,
-                                            MSPRINGI_STORE_PLASTIC, MSPRINGI_STORE_MARKS,     MSPRINGI_STORE_ENDS,
-                                            MSPRINGI_STORE_MASS,    MSPRINGI_STORE_FRACTIONS};
+    static const mspringi_group groups[] = {MSPRINGI_STORE_ROWS,   MSPRINGI_STORE_IRREGULAR, MSPRINGI_STORE_RESTS,
+                                            MSPRINGI_STORE_STRAIN, MSPRINGI_STORE_STRESS,    MSPRINGI_STORE_RELAX,
+                                            MSPRINGI_STORE_TESTED, MSPRINGI_STORE_MARKS,     MSPRINGI_STORE_ENDS,
+                                            MSPRINGI_STORE_MASS,   MSPRINGI_STORE_FRACTIONS};
     mspring_network *from = &job->from;
     const bool has_solver = network->solver.object || network->fallback.object;
     for (size_t i = 0; i < sizeof groups / sizeof groups[0] - (has_solver ? 0 : 2); ++i)

@@ -8,10 +8,8 @@
 #include "base/hash.h"
 #include "base/unit.h"
 #include "features/areas/areas.h"
-#include "features/breaking/strain.h"
 #include "features/one_way/one_way.h"
 #include "features/sleep/sleep.h"
-#include "features/yield/plastic.h"
 #include "network/job.h"
 #include "network/level.h"
 #include "solvers/explicit/explicit.h"
@@ -244,13 +242,9 @@ static mspring_result mark_reversed(mspring_network *network, const mspring_buil
 static mspring_result set_limits(mspring_network *network, const mspring_builder *builder) {
     mspring_result result = mspringi_one_way_create(network, builder);
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
-        result = mspringi_strain_reserve_limits(network, builder->limits[s]);
+        result = mspringi_limits_reserve(network, builder->limits[s]);
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
-        result = mspringi_plastic_reserve_limits(network, builder->limits[s]);
-    for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s) {
-        mspringi_strain_put_limits(network, (mspring_id)s, builder->limits[s]);
-        mspringi_plastic_put_limits(network, (mspring_id)s, builder->limits[s]);
-    }
+        mspringi_limits_put(network, (mspring_id)s, builder->limits[s]);
     return result;
 }
 

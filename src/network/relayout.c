@@ -5,14 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-#include "features/breaking/strain.h"
 #include "features/contact/floor.h"
 #include "features/hooks/hooks.h"
 #include "features/sleep/sleep.h"
-#include "features/yield/plastic.h"
 #include "network/job.h"
 #include "stability/stability_limit.h"
 #include "store/changed.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 #include "store/store.h"
 
@@ -48,9 +47,7 @@ mspring_result mspringi_relayout_reserve_springs(mspring_job *job) {
                                                &to->memory, &to->message);
     if (result == MSPRING_OK && job->from.rest_lengths.shared_count == 0)
         result = mspringi_rest_lengths_unshare(to);
-    if (result == MSPRING_OK)
-        result = mspringi_strain_match_layout(to, &job->from);
-    return result == MSPRING_OK ? mspringi_plastic_match_layout(to, &job->from) : result;
+    return result == MSPRING_OK ? mspringi_limits_match_layout(to, &job->from) : result;
 }
 
 // Copy all values of a spring from its old slot to its new one.
@@ -151,9 +148,7 @@ static mspring_result make_others(mspring_network *to, const mspring_network *fr
     if (to->rest_lengths.shared_count > 0 && from->rest_lengths.shared_count == 0)
         result = mspringi_rest_lengths_unshare(to);
     if (result == MSPRING_OK)
-        result = mspringi_strain_match_layout(to, from);
-    if (result == MSPRING_OK)
-        result = mspringi_plastic_match_layout(to, from);
+        result = mspringi_limits_match_layout(to, from);
     if (result == MSPRING_OK && from->guard_scratch)
         result = mspringi_stability_limit_reserve(to);
     if (result == MSPRING_OK && !mspringi_store_match_layout(to, from))
@@ -208,8 +203,8 @@ static mspring_network with_layout_of(const mspring_network *network, const mspr
     mspringi_store_take_layout(&to, made);
     to.shared_records.changes = made->shared_records.changes;
     to.shared_records.compared = made->shared_records.compared;
-    to.plastic.shared_records.changes = made->plastic.shared_records.changes;
-    to.plastic.shared_records.compared = made->plastic.shared_records.compared;
+    to.tested.shared_records.changes = made->tested.shared_records.changes;
+    to.tested.shared_records.compared = made->tested.shared_records.compared;
     to.rest_lengths = made->rest_lengths;
     to.halos = made->halos;
     to.carry_rows = made->carry_rows;

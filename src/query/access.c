@@ -248,7 +248,7 @@ static uint64_t hash_rest_lengths(const mspring_network *network, uint64_t sum) 
     for (mspring_id s = 0; s < t->spring_count; ++s) {
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, s);
         const float own = mspringi_spring_slot_own_length(network, spring_slot);
-        if (mspringi_spring_exists(network, s) && own != network->plastic.nominal[spring_slot])
+        if (mspringi_spring_exists(network, s) && own != network->tested.nominal[spring_slot])
             sum = mspringi_hash_floats(mspringi_hash(sum, s), own, 0.0f);
     }
     return sum;
@@ -284,6 +284,6 @@ mspring_result mspring_network_state_hash(const mspring_network *network, uint64
                 sum = mspringi_hash_floats(sum, 0.0f, 0.0f);
         }
     }
-    *hash = network->plastic.is_bent ? hash_rest_lengths(network, sum) : sum;
+    *hash = network->tested.is_bent ? hash_rest_lengths(network, sum) : sum;
     return MSPRING_OK;
 }

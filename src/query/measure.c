@@ -62,23 +62,8 @@ float mspringi_spring_force(const mspring_network *network, mspring_id spring) {
 static double hardening_energy(const mspring_network *network, mspring_id spring, double stiffness) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     const double flow = (double)mspringi_spring_slot_own_length(network, spring_slot) -
-                        (double)network->plastic.nominal[spring_slot];
-    return 0.5 * stiffness * (double)network->plastic.hardening[spring_slot] * flow * flow;
-}
-
-mspring_result mspring_network_get_plasticity(const mspring_network *network, mspring_plasticity *report) {
-    const mspring_result result = mspringi_check_report(network, &mspringi_struct_plasticity, report);
-    if (result != MSPRING_OK)
-        return result;
-    const mspringi_plastic *p = &network->plastic;
-    mspring_plasticity made = {.yield_count = p->count, .dissipated = p->dissipated};
-    for (mspring_id s = 0; p->is_bent && s < network->topology.spring_count; ++s) {
-        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
-        made.bent_springs += mspringi_spring_exists(network, s) &&
-                             mspringi_spring_slot_own_length(network, spring_slot) != p->nominal[spring_slot];
-    }
-    mspringi_put_plasticity(report, &made);
-    return MSPRING_OK;
+                        (double)network->tested.nominal[spring_slot];
+    return 0.5 * stiffness * (double)network->tested.hardening[spring_slot] * flow * flow;
 }
 
 mspring_result mspring_network_energy(const mspring_network *network, double *kinetic, double *elastic,
@@ -102,7 +87,7 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         const double stretch = spring_length(network, &r, &rate) - (double)r.rest_length;
         if (!mspringi_is_slack(mspringi_side_of(network, i), stretch))
             elastic_sum += 0.5 * (double)r.stiffness * stretch * stretch;
-        if (network->plastic.nominal)
+        if (network->tested.nominal)
             elastic_sum += hardening_energy(network, i, (double)r.stiffness);
     }
     for (size_t i = 0; elastic && i < network->areas.count; ++i) {

@@ -3,12 +3,12 @@
 #include <string.h>
 
 #include "features/breaking/breaking.h"
-#include "features/breaking/strain.h"
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
 #include "store/properties.h"
 #include "store/rest_lengths.h"
 #include "store/sections.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 
 /* ------------------------------------------------------------------------------------------ bits by spring slot */
@@ -203,14 +203,14 @@ static mspring_result thresholds_check(mspring_network *network, const mspringi_
         if (!mspringi_are_allowed(property, &value, 1, 1))
             result = mspringi_section_fail(network, section, "spring %u has %g", (unsigned)s, (double)value);
     }
-    return result == MSPRING_OK ? mspringi_strain_reserve_for(network, property) : result;
+    return result == MSPRING_OK ? mspringi_limit_reserve(network, property) : result;
 }
 
 static void thresholds_load(mspring_network *network, mspring_property property, const uint8_t *from, size_t size) {
     const float none = property == MSPRING_RELAX_STRAIN ? MSPRING_RELAX_STRAIN_DEFAULT : INFINITY;
     for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s)
-        mspringi_strain_store(network, network->topology.slot_of_spring[s], property,
-                              size > 0 ? mspringi_float_at(from, s) : none);
+        mspringi_limit_store(network, network->topology.slot_of_spring[s], property,
+                             size > 0 ? mspringi_float_at(from, s) : none);
 }
 
 // A section of thresholds of one kind, absent if no spring ever had one.
@@ -252,7 +252,7 @@ static mspring_result stressed_check(mspring_network *network, const uint8_t *fr
         return MSPRING_OK;
     mspring_result result =
         mspringi_section_check_size(network, &mspringi_section_stressed, size, words_size(network));
-    return result == MSPRING_OK ? mspringi_strain_reserve(network) : result;
+    return result == MSPRING_OK ? mspringi_limit_reserve(network, MSPRING_BREAK_STRAIN) : result;
 }
 
 // Only live springs are stressed.

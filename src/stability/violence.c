@@ -12,7 +12,7 @@
 
 double mspringi_violence_bound(const mspring_network *network) {
     const bool is_known = network->guard.state == network->edits.state && !network->is_open &&
-                          isfinite(network->shortest_set) && !network->plastic.is_bent;
+                          isfinite(network->shortest_set) && !network->tested.is_bent;
     return is_known ? LARGEST_DIFFERENCE * (double)network->guard.speed / (double)network->shortest_set : INFINITY;
 }
 
@@ -46,7 +46,7 @@ double mspringi_violence(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_spring_slot of_block = MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
     const float shortest =
-        isfinite(network->shortest_set) && !network->plastic.is_bent ? network->shortest_set : 0.0f;
+        isfinite(network->shortest_set) && !network->tested.is_bent ? network->shortest_set : 0.0f;
     mspringi_violence_sweep sweep = {.vx = network->state.vx,
                                      .vy = network->state.vy,
                                      .up_of_block = t->up_of_block,

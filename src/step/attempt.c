@@ -147,8 +147,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
             network->lag = network->full_lag = attempt->h;
             return extrema;
         }
-        if (network->plastic.yields) // in substeps that were undone, as they met the floor
-            mspringi_stage_yielding.roll_back(network);
+        mspringi_stages_roll_back_sweeps(network, attempt);
     }
     copy_state(network, &network->state, &network->backup);
     network->backup_is_start = !is_cut && network->sleep.sleeping == 0;

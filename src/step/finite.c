@@ -40,15 +40,13 @@ static bool are_features_finite(const mspring_network *network) {
 }
 
 static bool are_springs_finite(const mspring_network *network) {
-    const mspringi_plastic *plastic = &network->plastic;
-    bool finite = isfinite(plastic->dissipated);
+    bool finite = true;
     for (mspring_id s = 0; finite && s < network->topology.spring_count; ++s) {
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
         if (!mspringi_spring_exists(network, s))
             continue;
         const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
-        finite = isfinite(values.stiffness) && isfinite(values.damping) && isfinite(values.rest_length) &&
-                 (!plastic->nominal || isfinite(plastic->nominal[spring_slot]));
+        finite = isfinite(values.stiffness) && isfinite(values.damping) && isfinite(values.rest_length);
     }
     return finite;
 }

@@ -150,6 +150,13 @@ void mspringi_stages_roll_back(mspring_network *network, const mspringi_attempt 
             stages->used[i]->roll_back(network);
 }
 
+void mspringi_stages_roll_back_sweeps(mspring_network *network, const mspringi_attempt *attempt) {
+    const mspringi_stages *stages = attempt->stages;
+    for (size_t i = stages->count; i-- > 0;)
+        if (stages->used[i]->is_swept)
+            stages->used[i]->roll_back(network);
+}
+
 void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_stages *stages = attempt->stages;
     for (size_t i = stages->count; i-- > 0;)

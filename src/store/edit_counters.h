@@ -26,6 +26,7 @@ typedef struct mspringi_edits {
     uint64_t sleep_changes; ///< times that islands fell asleep or woke
     uint64_t layouts;       ///< times that all slots changed
     uint64_t origins;       ///< times that the local origin moved
+    uint64_t flows;         ///< times that rest lengths changed within a step
     mspring_id
         *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
     uint32_t link_mask;

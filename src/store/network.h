@@ -14,7 +14,6 @@
 #include "features/breaking/strain_state.h"
 #include "features/groups/groups.h"
 #include "features/sleep/sleep_state.h"
-#include "features/yield/plastic_state.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"
 #include "store/added_springs.h"
@@ -24,6 +23,7 @@
 #include "store/solver.h"
 #include "store/state.h"
 #include "store/steps.h"
+#include "store/tested_springs.h"
 #include "tasks/tasks.h"
 
 /// Forces from outside, in N by slot. Fields that a network does not need are NULL.
@@ -194,7 +194,7 @@ struct mspring_network {
 #define STATE(name) struct mspringi_##name *name;
 #include "store/features.def"
     mspringi_strain strain;
-    mspringi_plastic plastic;
+    mspringi_tested tested;
     mspringi_areas areas;
     mspringi_constraints constraints; ///< of the last substep with a linear system
     mspringi_components components;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "store/spring_limits.h"
 #include "store/springs.h"
 
 static const mspringi_property list[] = {
@@ -90,17 +91,23 @@ float mspringi_particle_property(const mspring_network *network, mspring_propert
 
 // Of a weld it is 0, and of one on a ramp that which it will have.
 static float plastic_strain(const mspring_network *network, mspringi_spring_slot spring_slot) {
-    const float *nominal = network->plastic.nominal;
+    const float *nominal = network->tested.nominal;
     if (!nominal || nominal[spring_slot] == MSPRINGI_WELD)
         return 0.0f;
     const double own = (double)mspringi_spring_slot_own_length(network, spring_slot);
     return (float)((own - (double)nominal[spring_slot]) / (double)nominal[spring_slot]);
 }
 
+static float default_limit(mspring_property property) {
+    return property == MSPRING_RELAX_STRAIN    ? MSPRING_RELAX_STRAIN_DEFAULT
+           : property == MSPRING_HARDENING     ? MSPRING_HARDENING_DEFAULT
+           : property == MSPRING_PLASTIC_LIMIT ? MSPRING_PLASTIC_LIMIT_DEFAULT
+                                               : INFINITY;
+}
+
 float mspringi_spring_property(const mspring_network *network, mspring_property property, mspring_id spring) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
-    const mspringi_strain *strain = &network->strain;
-    const mspringi_plastic *plastic = &network->plastic;
+    const float *limits;
     switch (property) {
     case MSPRING_STIFFNESS:
         return mspringi_spring_get_nominal(network, spring, spring_slot).stiffness;
@@ -108,19 +115,10 @@ float mspringi_spring_property(const mspring_network *network, mspring_property 
         return mspringi_spring_get_nominal(network, spring, spring_slot).damping;
     case MSPRING_REST_LENGTH:
         return mspringi_spring_slot_given_length(network, spring_slot);
-    case MSPRING_BREAK_STRAIN:
-        return strain->break_strain ? strain->break_strain[spring_slot] : INFINITY;
-    case MSPRING_STRESS_STRAIN:
-        return strain->stress_strain ? strain->stress_strain[spring_slot] : INFINITY;
-    case MSPRING_YIELD_STRAIN:
-        return plastic->nominal ? plastic->yield_strain[spring_slot] : INFINITY;
-    case MSPRING_HARDENING:
-        return plastic->nominal ? plastic->hardening[spring_slot] : MSPRING_HARDENING_DEFAULT;
-    case MSPRING_PLASTIC_LIMIT:
-        return plastic->nominal ? plastic->plastic_limit[spring_slot] : MSPRING_PLASTIC_LIMIT_DEFAULT;
     case MSPRING_PLASTIC_STRAIN:
         return plastic_strain(network, spring_slot);
     default:
-        return strain->relax_strain ? strain->relax_strain[spring_slot] : MSPRING_RELAX_STRAIN_DEFAULT;
+        limits = mspringi_limits_of(network, property);
+        return limits ? limits[spring_slot] : default_limit(property);
     }
 }

@@ -102,9 +102,9 @@ void mspringi_shared_records_find(mspring_network *network) {
 }
 
 void mspringi_shared_records_find_yielding(mspring_network *network) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     const records of = {.arrays = {network->rest_lengths.lengths, p->low, p->high, p->flow_low, p->flow_high},
                         .count = MOST_ARRAYS,
                         .values = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH};
-    renew(&network->plastic.shared_records, &of, &network->topology);
+    renew(&network->tested.shared_records, &of, &network->topology);
 }

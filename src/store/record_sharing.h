@@ -32,8 +32,8 @@ static inline void mspringi_shared_records_unshare(mspring_network *network, msp
 /// The same of its rest length or its bounds, if springs yield.
 static inline void mspringi_shared_records_unshare_yielding(mspring_network *network,
                                                             mspringi_spring_slot spring_slot) {
-    if (network->plastic.nominal)
-        mspringi_shared_records_unshare_in(network, &network->plastic.shared_records, spring_slot);
+    if (network->tested.nominal)
+        mspringi_shared_records_unshare_in(network, &network->tested.shared_records, spring_slot);
 }
 
 /// Look for blocks that are alike: those whose springs were set may be again what they were, and if a quarter of

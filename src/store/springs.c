@@ -6,6 +6,7 @@
 #include "store/changed.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
+#include "store/spring_limits.h"
 #include "store/stages.h"
 
 // Where a spring's values are: in one record, or in one at each of its ends.
@@ -74,8 +75,8 @@ float mspringi_spring_slot_own_length(const mspring_network *network, mspringi_s
 }
 
 float mspringi_spring_slot_given_length(const mspring_network *network, mspringi_spring_slot spring_slot) {
-    return network->plastic.nominal ? network->plastic.nominal[spring_slot]
-                                    : mspringi_spring_slot_own_length(network, spring_slot);
+    return network->tested.nominal ? network->tested.nominal[spring_slot]
+                                   : mspringi_spring_slot_own_length(network, spring_slot);
 }
 
 // Whether a spring was given with the higher id first.
@@ -139,6 +140,20 @@ void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spr
         *records.ends[i].rest_length = rest_length;
     mspringi_note_rest_length(network, rest_length);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
+}
+
+void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_slot spring_slot, float length) {
+    if (!network->tested.nominal) {
+        mspringi_spring_slot_set_rest_length(network, spring_slot, length);
+        return;
+    }
+    const float own = mspringi_spring_slot_own_length(network, spring_slot),
+                had = network->tested.nominal[spring_slot];
+    const bool is_straight = own == had || had == MSPRINGI_WELD || length == MSPRINGI_WELD;
+    network->tested.nominal[spring_slot] = length;
+    mspringi_spring_slot_set_rest_length(
+        network, spring_slot, is_straight ? length : (float)((double)length * ((double)own / (double)had)));
+    mspringi_limits_renew(network, spring_slot);
 }
 
 void mspringi_spring_slot_copy(const mspring_network *from, mspringi_spring_slot had_place, mspring_network *to,

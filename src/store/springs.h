@@ -103,6 +103,8 @@ void mspringi_note_rest_length(mspring_network *network, float rest_length);
 /// only, unless it is what the spring has.
 void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spring_slot spring_slot,
                                           float rest_length);
+/// Set the rest length that the host gives. In force is that times 1 + the plastic strain, which stays.
+void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_slot spring_slot, float length);
 
 /// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
 void mspringi_derive_relative(mspring_network *network, float h);

@@ -34,6 +34,7 @@ typedef struct mspringi_stage {
         const mspring_network *network); ///< something of it moves though all may sleep; NULL: nothing does
     bool is_inner;                       ///< what before_substep adds are forces within bodies, which wake nothing
     bool writes_state; ///< before or between substeps: the backup is made before its forces are asked for
+    bool is_swept;     ///< acts in the sweeps of substeps: rolled back, too, if a solver takes these back itself
 
     void (*before_step)(mspring_network *network, const mspringi_attempt *attempt);
     bool (*is_quiet)(const mspring_network *network, const mspringi_attempt *attempt); ///< NULL: never
@@ -98,6 +99,8 @@ bool mspringi_stages_must_repeat(mspring_network *network, const mspringi_attemp
 mspring_result mspringi_stages_verify(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_after_step(mspring_network *network, const mspringi_stages *stages, double dt);
 void mspringi_stages_roll_back(mspring_network *network, const mspringi_attempt *attempt);
+/// Only those that act in sweeps: the solver has met the floor, and undone what it swept.
+void mspringi_stages_roll_back_sweeps(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt);
 
 #endif

@@ -165,7 +165,7 @@ static void a_copy_shares_too(void **state) {
 /// The same of what springs yield at. What a block reads is what it has.
 static uint32_t yielding_blocks_that_share(const mspring_network *network) {
     enum { PLACES = MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH };
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     const float *const arrays[] = {network->rest_lengths.lengths, p->low, p->high, p->flow_low, p->flow_high};
     for (size_t b = 0; b < network->topology.lattice_blocks; b++) {
         for (size_t i = 0; i < COUNT_OF(arrays); i++) {

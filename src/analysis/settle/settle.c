@@ -163,7 +163,7 @@ static mspring_result check_equilibrium(const mspringi_statics *statics, const m
 // Check that no spring would yield: the search treats all as elastic, and plastic flow leads to another
 // equilibrium.
 static mspring_result check_yields(const mspringi_statics *statics, mspring_network *network) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     for (mspring_id spring = 0; p->yields && spring < network->topology.spring_count; ++spring) {
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
         const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);

@@ -4,11 +4,11 @@
 #include "analysis/tune/reference.h"
 #include "analysis/tune/tuning.h"
 #include "base/clock.h"
-#include "features/breaking/strain.h"
 #include "features/ramps/ramps.h"
 #include "features/sleep/sleep.h"
 #include "step/origin.h"
 #include "store/changed.h"
+#include "store/spring_limits.h"
 
 #define MAX_SETTINGS 1000
 #define MAX_STEPS 100000
@@ -145,9 +145,9 @@ void mspringi_tune_disable_fallbacks(mspring_network *clone) {
 
 void mspringi_tune_make_unbreakable(mspring_network *clone) {
     for (mspring_id spring = 0; clone->strain.break_strain && spring < clone->topology.spring_count; ++spring)
-        mspringi_strain_store(clone, mspringi_slot_of_spring(&clone->topology, spring), MSPRING_BREAK_STRAIN,
-                              INFINITY);
-    clone->plastic.yields = false;
+        mspringi_limit_store(clone, mspringi_slot_of_spring(&clone->topology, spring), MSPRING_BREAK_STRAIN,
+                             INFINITY);
+    clone->tested.yields = false;
 }
 
 // Take velocities of half a substep ago on to now, where settings of all solvers and the fine run start.

@@ -3,9 +3,9 @@
 /// Most actuators lie in lattices, whose rest lengths lie by place: there a signal takes one store.
 #include "features/actuators/actuators.h"
 
-#include "features/yield/plastic.h"
 #include "store/feature.h"
 #include "store/rest_lengths.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 #include "store/stages.h"
 
@@ -35,7 +35,7 @@ static void keep_lengths(mspring_network *network) {
     for (uint32_t i = 0; i < a.count; ++i)
         a.from[i] = spring_slots[a.spring[i]] < end ? lengths[spring_slots[a.spring[i]]]
                                                     : mspringi_actuator_length(network, i);
-    for (uint32_t i = 0; network->plastic.nominal && i < a.count; ++i)
+    for (uint32_t i = 0; network->tested.nominal && i < a.count; ++i)
         a.bent_from[i] = mspringi_spring_slot_get(network, spring_slots[a.spring[i]]).rest_length;
 }
 
@@ -68,14 +68,14 @@ static void set_between(mspring_network *network, float share) {
 // Back to what the step began with, whatever has flowed in it.
 static void go_back(mspring_network *network) {
     const mspringi_actuators a = *network->actuators;
-    float *nominal = network->plastic.nominal;
+    float *nominal = network->tested.nominal;
     set_lengths(network, a.from);
     for (uint32_t i = 0; nominal && i < a.count; ++i) {
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, a.spring[i]);
         if (mspringi_spring_slot_get(network, spring_slot).rest_length == a.bent_from[i])
             continue;
         mspringi_spring_slot_set_rest_length(network, spring_slot, a.bent_from[i]);
-        mspringi_plastic_renew(network, spring_slot);
+        mspringi_limits_renew(network, spring_slot);
     }
 }
 

@@ -31,7 +31,7 @@ void mspringi_actuator_set_length(mspring_network *network, uint32_t actuator, f
 
 /// Whether rest lengths are to be set where they lie, and nobody has to be told.
 static inline bool mspringi_actuators_are_plain(const mspring_network *network) {
-    return network->rest_lengths.shared_count == 0 && !network->job && !network->plastic.nominal;
+    return network->rest_lengths.shared_count == 0 && !network->job && !network->tested.nominal;
 }
 
 #endif

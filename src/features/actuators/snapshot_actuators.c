@@ -1,8 +1,8 @@
 /// Snapshot of actuators.
 #include "features/actuators/actuators.h"
-#include "features/yield/plastic.h"
 #include "store/properties.h"
 #include "store/sections.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 
 // Values of an actuator: the present rest length, the one that signals ask for, and the one before any flow.
@@ -14,7 +14,7 @@ static void actuators_save(const mspring_network *network, mspringi_writer *to) 
         return;
     mspringi_put(to, head, 2, sizeof head[0]);
     for (uint32_t i = 0; i < a->count; ++i) {
-        const float *nominal = network->plastic.nominal;
+        const float *nominal = network->tested.nominal;
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, a->spring[i]);
         const float now = mspringi_spring_slot_get(network, spring_slot).rest_length;
         const float values[VALUES] = {now, a->to[i], nominal ? nominal[spring_slot] : now};
@@ -64,10 +64,10 @@ static void actuators_load(mspring_network *network, const uint8_t *from, size_t
         from = mspringi_get(from, values, VALUES, sizeof values[0]);
         a->to[i] = values[1];
         mspringi_spring_slot_set_rest_length(network, spring_slot, values[0]);
-        if (!network->plastic.nominal)
+        if (!network->tested.nominal)
             continue;
-        network->plastic.nominal[spring_slot] = values[2];
-        mspringi_plastic_renew(network, spring_slot);
+        network->tested.nominal[spring_slot] = values[2];
+        mspringi_limits_renew(network, spring_slot);
     }
 }
 

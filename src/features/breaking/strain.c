@@ -12,6 +12,7 @@
 #include "store/events.h"
 #include "store/id_pool.h"
 #include "store/properties.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 #include "store/stages.h"
 #include "store/store.h"
@@ -70,7 +71,7 @@ static float relaxes_at(const mspring_network *network, mspringi_spring_slot spr
 
 // The rest length before any flow, of a spring that has flowed: it breaks by the strain that it has in all.
 static float nominal_of(const mspring_network *network, mspringi_spring_slot spring_slot, float rest_length) {
-    const float *nominal = network->plastic.nominal;
+    const float *nominal = network->tested.nominal;
     return !nominal || nominal[spring_slot] == rest_length || mspringi_spring_slot_ramp(network, spring_slot)
                ? rest_length
                : nominal[spring_slot];
@@ -163,7 +164,7 @@ static void look_at_hits(mspring_network *network, const mspringi_strain_hit *hi
 
 // Whether strain is all that counts, of all springs, as the kernels have it.
 static bool is_plain(const mspring_network *network) {
-    return !network->plastic.nominal && !network->one_way && !network->has_welds;
+    return !network->tested.nominal && !network->one_way && !network->has_welds;
 }
 
 // Break, stress and relax springs by the strain that they have now.
@@ -210,23 +211,7 @@ static void fill(const mspring_network *network, float *thresholds, float value)
         thresholds[spring_slot] = value;
 }
 
-mspring_result mspringi_strain_reserve(mspring_network *network) {
-    const mspringi_strain *strain = &network->strain;
-    if (strain->break_strain && (strain->least || !network->plastic.nominal))
-        return MSPRING_OK;
-    mspring_result result = mspringi_breaking_reserve(network);
-    if (result == MSPRING_OK)
-        result = mspringi_incidence_reserve(network);
-    if (result == MSPRING_OK)
-        result = mspringi_strain_reserve_layout(network);
-    if (result == MSPRING_OK && network->plastic.nominal)
-        result = mspringi_strain_reserve_stress(network);
-    if (result == MSPRING_OK)
-        mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
-    return result;
-}
-
-mspring_result mspringi_strain_reserve_layout(mspring_network *network) {
+static mspring_result reserve_layout(mspring_network *network) {
     const mspringi_strain *strain = &network->strain;
     if (strain->break_strain)
         return MSPRING_OK;
@@ -252,7 +237,23 @@ mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
     return MSPRING_OK;
 }
 
-mspring_result mspringi_strain_reserve_relax(mspring_network *network) {
+static mspring_result reserve(mspring_network *network) {
+    const mspringi_strain *strain = &network->strain;
+    if (strain->break_strain && (strain->least || !network->tested.nominal))
+        return MSPRING_OK;
+    mspring_result result = mspringi_breaking_reserve(network);
+    if (result == MSPRING_OK)
+        result = mspringi_incidence_reserve(network);
+    if (result == MSPRING_OK)
+        result = reserve_layout(network);
+    if (result == MSPRING_OK && network->tested.nominal)
+        result = mspringi_strain_reserve_stress(network);
+    if (result == MSPRING_OK)
+        mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
+    return result;
+}
+
+static mspring_result reserve_relax(mspring_network *network) {
     const mspringi_strain *strain = &network->strain;
     if (strain->relax_strain)
         return MSPRING_OK;
@@ -265,24 +266,24 @@ mspring_result mspringi_strain_reserve_relax(mspring_network *network) {
     return MSPRING_OK;
 }
 
-mspring_result mspringi_strain_reserve_for(mspring_network *network, mspring_property property) {
+static mspring_result reserve_for(mspring_network *network, mspring_property property) {
     if (property == MSPRING_RELAX_STRAIN)
-        return mspringi_strain_reserve_relax(network);
-    mspring_result result = mspringi_strain_reserve(network);
+        return reserve_relax(network);
+    mspring_result result = reserve(network);
     return result == MSPRING_OK && property == MSPRING_STRESS_STRAIN ? mspringi_strain_reserve_stress(network)
                                                                      : result;
 }
 
-mspring_result mspringi_strain_match_layout(mspring_network *to, const mspring_network *from) {
-    mspring_result result = from->strain.break_strain ? mspringi_strain_reserve_layout(to) : MSPRING_OK;
+static mspring_result match_layout(mspring_network *to, const mspring_network *from) {
+    mspring_result result = from->strain.break_strain ? reserve_layout(to) : MSPRING_OK;
     if (result == MSPRING_OK && from->strain.stress_strain)
         result = mspringi_strain_reserve_stress(to);
-    return result == MSPRING_OK && from->strain.relax_strain ? mspringi_strain_reserve_relax(to) : result;
+    return result == MSPRING_OK && from->strain.relax_strain ? reserve_relax(to) : result;
 }
 
 // Of a spring that has flowed, what is left of its break strain: the pass compares with the rest length in force.
 static float least_to_break(const mspring_network *network, mspringi_spring_slot spring_slot) {
-    const float break_strain = network->strain.break_strain[spring_slot], *nominal = network->plastic.nominal;
+    const float break_strain = network->strain.break_strain[spring_slot], *nominal = network->tested.nominal;
     const float own = nominal ? mspringi_spring_slot_own_length(network, spring_slot) : 0.0f;
     if (!nominal || own == nominal[spring_slot] || break_strain == INFINITY)
         return break_strain;
@@ -297,8 +298,8 @@ void mspringi_strain_renew_least(mspring_network *network, mspringi_spring_slot 
             fminf(least_to_break(network, spring_slot), strain->stress_strain[spring_slot]);
 }
 
-void mspringi_strain_store(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
-                           float value) {
+static void store_limit(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
+                        float value) {
     mspringi_strain *strain = &network->strain;
     if (property == MSPRING_RELAX_STRAIN) {
         MSPRINGI_ASSERT(strain->relax_strain);
@@ -318,45 +319,42 @@ void mspringi_strain_store(mspring_network *network, mspringi_spring_slot spring
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
 }
 
-void mspringi_strain_forget(mspring_network *network, mspring_id spring) {
+static void forget(mspring_network *network, mspring_id spring) {
     const mspringi_strain *strain = &network->strain;
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     if (strain->stressed)
         strain->stressed[spring_slot / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << spring_slot % MSPRINGI_WIDTH);
     if (strain->break_strain)
-        mspringi_strain_store(network, spring_slot, MSPRING_BREAK_STRAIN, INFINITY);
+        store_limit(network, spring_slot, MSPRING_BREAK_STRAIN, INFINITY);
     if (strain->stress_strain)
-        mspringi_strain_store(network, spring_slot, MSPRING_STRESS_STRAIN, INFINITY);
+        store_limit(network, spring_slot, MSPRING_STRESS_STRAIN, INFINITY);
     if (strain->relax_strain)
-        mspringi_strain_store(network, spring_slot, MSPRING_RELAX_STRAIN, MSPRING_RELAX_STRAIN_DEFAULT);
+        store_limit(network, spring_slot, MSPRING_RELAX_STRAIN, MSPRING_RELAX_STRAIN_DEFAULT);
 }
 
-mspring_result mspringi_strain_reserve_limits(mspring_network *network, mspringi_limits limits) {
-    mspring_result result = MSPRING_OK;
-    if (limits.break_strain < MSPRING_NEVER)
-        result = mspringi_strain_reserve_for(network, MSPRING_BREAK_STRAIN);
-    if (result == MSPRING_OK && limits.stress_strain < MSPRING_NEVER)
-        result = mspringi_strain_reserve_for(network, MSPRING_STRESS_STRAIN);
-    if (result == MSPRING_OK && limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT)
-        result = mspringi_strain_reserve_for(network, MSPRING_RELAX_STRAIN);
-    return result;
-}
-
-void mspringi_strain_put_limits(mspring_network *network, mspring_id spring, mspringi_limits limits) {
+static void put(mspring_network *network, mspring_id spring, mspringi_limits limits) {
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     if (!mspringi_has_limits(limits))
         return;
     if (limits.break_strain < MSPRING_NEVER)
-        mspringi_strain_store(network, spring_slot, MSPRING_BREAK_STRAIN, limits.break_strain);
+        store_limit(network, spring_slot, MSPRING_BREAK_STRAIN, limits.break_strain);
     if (limits.stress_strain < MSPRING_NEVER)
-        mspringi_strain_store(network, spring_slot, MSPRING_STRESS_STRAIN, limits.stress_strain);
+        store_limit(network, spring_slot, MSPRING_STRESS_STRAIN, limits.stress_strain);
     if (limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT)
-        mspringi_strain_store(network, spring_slot, MSPRING_RELAX_STRAIN,
-                              mspringi_broken_value(limits.relax_strain));
+        store_limit(network, spring_slot, MSPRING_RELAX_STRAIN, mspringi_broken_value(limits.relax_strain));
     mspringi_fingerprint_floats(network, mspringi_read_value(limits.break_strain),
                                 mspringi_read_value(limits.stress_strain));
     mspringi_fingerprint_floats(network, limits.relax_strain, 0.0f);
 }
+
+const mspringi_limit_ops mspringi_limits_of_breaking = {
+    .properties = 1u << MSPRING_BREAK_STRAIN | 1u << MSPRING_STRESS_STRAIN | 1u << MSPRING_RELAX_STRAIN,
+    .reserve = reserve_for,
+    .match_layout = match_layout,
+    .store = store_limit,
+    .put = put,
+    .forget = forget,
+    .renew = mspringi_strain_renew_least};
 
 static bool is_used(const mspring_network *network) {
     return network->strain.break_strain != NULL;

@@ -93,7 +93,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
 // Ramps and actuators change them from one substep to the next, and so does yielding.
 static void follow_rest_lengths(mspring_network *network) {
     mspringi_one_way *one_way = network->one_way;
-    if (mspringi_ramp_count(network) == 0 && mspringi_actuator_count(network) == 0 && !network->plastic.nominal)
+    if (mspringi_ramp_count(network) == 0 && mspringi_actuator_count(network) == 0 && !network->tested.nominal)
         return;
     for (uint32_t i = 0; i < one_way->listed; ++i)
         one_way->list[i].rest_length =

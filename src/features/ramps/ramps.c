@@ -3,9 +3,9 @@
 
 #include <math.h>
 
-#include "features/yield/plastic.h"
 #include "store/feature.h"
 #include "store/rest_lengths.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 #include "store/stages.h"
 
@@ -14,8 +14,8 @@
 
 // A spring yields again, or no more.
 static void follow(mspring_network *network, mspring_id spring) {
-    if (network->plastic.nominal)
-        mspringi_plastic_renew(network, mspringi_slot_of_spring(&network->topology, spring));
+    if (network->tested.nominal)
+        mspringi_limits_renew(network, mspringi_slot_of_spring(&network->topology, spring));
 }
 
 static bool grow(mspring_network *network, size_t count) {

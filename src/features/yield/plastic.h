@@ -14,31 +14,25 @@
 #ifndef MSPRINGI_PLASTIC_H
 #define MSPRINGI_PLASTIC_H
 
-#include "builder/builder.h"
 #include "store/network.h"
+
+/// Flow of the springs, besides what lies by place (store/tested_springs.h).
+typedef struct mspringi_plastic {
+    uint32_t hit_count;    ///< of tested.hits
+    bool was_warm;         ///< some strip was in the last step; says only what is worth trying
+    bool irregular_yields; ///< some spring of the irregular part may yield in this step
+    bool flows;            ///< some bit of has_flowed is set, other than by rows that test
+    uint64_t count;        ///< springs that flowed in a step, summed over the steps
+    double dissipated;     ///< J
+} mspringi_plastic;
 
 /// Allocate what yielding needs, if it is not there yet; nominal is there when all of it is.
 mspring_result mspringi_plastic_reserve(mspring_network *network);
-/// The part of it that lies by place, in another network.
-mspring_result mspringi_plastic_match_layout(mspring_network *to, const mspring_network *from);
-
-/// Set MSPRING_YIELD_STRAIN, MSPRING_HARDENING, MSPRING_PLASTIC_LIMIT or MSPRING_PLASTIC_STRAIN of a spring, of the
-/// last after its ramp has been ended; after mspringi_plastic_reserve().
-void mspringi_plastic_store(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
-                            float value);
-
-/// Set the rest length that the host gives. In force is that times 1 + the plastic strain, which stays.
-void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_slot spring_slot, float length);
 
 /// What a spring yields at.
 mspringi_yield_values mspringi_yield_values_of(const mspring_network *network, mspringi_spring_slot spring_slot);
 
-/// Compute the bounds between which a spring is cold, and the strain that anything happens at.
-void mspringi_plastic_renew(mspring_network *network, mspringi_spring_slot spring_slot);
-
-/// Give a spring of which nothing is known what its definition has; let another not yield.
-mspring_result mspringi_plastic_reserve_limits(mspring_network *network, mspringi_limits limits);
-void mspringi_plastic_put_limits(mspring_network *network, mspring_id spring, mspringi_limits limits);
-void mspringi_plastic_forget(mspring_network *network, mspring_id spring);
+/// False if a number of what has flowed is none.
+bool mspringi_plastic_is_finite(const mspring_network *network);
 
 #endif

@@ -5,6 +5,7 @@
 #include "store/properties.h"
 #include "store/rest_lengths.h"
 #include "store/sections.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 
 /* -------------------------------------------------------------------------------------------- yield parameters */
@@ -18,11 +19,11 @@ typedef struct yielding {
 enum { VALUES = 4 };
 
 static size_t yielding_size(const mspring_network *network) {
-    return network->plastic.yields ? network->topology.reserve.spring_end * sizeof(yielding) : 0;
+    return network->tested.yields ? network->topology.reserve.spring_end * sizeof(yielding) : 0;
 }
 
 static void yielding_save(const mspring_network *network, mspringi_writer *to) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
         const yielding values = {p->yield_strain[spring_slot], p->hardening[spring_slot],
@@ -53,8 +54,8 @@ static mspring_result yielding_check(mspring_network *network, const uint8_t *fr
 }
 
 static void yielding_load(mspring_network *network, const uint8_t *from, size_t size) {
-    const mspringi_plastic *p = &network->plastic;
-    network->plastic.yields = size > 0;
+    const mspringi_tested *p = &network->tested;
+    network->tested.yields = size > 0;
     for (mspring_id s = 0; p->nominal && s < network->topology.reserve.spring_end; ++s) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
         const bool exists = mspringi_spring_exists(network, s);
@@ -67,7 +68,7 @@ static void yielding_load(mspring_network *network, const uint8_t *from, size_t 
         p->plastic_limit[spring_slot] = v.plastic_limit;
         p->nominal[spring_slot] = v.nominal;
         if (exists)
-            mspringi_plastic_renew(network, spring_slot);
+            mspringi_limits_renew(network, spring_slot);
     }
 }
 
@@ -89,11 +90,11 @@ static void hand_counts(mspringi_io *io, counts *c) {
 }
 
 static void bent_save(const mspring_network *network, mspringi_writer *to) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     mspringi_io io = mspringi_io_to(to);
     if (!p->yields)
         return;
-    hand_counts(&io, &(counts){p->count, p->is_bent, p->dissipated});
+    hand_counts(&io, &(counts){network->plastic->count, p->is_bent, network->plastic->dissipated});
     for (mspring_id s = 0; p->is_bent && s < network->topology.reserve.spring_end; ++s) {
         const float length = mspringi_spring_exists(network, s)
                                  ? mspringi_spring_slot_own_length(network, network->topology.slot_of_spring[s])
@@ -125,7 +126,7 @@ static mspring_result bent_check(mspring_network *network, const uint8_t *from, 
 
 // Load before the ramps, which were cleared.
 static void bent_load(mspring_network *network, const uint8_t *from, size_t size) {
-    mspringi_plastic *p = &network->plastic;
+    mspringi_tested *p = &network->tested;
     mspringi_io io = mspringi_io_from(from, size);
     counts read;
     if (!p->nominal)
@@ -138,12 +139,12 @@ static void bent_load(mspring_network *network, const uint8_t *from, size_t size
             mspringi_spring_slot_get(network, spring_slot).rest_length == length)
             continue;
         mspringi_spring_slot_set_rest_length(network, spring_slot, length);
-        mspringi_plastic_renew(network, spring_slot);
+        mspringi_limits_renew(network, spring_slot);
     }
-    p->count = read.count;
+    network->plastic->count = read.count;
     p->is_bent = read.is_bent;
-    p->dissipated = read.dissipated;
-    p->flows_seen++;
+    network->plastic->dissipated = read.dissipated;
+    network->edits.flows++;
 }
 
 const mspringi_section mspringi_section_bent = {

@@ -25,6 +25,7 @@
 #include "store/events.h"
 #include "store/id_pool.h"
 #include "store/record_sharing.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
 #include "store/stages.h"
 #include "tasks/tasks.h"
@@ -34,12 +35,12 @@ static uint32_t period_of(const mspringi_attempt *attempt) {
 }
 
 static bool is_used(const mspring_network *network) {
-    return network->plastic.yields;
+    return network->tested.yields;
 }
 
 static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
     (void)attempt;
-    return mspringi_sleep_is_whole(network) || (network->plastic.is_swept && !network->plastic.irregular_yields);
+    return mspringi_sleep_is_whole(network) || (network->tested.is_swept && !network->plastic->irregular_yields);
 }
 
 /* ------------------------------------------------------------------------------------------------------- a look */
@@ -47,7 +48,7 @@ static bool is_quiet(const mspring_network *network, const mspringi_attempt *att
 static uint32_t look_at_irregular(const mspring_network *network, const float *x, const float *y,
                                   mspringi_strain_hit *hits) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     uint32_t count = 0;
     for (uint32_t first = 0; first < t->irregular_count; first += MSPRINGI_WIDTH) {
         const uint32_t word = (t->chain_spring_slots + first) / MSPRINGI_WIDTH;
@@ -70,7 +71,7 @@ static uint32_t look_at_irregular(const mspring_network *network, const float *x
 // List the springs that are warm in these positions.
 static void look_at(mspring_network *network, const float *x, const float *y) {
     const mspringi_topology *t = &network->topology;
-    mspringi_plastic *p = &network->plastic;
+    mspringi_tested *p = &network->tested;
     const mspringi_yield_sweep sweep = {.x = x,
                                         .y = y,
                                         .up_of_block = t->up_of_block,
@@ -81,7 +82,7 @@ static void look_at(mspring_network *network, const float *x, const float *y) {
                                         .high = p->high,
                                         .live = network->live};
     mspringi_strain_hit *hits = p->hits;
-    p->hit_count = p->is_swept ? look_at_irregular(network, x, y, hits) : 0;
+    network->plastic->hit_count = p->is_swept ? look_at_irregular(network, x, y, hits) : 0;
     if (p->is_swept)
         return;
     for (uint32_t first = 0, end; mspringi_next_awake(network, t->lattice_first, t->lattice_blocks, &first, &end);
@@ -91,7 +92,7 @@ static void look_at(mspring_network *network, const float *x, const float *y) {
          first = end)
         hits += network->kernels->chain_yield(&sweep, first, end, hits);
     hits += look_at_irregular(network, x, y, hits);
-    p->hit_count = (uint32_t)(hits - p->hits);
+    network->plastic->hit_count = (uint32_t)(hits - p->hits);
 }
 
 static void look(mspring_network *network) {
@@ -102,7 +103,7 @@ static void look(mspring_network *network) {
 static void look_ahead(mspring_network *network, float time) {
     const mspringi_state *s = &network->state;
     const size_t slots = mspringi_slot_count(network);
-    float *x = network->plastic.ahead, *y = x + slots;
+    float *x = network->tested.ahead, *y = x + slots;
     for (size_t slot = 0; slot < slots; ++slot) {
         x[slot] = s->x[slot] + time * s->vx[slot];
         y[slot] = s->y[slot] + time * s->vy[slot];
@@ -112,14 +113,15 @@ static void look_ahead(mspring_network *network, float time) {
 
 /* ---------------------------------------------------------------------------------------------------- the flow */
 
-static void keep(mspringi_plastic *p, mspringi_spring_slot spring_slot, float rest_length) {
+static void keep(mspring_network *network, mspringi_spring_slot spring_slot, float rest_length) {
+    const mspringi_tested *p = &network->tested;
     const uint16_t bit = (uint16_t)(1u << spring_slot % MSPRINGI_WIDTH);
     uint16_t *word = &p->has_flowed[spring_slot / MSPRINGI_WIDTH];
     if (*word & bit)
         return;
     p->before[spring_slot] = rest_length;
     *word |= bit;
-    p->flows = true;
+    network->plastic->flows = true;
 }
 
 // Whether a spring that is expected to act at the end of an implicit substep does not yet.
@@ -144,7 +146,7 @@ static float start_of(const mspring_network *network, const mspringi_attempt *at
 
 // Map one spring back onto its yield surface, as the sweeps of rows do.
 static void map(mspring_network *network, const mspringi_attempt *attempt, mspringi_spring_slot spring_slot) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     const mspringi_state *s = &network->state;
     const mspringi_spring_values spring = mspringi_spring_slot_get(network, spring_slot);
     const mspringi_yield_values values = mspringi_yield_values_of(network, spring_slot);
@@ -159,17 +161,17 @@ static void map(mspring_network *network, const mspringi_attempt *attempt, mspri
     const float to = mspringi_yield_rest(values, bounds, (float)square, length, spring.rest_length);
     if (to == spring.rest_length)
         return;
-    keep(&network->plastic, spring_slot, spring.rest_length);
+    keep(network, spring_slot, spring.rest_length);
     const float start = start_of(network, attempt, &spring, dx, dy);
     p->heat[spring_slot] += mspringi_yield_heat(values, spring.stiffness, start, length, spring.rest_length, to);
-    network->plastic.flows_seen++;
+    network->edits.flows++;
     mspringi_spring_slot_set_rest_length(network, spring_slot, to);
-    mspringi_plastic_renew(network, spring_slot);
+    mspringi_limits_renew(network, spring_slot);
 }
 
 static void map_warm(mspring_network *network, const mspringi_attempt *attempt) {
-    const mspringi_plastic *p = &network->plastic;
-    for (const mspringi_strain_hit *hit = p->hits; hit < p->hits + p->hit_count; ++hit)
+    const mspringi_tested *p = &network->tested;
+    for (const mspringi_strain_hit *hit = p->hits; hit < p->hits + network->plastic->hit_count; ++hit)
         for (uint32_t bits = hit->bits, lane = 0; bits; bits >>= 1, ++lane)
             if (bits & 1)
                 map(network, attempt, hit->word * MSPRINGI_WIDTH + lane);
@@ -184,10 +186,10 @@ static void map_warm(mspring_network *network, const mspringi_attempt *attempt) 
 
 // The largest change of strain that a warm spring goes through in a time, over its yield strain.
 static float fastest_stretch(const mspring_network *network, float time) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     const mspringi_state *s = &network->state;
     float fastest = 0.0f;
-    for (const mspringi_strain_hit *hit = p->hits; hit < p->hits + p->hit_count; ++hit)
+    for (const mspringi_strain_hit *hit = p->hits; hit < p->hits + network->plastic->hit_count; ++hit)
         for (uint32_t bits = hit->bits, lane = 0; bits; bits >>= 1, ++lane) {
             if (!(bits & 1))
                 continue;
@@ -225,7 +227,7 @@ static uint32_t max_parts(mspring_network *network, const mspringi_attempt *atte
 
 static bool irregular_part_yields(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     for (mspringi_spring_slot spring_slot = t->chain_spring_slots, end = spring_slot + t->irregular_count;
          spring_slot < end; ++spring_slot)
         if (p->high[spring_slot] < INFINITY || p->low[spring_slot] >= 0.0f)
@@ -234,12 +236,12 @@ static bool irregular_part_yields(const mspring_network *network) {
 }
 
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
-    mspringi_plastic *p = &network->plastic;
-    p->hit_count = 0;
+    mspringi_tested *p = &network->tested;
+    network->plastic->hit_count = 0;
     p->substep = 0;
     p->is_swept = attempt->solver->ops->has_stability_limit;
-    p->maps = p->is_swept && (p->was_warm || mspringi_tasks_partition_size(network->tasks) == 1);
-    p->irregular_yields = p->is_swept && irregular_part_yields(network);
+    p->maps = p->is_swept && (network->plastic->was_warm || mspringi_tasks_partition_size(network->tasks) == 1);
+    network->plastic->irregular_yields = p->is_swept && irregular_part_yields(network);
     if (p->is_swept)
         mspringi_shared_records_find_yielding(network);
     memset(p->warmth, 0, network->topology.strip_count);
@@ -248,12 +250,12 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
 static uint32_t warmth_of_all(const mspring_network *network) {
     uint32_t warmth = 0;
     for (uint32_t strip = 0; strip < network->topology.strip_count; ++strip)
-        warmth |= network->plastic.warmth[strip];
+        warmth |= network->tested.warmth[strip];
     return warmth;
 }
 
 static bool must_repeat(mspring_network *network, const mspringi_attempt *attempt) {
-    mspringi_plastic *p = &network->plastic;
+    mspringi_tested *p = &network->tested;
     (void)attempt;
     if (!p->is_swept || p->maps || !(warmth_of_all(network) & MSPRINGI_WAS_WARM))
         return false;
@@ -263,19 +265,19 @@ static bool must_repeat(mspring_network *network, const mspringi_attempt *attemp
 
 // The first substep stands alone: what it begins with is known only when it does.
 static uint32_t free_substeps(const mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     const uint32_t period = period_of(attempt), left = attempt->substeps - substep;
-    if (p->is_swept && !p->irregular_yields)
+    if (p->is_swept && !network->plastic->irregular_yields)
         return left;
-    const uint32_t most = substep == 0 || p->hit_count > 0 ? 1 : period - substep % period;
+    const uint32_t most = substep == 0 || network->plastic->hit_count > 0 ? 1 : period - substep % period;
     return most < left ? most : left;
 }
 
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
-    mspringi_plastic *p = &network->plastic;
+    mspringi_tested *p = &network->tested;
     p->substep = substep;
-    if (p->is_swept && !p->irregular_yields)
+    if (p->is_swept && !network->plastic->irregular_yields)
         return base;
     if (substep == 0)
         look(network);
@@ -284,7 +286,7 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 }
 
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
-    if (network->plastic.is_swept && !network->plastic.irregular_yields)
+    if (network->tested.is_swept && !network->plastic->irregular_yields)
         return;
     if ((substep + 1) % period_of(attempt) == 0 && substep + 1 < attempt->substeps)
         look(network);
@@ -293,8 +295,8 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
 // Go through the springs that have flowed in the step, and forget that they have.
 static void end_flow(mspring_network *network,
                      void (*end)(mspring_network *network, mspringi_spring_slot spring_slot)) {
-    mspringi_plastic *p = &network->plastic;
-    const bool flows = p->flows || warmth_of_all(network) & MSPRINGI_HAS_FLOWED;
+    mspringi_tested *p = &network->tested;
+    const bool flows = network->plastic->flows || warmth_of_all(network) & MSPRINGI_HAS_FLOWED;
     const size_t words = flows ? mspringi_spring_slot_words(&network->topology) : 0;
     for (size_t word = 0; word < words; ++word) {
         for (uint32_t bits = p->has_flowed[word], lane = 0; bits; bits >>= 1, ++lane) {
@@ -306,29 +308,29 @@ static void end_flow(mspring_network *network,
         }
         p->has_flowed[word] = 0;
     }
-    p->flows = false;
-    p->flows_seen += flows;
+    network->plastic->flows = false;
+    network->edits.flows += flows;
 }
 
 static void straighten(mspring_network *network, mspringi_spring_slot spring_slot) {
-    mspringi_spring_slot_set_rest_length(network, spring_slot, network->plastic.before[spring_slot]);
-    mspringi_plastic_renew(network, spring_slot);
+    mspringi_spring_slot_set_rest_length(network, spring_slot, network->tested.before[spring_slot]);
+    mspringi_limits_renew(network, spring_slot);
 }
 
 static void roll_back(mspring_network *network) {
-    mspringi_plastic *p = &network->plastic;
+    mspringi_tested *p = &network->tested;
     end_flow(network, straighten);
-    p->hit_count = 0;
+    network->plastic->hit_count = 0;
     memset(p->warmth, 0, network->topology.strip_count);
 }
 
 // Heat is summed place by place, so that no order of rows or lanes changes the sum. Where the guard has put
 // particles back it may be no number.
 static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
-    mspringi_plastic *p = &network->plastic;
-    p->count++;
+    mspringi_tested *p = &network->tested;
+    network->plastic->count++;
     if (isfinite(p->heat[spring_slot]))
-        p->dissipated += (double)p->heat[spring_slot];
+        network->plastic->dissipated += (double)p->heat[spring_slot];
     p->is_bent = true;
     if (network->strain.break_strain)
         mspringi_strain_renew_least(network, spring_slot);
@@ -347,11 +349,10 @@ static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
 
 static void after_step(mspring_network *network, double dt) {
     (void)dt;
-    mspringi_plastic *p = &network->plastic;
-    const double dissipated = p->dissipated;
-    p->was_warm = warmth_of_all(network) & MSPRINGI_WAS_WARM;
+    const double dissipated = network->plastic->dissipated;
+    network->plastic->was_warm = warmth_of_all(network) & MSPRINGI_WAS_WARM;
     end_flow(network, book);
-    p->dissipated = fmax(p->dissipated, dissipated);
+    network->plastic->dissipated = fmax(network->plastic->dissipated, dissipated);
 }
 
 const mspringi_stage mspringi_stage_yielding = {.is_used = is_used,
@@ -362,5 +363,6 @@ const mspringi_stage mspringi_stage_yielding = {.is_used = is_used,
                                                 .max_parts = max_parts,
                                                 .after_substep = after_substep,
                                                 .must_repeat = must_repeat,
+                                                .is_swept = true,
                                                 .roll_back = roll_back,
                                                 .after_step = after_step};

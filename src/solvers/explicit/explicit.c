@@ -478,9 +478,9 @@ static void sweep_grafted(mspring_network *network, float h, mspringi_field base
     const mspringi_topology *t = &network->topology;
     const bool has_loose = t->row_count > 0 && t->rows[t->row_count - 1].kind == MSPRINGI_ROW_LOOSE;
     const job loose = {.network = network, .base = base, .h = h};
-    const uint32_t first = network->plastic.substep, begin = network->first_substep;
+    const uint32_t first = network->tested.substep, begin = network->first_substep;
     for (uint32_t i = 0; i < count; ++i) {
-        network->plastic.substep = first + i;
+        network->tested.substep = first + i;
         network->first_substep = begin + i;
         const mspringi_substep substep = mspringi_substep_prepare(network, h, base, 0, 1, 0);
         mspringi_added_springs_begin(network, &substep.sweep);

@@ -98,7 +98,7 @@ static void sweep_irregular(const mspring_network *network, mspringi_substep *su
 
 // Strips tell what they test. Only where none does so are rows swept by runs.
 static bool tests(const mspring_network *network, const mspringi_substep *substep) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     uint32_t warmth = 0;
     for (uint32_t s = 0; substep->tests && p->maps && s < network->topology.strip_count; ++s)
         warmth |= p->warmth[s];

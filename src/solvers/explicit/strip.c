@@ -16,7 +16,7 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                                           uint32_t count, uint32_t carry_number) {
     mspringi_substep substep = {
         .base = base,
-        .tests = network->plastic.yields && network->plastic.is_swept,
+        .tests = network->tested.yields && network->tested.is_swept,
         .sweep =
             {
                 .x = network->state.x,
@@ -35,8 +35,8 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .springs_of_block = network->shared_records.of_block,
                 .cells = network->areas.swept > 0 ? network->areas.cells : NULL,
                 .rest_lengths = network->rest_lengths.lengths,
-                .rests_of_block = network->plastic.nominal ? network->plastic.shared_records.of_block
-                                                           : network->rest_lengths.of_block,
+                .rests_of_block = network->tested.nominal ? network->tested.shared_records.of_block
+                                                          : network->rest_lengths.of_block,
                 .chain_springs = network->chain_springs,
                 .irregular = &network->topology.irregular,
                 .irregular_springs = network->irregular_springs,
@@ -77,7 +77,7 @@ void mspringi_substep_reuse(const mspring_network *network, mspringi_substep *su
     const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
     const size_t gathered_floats =
         (size_t)mspringi_gathered_values(network) * t->irregular.slice_count * MSPRINGI_WIDTH;
-    substep->looks = substep->tests && (network->plastic.substep + i) % MSPRINGI_YIELD_PERIOD == 0;
+    substep->looks = substep->tests && (network->tested.substep + i) % MSPRINGI_YIELD_PERIOD == 0;
     substep->gathered = network->gathered + i % 2 * gathered_floats;
     substep->next_gathered = i + 1 < count ? network->gathered + (i + 1) % 2 * gathered_floats : NULL;
     substep->sweep.gathered = substep->gathered;
@@ -209,7 +209,7 @@ void mspringi_strip_pack(const mspring_network *network, const mspringi_substep 
 // What a strip tests in a substep: in a look all its springs, and after one that found some of them warm as well.
 static bool begin_test(const mspring_network *network, const mspringi_substep *substep, const mspringi_strip *strip,
                        mspringi_yield_test *test) {
-    const mspringi_plastic *p = &network->plastic;
+    const mspringi_tested *p = &network->tested;
     uint8_t *warmth = &p->warmth[strip - network->topology.strips];
     if (substep->looks)
         *warmth &= (uint8_t)~MSPRINGI_WARM;

@@ -16,7 +16,7 @@
 static double stretch_of(const mspring_network *network, const mspringi_motion *m,
                          const mspringi_one_way_spring *spring) {
     const float rest =
-        network->plastic.nominal
+        network->tested.nominal
             ? mspringi_read_length(mspringi_spring_slot_get(network, spring->spring_slot).rest_length)
             : spring->rest_length;
     const uint32_t a = spring->base, b = spring->tip;

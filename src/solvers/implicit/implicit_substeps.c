@@ -263,7 +263,7 @@ void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_
     if (network->floor)
         mspringi_floor_save_isolated(network);
     follow_edits(network);
-    if (network->plastic.yields && mspringi_implicit_of(network)->history.h != h)
+    if (network->tested.yields && mspringi_implicit_of(network)->history.h != h)
         mspringi_implicit_of(network)->age = 0; // a piece of a substep: the coarse matrix is one of another length
     mspringi_implicit_substep substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_guard_checks_limit(network->settings.guard)};
