@@ -2,7 +2,6 @@
 #include "base/cpu.h"
 #include "builder/builder.h"
 #include "features/areas/areas.h"
-#include "features/one_way/one_way.h"
 #include "store/properties.h"
 #include "store/springs.h"
 

@@ -7,8 +7,6 @@
 #include "base/definitions.h"
 #include "base/hash.h"
 #include "base/unit.h"
-#include "features/areas/areas.h"
-#include "features/one_way/one_way.h"
 #include "features/sleep/sleep.h"
 #include "network/job.h"
 #include "network/level.h"
@@ -17,11 +15,14 @@
 #include "stability/guard.h"
 #include "stability/stability_limit.h"
 #include "step/origin.h"
+#include "store/feature.h"
 #include "store/fractions.h"
 #include "store/id_pool.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
+#include "store/spring_limits.h"
 #include "store/springs.h"
+#include "store/stages.h"
 #include "store/store.h"
 
 /* --------------------------------------------------------------------------------------------------- checks */
@@ -238,9 +239,33 @@ static mspring_result mark_reversed(mspring_network *network, const mspring_buil
     return MSPRING_OK;
 }
 
+// Note springs that only pull or only push. Those that are added later are none.
+static mspring_result set_sides(mspring_network *network, const mspring_builder *builder) {
+    uint32_t count = 0;
+    for (size_t s = 0; s < builder->spring_count; ++s)
+        count += (builder->springs[s].flags & MSPRINGI_ONE_WAY_FLAGS) != 0;
+    if (count == 0)
+        return MSPRING_OK;
+    if (!mspringi_stage_exists(MSPRINGI_STAGE_OF_ONE_WAY))
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "%u springs only pull or only push: this library was built without that feature",
+                             (unsigned)count);
+    if (!mspringi_store_reserve(network, MSPRINGI_STORE_SIDE))
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for %u springs that only pull or only push", (unsigned)count);
+    for (size_t s = 0; s < builder->spring_count; ++s) {
+        const uint32_t flags = builder->springs[s].flags;
+        network->side[s] = (int8_t)(flags & MSPRING_SPRING_PULL_ONLY   ? 1
+                                    : flags & MSPRING_SPRING_PUSH_ONLY ? -1
+                                                                       : 0);
+        mspringi_fingerprint_floats(network, (float)network->side[s], 0.0f);
+    }
+    return MSPRING_OK;
+}
+
 // Set the strain limits of springs.
 static mspring_result set_limits(mspring_network *network, const mspring_builder *builder) {
-    mspring_result result = mspringi_one_way_create(network, builder);
+    mspring_result result = MSPRING_OK;
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
         result = mspringi_limits_reserve(network, builder->limits[s]);
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
@@ -311,9 +336,11 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = mspringi_guard_reserve(network, def->guard);
     if (result == MSPRING_OK)
+        result = set_sides(network, builder);
+    if (result == MSPRING_OK)
         result = set_limits(network, builder);
     if (result == MSPRING_OK)
-        result = mspringi_areas_of_builder(network, builder);
+        result = mspringi_features_create(network, builder);
     if (result == MSPRING_OK && network->guard_scratch && network->solver.ops->has_stability_limit)
         mspringi_stability_limit_adapt(network);
     return result;

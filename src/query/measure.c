@@ -2,7 +2,6 @@
 #include <math.h>
 
 #include "features/areas/areas.h"
-#include "features/one_way/one_way.h"
 #include "kernels/spring_law.h"
 #include "query/kinetic.h"
 #include "query/measure.h"

@@ -10,7 +10,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "features/one_way/one_way.h"
 #include "stability/pencil.h"
 #include "stability/stability_limit.h"
 #include "store/springs.h"

@@ -3,7 +3,6 @@
 
 #include <math.h>
 
-#include "features/one_way/one_way.h"
 #include "stability/stability.h"
 #include "store/springs.h"
 
@@ -86,7 +85,7 @@ static void visit_others(const mspring_network *network, const mspringi_stabilit
         const mspringi_spring_values values = mspringi_irregular_spring(network, i);
         visit(b, linearise(b, &values));
     }
-    for (mspring_id i = 0; network->one_way && i < network->topology.reserve.first_spring; ++i)
+    for (mspring_id i = 0; network->side && i < network->topology.reserve.first_spring; ++i)
         if (mspringi_side_of(network, i) != 0 && mspringi_spring_exists(network, i))
             visit(b, linearise_surcharge(network, b, i));
 }

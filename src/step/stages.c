@@ -11,6 +11,10 @@ static bool cuts_substeps(const mspringi_stage *stage) {
     return stage->writes_state || stage->before_substep || stage->after_substep;
 }
 
+bool mspringi_stage_exists(int place) {
+    return all[place] != NULL;
+}
+
 mspringi_stages mspringi_stages_of(const mspring_network *network) {
     mspringi_stages stages = {.count = 0};
     for (size_t i = 0; i < MSPRINGI_STAGES; ++i) {

@@ -8,7 +8,7 @@
 
 #include "store/network.h"
 
-/// Functions of an element, NULL where it has none.
+/// Functions of an element, NULL where it has none: is_used always is there.
 typedef struct mspringi_element_ops {
     bool (*is_used)(const mspring_network *network);
     void (*add_terms)(const mspring_network *network);  ///< to the assembled system, each time
@@ -19,7 +19,7 @@ typedef struct mspringi_element_ops {
 #define ELEMENT(table) extern const mspringi_element_ops table;
 #include "store/features.def"
 
-bool mspringi_elements_are_used(const mspring_network *network);
+bool mspringi_elements_have_terms(const mspring_network *network);
 void mspringi_elements_stiffen(const mspring_network *network);
 void mspringi_elements_list_constraints(mspring_network *network);
 void mspringi_elements_add_energy(const mspring_network *network);

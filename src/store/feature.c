@@ -40,6 +40,13 @@ void mspringi_features_forget(mspring_network *network) {
         set_pointer(network, states[i].offset, NULL);
 }
 
+mspring_result mspringi_features_create(mspring_network *network, const mspring_builder *builder) {
+    mspring_result result = MSPRING_OK;
+#define CREATES(function) result = result == MSPRING_OK ? function(network, builder) : result;
+#include "store/features.def"
+    return result;
+}
+
 bool mspringi_features_vary(const mspring_network *network) {
     bool any = false;
 #define VARIES(function) any = any || function(network);

@@ -16,6 +16,7 @@ typedef struct mspringi_feature_state {
 } mspringi_feature_state;
 
 #define STATE(name) extern const mspringi_feature_state mspringi_state_of_##name;
+#define CREATES(function) mspring_result function(mspring_network *network, const mspring_builder *builder);
 #define REACTS(function) void function(mspring_network *network, mspringi_change change, uint32_t index);
 #define VARIES(function) bool function(const mspring_network *network);
 #define LOADS(function) void function(mspring_network *network);
@@ -30,6 +31,9 @@ typedef struct mspringi_feature_state {
 void mspringi_features_relocate(mspring_network *network, const mspringi_memory *from, const mspringi_memory *to);
 /// Forget all states: those of a copy are another network's.
 void mspringi_features_forget(mspring_network *network);
+
+/// Give a new network what its builder has of each feature.
+mspring_result mspringi_features_create(mspring_network *network, const mspring_builder *builder);
 
 /// Forget what the end of a step gave: the guard has put it back.
 void mspringi_features_discard_step(mspring_network *network);

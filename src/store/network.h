@@ -165,6 +165,7 @@ struct mspring_network {
     mspringi_relative *kept; ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
     uint8_t *is_reversed; ///< [(reserve.first_spring + 7) / 8] a bit for each spring that was given with the higher
                           ///< id first; NULL if none was
+    int8_t *side;         ///< [reserve.first_spring] see mspringi_side_of(); NULL if all springs pull and push
     bool keeps_none;      ///< all springs were seen to be relative, and stay so
     uint32_t depth;       ///< substeps that may be swept in one pass over the lattice rows
     uint32_t carry_rows;  ///< for each worker as many as there are substeps under way

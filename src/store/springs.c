@@ -1,7 +1,6 @@
 /// Where springs lie and what they are like.
 #include "store/springs.h"
 
-#include "features/one_way/one_way.h"
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
 #include "store/record_sharing.h"
@@ -95,6 +94,11 @@ mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id sp
     return (t->particle_of_slot[base] > t->particle_of_slot[tip]) == is_turned(network, spring)
                ? (mspringi_ends){base, tip}
                : (mspringi_ends){tip, base};
+}
+
+uint32_t mspringi_side_flags(const mspring_network *network, mspring_id spring) {
+    const int side = mspringi_side_of(network, spring);
+    return side > 0 ? MSPRING_SPRING_PULL_ONLY : side < 0 ? MSPRING_SPRING_PUSH_ONLY : 0u;
 }
 
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring) {

@@ -37,7 +37,19 @@ float mspringi_spring_slot_own_length(const mspring_network *network, mspringi_s
 /// The rest length that the host gave, before any flow.
 float mspringi_spring_slot_given_length(const mspring_network *network, mspringi_spring_slot spring_slot);
 
-/// MSPRING_SPRING_RELATIVE, _BROKEN, _STRESSED.
+/// 1: the spring only pulls; -1: it only pushes; 0: it does both, as all that are added later.
+static inline int mspringi_side_of(const mspring_network *network, mspring_id spring) {
+    return network->side && spring < network->topology.reserve.first_spring ? network->side[spring] : 0;
+}
+
+/// True if such a spring exerts no force at a length that is so much above its rest length.
+static inline bool mspringi_is_slack(int side, double stretch) {
+    return (double)side * stretch < 0.0;
+}
+
+/// MSPRING_SPRING_PULL_ONLY or _PUSH_ONLY, or 0.
+uint32_t mspringi_side_flags(const mspring_network *network, mspring_id spring);
+/// These, MSPRING_SPRING_RELATIVE, _BROKEN, _STRESSED.
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring);
 
 /// Let mspring_network_get_extents() know which end of a spring is the first, if it has been called before.

@@ -77,6 +77,9 @@ typedef struct mspringi_stages {
     bool can_be_quiet;    ///< some stage has is_quiet or must_repeat
 } mspringi_stages;
 
+/// False if the library was built without the stage of this place.
+bool mspringi_stage_exists(int place);
+
 mspringi_stages mspringi_stages_of(const mspring_network *network);
 
 /// Whether the substeps of this step cannot be taken all at once.

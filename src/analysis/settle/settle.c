@@ -5,7 +5,6 @@
 #include "analysis/settle/equilibrium.h"
 #include "base/cpu.h"
 #include "base/union_find.h"
-#include "features/one_way/one_way.h"
 #include "step/origin.h"
 #include "store/changed.h"
 #include "store/network.h"

@@ -4,7 +4,6 @@
 
 #include "base/shoelace.h"
 #include "builder/builder.h"
-#include "features/one_way/one_way.h"
 #include "store/changed.h"
 #include "store/feature.h"
 #include "store/id_pool.h"

@@ -6,7 +6,6 @@
 
 #include "base/cpu.h"
 #include "features/breaking/breaking.h"
-#include "features/one_way/one_way.h"
 #include "features/sleep/sleep.h"
 #include "store/changed.h"
 #include "store/events.h"
@@ -87,7 +86,7 @@ static float total_stretch(const mspring_network *network, const mspringi_spring
 
 static bool is_slack(const mspring_network *network, mspringi_spring_slot spring_slot,
                      const mspringi_spring_values *values) {
-    if (!network->one_way)
+    if (!network->side)
         return false;
     const mspring_id id =
         mspringi_incident_springs_find(network, network->topology.particle_of_slot[values->base], spring_slot);
@@ -164,7 +163,7 @@ static void look_at_hits(mspring_network *network, const mspringi_strain_hit *hi
 
 // Whether strain is all that counts, of all springs, as the kernels have it.
 static bool is_plain(const mspring_network *network) {
-    return !network->tested.nominal && !network->one_way && !network->has_welds;
+    return !network->tested.nominal && !network->side && !network->has_welds;
 }
 
 // Break, stress and relax springs by the strain that they have now.

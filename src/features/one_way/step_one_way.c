@@ -72,7 +72,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     one_way->listed = 0;
     one_way->must_repeat = one_way->is_repeated = false;
     for (mspring_id s = 0; s < t->reserve.first_spring; ++s) {
-        if (one_way->side[s] == 0 || !mspringi_spring_exists(network, s))
+        if (network->side[s] == 0 || !mspringi_spring_exists(network, s))
             continue;
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(t, s);
         const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
@@ -85,7 +85,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
                                           .stiffness = values.stiffness,
                                           .damping = values.damping,
                                           .due = MSPRING_NONE,
-                                          .side = one_way->side[s],
+                                          .side = network->side[s],
                                           .acts = true};
     }
 }
@@ -161,7 +161,7 @@ static void undo(mspring_network *network, const mspringi_attempt *attempt) {
     activate_all(network);
 }
 
-const mspringi_stage mspringi_stage_one_way = {.is_used = mspringi_one_way_varies,
+const mspringi_stage mspringi_stage_one_way = {.is_used = mspringi_one_way_is_used,
                                                .before_step = before_step,
                                                .is_quiet = is_quiet,
                                                .before_substep = before_substep,

@@ -18,7 +18,6 @@
 #include <string.h>
 
 #include "features/breaking/strain.h"
-#include "features/one_way/one_way.h"
 #include "features/sleep/sleep.h"
 #include "features/yield/plastic.h"
 #include "store/changed.h"
@@ -127,7 +126,7 @@ static void keep(mspring_network *network, mspringi_spring_slot spring_slot, flo
 // Whether a spring that is expected to act at the end of an implicit substep does not yet.
 static bool is_slack(const mspring_network *network, mspringi_spring_slot spring_slot,
                      const mspringi_spring_values *spring, float length) {
-    if (!network->one_way)
+    if (!network->side)
         return false;
     const mspring_id id =
         mspringi_incident_springs_find(network, network->topology.particle_of_slot[spring->base], spring_slot);

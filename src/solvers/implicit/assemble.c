@@ -233,7 +233,7 @@ void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_m
     assemble_panels(network, member);
     clear_others(network, slots);
     mspringi_team_barrier(member);
-    if (network->topology.irregular_count > 0 || mspringi_elements_are_used(network)) {
+    if (network->topology.irregular_count > 0 || mspringi_elements_have_terms(network)) {
         if (member->index == 0) {
             assemble_irregular(network);
             mspringi_elements_stiffen(network);

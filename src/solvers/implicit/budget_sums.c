@@ -246,7 +246,6 @@ void mspringi_budget_measure(measuring *all) {
     if (all->knows_elastic)
         return;
     add_springs(all);
-    mspringi_one_way_correct_energy(all);
     mspringi_elements_add_energy(network);
 }
 

@@ -3,13 +3,13 @@
 static const mspringi_element_ops *const elements[] = {
 #define ELEMENT(table) &table,
 #include "store/features.def"
-};
-#define ELEMENT_COUNT (sizeof elements / sizeof elements[0])
+    NULL};
+#define ELEMENT_COUNT (sizeof elements / sizeof elements[0] - 1)
 
-bool mspringi_elements_are_used(const mspring_network *network) {
+bool mspringi_elements_have_terms(const mspring_network *network) {
     bool any = false;
     for (size_t i = 0; i < ELEMENT_COUNT && !any; ++i)
-        any = elements[i]->is_used(network);
+        any = (elements[i]->add_terms || elements[i]->list_constraints) && elements[i]->is_used(network);
     return any;
 }
 

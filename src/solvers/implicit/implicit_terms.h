@@ -5,7 +5,7 @@
 ///   implicit_contact.c  contact between bodies
 ///   implicit_areas.c    areas
 ///   features/grips/implicit_grips.c, features/angles/implicit_angles.c
-///   implicit_one_way.c  energy of one-way springs
+///   features/one_way/implicit_one_way.c  energy of one-way springs
 ///
 /// A contact is a stiff spring in the system while it pushes: an active-set method. Functions of the floor with a
 /// const network do nothing without a floor, those of features nothing where these are not used.
@@ -47,9 +47,6 @@ void mspringi_floor_record_impulses(const mspring_network *network, float h);
 /// h. The first calls in a substep list them.
 void mspringi_elements_add_terms(mspring_network *network);
 bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass);
-
-/// Correct the components' energies by one-way springs that were assumed on the wrong side.
-void mspringi_one_way_correct_energy(const mspringi_budget_sums *all);
 
 /// True if bodies may touch in this substep.
 static inline bool mspringi_implicit_contact_is_near(const mspring_network *network) {

@@ -5,7 +5,6 @@
 
 #include "base/hash.h"
 #include "base/union_find.h"
-#include "features/one_way/one_way.h"
 #include "store/springs.h"
 
 /// Spare capacity for divided cells: tiles beyond twice the cells; entries of the coarse matrix beyond four times
