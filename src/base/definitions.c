@@ -40,20 +40,20 @@ static const mspring_collider_def default_collider_def = {
     .kind = MSPRING_COLLIDER_CHAIN, .width = 1.0, .height = 1.0, .groups = 1, .masks = UINT32_MAX};
 static const mspring_area_def default_area_def = {.kind = MSPRING_AREA_ELASTIC, .fill = 1.0f};
 static const mspring_angle_def default_angle_def = {0};
-static const mspring_settle_def default_settle_def = {.max_iterations = 1000, .tolerance = 1e-9};
-static const mspring_tune_scene default_tune_scene = {.flags =
-                                                          MSPRING_TUNE_SCENE_FLOOR | MSPRING_TUNE_SCENE_BREAKING,
-                                                      .start_count = 16,
-                                                      .duration = 1.0,
-                                                      .kick = 0.1,
-                                                      .tolerance = 0.05,
-                                                      .max_distance = 1.0};
-static const mspring_tune_def default_tune_def = {.dt = 1.0 / 64,
-                                                  .budget = 10.0,
-                                                  .measure = MSPRING_TUNE_BY_TRAJECTORY,
-                                                  .max_error = 0.01,
-                                                  .max_cost = INFINITY,
-                                                  .max_drift = 0.1};
+MSPRINGI_LAB(static const mspring_settle_def default_settle_def = {.max_iterations = 1000, .tolerance = 1e-9};
+             static const mspring_tune_scene default_tune_scene = {.flags = MSPRING_TUNE_SCENE_FLOOR |
+                                                                            MSPRING_TUNE_SCENE_BREAKING,
+                                                                   .start_count = 16,
+                                                                   .duration = 1.0,
+                                                                   .kick = 0.1,
+                                                                   .tolerance = 0.05,
+                                                                   .max_distance = 1.0};
+             static const mspring_tune_def default_tune_def = {.dt = 1.0 / 64,
+                                                               .budget = 10.0,
+                                                               .measure = MSPRING_TUNE_BY_TRAJECTORY,
+                                                               .max_error = 0.01,
+                                                               .max_cost = INFINITY,
+                                                               .max_drift = 0.1};)
 
 #define STRUCT(name, on_64_bits, on_32_bits, defaults)                                                             \
     const mspringi_struct mspringi_struct_##name = {                                                               \

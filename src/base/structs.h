@@ -10,6 +10,7 @@
 #include <massspring/massspring_tools.h>
 
 #include "base/message.h"
+#include "base/parts.h"
 
 /// No struct is larger, ever: a size that is has not been set.
 #define MSPRINGI_LARGEST_STRUCT 4000u

@@ -1,5 +1,7 @@
 #include <massspring/massspring.h>
 
+#include "base/parts.h"
+
 #define QUOTED_AS_IS(token) #token
 #define QUOTED(token) QUOTED_AS_IS(token)
 
@@ -28,5 +30,7 @@ uint32_t mspring_features(void) {
 #if !defined(MSPRINGI_WITHOUT_IMPLICIT) && !defined(MSPRINGI_WITHOUT_DIRECT)
     features |= MSPRING_FEATURE_DIRECT;
 #endif
+    features |= MSPRING_FEATURE_FLOOR | MSPRING_FEATURE_CONTACT | MSPRING_FEATURE_LAWS | MSPRING_FEATURE_BATCH;
+    MSPRINGI_LAB(features |= MSPRING_FEATURE_LAB;)
     return features;
 }

@@ -124,7 +124,7 @@ static bool copy_all(mspring_job *job, const mspring_network *network) {
     return true;
 }
 
-static mspring_result begin(mspring_network *network, mspring_layout layout, mspring_job **begun) {
+mspring_result mspringi_job_begin(mspring_network *network, mspring_layout layout, mspring_job **begun) {
     mspringi_memory memory = {.allocator = network->memory.allocator};
     mspring_job *job = mspringi_alloc(&memory, 1, sizeof *job);
     if (job) {
@@ -133,29 +133,12 @@ static mspring_result begin(mspring_network *network, mspring_layout layout, msp
     }
     if (!job || !copy_all(job, network)) {
         if (job)
-            mspring_job_destroy(job);
+            mspringi_job_destroy(job);
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for another layout of %u springs",
                              (unsigned)network->topology.spring_count);
     }
     *begun = job;
     return MSPRING_OK;
-}
-
-mspring_result mspring_job_begin(mspring_network *network, mspring_layout layout, mspring_job **job) {
-    mspring_result result = mspringi_check_call(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (!job || (layout != MSPRING_LAYOUT_COMPACT && layout != MSPRING_LAYOUT_WHOLE))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the job is NULL, or layout %d is unknown",
-                             (int)layout);
-    if (network->job)
-        return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, "the network has a job that is not finished");
-    result = begin(network, layout, job);
-    if (result == MSPRING_OK) {
-        (*job)->network = network;
-        network->job = *job;
-    }
-    return result;
 }
 
 /* --------------------------------------------------------------------------------------------------------- run */
@@ -215,37 +198,18 @@ static uint32_t pass_count(const mspring_job *job) {
                                                : MSPRINGI_PASS_COUNT(compact_passes);
 }
 
-static bool is_done(const mspring_job *job) {
-    return job->is_needless || job->cursor.pass == pass_count(job);
+uint32_t mspringi_job_left(const mspring_job *job) {
+    return job->is_needless ? 0 : pass_count(job) - job->cursor.pass;
 }
 
-static MSPRINGI_NOINLINE mspring_result run(mspring_job *job, uint32_t at_most) {
+MSPRINGI_NOINLINE mspring_result mspringi_job_run(mspring_job *job, uint32_t at_most) {
     const job_pass *list = job->layout == MSPRING_LAYOUT_WHOLE ? whole_passes : compact_passes;
     mspring_result result = MSPRING_OK;
-    for (uint32_t n = 0; result == MSPRING_OK && !is_done(job) && (at_most == 0 || n < at_most); ++n)
+    for (uint32_t n = 0; result == MSPRING_OK && mspringi_job_left(job) > 0 && (at_most == 0 || n < at_most); ++n)
         result = job_run(job, list, &job->cursor);
     job->is_spent = result != MSPRING_OK;
     job->failure = result;
     return result;
-}
-
-mspring_result mspring_job_run(mspring_job *job, uint32_t at_most, uint32_t *left) {
-    if (!job)
-        return MSPRING_ERROR_ARGUMENT;
-    if (job->failure != MSPRING_OK) // keep the message of the failure
-        return MSPRING_ERROR_ARGUMENT;
-    if (job->is_spent)
-        return mspringi_fail(&job->to.message, MSPRING_ERROR_ARGUMENT, "the job is finished: destroy it");
-    const mspringi_fp_state before = mspringi_fp_enter();
-    mspring_result result = run(job, at_most);
-    mspringi_fp_leave(before);
-    if (result == MSPRING_OK && left)
-        *left = is_done(job) ? 0 : pass_count(job) - job->cursor.pass;
-    return result;
-}
-
-const char *mspring_job_error(const mspring_job *job) {
-    return job ? job->to.message.text : "";
 }
 
 /* ------------------------------------------------------------------------------------------------------ finish */
@@ -278,7 +242,7 @@ static mspring_result exchange(mspring_network *network, mspring_job *job) {
     return MSPRING_OK;
 }
 
-static mspring_result finish(mspring_network *network, mspring_job *job) {
+mspring_result mspringi_job_finish(mspring_network *network, mspring_job *job) {
     job->is_spent = true;
     if (!is_valid(job, network)) {
         return mspringi_fail(&network->message, MSPRING_ERROR_OUTDATED,
@@ -300,31 +264,7 @@ static mspring_result finish(mspring_network *network, mspring_job *job) {
     return result;
 }
 
-mspring_result mspring_job_finish(mspring_network *network, mspring_job *job) {
-    mspring_result result = mspringi_check_call(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (job && job->failure != MSPRING_OK) {
-        network->message = job->to.message;
-        return job->failure;
-    }
-    if (!job || job->is_spent)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the job is NULL or is finished");
-    if (job->network && job->network != network)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the job was begun for another network");
-    if (!is_done(job))
-        return mspringi_fail(&network->message, MSPRING_ERROR_BUSY, "the job has not been run to its end");
-    if (!job->network)
-        return mspringi_fail(&network->message, MSPRING_ERROR_OUTDATED,
-                             "the layout has changed since the job began: begin another job");
-    mspringi_job_invalidate(network);
-    const mspringi_fp_state before = mspringi_fp_enter();
-    result = finish(network, job);
-    mspringi_fp_leave(before);
-    return result;
-}
-
-void mspring_job_destroy(mspring_job *job) {
+void mspringi_job_destroy(mspring_job *job) {
     if (!job)
         return;
     if (job->network)
@@ -339,17 +279,17 @@ void mspring_job_destroy(mspring_job *job) {
 // Begin, run and finish a job at once. A job in progress depends on the old layout, and is lost.
 static mspring_result change_layout(mspring_network *network, mspring_layout layout) {
     mspring_job *job = NULL;
-    mspring_result result = begin(network, layout, &job);
+    mspring_result result = mspringi_job_begin(network, layout, &job);
     if (result != MSPRING_OK)
         return result;
-    result = run(job, 0);
+    result = mspringi_job_run(job, 0);
     if (result != MSPRING_OK)
         network->message = job->to.message;
     else if (!job->is_needless)
         mspringi_job_invalidate(network);
     if (result == MSPRING_OK)
-        result = finish(network, job);
-    mspring_job_destroy(job);
+        result = mspringi_job_finish(network, job);
+    mspringi_job_destroy(job);
     return result;
 }
 

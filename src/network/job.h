@@ -69,6 +69,16 @@ static inline const mspringi_topology *mspringi_job_initial_topology(const mspri
 
 mspring_result mspringi_job_no_memory(mspring_job *job);
 
+/// Begin a job that the network does not know of: edits meanwhile are not tracked unless network->job is set.
+mspring_result mspringi_job_begin(mspring_network *network, mspring_layout layout, mspring_job **begun);
+/// Run the next at_most parts, all if it is 0. On error the job can only be destroyed.
+mspring_result mspringi_job_run(mspring_job *job, uint32_t at_most);
+/// Parts left, an estimate that never rises; 0: it can be finished.
+uint32_t mspringi_job_left(const mspring_job *job);
+/// Move the network to the layout of a job that was run. The job is spent.
+mspring_result mspringi_job_finish(mspring_network *network, mspring_job *job);
+void mspringi_job_destroy(mspring_job *job);
+
 /// Copy a network without its arrays by slot or spring slot.
 mspring_network mspringi_relayout_copy_shell(const mspring_network *network);
 

@@ -21,9 +21,10 @@ static void features_are_those_of_the_build(void **state) {
     const uint32_t features = mspring_features();
     assert_true(features & MSPRING_FEATURE_HOSTED);
     assert_false(features & MSPRING_FEATURE_SHARED);
-    const uint32_t solvers = MSPRING_FEATURE_IMPLICIT | MSPRING_FEATURE_DIRECT;
-    assert_int_equal(features & solvers, solvers);
-    assert_int_equal(features & ~(MSPRING_FEATURE_HOSTED | MSPRING_FEATURE_THREADS | solvers), 0);
+    const uint32_t solvers_and_parts = MSPRING_FEATURE_IMPLICIT | MSPRING_FEATURE_DIRECT | MSPRING_FEATURE_FLOOR |
+                                       MSPRING_FEATURE_CONTACT | MSPRING_FEATURE_LAWS | MSPRING_FEATURE_BATCH |
+                                       MSPRING_FEATURE_LAB;
+    assert_int_equal(features & ~(uint32_t)(MSPRING_FEATURE_HOSTED | MSPRING_FEATURE_THREADS), solvers_and_parts);
 
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;

@@ -1,9 +1,9 @@
 /// mspring_network_tune(): checks, order of the measurements, and results.
 #include <math.h>
 
+#include "analysis/tune/clock.h"
 #include "analysis/tune/reference.h"
 #include "analysis/tune/tuning.h"
-#include "base/clock.h"
 #include "features/ramps/ramps.h"
 #include "features/sleep/sleep.h"
 #include "step/origin.h"

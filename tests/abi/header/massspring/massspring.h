@@ -131,7 +131,12 @@ enum {
     MSPRING_FEATURE_HOSTED = 1u << 1,   ///< there is a default allocator; the variable MSPRING_SIMD is read
     MSPRING_FEATURE_SHARED = 1u << 2,   ///< this is the shared library
     MSPRING_FEATURE_IMPLICIT = 1u << 3, ///< there are MSPRING_SOLVER_IMPLICIT and MSPRING_GUARD_IMPLICIT
-    MSPRING_FEATURE_DIRECT = 1u << 4    ///< there is MSPRING_SOLVER_DIRECT
+    MSPRING_FEATURE_DIRECT = 1u << 4,   ///< there is MSPRING_SOLVER_DIRECT
+    MSPRING_FEATURE_FLOOR = 1u << 5,    ///< there are floors
+    MSPRING_FEATURE_CONTACT = 1u << 6,  ///< there are contact, colliders and grips
+    MSPRING_FEATURE_LAWS = 1u << 7,     ///< there are yielding and one-way springs, areas and angles
+    MSPRING_FEATURE_BATCH = 1u << 8,    ///< there are the functions of massspring_batch.h
+    MSPRING_FEATURE_LAB = 1u << 9       ///< there are settling, tuning, jobs, strain limits and plans
 };
 
 /// Return the features of the library that runs: bits of MSPRING_FEATURE_.

@@ -1,7 +1,7 @@
 #if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)
 #define _POSIX_C_SOURCE 200809L
 #endif
-#include "base/clock.h"
+#include "analysis/tune/clock.h"
 
 #include <stddef.h>
 
