@@ -31,7 +31,7 @@ while read -r page; do
   grep -oE '\b(mspring|MSPRING)_[A-Za-z0-9_]*[A-Za-z0-9]' "$page" | sort -u >"$scratch/names" || true
   while read -r name; do
     names=$((names + 1))
-    grep -qw "$name" src/CMakeLists.txt include/massspring/*.h || complain "$page: no header has $name"
+    grep -qw "$name" src/CMakeLists.txt include/*.h include/massspring/*.h || complain "$page: no header has $name"
   done <"$scratch/names"
 
   sed -E 's/\]\(/\n](/g' "$page" | sed -nE 's/^\]\(([^)#]+)(#[^)]*)?\).*/\1/p' | grep -v '://' >"$scratch/links" || true

@@ -78,6 +78,23 @@ for compiler in "${CXX:-c++}" clang++; do
   done
 done
 
+# The header that draws, whose code each compiler sees.
+echo '#include <massspring_svg.h>' >svg.c
+cp svg.c svg.cpp
+own='-Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow -Wcast-qual -Wformat=2'
+for compiler in "${CC:-cc}" clang; do
+  command -v "$compiler" >/dev/null || continue
+  # shellcheck disable=SC2086
+  "$compiler" -std=c99 $strict $own svg.c
+  checked=$((checked + 1))
+done
+for compiler in "${CXX:-c++}" clang++; do
+  command -v "$compiler" >/dev/null || continue
+  # shellcheck disable=SC2086
+  "$compiler" -std=c++98 $strict $own -Wold-style-cast -Wno-long-long -Wno-c++11-long-long svg.cpp
+  checked=$((checked + 1))
+done
+
 # What a program may define itself.
 for own in -DMSPRING_NODISCARD= -DMSPRING_API=extern '-DMSPRING_NODISCARD=__attribute__((unused))'; do
   # shellcheck disable=SC2086
