@@ -1,7 +1,7 @@
 /// Conversion of a network into a builder: to store it, join it to others, or split it.
 #include "base/cpu.h"
 #include "builder/builder.h"
-#include "features/areas/areas.h"
+#include "store/feature.h"
 #include "store/properties.h"
 #include "store/springs.h"
 
@@ -130,37 +130,6 @@ static mspring_result reserve_limits(mspring_builder *builder, const mspring_net
     return result;
 }
 
-// True if an area or angle is added: all of its corners are, and it is intact.
-static bool is_added(const mspring_network *network, const id_maps *maps, const mspringi_area *area) {
-    for (uint32_t i = 0; i < area->count; ++i)
-        if (maps->particles[network->areas.corners[area->first + i].particle] == MSPRING_NONE)
-            return false;
-    return !mspringi_area_is_open(network, area);
-}
-
-static mspring_result reserve_areas(mspring_builder *builder, const mspring_network *network, const id_maps *maps) {
-    const mspringi_areas *a = &network->areas;
-    size_t areas = 0, corners = 0;
-    for (size_t i = 0; i < a->count; ++i)
-        if (is_added(network, maps, &a->list[i])) {
-            areas++;
-            corners += a->list[i].count;
-        }
-    return mspringi_builder_reserve_areas(builder, areas, corners);
-}
-
-static void append_areas(mspring_builder *builder, const mspring_network *network, const id_maps *maps) {
-    const mspringi_areas *a = &network->areas;
-    mspring_id corners[MSPRING_MAX_AREA_PARTICLES];
-    for (size_t i = 0; i < a->count; ++i) {
-        if (!is_added(network, maps, &a->list[i]))
-            continue;
-        for (uint32_t k = 0; k < a->list[i].count; ++k)
-            corners[k] = maps->particles[a->corners[a->list[i].first + k].particle];
-        mspringi_builder_append_area(builder, a->list[i], corners, 0);
-    }
-}
-
 static mspring_result append(mspring_builder *builder, const mspring_network *network, const id_maps *maps) {
     const size_t before = builder->particle_count;
     const float lag = mspringi_joint_lag(builder, network->steps.lag);
@@ -176,7 +145,7 @@ static mspring_result append(mspring_builder *builder, const mspring_network *ne
     for (mspring_id s = 0; s < network->topology.spring_count; ++s)
         if (maps->springs[s] != MSPRING_NONE)
             append_spring(builder, network, maps, s);
-    append_areas(builder, network, maps);
+    mspringi_features_append(network, maps->particles, builder);
     if (builder->particle_count > before)
         builder->lag = lag;
     return MSPRING_OK;
@@ -198,7 +167,7 @@ static MSPRINGI_NOINLINE mspring_result add_network(mspring_builder *builder, co
     if (result == MSPRING_OK)
         result = reserve_limits(builder, network, maps, springs);
     if (result == MSPRING_OK)
-        result = reserve_areas(builder, network, maps);
+        result = mspringi_features_reserve_append(network, maps->particles, builder);
     return result == MSPRING_OK ? append(builder, network, maps) : result;
 }
 

@@ -239,6 +239,14 @@ static mspring_result mark_reversed(mspring_network *network, const mspring_buil
     return MSPRING_OK;
 }
 
+static mspring_result check_features(mspring_network *network, const mspring_builder *builder) {
+    return builder->area_count == 0 || mspringi_stage_exists(MSPRINGI_STAGE_OF_AREAS)
+               ? MSPRING_OK
+               : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "the builder has %zu areas or angles: this library was built without that feature",
+                               builder->area_count);
+}
+
 // Note springs that only pull or only push. Those that are added later are none.
 static mspring_result set_sides(mspring_network *network, const mspring_builder *builder) {
     uint32_t count = 0;
@@ -335,6 +343,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     result = mspring_network_set_solver(network, &solver);
     if (result == MSPRING_OK)
         result = mspringi_guard_reserve(network, def->guard);
+    if (result == MSPRING_OK)
+        result = check_features(network, builder);
     if (result == MSPRING_OK)
         result = set_sides(network, builder);
     if (result == MSPRING_OK)

@@ -1,10 +1,10 @@
 /// Measurements of the state, summed in double precision in id order.
 #include <math.h>
 
-#include "features/areas/areas.h"
 #include "kernels/spring_law.h"
 #include "query/kinetic.h"
 #include "query/measure.h"
+#include "store/feature.h"
 #include "store/moments.h"
 #include "store/springs.h"
 
@@ -89,11 +89,10 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         if (network->tested.nominal)
             elastic_sum += hardening_energy(network, i, (double)r.stiffness);
     }
-    for (size_t i = 0; elastic && i < network->areas.count; ++i) {
-        const mspringi_area *area = &network->areas.list[i];
-        if (!mspringi_area_is_open(network, area))
-            elastic_sum += mspringi_area_energy(area, mspringi_area_size(network, area));
-    }
+#define ELASTIC(function)                                                                                          \
+    if (elastic)                                                                                                   \
+        function(network, &elastic_sum);
+#include "store/features.def"
     if (kinetic)
         *kinetic = mspringi_kinetic_energy(network);
     if (elastic)

@@ -256,18 +256,34 @@ static bool concerns(const mspringi_section *section, const mspringi_snapshot_he
     return !section->parameters || header->contents == MSPRING_SNAPSHOT_ALL;
 }
 
+typedef struct saved_sections {
+    const found *in;
+    const mspringi_snapshot_header *header;
+} saved_sections;
+
+bool mspringi_saved_section(const mspringi_saved *saved, const mspringi_section *section, const uint8_t **from,
+                            size_t *size) {
+    const saved_sections *all = saved->in;
+    for (int i = 0; i < SECTIONS; ++i) {
+        if (sections[i] != section || !concerns(section, all->header))
+            continue;
+        *from = all->in->from[i];
+        *size = all->in->size[i];
+        return true;
+    }
+    return false;
+}
+
 // Check the sections against each other.
 static mspring_result check_together(mspring_network *network, const mspringi_snapshot_header *header,
                                      const found *in) {
-    mspringi_saved saved = {.network = network, .angle_count = network->areas.angle_count};
+    mspringi_saved saved = {.network = network, .in = &(saved_sections){in, header}};
     mspring_result result = MSPRING_OK;
     for (int i = 0; i < SECTIONS; ++i) {
         if (sections[i] == &mspringi_section_growth && in->size[i] > 0)
             saved.growth = in->from[i];
         if (sections[i] == &mspringi_section_broken && in->size[i] > 0)
             saved.live = in->from[i];
-        if (sections[i] == &mspringi_section_areas && header->contents == MSPRING_SNAPSHOT_ALL)
-            saved.angle_count = mspringi_saved_angles(in->from[i], in->size[i]);
     }
     for (int i = 0; result == MSPRING_OK && i < SECTIONS; ++i)
         if (sections[i]->check_against && concerns(sections[i], header))

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "stability/pencil.h"
+#include "stability/stability_elements.h"
 #include "stability/stability_limit.h"
 #include "store/springs.h"
 
@@ -61,7 +62,7 @@ static void sum_strengths(const mspring_network *network, const mspringi_state *
                 (float)((strength.relative_stiffness + 2.0 * strength.relative_damping) * inverse_mass);
         }
     }
-    mspringi_areas_sum(network, sums->x, sums->y);
+    mspringi_stability_elements_sum(network, sums->x, sums->y);
 }
 
 // Smallest limit of all springs. Relative springs take at most `max_relative` of the bound, which is 4.
@@ -94,10 +95,10 @@ static double find_limit(mspring_network *network, double max_relative, mspring_
             *spring = i;
         }
     }
-    // Corners of an area may have no spring between them.
-    const mspringi_quotient areas = {.stiffness = mspringi_areas_largest(network, sums->x),
-                                     .damping = mspringi_areas_largest(network, sums->y)};
-    smallest = fmin(smallest, mspringi_quotient_limit(&areas, 0.0f));
+    // Corners of an element may have no spring between them.
+    const mspringi_quotient elements = {.stiffness = mspringi_stability_elements_largest(network, sums->x),
+                                        .damping = mspringi_stability_elements_largest(network, sums->y)};
+    smallest = fmin(smallest, mspringi_quotient_limit(&elements, 0.0f));
     return smallest * tight;
 }
 

@@ -17,6 +17,7 @@
 #include "features/contact/contacts.h"
 #include "features/contact/floor.h"
 #include "stability/stability.h"
+#include "stability/stability_elements.h"
 #include "stability/stability_limit.h"
 #include "store/feature.h"
 #include "store/stages.h"
@@ -196,18 +197,18 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
                                                                     : result;
 }
 
-// Check areas without springs all around. In solvers without a stability limit, their forces are those at the start
-// of a substep. The clamped solver takes any step.
-static mspring_result check_areas(mspring_network *network, const mspringi_attempt *attempt) {
-    const mspringi_areas *areas = &network->areas;
-    if (areas->unringed == 0 || network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS ||
-        (double)attempt->h <= areas->longest || attempt->solver == &mspringi_clamped)
+// Check elements that linear systems do not have in them. In solvers without a stability limit, their forces are
+// those at the start of a substep. The clamped solver takes any step.
+static mspring_result check_elements(mspring_network *network, const mspringi_attempt *attempt) {
+    const double longest = mspringi_stability_elements_longest(network);
+    if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS || (double)attempt->h <= longest ||
+        attempt->solver == &mspringi_clamped)
         return MSPRING_OK;
     return mspringi_fail(
         &network->message, MSPRING_ERROR_UNSTABLE,
         "unstable: the substep of %g s exceeds the stability limit of areas and angles, %g s. Use a shorter "
         "dt, more substeps, or less stiffness or pressure.",
-        (double)attempt->h, areas->longest);
+        (double)attempt->h, longest);
 }
 
 mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_attempt *attempt) {
@@ -220,7 +221,7 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
     guard->knows_coordinate =
         is_same && guard->coordinate <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
     if (!attempt->solver->ops->has_stability_limit)
-        return check_areas(network, attempt);
+        return check_elements(network, attempt);
     if (!mspringi_guard_checks_limit(network->settings.guard))
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;

@@ -4,6 +4,7 @@
 
 #include "base/decay.h"
 #include "stability/stability.h"
+#include "stability/stability_elements.h"
 #include "stability/stability_limit.h"
 #include "store/springs.h"
 
@@ -102,7 +103,7 @@ void mspringi_pencil_add_image(void *context, mspringi_displacement in, mspringi
     pencil->limit.in[1] = in.y;
     pencil->limit.out[0] = out.x;
     pencil->limit.out[1] = out.y;
-    mspringi_areas_image(pencil->network, &pencil->limit, pencil->square);
+    mspringi_stability_elements_image(pencil->network, &pencil->limit, pencil->square);
 }
 
 mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, mspringi_displacement vector) {
@@ -121,6 +122,6 @@ mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, msprin
         }
         mspringi_quotient_add(&sum, &s, dx, dy);
     }
-    mspringi_areas_quotient(pencil->network, vector, &sum);
+    mspringi_stability_elements_quotient(pencil->network, vector, &sum);
     return sum;
 }

@@ -62,9 +62,6 @@ typedef struct mspringi_pencil {
     } * terms; ///< [springs] for A + 2 D
 } mspringi_pencil;
 
-/// Add the areas' part (features/areas/stability_areas.c) to the quotient of a displacement.
-void mspringi_areas_quotient(const mspring_network *network, mspringi_displacement vector, mspringi_quotient *sum);
-
 /// Linearise in the present shape. A compressed spring counts as one at rest length: its outward push across makes
 /// no substep unstable. Springs of length 0 count in all directions, as the next substep may turn them any way.
 void mspringi_pencil_set(mspringi_pencil *pencil, double h);

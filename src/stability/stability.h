@@ -20,11 +20,6 @@ typedef struct mspringi_strength {
 mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_id spring,
                                        mspringi_spring_slot spring_slot);
 
-/// Add the areas' part to the sums of springs' stiffness and damping by slot, in the shape that they were added in
-/// (stability_areas.c). Return the largest quotient of these sums over the areas.
-void mspringi_areas_sum(const mspring_network *network, float *sums, float *dampings);
-double mspringi_areas_largest(const mspring_network *network, const float *sums);
-
 /// Longest substep that is stable in any shape, and the spring that sets it (MSPRING_NONE: none). Broken springs
 /// count as whole, as they may be restored. Cached until springs or masses are edited. Works in the guard's scratch
 /// arrays, or else in the backup of the state, so call it between steps only.

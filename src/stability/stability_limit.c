@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "stability/stability.h"
+#include "stability/stability_elements.h"
 #include "store/springs.h"
 
 /// A spring outside the kernels. Members as in kernels/limit_kernel.h.
@@ -94,12 +95,12 @@ void mspringi_stability_limit_bound(const mspring_network *network, const msprin
     network->kernels->bound_lattice(b);
     network->kernels->bound_chain(b);
     visit_others(network, b, add_bound);
-    mspringi_areas_bound(network, b);
+    mspringi_stability_elements_bound(network, b);
 }
 
 void mspringi_stability_limit_image(const mspring_network *network, const mspringi_stability_limit *b) {
     network->kernels->image_lattice(b);
     network->kernels->image_chain(b);
     visit_others(network, b, add_image);
-    mspringi_areas_image(network, b, (double)b->stiffness);
+    mspringi_stability_elements_image(network, b, (double)b->stiffness);
 }

@@ -29,10 +29,6 @@ mspringi_stability_limit mspringi_stability_limit_at(const mspring_network *netw
 void mspringi_stability_limit_bound(const mspring_network *network, const mspringi_stability_limit *limit);
 void mspringi_stability_limit_image(const mspring_network *network, const mspringi_stability_limit *limit);
 
-/// Add the part of the areas to both (stability_areas.c). square: h^2, of which limit has a float.
-void mspringi_areas_bound(const mspring_network *network, const mspringi_stability_limit *limit);
-void mspringi_areas_image(const mspring_network *network, const mspringi_stability_limit *limit, double square);
-
 /// Values of a spring outside lattices and chains.
 static inline mspringi_spring_values mspringi_irregular_spring(const mspring_network *network, uint32_t irregular) {
     const mspringi_topology *t = &network->topology;

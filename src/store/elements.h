@@ -14,6 +14,8 @@ typedef struct mspringi_element_ops {
     void (*add_terms)(const mspring_network *network);  ///< to the assembled system, each time
     void (*list_constraints)(mspring_network *network); ///< once a substep, as predicted; room is reserved
     void (*add_energy)(const mspring_network *network); ///< to the components' budgets
+    bool (*forgets_energy)(
+        const mspring_network *network); ///< what a substep ended with is not what the next begins with
 } mspringi_element_ops;
 
 #define ELEMENT(table) extern const mspringi_element_ops table;
@@ -23,5 +25,6 @@ bool mspringi_elements_have_terms(const mspring_network *network);
 void mspringi_elements_stiffen(const mspring_network *network);
 void mspringi_elements_list_constraints(mspring_network *network);
 void mspringi_elements_add_energy(const mspring_network *network);
+bool mspringi_elements_forget_energy(const mspring_network *network);
 
 #endif

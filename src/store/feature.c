@@ -47,6 +47,19 @@ mspring_result mspringi_features_create(mspring_network *network, const mspring_
     return result;
 }
 
+mspring_result mspringi_features_reserve_append(const mspring_network *network, const mspring_id *ids,
+                                                mspring_builder *builder) {
+    mspring_result result = MSPRING_OK;
+#define APPENDS(reserve, append) result = result == MSPRING_OK ? reserve(network, ids, builder) : result;
+#include "store/features.def"
+    return result;
+}
+
+void mspringi_features_append(const mspring_network *network, const mspring_id *ids, mspring_builder *builder) {
+#define APPENDS(reserve, append) append(network, ids, builder);
+#include "store/features.def"
+}
+
 bool mspringi_features_vary(const mspring_network *network) {
     bool any = false;
 #define VARIES(function) any = any || function(network);

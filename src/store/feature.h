@@ -17,6 +17,11 @@ typedef struct mspringi_feature_state {
 
 #define STATE(name) extern const mspringi_feature_state mspringi_state_of_##name;
 #define CREATES(function) mspring_result function(mspring_network *network, const mspring_builder *builder);
+#define APPENDS(reserve, append)                                                                                   \
+    mspring_result reserve(const mspring_network *network, const mspring_id *ids, mspring_builder *builder);       \
+    void append(const mspring_network *network, const mspring_id *ids, mspring_builder *builder);
+#define GROUPED(function) mspring_result function(mspring_network *network, const uint32_t *group_of_particle);
+#define ELASTIC(function) void function(const mspring_network *network, double *sum);
 #define REACTS(function) void function(mspring_network *network, mspringi_change change, uint32_t index);
 #define VARIES(function) bool function(const mspring_network *network);
 #define LOADS(function) void function(mspring_network *network);
@@ -34,6 +39,12 @@ void mspringi_features_forget(mspring_network *network);
 
 /// Give a new network what its builder has of each feature.
 mspring_result mspringi_features_create(mspring_network *network, const mspring_builder *builder);
+
+/// Append what features have of the particles to a builder, where ids[particle] is not MSPRING_NONE: first make
+/// room.
+mspring_result mspringi_features_reserve_append(const mspring_network *network, const mspring_id *ids,
+                                                mspring_builder *builder);
+void mspringi_features_append(const mspring_network *network, const mspring_id *ids, mspring_builder *builder);
 
 /// Forget what the end of a step gave: the guard has put it back.
 void mspringi_features_discard_step(mspring_network *network);

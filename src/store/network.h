@@ -10,7 +10,6 @@
 #include "base/assert.h"
 #include "base/structs.h"
 #include "builder/builder_areas.h"
-#include "features/areas/areas_state.h"
 #include "features/breaking/strain_state.h"
 #include "features/groups/groups.h"
 #include "features/sleep/sleep_state.h"
@@ -31,6 +30,7 @@ typedef struct mspringi_forces {
     mspringi_field held;   ///< given by the host for the next step
     mspringi_field base;   ///< held and what hooks before the step added: where each substep starts from
     mspringi_field driven; ///< base, and what hooks before the substep added
+    mspringi_field inner;  ///< these, and forces within bodies that a stage added
     bool held_any;         ///< held is not all zero
     uint32_t held_calls;   ///< if it is not: calls that gave it, of forces up to MSPRINGI_MODEST
 } mspringi_forces;
@@ -55,6 +55,12 @@ typedef struct mspringi_fractions {
     mspringi_relative *values;
     uint8_t *of_spring; ///< [springs] which of values; NULL: values is [springs]
 } mspringi_fractions;
+
+/// Forces of areas that the sweeps of lattices compute, see features/areas/areas.h.
+typedef struct mspringi_cell_forces {
+    float *values;  ///< [lattice blocks][2][lane] half the force per distance at area 0, and its slope
+    uint32_t swept; ///< cells that have any
+} mspringi_cell_forces;
 
 /// Rest lengths of the lattices' springs, in blocks of [direction][lane].
 typedef struct mspringi_rest_lengths {
@@ -196,7 +202,7 @@ struct mspring_network {
 #include "store/features.def"
     mspringi_strain strain;
     mspringi_tested tested;
-    mspringi_areas areas;
+    mspringi_cell_forces cells;
     mspringi_constraints constraints; ///< of the last substep with a linear system
     mspringi_components components;
     mspringi_extents extents;

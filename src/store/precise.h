@@ -18,7 +18,7 @@ static inline mspringi_row_fn mspringi_row_kernel(const mspring_network *network
     const bool damped = network->parts > MSPRINGI_DAMPING;
     switch (kind) {
     case MSPRINGI_ROW_LATTICE:
-        if (network->areas.swept > 0)
+        if (network->cells.swept > 0)
             return network->is_precise ? k->precise.cells : k->cells[damped][forced];
         return network->is_precise ? k->precise.lattice : k->lattice[damped][forced];
     case MSPRINGI_ROW_CHAIN:

@@ -23,7 +23,7 @@ typedef struct mspringi_saved {
     const mspring_network *network;
     const uint8_t *growth; ///< its section, NULL: all is there
     const uint8_t *live;   ///< section of broken springs, NULL: none is broken
-    size_t angle_count;
+    const void *in;        ///< for mspringi_saved_section()
 } mspringi_saved;
 
 typedef struct mspringi_section {
@@ -52,10 +52,12 @@ typedef struct mspringi_section {
 bool mspringi_saved_has_particle(const mspringi_saved *saved, mspring_id particle);
 bool mspringi_saved_has_spring(const mspringi_saved *saved, mspring_id spring);
 bool mspringi_saved_is_whole(const mspringi_saved *saved, mspring_id spring);
+/// Bytes of another section, whose check has passed; of size 0 if the network is to have none of it. False: it
+/// stays as it is, as in a frame.
+bool mspringi_saved_section(const mspringi_saved *saved, const struct mspringi_section *section,
+                            const uint8_t **from, size_t *size);
 /// Place of a spring in the snapshot.
 mspringi_spring_slot mspringi_saved_place(const mspringi_saved *saved, mspring_id spring);
-/// Angles in a section of areas that has been checked.
-size_t mspringi_saved_angles(const uint8_t *from, size_t size);
 
 #define SECTION(name) extern const mspringi_section mspringi_section_##name;
 #include "store/features.def"

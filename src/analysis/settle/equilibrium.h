@@ -28,8 +28,8 @@ typedef struct mspringi_statics_springs {
 
 /// Closed areas and angles (settle_areas.c, settle_angles.c).
 typedef struct mspringi_statics_areas {
-    const mspringi_areas *of; ///< NULL: none
-    uint32_t *sides;          ///< [corners] spring of each side; edges a b, b c, c a of an angle
+    const struct mspringi_areas *of; ///< NULL: none
+    uint32_t *sides;                 ///< [corners] spring of each side; edges a b, b c, c a of an angle
 } mspringi_statics_areas;
 
 typedef struct mspringi_statics {
@@ -59,24 +59,24 @@ bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count,
                              mspringi_memory *memory);
 void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory);
 
-/// Add the network's areas after the springs. They remain the network's.
-mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_network *network);
-/// Add the areas' part to the forces, and return the largest; to the change of energy and its absolute sum; to the
-/// stiffness.
-double mspringi_statics_area_forces(mspringi_statics *statics);
-double mspringi_statics_area_change(const mspringi_statics *statics, double t, double *size);
-void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped);
+/// An element: forces between particles besides springs. Count its edges in the matrix besides those of springs;
+/// add it after the springs, of a network that outlives the problem; add its part to the forces, and return the
+/// largest; to the change of energy and its absolute sum; to the stiffness. is_possible: false if it cannot be
+/// added.
+typedef struct mspringi_statics_ops {
+    uint32_t (*count_edges)(const mspring_network *network);
+    bool (*is_possible)(const mspring_network *network);
+    mspring_result (*add)(mspringi_statics *statics, mspring_network *network);
+    double (*forces)(mspringi_statics *statics);
+    double (*change)(const mspringi_statics *statics, double t, double *size);
+    void (*stiffness)(mspringi_statics *statics, bool clamped);
+} mspringi_statics_ops;
 
-/// What settling does with areas that are angles: add one, whose pairs become edges; add its part, as above.
-typedef struct mspringi_statics_element {
-    void (*add)(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle);
-    double (*forces)(mspringi_statics *statics, const mspringi_area *angle);
-    double (*change)(const mspringi_statics *statics, const mspringi_area *angle, double t, double *size);
-    void (*stiffness)(mspringi_statics *statics, const mspringi_area *angle, bool clamped);
-} mspringi_statics_element;
-
-#define STATICS(table) extern const mspringi_statics_element table;
+#define STATICS(table) extern const mspringi_statics_ops table;
 #include "store/features.def"
+
+/// All of them; NULL behind the last.
+extern const mspringi_statics_ops *const mspringi_statics_elements[];
 
 /// Analyse the stiffness matrix, after particles and springs are filled in.
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,

@@ -204,14 +204,18 @@ static double store_positions(const mspringi_statics *statics, mspring_network *
 static mspring_result solve(mspringi_statics *statics, mspring_network *network, const mspring_settle_def *def,
                             mspring_settle_result *out, mspringi_watcher watcher) {
     uint32_t left_alone = 0;
-    const uint32_t edges = count_springs(network) + 3 * (uint32_t)network->areas.angle_count;
+    uint32_t edges = count_springs(network);
+    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; *ops; ++ops)
+        edges += (*ops)->count_edges(network);
     if (!mspringi_statics_create(statics, network->topology.particle_count, edges, &network->memory))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to settle %u particles",
                              (unsigned)network->topology.particle_count);
     statics->watcher = watcher;
     fill_particles(statics, network);
     fill_springs(statics, network);
-    mspring_result result = mspringi_statics_add_areas(statics, network);
+    mspring_result result = MSPRING_OK;
+    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; result == MSPRING_OK && *ops; ++ops)
+        result = (*ops)->add(statics, network);
     if (result == MSPRING_OK)
         result = check_floating(statics, def, &left_alone, network);
     if (result == MSPRING_OK)
@@ -294,4 +298,11 @@ mspring_result mspringi_settle_watched(mspring_network *network, const mspring_s
     if (outcome == MSPRING_OK && result)
         mspringi_put_settle_result(result, &out);
     return outcome;
+}
+
+bool mspringi_can_settle(const mspring_network *network) {
+    bool can = true;
+    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; *ops; ++ops)
+        can = can && (*ops)->is_possible(network);
+    return can;
 }

@@ -19,4 +19,7 @@ typedef struct mspringi_watcher {
 mspring_result mspringi_settle_watched(mspring_network *network, const mspring_settle_def *def,
                                        mspring_settle_result *result, mspringi_watcher watcher);
 
+/// False if it has refused elements of this network.
+bool mspringi_can_settle(const mspring_network *network);
+
 #endif

@@ -4,9 +4,13 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "features/areas/areas.h"
 #include "kernels/spring_law.h"
 #include "store/springs.h"
+
+static const mspringi_reference_ops *const elements[] = {
+#define REFERENCE(table) &table,
+#include "store/features.def"
+    NULL};
 
 /// Substep, relative to the longest one that is stable in any shape.
 #define PART_OF_STABLE (1.0 / 3.0)
@@ -108,10 +112,8 @@ mspring_result mspringi_reference_create(mspringi_reference *reference, mspring_
         return result;
     fill_particles(&made, network);
     fill_springs(&made, network);
-    if (network->areas.count > 0) {
-        mspringi_areas_refresh(network);
-        made.areas = &network->areas;
-    }
+    for (const mspringi_reference_ops *const *ops = elements; *ops; ++ops)
+        (*ops)->begin(&made, network);
     *reference = made;
     return MSPRING_OK;
 }
@@ -140,7 +142,8 @@ double mspringi_reference_substep(const mspringi_reference *r) {
         damping[spring->a] += (double)spring->damping * (wa + both);
         damping[spring->b] += (double)spring->damping * (wb + both);
     }
-    mspringi_reference_bound_areas(r, stiffness, damping);
+    for (const mspringi_reference_ops *const *ops = elements; *ops; ++ops)
+        (*ops)->bound(r, stiffness, damping);
     for (uint32_t p = 0; p < r->particle_count; ++p) {
         const double k = stiffness[p], c = damping[p] + r->global_damping, rate = c + sqrt(c * c + 4.0 * k);
         if (rate > 0.0)
@@ -174,7 +177,8 @@ static void find_accelerations(const mspringi_reference *r, const double *vx, co
         r->ax[b] -= r->inverse_mass[b] * fx;
         r->ay[b] -= r->inverse_mass[b] * fy;
     }
-    mspringi_reference_add_areas(r, vx, vy);
+    for (const mspringi_reference_ops *const *ops = elements; *ops; ++ops)
+        (*ops)->push(r, vx, vy);
 }
 
 // to = from + factor * change. count includes both coordinates, which follow each other in memory.
@@ -230,6 +234,7 @@ mspringi_reference_energy mspringi_reference_measure(const mspringi_reference *r
         const double stretch = sqrt(dx * dx + dy * dy) - (double)spring->rest_length;
         energy.internal += 0.5 * (double)spring->stiffness * stretch * stretch;
     }
-    energy.internal += mspringi_reference_area_energy(r);
+    for (const mspringi_reference_ops *const *ops = elements; *ops; ++ops)
+        energy.internal += (*ops)->energy(r);
     return energy;
 }

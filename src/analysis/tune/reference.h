@@ -26,7 +26,7 @@ typedef struct mspringi_reference {
     double *held_x, *held_y;                 ///< accelerations from external forces, m/s^2
     double *extrapolated_x, *extrapolated_y; ///< velocities extrapolated to the end of a substep, m/s
     mspringi_reference_spring *springs;      ///< those with stiffness or damping
-    const mspringi_areas *areas;             ///< of the network, which outlives the reference
+    const struct mspringi_areas *areas;      ///< of the network, which outlives the reference
     double gravity_x, gravity_y, global_damping;
     bool has_accelerations; ///< ax and ay are up to date
 } mspringi_reference;
@@ -58,10 +58,17 @@ typedef struct mspringi_reference_energy {
 } mspringi_reference_energy;
 mspringi_reference_energy mspringi_reference_measure(const mspringi_reference *reference);
 
-/// Add the areas' and angles' part (reference_areas.c): to the accelerations at these velocities; to the row sums
-/// of M^-1 K and of the dampers, in the shape that they were added in; to the elastic energy.
-void mspringi_reference_add_areas(const mspringi_reference *reference, const double *vx, const double *vy);
-void mspringi_reference_bound_areas(const mspringi_reference *reference, double *stiffness, double *damping);
-double mspringi_reference_area_energy(const mspringi_reference *reference);
+/// An element: forces between particles besides springs. Begin with those of a network; add its part: to the
+/// accelerations at these velocities; to the row sums of M^-1 K and of the dampers, in the shape that it was added
+/// in; return its elastic energy.
+typedef struct mspringi_reference_ops {
+    void (*begin)(mspringi_reference *reference, mspring_network *network);
+    void (*push)(const mspringi_reference *reference, const double *vx, const double *vy);
+    void (*bound)(const mspringi_reference *reference, double *stiffness, double *damping);
+    double (*energy)(const mspringi_reference *reference);
+} mspringi_reference_ops;
+
+#define REFERENCE(table) extern const mspringi_reference_ops table;
+#include "store/features.def"
 
 #endif

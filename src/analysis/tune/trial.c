@@ -398,7 +398,7 @@ static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) 
     stop_motion(settled);
     const mspringi_watcher watcher = {has_time, tuning};
     result = mspringi_settle_watched(settled, &def, &rest, watcher);
-    const bool is_unknown = result == MSPRING_ERROR_ARGUMENT && settled->areas.unringed > 0;
+    const bool is_unknown = result == MSPRING_ERROR_ARGUMENT && !mspringi_can_settle(settled);
     if (result == MSPRING_ERROR_EQUILIBRIUM || result == MSPRING_ERROR_LIMIT || is_unknown) {
         result = MSPRING_OK; // no equilibrium, or areas that settling does not support
     } else if (result != MSPRING_OK) {

@@ -97,7 +97,7 @@ static double rate_of(const mspring_network *network, const arm *along, uint32_t
 
 static void push_corners(const mspring_network *network, const mspringi_area *angle, double share,
                          mspringi_field field) {
-    const mspringi_corner *corners = network->areas.corners + angle->first;
+    const mspringi_corner *corners = network->areas->corners + angle->first;
     const uint32_t a = corners[0].slot, b = corners[1].slot, c = corners[2].slot;
     const arm u = arm_of(network, a, b), w = arm_of(network, b, c);
     if (!(u.square > 0.0 && w.square > 0.0))

@@ -77,7 +77,7 @@ static MSPRINGI_NOINLINE mspring_result add_angles(mspring_network *network, con
     if (result != MSPRING_OK)
         return result;
     if (first_angle)
-        *first_angle = network->areas.next_id;
+        *first_angle = mspringi_area_next_id(network);
     for (uint32_t i = 0; i < count; ++i) {
         const mspring_id *three = particles + (size_t)3 * i;
         mspringi_area_add(network, mspringi_angle_make(def->stiffness, def->damping, rest_of(network, def, three)),
@@ -113,11 +113,11 @@ static MSPRINGI_NOINLINE mspring_result set_angle(mspring_network *network, mspr
         return result;
     mspring_id three[3];
     for (uint32_t i = 0; i < 3; ++i)
-        three[i] = network->areas.corners[found->first + i].particle;
+        three[i] = network->areas->corners[found->first + i].particle;
     found->stiffness = def->stiffness;
     found->damping = def->damping;
     mspringi_angle_set_rest(found, rest_of(network, def, three));
-    network->areas.changes++;
+    network->areas->changes++;
     mspringi_area_tell(network, MSPRINGI_EDIT_SET_AREA, found);
     return MSPRING_OK;
 }
@@ -135,7 +135,7 @@ static MSPRINGI_NOINLINE mspring_result set_rest_angles(mspring_network *network
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK && !rest_angles && count > 0)
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the list of rest angles is NULL");
-    if (result == MSPRING_OK && count > network->areas.next_id)
+    if (result == MSPRING_OK && count > mspringi_area_next_id(network))
         result = mspringi_fail(&network->message, MSPRING_ERROR_ID, "there are no %u angles", (unsigned)count);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         result = mspringi_area_find(network, first + i, true, &found);
@@ -187,7 +187,7 @@ mspring_result mspring_network_get_angle_info(const mspring_network *network, ms
         return MSPRING_ERROR_ID;
     const bool is_open = mspringi_area_is_open(network, found);
     const double size = mspringi_area_size(network, found);
-    const mspringi_corner *corners = network->areas.corners + found->first;
+    const mspringi_corner *corners = network->areas->corners + found->first;
     const mspring_angle_info made = {
         .is_open = is_open,
         .a = corners[0].particle,

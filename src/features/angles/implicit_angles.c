@@ -39,8 +39,8 @@ static arm arm_of(const mspringi_implicit *n, uint32_t from, uint32_t to) {
 
 static void list_angle(mspring_network *network, uint32_t number) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    const mspringi_area *angle = &network->areas.list[number];
-    const mspringi_corner *corners = network->areas.corners + angle->first;
+    const mspringi_area *angle = &network->areas->list[number];
+    const mspringi_corner *corners = network->areas->corners + angle->first;
     if (sleeps(network, corners))
         return;
     const arm u = arm_of(n, corners[0].slot, corners[1].slot), w = arm_of(n, corners[1].slot, corners[2].slot);
@@ -57,16 +57,17 @@ static void list_angle(mspring_network *network, uint32_t number) {
 }
 
 static bool is_used(const mspring_network *network) {
-    return network->areas.hinge_count > 0;
+    return network->areas && network->areas->hinge_count > 0;
 }
 
 // Energies count with those of areas.
 static void list_constraints(mspring_network *network) {
-    for (size_t i = 0; i < network->areas.count; ++i) {
-        const mspringi_area *area = &network->areas.list[i];
+    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
+        const mspringi_area *area = &network->areas->list[i];
         if (area->is_angle && area->is_ringed && !area->is_open)
             list_angle(network, (uint32_t)i);
     }
 }
 
-const mspringi_element_ops mspringi_element_angles = {.is_used = is_used, .list_constraints = list_constraints};
+const mspringi_element_ops mspringi_element_angles = {
+    .is_used = is_used, .list_constraints = list_constraints, .forgets_energy = is_used};

@@ -13,7 +13,7 @@
 
 #include <math.h>
 
-#include "analysis/settle/equilibrium.h"
+#include "features/areas/settle_areas.h"
 
 static void add_edges(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle) {
     mspringi_statics_springs *s = &statics->springs;
@@ -122,4 +122,4 @@ static void add_stiffness(mspringi_statics *statics, const mspringi_area *angle,
     add_block(statics, edges[2], -k * s[0], -k * s[1], -k * s[2]);
 }
 
-const mspringi_statics_element mspringi_statics_of_angles = {add_edges, add_forces, energy_change, add_stiffness};
+const mspringi_angle_statics mspringi_statics_of_angles = {add_edges, add_forces, energy_change, add_stiffness};

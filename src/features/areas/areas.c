@@ -109,7 +109,7 @@ void mspringi_area_push(const mspring_network *network, const mspringi_area *are
         return;
     }
     const mspringi_state *s = &network->state;
-    const mspringi_corner *corners = network->areas.corners + area->first;
+    const mspringi_corner *corners = network->areas->corners + area->first;
     const uint32_t first = corners[0].slot, last = corners[area->count - 1].slot;
     const double first_x = mspringi_x_of(s, first), first_y = mspringi_y_of(s, first);
     const double last_x = mspringi_x_of(s, last), last_y = mspringi_y_of(s, last);
@@ -137,7 +137,7 @@ void mspringi_area_push(const mspring_network *network, const mspringi_area *are
 
 bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *area) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_corner *corners = network->areas.corners + area->first;
+    const mspringi_corner *corners = network->areas->corners + area->first;
     for (uint32_t i = 0; i < area->count; ++i) {
         const mspring_id spring = corners[i].spring;
         if (spring == MSPRING_NONE)
@@ -157,7 +157,7 @@ bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *
 static bool is_ringed(const mspring_network *network, const mspringi_area *area) {
     const uint32_t sides = area->is_angle ? 2 : area->count;
     for (uint32_t i = 0; i < sides; ++i)
-        if (network->areas.corners[area->first + i].spring == MSPRING_NONE)
+        if (network->areas->corners[area->first + i].spring == MSPRING_NONE)
             return false;
     return true;
 }
@@ -186,7 +186,7 @@ static mspring_id spring_between(const mspring_network *network, mspring_id a, m
 // opposite each other have opposite g, and two such pairs are enough. The part of the tangent of the size of the
 // pressure is at most that of springs of half of it along the outline.
 void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums, float *dampings) {
-    const mspringi_corner *corners = network->areas.corners + area->first;
+    const mspringi_corner *corners = network->areas->corners + area->first;
     const bool is_gas = area->kind == MSPRING_AREA_GAS;
     const double fill = (double)area->fill, pressure = fabs((double)area->pressure);
     const double stiffness = (is_gas ? pressure * fill : (double)area->stiffness) / area->rest_area;
@@ -215,12 +215,25 @@ double mspringi_area_largest(const mspring_network *network, const mspringi_area
 
 /* ---------------------------------------------------------------------------------------------------- the list */
 
+static const mspringi_array_entry arrays[] = {MSPRINGI_ARRAY_ENTRY(mspringi_areas, list, MSPRINGI_ARRAY),
+                                              MSPRINGI_ARRAY_ENTRY(mspringi_areas, corners, MSPRINGI_ARRAY)};
+const mspringi_feature_state mspringi_state_of_areas = {MSPRINGI_ARRAY_TABLE(arrays), NULL};
+
+mspring_result mspringi_areas_make(mspring_network *network) {
+    if (!network->areas)
+        network->areas = mspringi_alloc(&network->memory, 1, sizeof *network->areas);
+    return network->areas ? MSPRING_OK
+                          : mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for areas");
+}
+
 mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners, size_t angles) {
-    mspringi_areas *a = &network->areas;
-    void *list = a->list, *all = a->corners;
-    const mspring_result result = mspringi_incidence_reserve(network);
+    mspring_result result = mspringi_areas_make(network);
+    if (result == MSPRING_OK)
+        result = mspringi_incidence_reserve(network);
     if (result != MSPRING_OK)
         return result;
+    mspringi_areas *a = network->areas;
+    void *list = a->list, *all = a->corners;
     bool whole = mspringi_grow(&network->memory, &list, &a->capacity, a->count + areas, sizeof *a->list);
     a->list = list;
     whole = whole && mspringi_grow(&network->memory, &all, &a->corner_capacity, a->corner_count + corners,
@@ -235,7 +248,7 @@ mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, si
 }
 
 void mspringi_areas_append(mspring_network *network, const mspringi_area *area, const mspring_id *particles) {
-    mspringi_areas *a = &network->areas;
+    mspringi_areas *a = network->areas;
     mspringi_area *made = &a->list[a->count++];
     *made = *area;
     made->first = (uint32_t)a->corner_count;
@@ -255,16 +268,17 @@ void mspringi_areas_append(mspring_network *network, const mspringi_area *area, 
 }
 
 // A step goes through the list only while something is in it: what steps have of the last must not stay.
-static void note_change(mspringi_areas *a) {
+static void note_change(mspring_network *network) {
+    mspringi_areas *a = network->areas;
     a->changes++;
     if (a->count > 0)
         return;
-    a->swept = a->unswept = a->unringed = 0;
+    network->cells.swept = a->unswept = a->unringed = 0;
     a->hinge_count = 0;
 }
 
 void mspringi_areas_drop(mspring_network *network, mspringi_area *area) {
-    mspringi_areas *a = &network->areas;
+    mspringi_areas *a = network->areas;
     const uint32_t first = area->first, count = area->count;
     const size_t behind = (size_t)(a->list + --a->count - area);
     a->corner_count -= count;
@@ -273,12 +287,12 @@ void mspringi_areas_drop(mspring_network *network, mspringi_area *area) {
     memmove(area, area + 1, behind * sizeof *area);
     for (size_t i = 0; i < behind; ++i)
         area[i].first -= count;
-    note_change(a);
+    note_change(network);
 }
 
 void mspringi_areas_forget(mspring_network *network, mspring_id particle) {
-    mspringi_areas *a = &network->areas;
-    for (size_t i = a->corner_count; i-- > 0;) {
+    mspringi_areas *a = network->areas;
+    for (size_t i = a ? a->corner_count : 0; i-- > 0;) {
         if (a->corners[i].particle != particle)
             continue;
         mspringi_area *area = a->list;
@@ -290,8 +304,8 @@ void mspringi_areas_forget(mspring_network *network, mspring_id particle) {
 }
 
 void mspringi_areas_clear(mspring_network *network) {
-    network->areas.count = network->areas.corner_count = network->areas.angle_count = 0;
-    note_change(&network->areas);
+    network->areas->count = network->areas->corner_count = network->areas->angle_count = 0;
+    note_change(network);
 }
 
 /* ---------------------------------------------------------------------------------------- what follows of them */
@@ -336,7 +350,6 @@ static int cell_sense(const mspring_network *network, const mspringi_area *area,
 
 // Enter an area into the sweeps, if they can have it.
 static bool enter_cell(mspring_network *network, mspringi_area *area) {
-    mspringi_areas *a = &network->areas;
     for (uint32_t corner = 0; area->kind == MSPRING_AREA_ELASTIC && area->count == 4 && corner < 4; ++corner) {
         const int sense = cell_sense(network, area, corner);
         if (sense == 0)
@@ -345,10 +358,10 @@ static bool enter_cell(mspring_network *network, mspringi_area *area) {
         const uint32_t block = slot / MSPRINGI_WIDTH - network->topology.lattice_first;
         const uint32_t cell = 2 * block * MSPRINGI_WIDTH + slot % MSPRINGI_WIDTH;
         const double stiffness = (double)area->stiffness, fill = (double)area->fill;
-        if (a->cells[cell] != 0.0f || a->cells[cell + MSPRINGI_WIDTH] != 0.0f)
+        if (network->cells.values[cell] != 0.0f || network->cells.values[cell + MSPRINGI_WIDTH] != 0.0f)
             return false; // another has it
-        a->cells[cell] = (float)(0.5 * sense * ((double)area->pressure + stiffness * fill));
-        a->cells[cell + MSPRINGI_WIDTH] = (float)(0.25 * stiffness / area->rest_area);
+        network->cells.values[cell] = (float)(0.5 * sense * ((double)area->pressure + stiffness * fill));
+        network->cells.values[cell + MSPRINGI_WIDTH] = (float)(0.25 * stiffness / area->rest_area);
         area->cell = cell;
         return true;
     }
@@ -357,36 +370,36 @@ static bool enter_cell(mspring_network *network, mspringi_area *area) {
 
 // The substep that is stable with forces of areas alone: of all, or of those without springs all around.
 static double find_longest(mspring_network *network, bool of_all) {
-    mspringi_areas *a = &network->areas;
+    mspringi_areas *a = network->areas;
     double largest = 0.0, damped = 0.0;
-    mspringi_field_clear(network, a->force);
+    mspringi_field_clear(network, network->forces.inner);
     for (size_t i = 0; i < a->count; ++i)
         if (of_all || !a->list[i].is_ringed)
-            mspringi_area_weigh(network, &a->list[i], a->force.x, a->force.y);
+            mspringi_area_weigh(network, &a->list[i], network->forces.inner.x, network->forces.inner.y);
     for (size_t i = 0; i < a->count; ++i)
         if (of_all || !a->list[i].is_ringed) {
-            largest = fmax(largest, mspringi_area_largest(network, &a->list[i], a->force.x));
-            damped = fmax(damped, mspringi_area_largest(network, &a->list[i], a->force.y));
+            largest = fmax(largest, mspringi_area_largest(network, &a->list[i], network->forces.inner.x));
+            damped = fmax(damped, mspringi_area_largest(network, &a->list[i], network->forces.inner.y));
         }
     // h^2 largest + 2 h damped = 4
     return largest + damped > 0.0 ? 4.0 / (damped + sqrt(damped * damped + 4.0 * largest)) : INFINITY;
 }
 
 void mspringi_areas_refresh(mspring_network *network) {
-    mspringi_areas *a = &network->areas;
+    mspringi_areas *a = network->areas;
     const mspringi_edits *e = &network->edits;
     const mspringi_areas_seen now = {a->changes, e->links, e->growth, e->layouts, e->masses}, *seen = &a->seen;
     if (now.changes == seen->changes && now.links == seen->links && now.growth == seen->growth &&
         now.layouts == seen->layouts && now.masses == seen->masses)
         return;
     a->seen = now;
-    a->swept = a->unswept = a->unringed = 0;
+    network->cells.swept = a->unswept = a->unringed = 0;
     a->hinge_count = 0;
-    if (!a->cells)
+    if (!network->cells.values)
         return;
     const size_t cells = (size_t)2 * MSPRINGI_WIDTH * network->topology.lattice_blocks;
     for (size_t i = 0; i < cells; ++i)
-        a->cells[i] = 0.0f;
+        network->cells.values[i] = 0.0f;
     for (size_t i = 0; i < a->corner_count; ++i)
         a->corners[i].slot = network->topology.slot_of_particle[a->corners[i].particle];
     for (size_t i = 0; i < a->count; ++i) {
@@ -399,7 +412,7 @@ void mspringi_areas_refresh(mspring_network *network) {
         a->unringed += !area->is_ringed;
         a->hinge_count += area->is_angle && area->is_ringed;
         if (enter_cell(network, area))
-            a->swept++;
+            network->cells.swept++;
         else
             a->unswept++;
     }
@@ -410,7 +423,10 @@ void mspringi_areas_refresh(mspring_network *network) {
 /* ------------------------------------------------------------------------------------------------------- edits */
 
 mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas, size_t corners, size_t angles) {
-    const mspringi_areas *a = &network->areas;
+    const mspring_result result = mspringi_areas_make(network);
+    const mspringi_areas *a = network->areas;
+    if (result != MSPRING_OK)
+        return result;
     if (areas >= MSPRING_NONE - a->next_id || corners >= MSPRING_NONE - a->corner_count)
         return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
                              "there are %zu areas and angles already, of %u ever made", a->count,
@@ -426,7 +442,7 @@ void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_
 }
 
 void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles) {
-    made.id = network->areas.next_id++;
+    made.id = network->areas->next_id++;
     mspringi_areas_append(network, &made, particles);
     for (uint32_t i = 0; i < made.count; ++i)
         mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_AREA, particles[i]);
@@ -447,5 +463,5 @@ mspring_result mspringi_areas_of_builder(mspring_network *network, const mspring
 }
 
 bool mspringi_areas_act(const mspring_network *network) {
-    return network->areas.count > 0;
+    return mspringi_area_count(network) > 0;
 }

@@ -20,8 +20,42 @@
 #include <float.h>
 #include <math.h>
 
+#include "builder/builder_areas.h"
 #include "store/network.h"
 
+typedef struct mspringi_corner {
+    mspring_id particle;
+    mspring_id spring; ///< to the next corner when the area was added; MSPRING_NONE: there was none
+    uint32_t slot;     ///< of the particle; see mspringi_areas_refresh()
+    float reach;       ///< by how much the area grew then where the particle moved outwards, m
+} mspringi_corner;
+
+/// Counters of edits, see mspringi_edits.
+typedef struct mspringi_areas_seen {
+    uint64_t changes, links, growth, layouts, masses;
+} mspringi_areas_seen;
+
+/// All of them.
+typedef struct mspringi_areas {
+    mspringi_area *list; ///< [count] in the order of ids
+    size_t count, capacity;
+    mspringi_corner *corners; ///< [corner_count] of the first area, of the second, and so on
+    size_t corner_count, corner_capacity;
+    size_t angle_count; ///< areas in the list that are angles
+    mspring_id next_id;
+    uint64_t changes; ///< times that any was edited
+
+    // What follows from these, the springs and the layout; see mspringi_areas_refresh().
+    mspringi_areas_seen seen;
+    uint32_t unswept;      ///< closed areas that the explicit solver's sweeps do not have in them
+    uint32_t unringed;     ///< and those without springs all around
+    uint32_t hinge_count;  ///< closed angles with springs along both arms
+    double longest;        ///< substep that is stable with forces of these alone, s
+    double longest_of_all; ///< and with those of all
+} mspringi_areas;
+
+/// The list, empty at first.
+mspring_result mspringi_areas_make(mspring_network *network);
 /// Room for so many more areas and corners, and for what steps need of them; some of the areas are angles.
 mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, size_t corners, size_t angles);
 
@@ -30,7 +64,7 @@ mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, si
 void mspringi_areas_append(mspring_network *network, const mspringi_area *area, const mspring_id *particles);
 /// Take one out of the list.
 void mspringi_areas_drop(mspring_network *network, mspringi_area *area);
-/// There is none any more.
+/// There is none any more; after mspringi_areas_make().
 void mspringi_areas_clear(mspring_network *network);
 
 /// Find out which areas are open, which ones sweeps have in them, and the substep that they are stable with.
@@ -39,6 +73,16 @@ void mspringi_areas_refresh(mspring_network *network);
 /// The slots of a lattice's cell, in their order around it: here, to the right, above that, above. False: there is
 /// none at this slot.
 bool mspringi_cell_at(const mspring_network *network, uint32_t slot, uint32_t corners[4]);
+
+/// Areas and angles in the list.
+static inline size_t mspringi_area_count(const mspring_network *network) {
+    return network->areas ? network->areas->count : 0;
+}
+
+/// The id that the next area or angle gets.
+static inline mspring_id mspringi_area_next_id(const mspring_network *network) {
+    return network->areas ? network->areas->next_id : 0;
+}
 
 /* ------------------------------------------------------------------------------------------------------- edits */
 
@@ -49,6 +93,8 @@ mspring_result mspringi_areas_check_room(mspring_network *network, size_t areas,
 void mspringi_area_add(mspring_network *network, mspringi_area made, const mspring_id *particles);
 /// Add those of a builder to a network that is made of it.
 mspring_result mspringi_areas_of_builder(mspring_network *network, const mspring_builder *builder);
+/// Angles in a section of a snapshot that has been checked.
+size_t mspringi_saved_angles(const uint8_t *from, size_t size);
 /// Tell that one is another from now on.
 void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_area *area);
 
@@ -66,7 +112,7 @@ double mspringi_area_energy_change(const mspringi_area *area, double size, doubl
 
 static inline uint32_t mspringi_area_slot(const mspring_network *network, const mspringi_area *area,
                                           uint32_t corner) {
-    return network->topology.slot_of_particle[network->areas.corners[area->first + corner].particle];
+    return network->topology.slot_of_particle[network->areas->corners[area->first + corner].particle];
 }
 
 /// Within what a float can be: the guard finds what is that large.

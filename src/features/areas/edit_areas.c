@@ -182,7 +182,7 @@ static MSPRINGI_NOINLINE mspring_result add_area(mspring_network *network, const
     for (uint32_t i = 0; i < count; ++i)
         ordered[i] = particles[size > 0.0 ? i : count - 1 - i];
     if (area)
-        *area = network->areas.next_id;
+        *area = mspringi_area_next_id(network);
     add(network, def, rest_area, ordered, count);
     return MSPRING_OK;
 }
@@ -231,7 +231,7 @@ static MSPRINGI_NOINLINE mspring_result add_cell_areas(mspring_network *network,
     if (result == MSPRING_OK && cells.count > 0)
         result = mspringi_areas_check_room(network, cells.count, 4 * cells.count, 0);
     if (result == MSPRING_OK && first_area)
-        *first_area = network->areas.next_id;
+        *first_area = mspringi_area_next_id(network);
     if (result == MSPRING_OK && count)
         *count = (uint32_t)cells.count;
     for (size_t i = 0; result == MSPRING_OK && i < cells.count; ++i)
@@ -253,8 +253,8 @@ mspring_result mspring_network_add_cell_areas(mspring_network *network, const ms
 
 // Find an area or angle by id; NULL if there is none.
 static mspringi_area *find(const mspring_network *network, mspring_id id, bool is_angle) {
-    const mspringi_areas *a = &network->areas;
-    size_t low = 0, high = a->count;
+    const mspringi_areas *a = network->areas;
+    size_t low = 0, high = mspringi_area_count(network);
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
         if (a->list[middle].id < id)
@@ -262,7 +262,9 @@ static mspringi_area *find(const mspring_network *network, mspring_id id, bool i
         else
             high = middle;
     }
-    return low < a->count && a->list[low].id == id && a->list[low].is_angle == is_angle ? &a->list[low] : NULL;
+    return low < mspringi_area_count(network) && a->list[low].id == id && a->list[low].is_angle == is_angle
+               ? &a->list[low]
+               : NULL;
 }
 
 #define NONE_THERE "there is no %s %s"
@@ -314,13 +316,13 @@ static MSPRINGI_NOINLINE mspring_result set_area(mspring_network *network, mspri
     if (result != MSPRING_OK)
         return result;
     for (uint32_t i = 0; i < found->count; ++i)
-        particles[i] = network->areas.corners[found->first + i].particle;
+        particles[i] = network->areas->corners[found->first + i].particle;
     const polygon of = {particles, found->count, mspringi_area_size(network, found)};
     result = choose_rest_area(network, def, &of, &rest_area);
     if (result != MSPRING_OK)
         return result;
     fill(found, def, rest_area);
-    network->areas.changes++;
+    network->areas->changes++;
     mspringi_area_tell(network, MSPRINGI_EDIT_SET_AREA, found);
     return MSPRING_OK;
 }
@@ -386,7 +388,7 @@ mspring_result mspring_network_get_area_particles(const mspring_network *network
     if (!found)
         return MSPRING_ERROR_ID;
     for (uint32_t i = 0; i < found->count && i < capacity; ++i)
-        particles[i] = network->areas.corners[found->first + i].particle;
+        particles[i] = network->areas->corners[found->first + i].particle;
     *count = found->count;
     return MSPRING_OK;
 }
@@ -398,7 +400,8 @@ mspring_result mspringi_areas_measure(const mspring_network *network, bool is_an
         return MSPRING_ERROR_ARGUMENT;
     if (!count)
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the count is NULL");
-    for (const mspringi_area *a = network->areas.list; a < network->areas.list + network->areas.count; ++a) {
+    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
+        const mspringi_area *a = &network->areas->list[i];
         if (a->is_angle != is_angle || found++ >= capacity)
             continue;
         const double size = mspringi_area_size(network, a);

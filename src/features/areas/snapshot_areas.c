@@ -32,11 +32,11 @@ static void hand_corner(mspringi_io *io, mspringi_corner *corner) {
 
 // No section means that there never was an area.
 static void areas_save(const mspring_network *network, mspringi_writer *to) {
-    const mspringi_areas *a = &network->areas;
+    const mspringi_areas *a = network->areas;
     mspringi_io io = mspringi_io_to(to);
-    uint32_t head[] = {a->next_id, (uint32_t)a->count};
-    if (a->next_id == 0)
+    if (!a || a->next_id == 0)
         return;
+    uint32_t head[] = {a->next_id, (uint32_t)a->count};
     mspringi_hand(&io, head, 2, sizeof head[0]);
     for (const mspringi_area *area = a->list; area < a->list + a->count; ++area) {
         hand_area(&io, &(record){area->id, area->is_angle ? ANGLE_KIND : (uint32_t)area->kind, area->count,
@@ -126,7 +126,10 @@ static mspring_result areas_check(mspring_network *network, const uint8_t *from,
     if (result == MSPRING_OK)
         result = mspringi_section_end(network, section, &io);
     // memory for all of them, whatever the network has now
-    return result == MSPRING_OK && head[1] > 0 ? mspringi_areas_reserve(network, head[1], corners, angles) : result;
+    if (result == MSPRING_OK)
+        result =
+            head[1] > 0 ? mspringi_areas_reserve(network, head[1], corners, angles) : mspringi_areas_make(network);
+    return result;
 }
 
 size_t mspringi_saved_angles(const uint8_t *from, size_t size) {
@@ -183,9 +186,12 @@ static mspring_result areas_check_against(mspring_network *network, const msprin
 }
 
 static void areas_load(mspring_network *network, const uint8_t *from, size_t size) {
-    mspringi_areas *a = &network->areas;
+    mspringi_areas *a = network->areas;
     mspringi_io io = mspringi_io_from(from, size);
     uint32_t head[2];
+    network->edits.values++; // affects the limit in any shape
+    if (!a)
+        return;
     mspringi_areas_clear(network);
     mspringi_hand(&io, head, 2, sizeof head[0]);
     a->next_id = head[0];
@@ -200,7 +206,6 @@ static void areas_load(mspring_network *network, const uint8_t *from, size_t siz
         a->angle_count += area->is_angle;
         a->corner_count += area->count;
     }
-    network->edits.values++; // affects the limit in any shape
 }
 
 const mspringi_section mspringi_section_areas = {"area",     "areas",     true,       NULL,

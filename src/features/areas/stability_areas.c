@@ -5,16 +5,11 @@
 #include <math.h>
 
 #include "features/areas/areas.h"
-#include "stability/pencil.h"
-#include "stability/stability_limit.h"
+#include "stability/stability_elements.h"
 
 // True if the area has pressure.
 static bool has_pressure(const mspring_network *network, size_t i) {
-    return !mspringi_area_is_open(network, &network->areas.list[i]);
-}
-
-static size_t count_of(const mspring_network *network) {
-    return network->areas.list ? network->areas.count : 0;
+    return !mspringi_area_is_open(network, &network->areas->list[i]);
 }
 
 /// An area at a substep.
@@ -25,7 +20,7 @@ typedef struct stiff_area {
 } stiff_area;
 
 static stiff_area make_stiff_area(const mspring_network *network, size_t i, double square) {
-    const mspringi_area *area = &network->areas.list[i];
+    const mspringi_area *area = &network->areas->list[i];
     const double size = mspringi_area_size(network, area);
     return (stiff_area){area,
                         square * mspringi_area_stiffness(area, size) + 2.0 * sqrt(square) * (double)area->damping,
@@ -97,8 +92,8 @@ static void bound_cell(const mspring_network *network, const mspringi_stability_
         add_isotropic(b, ends[i].slot, ends[(i + 1) % 4].slot, 0.5 * stiff->pressure);
 }
 
-void mspringi_areas_bound(const mspring_network *network, const mspringi_stability_limit *b) {
-    for (size_t i = 0; i < count_of(network); ++i) {
+static void add_bound(const mspring_network *network, const mspringi_stability_limit *b) {
+    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
         if (!has_pressure(network, i))
             continue;
         const stiff_area stiff = make_stiff_area(network, i, (double)b->stiffness);
@@ -119,8 +114,8 @@ static double growth(const mspring_network *network, const mspringi_area *area, 
     return grows;
 }
 
-void mspringi_areas_image(const mspring_network *network, const mspringi_stability_limit *b, double square) {
-    for (size_t i = 0; i < count_of(network); ++i) {
+static void add_image(const mspring_network *network, const mspringi_stability_limit *b, double square) {
+    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
         if (!has_pressure(network, i))
             continue;
         const stiff_area stiff = make_stiff_area(network, i, square);
@@ -134,11 +129,11 @@ void mspringi_areas_image(const mspring_network *network, const mspringi_stabili
     }
 }
 
-void mspringi_areas_quotient(const mspring_network *network, mspringi_displacement vector, mspringi_quotient *sum) {
-    for (size_t i = 0; i < count_of(network); ++i) {
+static void add_quotient(const mspring_network *network, mspringi_displacement vector, mspringi_quotient *sum) {
+    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
         if (!has_pressure(network, i))
             continue;
-        const mspringi_area *area = &network->areas.list[i];
+        const mspringi_area *area = &network->areas->list[i];
         const double grows = growth(network, area, vector.x, vector.y), size = mspringi_area_size(network, area);
         sum->stiffness += mspringi_area_stiffness(area, size) * grows * grows;
         sum->damping += (double)area->damping * grows * grows;
@@ -147,14 +142,34 @@ void mspringi_areas_quotient(const mspring_network *network, mspringi_displaceme
 
 /* ------------------------------------------------------------------------------------------------ in any shape */
 
-void mspringi_areas_sum(const mspring_network *network, float *sums, float *dampings) {
-    for (size_t i = 0; i < count_of(network); ++i)
-        mspringi_area_weigh(network, &network->areas.list[i], sums, dampings);
+static void add_sum(const mspring_network *network, float *sums, float *dampings) {
+    for (size_t i = 0; i < mspringi_area_count(network); ++i)
+        mspringi_area_weigh(network, &network->areas->list[i], sums, dampings);
 }
 
-double mspringi_areas_largest(const mspring_network *network, const float *sums) {
+static double largest_quotient(const mspring_network *network, const float *sums) {
     double largest = 0.0;
-    for (size_t i = 0; i < count_of(network); ++i)
-        largest = fmax(largest, mspringi_area_largest(network, &network->areas.list[i], sums));
+    for (size_t i = 0; i < mspringi_area_count(network); ++i)
+        largest = fmax(largest, mspringi_area_largest(network, &network->areas->list[i], sums));
     return largest;
 }
+
+/* ------------------------------------------------------------------------------------------------ of solvers */
+
+static bool is_used(const mspring_network *network) {
+    return mspringi_area_count(network) > 0;
+}
+
+// In linear systems, areas without springs all around have the forces of the start of a substep.
+static double longest(const mspring_network *network) {
+    const mspringi_areas *a = network->areas;
+    return a && a->unringed > 0 ? a->longest : INFINITY;
+}
+
+const mspringi_stability_ops mspringi_stability_of_areas = {.is_used = is_used,
+                                                            .sum = add_sum,
+                                                            .largest = largest_quotient,
+                                                            .bound = add_bound,
+                                                            .image = add_image,
+                                                            .quotient = add_quotient,
+                                                            .longest = longest};

@@ -4,7 +4,7 @@
 #include "store/stages.h"
 
 static bool is_used(const mspring_network *network) {
-    return network->areas.count > 0;
+    return mspringi_area_count(network) > 0;
 }
 
 // Wake the corners of an area of which others are awake: its pressure changes.
@@ -18,7 +18,7 @@ static void wake_corners(mspring_network *network, const mspringi_area *area) {
 
 // Corners of cells are always of one island.
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
-    mspringi_areas *a = &network->areas;
+    mspringi_areas *a = network->areas;
     (void)attempt;
     mspringi_areas_refresh(network);
     if (network->sleep.sleeping == 0 || a->unswept == 0)
@@ -36,11 +36,11 @@ static bool is_held(const mspringi_attempt *attempt, const mspringi_area *area) 
 }
 
 static bool is_quiet(const mspring_network *network, const mspringi_attempt *attempt) {
-    const mspringi_areas *a = &network->areas;
+    const mspringi_areas *a = network->areas;
     const mspringi_solver_ops *ops = attempt->solver->ops;
     const uint32_t forces = ops->has_stability_limit  ? a->unswept
                             : ops->has_implicit_areas ? a->unringed
-                                                      : a->swept + a->unswept;
+                                                      : network->cells.swept + a->unswept;
     return forces == 0 || mspringi_sleep_is_whole(network);
 }
 
@@ -50,26 +50,26 @@ static bool is_quiet(const mspring_network *network, const mspringi_attempt *att
 // How much of their forces areas exert. Strain rates are clamped where a substep is too long for springs: then
 // areas are softened until it is not too long for them, either.
 static double share_of(const mspring_network *network, const mspringi_attempt *attempt) {
-    const double longest = network->areas.longest_of_all, h = (double)attempt->h;
+    const double longest = network->areas->longest_of_all, h = (double)attempt->h;
     const double share = CALM * (longest / h) * (longest / h);
     return attempt->solver == &mspringi_clamped && share < 1.0 ? share : 1.0;
 }
 
 static mspringi_field before_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base) {
-    const mspringi_areas *a = &network->areas;
+    const mspringi_areas *a = network->areas;
     const double share = share_of(network, attempt);
     (void)substep;
     if (is_quiet(network, attempt))
         return base;
     if (base.x)
-        mspringi_field_copy(network, base, a->force);
+        mspringi_field_copy(network, base, network->forces.inner);
     else
-        mspringi_field_clear(network, a->force);
+        mspringi_field_clear(network, network->forces.inner);
     for (size_t i = 0; i < a->count; ++i)
         if (!a->list[i].is_open && !is_held(attempt, &a->list[i]))
-            mspringi_area_push(network, &a->list[i], share, a->force);
-    return a->force;
+            mspringi_area_push(network, &a->list[i], share, network->forces.inner);
+    return network->forces.inner;
 }
 
 // As long as no area pushes by force, substeps may be taken together.

@@ -142,18 +142,6 @@ static mspring_result list_springs(mspring_network *network, mspringi_groups *g)
     return MSPRING_OK;
 }
 
-static mspring_result check_areas(mspring_network *network, const mspringi_groups *g) {
-    const mspringi_areas *areas = &network->areas;
-    for (size_t i = 0; i < areas->count; ++i) {
-        const mspringi_corner *corners = areas->corners + areas->list[i].first;
-        for (uint32_t k = 1; k < areas->list[i].count; ++k)
-            if (g->of_particle[corners[k].particle] != g->of_particle[corners[0].particle])
-                return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "%s %u has particles of two groups",
-                                     areas->list[i].is_angle ? "angle" : "area", (unsigned)areas->list[i].id);
-    }
-    return MSPRING_OK;
-}
-
 // Pairs may have moved to different groups, or to the same: find them again.
 static void look_for_pairs_anew(mspring_network *network) {
     if (!network->contacts)
@@ -175,8 +163,8 @@ mspring_result mspring_network_set_groups(mspring_network *network, const msprin
             number_particles(network, &made, firsts);
         if (result == MSPRING_OK)
             result = list_springs(network, &made);
-        if (result == MSPRING_OK)
-            result = check_areas(network, &made);
+#define GROUPED(function) result = result == MSPRING_OK ? function(network, made.of_particle) : result;
+#include "store/features.def"
         if (result != MSPRING_OK)
             free_groups(&network->memory, &made);
     }

@@ -33,7 +33,7 @@ mspringi_substep mspringi_substep_prepare(const mspring_network *network, float 
                 .force_y = base.y,
                 .lattice_springs = network->lattice_springs,
                 .springs_of_block = network->shared_records.of_block,
-                .cells = network->areas.swept > 0 ? network->areas.cells : NULL,
+                .cells = network->cells.swept > 0 ? network->cells.values : NULL,
                 .rest_lengths = network->rest_lengths.lengths,
                 .rests_of_block = network->tested.nominal ? network->tested.shared_records.of_block
                                                           : network->rest_lengths.of_block,

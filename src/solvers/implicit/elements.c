@@ -30,3 +30,10 @@ void mspringi_elements_add_energy(const mspring_network *network) {
         if (elements[i]->add_energy && elements[i]->is_used(network))
             elements[i]->add_energy(network);
 }
+
+bool mspringi_elements_forget_energy(const mspring_network *network) {
+    bool any = false;
+    for (size_t i = 0; i < ELEMENT_COUNT && !any; ++i)
+        any = elements[i]->forgets_energy && elements[i]->forgets_energy(network);
+    return any;
+}

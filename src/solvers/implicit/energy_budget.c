@@ -8,6 +8,7 @@
 #include "features/contact/floor.h"
 #include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
+#include "store/elements.h"
 #include "store/feature.h"
 
 /// Excess of elastic energy that is tolerated, as a share: rounding of solutions in single precision.
@@ -127,7 +128,7 @@ static bool knows_elastic(const mspring_network *network) {
     uint64_t now[MSPRINGI_BUDGET_EDITS];
     count_edits(network, now);
     return budget->knows_elastic && !network->is_open && !mspringi_features_vary(network) &&
-           network->areas.hinge_count == 0 && budget->relative_h == network->relative_h &&
+           !mspringi_elements_forget_energy(network) && budget->relative_h == network->relative_h &&
            budget->origin_x == network->origin_x && budget->origin_y == network->origin_y &&
            memcmp(now, budget->seen, sizeof now) == 0;
 }

@@ -1,19 +1,18 @@
 /// Areas in a problem of statics. Each side must be a spring.
 ///
 /// An area adds stiffness along the springs of its outline, as in implicit substeps
-/// (solvers/implicit/implicit_areas.c). That is an upper bound, so Newton's step still descends, and the matrix
+/// (implicit_areas.c). That is an upper bound, so Newton's step still descends, and the matrix
 /// keeps the pattern of the springs. Forces and energies are exact.
-#include "features/areas/areas.h"
+#include "features/areas/settle_areas.h"
 
 #include <math.h>
 
-#include "analysis/settle/equilibrium.h"
 #include "base/shoelace.h"
 #include "store/springs.h"
 
 // Settling of angles; NULL in a build without them.
-#define STATICS(table) &table +
-static const mspringi_statics_element *const angles =
+#define ANGLE_STATICS(table) &table +
+static const mspringi_angle_statics *const angles =
 #include "store/features.def"
     0;
 
@@ -25,7 +24,7 @@ static void number_springs(const mspring_network *network, uint32_t *numbers) {
 }
 
 static mspring_result find_sides(mspringi_statics *statics, mspring_network *network, const uint32_t *numbers) {
-    const mspringi_areas *a = &network->areas;
+    const mspringi_areas *a = network->areas;
     for (size_t i = 0; i < a->count; ++i)
         if (a->list[i].is_angle && !a->list[i].is_open)
             angles->add(statics, a, &a->list[i]);
@@ -43,23 +42,31 @@ static mspring_result find_sides(mspringi_statics *statics, mspring_network *net
     return MSPRING_OK;
 }
 
-mspring_result mspringi_statics_add_areas(mspringi_statics *statics, mspring_network *network) {
-    if (network->areas.count == 0)
+static uint32_t count_edges(const mspring_network *network) {
+    return network->areas ? 3 * (uint32_t)network->areas->angle_count : 0;
+}
+
+static bool is_possible(const mspring_network *network) {
+    return !network->areas || network->areas->unringed == 0;
+}
+
+static mspring_result add_areas(mspringi_statics *statics, mspring_network *network) {
+    if (mspringi_area_count(network) == 0)
         return MSPRING_OK;
     mspringi_areas_refresh(network);
     uint32_t *numbers = mspringi_alloc(&network->memory, network->topology.spring_count, sizeof *numbers);
     statics->areas.sides =
-        mspringi_alloc(&network->memory, network->areas.corner_count, sizeof *statics->areas.sides);
+        mspringi_alloc(&network->memory, network->areas->corner_count, sizeof *statics->areas.sides);
     mspring_result result = MSPRING_OK;
     if (!numbers || !statics->areas.sides) {
         result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to settle %zu areas",
-                               network->areas.count);
+                               network->areas->count);
     } else {
         number_springs(network, numbers);
         result = find_sides(statics, network, numbers);
     }
     mspringi_free(&network->memory, numbers);
-    statics->areas.of = result == MSPRING_OK ? &network->areas : NULL;
+    statics->areas.of = result == MSPRING_OK ? network->areas : NULL;
     return result;
 }
 
@@ -121,7 +128,7 @@ static const mspringi_area *next_area(const mspringi_statics *statics, size_t *i
     return all && *i < all->count ? &all->list[(*i)++] : NULL;
 }
 
-double mspringi_statics_area_forces(mspringi_statics *statics) {
+static double add_forces(mspringi_statics *statics) {
     double largest = 0.0;
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
@@ -143,7 +150,7 @@ double mspringi_statics_area_forces(mspringi_statics *statics) {
     return largest;
 }
 
-double mspringi_statics_area_change(const mspringi_statics *statics, double t, double *size) {
+static double energy_change(const mspringi_statics *statics, double t, double *size) {
     double change = 0.0;
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
@@ -184,7 +191,7 @@ static void stiffen(mspringi_statics *statics, const mspringi_area *area, uint32
     statics->springs.yy[spring] -= yy;
 }
 
-void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped) {
+static void add_stiffness(mspringi_statics *statics, bool clamped) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(statics, &at)) != NULL;) {
         if (area->is_angle) {
@@ -208,3 +215,10 @@ void mspringi_statics_area_stiffness(mspringi_statics *statics, bool clamped) {
         }
     }
 }
+
+const mspringi_statics_ops mspringi_statics_of_areas = {.count_edges = count_edges,
+                                                        .is_possible = is_possible,
+                                                        .add = add_areas,
+                                                        .forces = add_forces,
+                                                        .change = energy_change,
+                                                        .stiffness = add_stiffness};

@@ -38,7 +38,7 @@ static double reach_of(const mspringi_implicit *n, const polygon *p, uint32_t si
 }
 
 static polygon look(const mspring_network *network, const mspringi_implicit *n, const mspringi_area *area) {
-    polygon p = {.area = area, .corners = network->areas.corners + area->first};
+    polygon p = {.area = area, .corners = network->areas->corners + area->first};
     mspringi_shoelace shape = {0};
     p.x = n->x[p.corners[0].slot];
     p.y = n->y[p.corners[0].slot];
@@ -90,13 +90,13 @@ static void stiffen(const mspring_network *network, const mspringi_implicit *n, 
 // All corners are of one island.
 static bool acts(const mspring_network *network, const mspringi_implicit *n, const mspringi_area *area) {
     return area->is_ringed && !area->is_open &&
-           (n->is_direct || !mspringi_slot_is_asleep(network, network->areas.corners[area->first].slot));
+           (n->is_direct || !mspringi_slot_is_asleep(network, network->areas->corners[area->first].slot));
 }
 
 static void add_terms(const mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    for (size_t i = 0; i < network->areas.count; ++i) {
-        const mspringi_area *area = &network->areas.list[i];
+    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
+        const mspringi_area *area = &network->areas->list[i];
         if (area->is_angle || !acts(network, n, area))
             continue;
         const polygon p = look(network, n, area);
@@ -116,9 +116,9 @@ static double energy_above_0(const mspring_network *network, const mspringi_area
 
 static void add_energy(const mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    for (size_t i = 0; i < network->areas.count; ++i) {
-        const mspringi_area *area = &network->areas.list[i];
-        const uint32_t number = n->budget.of_slot[network->areas.corners[area->first].slot];
+    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
+        const mspringi_area *area = &network->areas->list[i];
+        const uint32_t number = n->budget.of_slot[network->areas->corners[area->first].slot];
         if (!acts(network, n, area) || number == MSPRINGI_NO_COMPONENT)
             continue;
         n->budget.components[number].elastic += energy_above_0(network, area);
@@ -127,7 +127,7 @@ static void add_energy(const mspring_network *network) {
 }
 
 static bool is_used(const mspring_network *network) {
-    return network->areas.count > 0;
+    return mspringi_area_count(network) > 0;
 }
 
 const mspringi_element_ops mspringi_element_areas = {

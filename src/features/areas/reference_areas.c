@@ -60,7 +60,14 @@ static const mspringi_area *next_area(const mspringi_reference *r, size_t *i) {
     return all && *i < all->count ? &all->list[(*i)++] : NULL;
 }
 
-void mspringi_reference_add_areas(const mspringi_reference *r, const double *vx, const double *vy) {
+static void begin(mspringi_reference *r, mspring_network *network) {
+    if (mspringi_area_count(network) == 0)
+        return;
+    mspringi_areas_refresh(network);
+    r->areas = network->areas;
+}
+
+static void push(const mspringi_reference *r, const double *vx, const double *vy) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(r, &at)) != NULL;) {
         double rate = 0.0;
@@ -80,7 +87,7 @@ void mspringi_reference_add_areas(const mspringi_reference *r, const double *vx,
 }
 
 // In c g g', the row of a corner has blocks of size c |g| |g'|, times the roots of both inverse masses.
-void mspringi_reference_bound_areas(const mspringi_reference *r, double *stiffness, double *damping) {
+static void bound_sums(const mspringi_reference *r, double *stiffness, double *damping) {
     const mspringi_area *area;
     for (size_t at = 0; (area = next_area(r, &at)) != NULL;) {
         const mspringi_corner *corners = r->areas->corners + area->first;
@@ -99,10 +106,13 @@ void mspringi_reference_bound_areas(const mspringi_reference *r, double *stiffne
     }
 }
 
-double mspringi_reference_area_energy(const mspringi_reference *r) {
+static double elastic_energy(const mspringi_reference *r) {
     const mspringi_area *area;
     double sum = 0.0;
     for (size_t at = 0; (area = next_area(r, &at)) != NULL;)
         sum += mspringi_area_energy(area, size_of(r, area));
     return sum;
 }
+
+const mspringi_reference_ops mspringi_reference_of_areas = {
+    .begin = begin, .push = push, .bound = bound_sums, .energy = elastic_energy};
