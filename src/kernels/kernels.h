@@ -330,6 +330,10 @@ typedef uint32_t (*mspringi_violence_fn)(const mspringi_violence_sweep *sweep, u
 #define MSPRINGI_CLAMP_AHEAD 0.1875f
 #define MSPRINGI_CLAMP_WAY 0.0625f
 
+/// Least geometric stiffness of a compressed spring in the stability limit, in stiffnesses: that at a 65th of its
+/// rest length. It never makes a limit tighter. Left as it is, rounding of a spring of length 0 hides all others.
+#define MSPRINGI_DEEPEST_SOFTENING (-64.0f)
+
 /// Arguments of the stability limit's passes: see limit_kernel.h. Arrays by slot, and springs as in mspringi_sweep.
 typedef struct mspringi_stability_limit {
     const float *x, *y, *inverse_mass;

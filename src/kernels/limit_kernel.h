@@ -88,7 +88,8 @@ MSPRINGI_INLINE limit_terms terms_of_springs(const mspringi_stability_limit *b, 
     const vec square = add(mul(dx, dx), mul(dy, dy));
     const vec inverse = mul(square_root(square), inverse_or_zero(square)); // inverse length
     const vec nx = mul(dx, inverse), ny = mul(dy, inverse), stiffness = mul(set(b->stiffness), load(record));
-    const vec across = mul(stiffness, sub(set(1.0f), mul(load(rests), inverse)));
+    const vec strain = sub(set(1.0f), mul(load(rests), inverse)), deepest = set(MSPRINGI_DEEPEST_SOFTENING);
+    const vec across = mul(stiffness, choose_positive(sub(strain, deepest), strain, deepest));
     vec along = stiffness;
     if (damped)
         along = add(along, mul(set(b->damping), damping));

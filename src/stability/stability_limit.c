@@ -22,7 +22,7 @@ static single_spring linearise(const mspringi_stability_limit *b, const mspringi
     const float inverse = square > MSPRINGI_NO_DIRECTION ? sqrtf(square) * (1.0f / square) : 0.0f;
     s.nx = dx * inverse;
     s.ny = dy * inverse;
-    s.across = 1.0f - values->rest_length * inverse;
+    s.across = fmaxf(1.0f - values->rest_length * inverse, MSPRINGI_DEEPEST_SOFTENING);
     return s;
 }
 
