@@ -42,6 +42,7 @@ void mspringi_features_forget(mspring_network *network) {
 
 mspring_result mspringi_features_create(mspring_network *network, const mspring_builder *builder) {
     mspring_result result = MSPRING_OK;
+    (void)network, (void)builder; // if no feature asks
 #define CREATES(function) result = result == MSPRING_OK ? function(network, builder) : result;
 #include "store/features.def"
     return result;
@@ -50,12 +51,14 @@ mspring_result mspringi_features_create(mspring_network *network, const mspring_
 mspring_result mspringi_features_reserve_append(const mspring_network *network, const mspring_id *ids,
                                                 mspring_builder *builder) {
     mspring_result result = MSPRING_OK;
+    (void)network, (void)ids, (void)builder;
 #define APPENDS(reserve, append) result = result == MSPRING_OK ? reserve(network, ids, builder) : result;
 #include "store/features.def"
     return result;
 }
 
 void mspringi_features_append(const mspring_network *network, const mspring_id *ids, mspring_builder *builder) {
+    (void)network, (void)ids, (void)builder;
 #define APPENDS(reserve, append) append(network, ids, builder);
 #include "store/features.def"
 }

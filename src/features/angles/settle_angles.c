@@ -13,7 +13,7 @@
 
 #include <math.h>
 
-#include "features/areas/settle_areas.h"
+#include "analysis/settle/equilibrium.h"
 
 static void add_edges(mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle) {
     mspringi_statics_springs *s = &statics->springs;

@@ -146,6 +146,19 @@ typedef struct mspringi_angle_law {
 #define ANGLES(table) extern const mspringi_angle_law table;
 #include "store/features.def"
 
+struct mspringi_statics;
+/// Add an angle, whose pairs become edges; add its part, as mspringi_statics_ops do
+/// (analysis/settle/equilibrium.h).
+typedef struct mspringi_angle_statics {
+    void (*add)(struct mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle);
+    double (*forces)(struct mspringi_statics *statics, const mspringi_area *angle);
+    double (*change)(const struct mspringi_statics *statics, const mspringi_area *angle, double t, double *size);
+    void (*stiffness)(struct mspringi_statics *statics, const mspringi_area *angle, bool clamped);
+} mspringi_angle_statics;
+
+#define ANGLE_STATICS(table) extern const mspringi_angle_statics table;
+#include "store/features.def"
+
 /// NULL: a build without angles, so no area is one.
 extern const mspringi_angle_law *const mspringi_angles;
 

@@ -3,10 +3,11 @@
 /// An area adds stiffness along the springs of its outline, as in implicit substeps
 /// (implicit_areas.c). That is an upper bound, so Newton's step still descends, and the matrix
 /// keeps the pattern of the springs. Forces and energies are exact.
-#include "features/areas/settle_areas.h"
+#include "features/areas/areas.h"
 
 #include <math.h>
 
+#include "analysis/settle/equilibrium.h"
 #include "base/shoelace.h"
 #include "store/springs.h"
 

@@ -117,9 +117,8 @@ static void find_frames(const mspring_network *network, budget_of *budget) {
 
 static void count_edits(const mspring_network *network, uint64_t *to) {
     const mspringi_edits *e = &network->edits;
-    const uint64_t counts[MSPRINGI_BUDGET_EDITS] = {e->state, e->values,        e->growth,           e->grafts,
-                                                    e->links, e->sleep_changes, network->edits.flows};
-    memcpy(to, counts, sizeof counts);
+    memcpy(to, (uint64_t[]){e->state, e->values, e->growth, e->grafts, e->links, e->sleep_changes, e->flows},
+           MSPRINGI_BUDGET_EDITS * sizeof *to);
 }
 
 // True if elastic energy is still that after the last substep: no host may have written, and no spring varies.
