@@ -4,10 +4,10 @@
 
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
+#include "features/groups/held_groups.h"
 #include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
-#include "step/held_groups.h"
 #include "store/changed.h"
 #include "store/network.h"
 
@@ -102,8 +102,8 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
         result = mspringi_take_solver_def(&network->message, &def, &taken);
     if (result == MSPRING_OK)
         result = mspringi_check_solver(def, &network->message);
-    if (result == MSPRING_OK)
-        result = mspringi_groups_check_solver(network, def);
+    if (result == MSPRING_OK && network->groups.count > 0)
+        result = mspringi_held_groups->check_solver(network, def);
     if (result != MSPRING_OK)
         return result;
     const mspring_solver_def before = def_of(network);
@@ -179,8 +179,8 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
         result = mspringi_take_settings(&network->message, &settings, &taken);
     if (result == MSPRING_OK)
         result = mspringi_check_settings(settings, &network->message);
-    if (result == MSPRING_OK)
-        result = mspringi_groups_check_settings(network, settings);
+    if (result == MSPRING_OK && network->groups.count > 0)
+        result = mspringi_held_groups->check_settings(network, settings);
     if (result == MSPRING_OK)
         result = reserve_for(network, settings);
     if (result != MSPRING_OK)

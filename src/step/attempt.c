@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "features/groups/held_groups.h"
 #include "features/hooks/hooks.h"
 #include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
-#include "step/held_groups.h"
 #include "store/id_pool.h"
 #include "store/stages.h"
 
@@ -224,7 +224,7 @@ static mspring_result begin(mspring_network *network, mspringi_attempt *attempt)
         return MSPRING_OK;
     }
     if (attempt->kind == MSPRINGI_AS_CHOSEN && network->groups.count > 0)
-        mspringi_groups_begin(network);
+        mspringi_held_groups->begin(network);
     attempt->guard = network->guard;
     mspringi_stages_before_step(network, attempt);
     const mspring_result result = mspringi_guard_begin(network, attempt);
@@ -253,7 +253,7 @@ static mspring_result take(mspring_network *network, mspringi_attempt *attempt) 
     if (result == MSPRING_OK)
         return MSPRING_OK;
     if (network->groups.count > 0)
-        mspringi_groups_suspect(network);
+        mspringi_held_groups->suspect(network);
     mspringi_attempt_take_back(network, attempt);
     return result;
 }

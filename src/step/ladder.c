@@ -3,9 +3,9 @@
 
 #include <float.h>
 
+#include "features/groups/held_groups.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
-#include "step/held_groups.h"
 #include "step/pace.h"
 
 /* ------------------------------------------------------------------------------------------------- one attempt */
@@ -117,18 +117,18 @@ static bool take_more(mspring_network *network, mspringi_attempt *attempt) {
 static bool try_groups(mspring_network *network, mspringi_attempt *attempt) {
     const bool is_taken = attempt->result == MSPRING_OK, is_trial = attempt->kind == MSPRINGI_WITH_DOUBTFUL;
     if (!is_taken && !is_trial)
-        return attempt->result == MSPRING_ERROR_UNSTABLE && mspringi_groups_hold_suspects(network) &&
+        return attempt->result == MSPRING_ERROR_UNSTABLE && mspringi_held_groups->hold_suspects(network) &&
                prepare(network, attempt, MSPRINGI_WITHOUT_SUSPECTS, attempt->solver, attempt->substeps);
     if (!is_taken)
-        mspringi_groups_hold(network, attempt->group);
-    attempt->group = mspringi_groups_next_doubtful(network, attempt->group + is_trial);
+        mspringi_held_groups->hold(network, attempt->group);
+    attempt->group = mspringi_held_groups->next_doubtful(network, attempt->group + is_trial);
     const bool is_last = attempt->group == network->groups.count;
     if (is_taken && is_last)
         return false;
     if (is_taken)
         mspringi_attempt_take_back(network, attempt);
     if (!is_last)
-        mspringi_groups_release(network, attempt->group);
+        mspringi_held_groups->release(network, attempt->group);
     return prepare(network, attempt, is_last ? MSPRINGI_WITHOUT_SUSPECTS : MSPRINGI_WITH_DOUBTFUL, attempt->solver,
                    attempt->substeps);
 }

@@ -3,10 +3,10 @@
 #include <math.h>
 
 #include "base/cpu.h"
+#include "features/groups/held_groups.h"
 #include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "step/finite.h"
-#include "step/held_groups.h"
 #include "step/ladder.h"
 #include "step/pace.h"
 
@@ -85,7 +85,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         mspringi_attempt_make(network, &attempt);
     while (mspringi_attempt_next(network, &attempt));
     if (network->groups.count > 0)
-        mspringi_groups_end(network, attempt.result == MSPRING_OK);
+        mspringi_held_groups->end(network, attempt.result == MSPRING_OK);
     if (attempt.result == MSPRING_OK)
         accept(network, &attempt);
     else

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "features/groups/held_groups.h"
+
 static const struct {
     size_t offset; // of the pointer in the network
     const mspringi_feature_state *state;
@@ -63,8 +65,15 @@ void mspringi_features_append(const mspring_network *network, const mspring_id *
 #include "store/features.def"
 }
 
-bool mspringi_features_vary(const mspring_network *network) {
+bool mspringi_features_change_lengths(const mspring_network *network) {
     bool any = false;
+#define LENGTHS(function) any = any || function(network);
+#include "store/features.def"
+    return any;
+}
+
+bool mspringi_features_vary(const mspring_network *network) {
+    bool any = mspringi_features_change_lengths(network);
 #define VARIES(function) any = any || function(network);
 #include "store/features.def"
     return any;
@@ -74,3 +83,10 @@ void mspringi_features_discard_step(mspring_network *network) {
 #define DISCARDS(function) function(network);
 #include "store/features.def"
 }
+
+/* ---------------------------------------------------------------------------------------------------- groups */
+
+#define GROUPS(table) &table +
+const mspringi_group_ops *const mspringi_held_groups =
+#include "store/features.def"
+    0;

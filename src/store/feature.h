@@ -23,6 +23,7 @@ typedef struct mspringi_feature_state {
 #define GROUPED(function) mspring_result function(mspring_network *network, const uint32_t *group_of_particle);
 #define ELASTIC(function) void function(const mspring_network *network, double *sum);
 #define REACTS(function) void function(mspring_network *network, mspringi_change change, uint32_t index);
+#define LENGTHS(function) bool function(const mspring_network *network);
 #define VARIES(function) bool function(const mspring_network *network);
 #define LOADS(function) void function(mspring_network *network);
 #define LOADED(function) void function(mspring_network *network);
@@ -49,7 +50,9 @@ void mspringi_features_append(const mspring_network *network, const mspring_id *
 /// Forget what the end of a step gave: the guard has put it back.
 void mspringi_features_discard_step(mspring_network *network);
 
-/// True if stiffness or rest lengths of springs follow from the time in the next step.
+/// True if rest lengths of springs follow from the time in the next step.
+bool mspringi_features_change_lengths(const mspring_network *network);
+/// True if stiffness or rest lengths do.
 bool mspringi_features_vary(const mspring_network *network);
 
 #endif

@@ -2,7 +2,7 @@
 #include "features/groups/edit_groups.h"
 
 #include "features/contact/contacts.h"
-#include "step/held_groups.h"
+#include "features/groups/held_groups.h"
 #include "store/changed.h"
 #include "store/feature.h"
 #include "store/id_pool.h"
@@ -38,9 +38,9 @@ static mspring_result check_network(mspring_network *network, uint32_t count) {
     mspring_result result = mspring_network_get_solver(network, &solver);
     network->groups.count = count; // the checks need it
     if (result == MSPRING_OK)
-        result = mspringi_groups_check_settings(network, &network->settings);
+        result = mspringi_ops_of_groups.check_settings(network, &network->settings);
     if (result == MSPRING_OK)
-        result = mspringi_groups_check_solver(network, &solver);
+        result = mspringi_ops_of_groups.check_solver(network, &solver);
     network->groups.count = had;
     return result;
 }

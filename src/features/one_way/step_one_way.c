@@ -11,9 +11,7 @@
 /// 32 links was strained by 84 % by its first jerk without that.)
 #include <math.h>
 
-#include "features/actuators/actuators.h"
 #include "features/one_way/one_way.h"
-#include "features/ramps/ramps.h"
 #include "features/sleep/sleep.h"
 #include "store/feature.h"
 #include "store/id_pool.h"
@@ -93,7 +91,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
 // Ramps and actuators change them from one substep to the next, and so does yielding.
 static void follow_rest_lengths(mspring_network *network) {
     mspringi_one_way *one_way = network->one_way;
-    if (mspringi_ramp_count(network) == 0 && mspringi_actuator_count(network) == 0 && !network->tested.nominal)
+    if (!mspringi_features_change_lengths(network) && !network->tested.nominal)
         return;
     for (uint32_t i = 0; i < one_way->listed; ++i)
         one_way->list[i].rest_length =

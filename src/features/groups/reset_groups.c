@@ -4,8 +4,8 @@
 #include "base/cpu.h"
 #include "features/actuators/actuators.h"
 #include "features/groups/edit_groups.h"
+#include "features/groups/held_groups.h"
 #include "features/ramps/ramps.h"
-#include "step/held_groups.h"
 #include "store/changed.h"
 #include "store/id_pool.h"
 #include "store/rest_lengths.h"
@@ -153,7 +153,7 @@ static void put_length_back(mspring_network *network, mspring_id spring, const f
 static void put_back(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
     mspringi_groups *g = &network->groups;
     if (g->flags[group] & MSPRINGI_HELD)
-        mspringi_groups_release(network, group);
+        mspringi_ops_of_groups.release(network, group);
     restore_motion(network, mark, group);
     for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i)
         put_length_back(network, g->springs[i], mark->lengths + 2 * (size_t)i);

@@ -1,5 +1,5 @@
 /// Holding and releasing groups.
-#include "step/held_groups.h"
+#include "features/groups/held_groups.h"
 
 #include <math.h>
 #include <string.h>
@@ -12,17 +12,13 @@ static mspring_result refuse(mspring_network *network, const char *what) {
     return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "groups of particles need %s", what);
 }
 
-mspring_result mspringi_groups_check_settings(mspring_network *network, const mspring_settings *settings) {
-    if (network->groups.count == 0)
-        return MSPRING_OK;
+static mspring_result check_settings(mspring_network *network, const mspring_settings *settings) {
     if (settings->guard != MSPRING_GUARD_BOUNDS)
         return refuse(network, "the guard MSPRING_GUARD_BOUNDS: others judge all of the network");
     return settings->sleep_speed > 0.0f ? refuse(network, "sleep_speed 0") : MSPRING_OK;
 }
 
-mspring_result mspringi_groups_check_solver(mspring_network *network, const mspring_solver_def *def) {
-    if (network->groups.count == 0)
-        return MSPRING_OK;
+static mspring_result check_solver(mspring_network *network, const mspring_solver_def *def) {
     if (def->solver != MSPRING_SOLVER_EXPLICIT)
         return refuse(network, "the explicit solver: others solve for all of the network");
     return def->substeps == MSPRING_SUBSTEPS_AUTO || def->substeps == MSPRING_SUBSTEPS_EVEN
@@ -32,7 +28,7 @@ mspring_result mspringi_groups_check_solver(mspring_network *network, const mspr
 
 /* ------------------------------------------------------------------------------------------------- holding */
 
-void mspringi_groups_hold(mspring_network *network, uint32_t group) {
+static void hold(mspring_network *network, uint32_t group) {
     mspringi_groups *g = &network->groups;
     const mspringi_state *s = &network->state;
     if (g->held == 0)
@@ -52,7 +48,7 @@ void mspringi_groups_hold(mspring_network *network, uint32_t group) {
     g->held++;
 }
 
-void mspringi_groups_release(mspring_network *network, uint32_t group) {
+static void release(mspring_network *network, uint32_t group) {
     mspringi_groups *g = &network->groups;
     const mspringi_state *s = &network->state;
     for (mspring_id p = g->first[group]; p < g->first[group + 1]; ++p) {
@@ -70,7 +66,7 @@ void mspringi_groups_release(mspring_network *network, uint32_t group) {
 }
 
 // Somebody may have set masses and velocities since.
-void mspringi_groups_begin(mspring_network *network) {
+static void begin(mspring_network *network) {
     mspringi_groups *g = &network->groups;
     const mspringi_state *s = &network->state;
     if (g->held == 0)
@@ -106,20 +102,20 @@ static uint8_t look_at(const mspring_network *network, uint32_t group) {
     return found;
 }
 
-void mspringi_groups_suspect(mspring_network *network) {
+static void suspect(mspring_network *network) {
     mspringi_groups *g = &network->groups;
     for (uint32_t group = 0; group < g->count; ++group)
         if (!(g->flags[group] & MSPRINGI_HELD))
             g->flags[group] |= look_at(network, group);
 }
 
-bool mspringi_groups_hold_suspects(mspring_network *network) {
+static bool hold_suspects(mspring_network *network) {
     mspringi_groups *g = &network->groups;
     bool any = false;
     for (uint32_t group = 0; group < g->count; ++group) {
         if ((g->flags[group] & (MSPRINGI_SUSPECT | MSPRINGI_HELD)) != MSPRINGI_SUSPECT)
             continue;
-        mspringi_groups_hold(network, group);
+        hold(network, group);
         g->flags[group] |= MSPRINGI_NEWLY;
         any = true;
     }
@@ -127,7 +123,7 @@ bool mspringi_groups_hold_suspects(mspring_network *network) {
 }
 
 // One that is alone in it has nobody to blame.
-uint32_t mspringi_groups_next_doubtful(const mspring_network *network, uint32_t from) {
+static uint32_t next_doubtful(const mspring_network *network, uint32_t from) {
     const mspringi_groups *g = &network->groups;
     uint32_t suspects = 0;
     for (uint32_t group = 0; group < g->count; ++group)
@@ -138,12 +134,15 @@ uint32_t mspringi_groups_next_doubtful(const mspring_network *network, uint32_t 
     return from;
 }
 
-void mspringi_groups_end(mspring_network *network, bool is_taken) {
+static void end(mspring_network *network, bool is_taken) {
     mspringi_groups *g = &network->groups;
     for (uint32_t group = 0; group < g->count; ++group) {
         const uint8_t flags = g->flags[group];
         if (!is_taken && flags & MSPRINGI_NEWLY && flags & MSPRINGI_HELD)
-            mspringi_groups_release(network, group);
+            release(network, group);
         g->flags[group] &= MSPRINGI_HELD;
     }
 }
+
+const mspringi_group_ops mspringi_ops_of_groups = {check_settings, check_solver, begin,   suspect, hold_suspects,
+                                                   next_doubtful,  hold,         release, end};
