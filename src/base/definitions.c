@@ -38,8 +38,8 @@ static const mspring_contact_def default_contact_def = {
 static const mspring_grip_def default_grip_def = {.particle = MSPRING_NONE, .max_force = MSPRING_NEVER};
 static const mspring_collider_def default_collider_def = {
     .kind = MSPRING_COLLIDER_CHAIN, .width = 1.0, .height = 1.0, .groups = 1, .masks = UINT32_MAX};
-static const mspring_area_def default_area_def = {.kind = MSPRING_AREA_ELASTIC, .fill = 1.0f};
-static const mspring_angle_def default_angle_def = {0};
+MSPRINGI_LAWS(static const mspring_area_def default_area_def = {.kind = MSPRING_AREA_ELASTIC, .fill = 1.0f};
+              static const mspring_angle_def default_angle_def = {0};)
 MSPRINGI_LAB(static const mspring_settle_def default_settle_def = {.max_iterations = 1000, .tolerance = 1e-9};
              static const mspring_tune_scene default_tune_scene = {.flags = MSPRING_TUNE_SCENE_FLOOR |
                                                                             MSPRING_TUNE_SCENE_BREAKING,

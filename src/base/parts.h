@@ -6,6 +6,12 @@
 #ifndef MSPRINGI_PARTS_H
 #define MSPRINGI_PARTS_H
 
+#if defined(MSPRINGI_WITHOUT_LAWS)
+#define MSPRINGI_LAWS(...)
+#else
+#define MSPRINGI_LAWS(...) __VA_ARGS__
+#endif
+
 #if defined(MSPRINGI_WITHOUT_BATCH)
 #define MSPRINGI_BATCH(...)
 #else

@@ -1,8 +1,9 @@
 /// @file kernel_table.h
 /// Table of an instruction set, and the variants of its kernels: lattice(), chain(), irregular(), bundle(),
 /// loose(), attached(), pack(), largest(), extrema_of(), bounce(), bounce_free(), brake(), lattice_strain(),
-/// chain_strain(), lattice_yield(), chain_yield(), lattice_violence(), bound_, image_ and clamp_lattice() and _chain(),
-/// take_checksum(). Included at the end of each kernel file, which defines MSPRINGI_TABLE and MSPRINGI_LEVEL.
+/// chain_strain(), lattice_yield(), chain_yield(), lattice_violence(), bound_, image_ and clamp_lattice() and
+/// _chain(), take_checksum(). Included at the end of each kernel file, which defines MSPRINGI_TABLE and
+/// MSPRINGI_LEVEL.
 ///
 /// SPDX-License-Identifier: MIT
 
@@ -15,14 +16,12 @@
 #include "kernels/strain_kernel.h"
 #include "kernels/system_table.h"
 #include "kernels/violence_kernel.h"
-#include "kernels/yield_kernel.h"
 
 static inline mspringi_variant variant_found(const mspringi_sweep *sweep) {
     const mspringi_variant damped = sweep->parts > MSPRINGI_DAMPING ? MSPRINGI_DAMPED : 0;
     return MSPRINGI_PRECISE | damped | (sweep->force_x ? MSPRINGI_FORCED : 0);
 }
 #define MSPRINGI_VARIANT_FOUND variant_found(sweep)
-#define MSPRINGI_VARIANT_TESTED ((variant_found(sweep) & ~(mspringi_variant)MSPRINGI_PRECISE) | MSPRINGI_TESTED)
 
 #define MSPRINGI_ROW_VARIANT(kind, name, of)                                                                       \
     static void kind##_##name(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {           \
@@ -43,49 +42,13 @@ static void lattice_precise(const mspringi_sweep *sweep, const mspringi_span *sp
         lattice(sweep, spans, count, of);
 }
 
-#define MSPRINGI_CELLS_VARIANT(name, of)                                                                           \
-    static void cells_##name(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {            \
-        lattice(sweep, spans, count, MSPRINGI_CELLS | (of));                                                       \
-    }
-
-MSPRINGI_CELLS_VARIANT(plain, 0)
-MSPRINGI_CELLS_VARIANT(forced, MSPRINGI_FORCED)
-MSPRINGI_CELLS_VARIANT(damped, MSPRINGI_DAMPED)
-MSPRINGI_CELLS_VARIANT(damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
-
-static void cells_precise(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
-    const mspringi_variant of = MSPRINGI_CELLS | MSPRINGI_PRECISE | (sweep->force_x ? MSPRINGI_FORCED : 0);
-    if (sweep->parts > MSPRINGI_DAMPING)
-        lattice(sweep, spans, count, of | MSPRINGI_DAMPED);
-    else
-        lattice(sweep, spans, count, of);
-}
-
-static void lattice_tested(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
-    const mspringi_variant of =
-        MSPRINGI_TESTED | (sweep->force_x ? MSPRINGI_FORCED : 0) | (sweep->cells ? MSPRINGI_CELLS : 0);
-    if (sweep->parts > MSPRINGI_DAMPING)
-        lattice(sweep, spans, count, of | MSPRINGI_DAMPED);
-    else
-        lattice(sweep, spans, count, of);
-}
-
-static void lattice_tested_precise(const mspringi_sweep *sweep, const mspringi_span *spans, uint32_t count) {
-    const mspringi_variant of = MSPRINGI_TESTED | MSPRINGI_PRECISE | (sweep->force_x ? MSPRINGI_FORCED : 0) |
-                                (sweep->cells ? MSPRINGI_CELLS : 0);
-    if (sweep->parts > MSPRINGI_DAMPING)
-        lattice(sweep, spans, count, of | MSPRINGI_DAMPED);
-    else
-        lattice(sweep, spans, count, of);
-}
+#include "kernels/laws_table.h"
 
 MSPRINGI_ROW_VARIANT(chain, plain, 0)
 MSPRINGI_ROW_VARIANT(chain, forced, MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(chain, damped, MSPRINGI_DAMPED)
 MSPRINGI_ROW_VARIANT(chain, damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(chain, precise, MSPRINGI_VARIANT_FOUND)
-MSPRINGI_ROW_VARIANT(chain, tested, MSPRINGI_VARIANT_TESTED)
-MSPRINGI_ROW_VARIANT(chain, tested_precise, MSPRINGI_VARIANT_FOUND | MSPRINGI_TESTED)
 MSPRINGI_ROW_VARIANT(irregular, plain, 0)
 MSPRINGI_ROW_VARIANT(irregular, forced, MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(irregular, damped, MSPRINGI_DAMPED)
@@ -119,16 +82,17 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .level = MSPRINGI_LEVEL,
     .lanes = LANES > MSPRINGI_QUARTER ? LANES : MSPRINGI_QUARTER,
     .lattice = {{lattice_plain, lattice_forced}, {lattice_damped, lattice_damped_forced}},
-    .cells = {{cells_plain, cells_forced}, {cells_damped, cells_damped_forced}},
     .chain = {{chain_plain, chain_forced}, {chain_damped, chain_damped_forced}},
     .loose = {loose_plain, loose_forced},
     .irregular = {{irregular_plain, irregular_forced}, {irregular_damped, irregular_damped_forced}},
     .bundle = {{bundle_plain, bundle_forced}, {bundle_damped, bundle_damped_forced}},
     .pack = pack,
     .attached = {attached_plain, attached_damped},
-    .precise = {lattice_precise, cells_precise, chain_precise, irregular_precise, bundle_precise, attached_precise},
-    .tested_lattice = {lattice_tested, lattice_tested_precise},
-    .tested_chain = {chain_tested, chain_tested_precise},
+    .precise.lattice = lattice_precise,
+    .precise.chain = chain_precise,
+    .precise.irregular = irregular_precise,
+    .precise.bundle = bundle_precise,
+    .precise.attached = attached_precise,
     .largest = largest,
     .extrema_of = extrema_of,
     .beyond = beyond,
@@ -137,8 +101,6 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .brake = brake,
     .lattice_strain = lattice_strain,
     .chain_strain = chain_strain,
-    .lattice_yield = lattice_yield,
-    .chain_yield = chain_yield,
     .lattice_violence = lattice_violence,
     .bound_lattice = bound_lattice,
     .bound_chain = bound_chain,
@@ -148,4 +110,4 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .clamp_chain = clamp_chain,
     .checksum = take_checksum,
     .system = MSPRINGI_SYSTEM_TABLE,
-};
+    MSPRINGI_LAWS_TABLE};

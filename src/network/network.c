@@ -243,7 +243,8 @@ static mspring_result check_features(mspring_network *network, const mspring_bui
     return builder->area_count == 0 || mspringi_stage_exists(MSPRINGI_STAGE_OF_AREAS)
                ? MSPRING_OK
                : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                               "the builder has %zu areas or angles: this library was built without that feature",
+                               "the builder has %zu areas or angles: this build of the library lacks the part laws "
+                               "(MASSSPRING_PARTS)",
                                builder->area_count);
 }
 
@@ -255,9 +256,10 @@ static mspring_result set_sides(mspring_network *network, const mspring_builder 
     if (count == 0)
         return MSPRING_OK;
     if (!mspringi_stage_exists(MSPRINGI_STAGE_OF_ONE_WAY))
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "%u springs only pull or only push: this library was built without that feature",
-                             (unsigned)count);
+        return mspringi_fail(
+            &network->message, MSPRING_ERROR_ARGUMENT,
+            "%u springs only pull or only push: this build of the library lacks the part laws (MASSSPRING_PARTS)",
+            (unsigned)count);
     if (!mspringi_store_reserve(network, MSPRINGI_STORE_SIDE))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for %u springs that only pull or only push", (unsigned)count);

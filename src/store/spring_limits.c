@@ -18,9 +18,10 @@ static const mspringi_limit_ops *owner_of(mspring_property property) {
 mspring_result mspringi_limit_reserve(mspring_network *network, mspring_property property) {
     const mspringi_limit_ops *owner = owner_of(property);
     return owner ? owner->reserve(network, property)
-                 : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "springs have no %s here: this library was built without that feature",
-                                 mspringi_property_of(property)->name);
+                 : mspringi_fail(
+                       &network->message, MSPRING_ERROR_ARGUMENT,
+                       "springs have no %s here: this build of the library lacks the part laws (MASSSPRING_PARTS)",
+                       mspringi_property_of(property)->name);
 }
 
 mspring_result mspringi_limits_reserve(mspring_network *network, mspringi_limits limits) {

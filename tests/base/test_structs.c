@@ -432,6 +432,7 @@ static void every_struct_of_the_table_is_tried(void **state) {
         fail_msg("mspring_%s is not tried", #name);                                                                \
     }
 #define OUTPUT_STRUCT INPUT_STRUCT
+#define MSPRINGI_LAWS(...) __VA_ARGS__
 #define MSPRINGI_LAB(...) __VA_ARGS__
 #include "../../src/base/structs.def"
 }
