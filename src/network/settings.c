@@ -4,11 +4,11 @@
 
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
-#include "features/groups/held_groups.h"
 #include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
 #include "store/changed.h"
+#include "store/group_ops.h"
 #include "store/network.h"
 
 static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {

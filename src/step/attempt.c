@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "features/groups/held_groups.h"
 #include "features/hooks/hooks.h"
 #include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
+#include "store/group_ops.h"
 #include "store/id_pool.h"
 #include "store/stages.h"
 

@@ -3,10 +3,10 @@
 
 #include <float.h>
 
-#include "features/groups/held_groups.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
 #include "step/pace.h"
+#include "store/group_ops.h"
 
 /* ------------------------------------------------------------------------------------------------- one attempt */
 

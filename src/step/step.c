@@ -3,12 +3,12 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "features/groups/held_groups.h"
 #include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "step/finite.h"
 #include "step/ladder.h"
 #include "step/pace.h"
+#include "store/group_ops.h"
 
 /// Global damping times dt from which on a speed that is no speed any more (MSPRING_MAX_SPEED) could be one again
 /// by the end of the step: exp(-20) is 2e-9, and at 1e24 m/s nothing overflows yet.

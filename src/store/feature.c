@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "features/groups/held_groups.h"
+#include "store/group_ops.h"
 
 static const struct {
     size_t offset; // of the pointer in the network

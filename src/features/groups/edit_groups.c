@@ -2,9 +2,9 @@
 #include "features/groups/edit_groups.h"
 
 #include "features/contact/contacts.h"
-#include "features/groups/held_groups.h"
 #include "store/changed.h"
 #include "store/feature.h"
+#include "store/group_ops.h"
 #include "store/id_pool.h"
 #include "store/springs.h"
 #include "store/store.h"

@@ -2,8 +2,8 @@
 /// Groups of particles that are judged, held and put back singly.
 ///
 /// SPDX-License-Identifier: MIT
-#ifndef MSPRINGI_GROUPS_STORE_H
-#define MSPRINGI_GROUPS_STORE_H
+#ifndef MSPRINGI_GROUPS_H
+#define MSPRINGI_GROUPS_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,14 +1,9 @@
-/// @file held_groups.h
-/// Groups of particles that go wrong singly: they are held where they were, and the others go on.
-///
-/// What is no number may spread in the step in which it comes up: arithmetic with springs that are not there turns
-/// it into more of its kind in neighbouring lanes. So a group that has such numbers is to blame only if it has them
-/// when it steps with none of the others that had. Each of these is tried once. A group that is out of bounds by
-/// numbers is to blame for sure.
+/// @file group_ops.h
+/// Calls of settings and steps to groups, which go wrong singly (features/groups/held_groups.c).
 ///
 /// SPDX-License-Identifier: MIT
-#ifndef MSPRINGI_HELD_GROUPS_H
-#define MSPRINGI_HELD_GROUPS_H
+#ifndef MSPRINGI_GROUP_OPS_H
+#define MSPRINGI_GROUP_OPS_H
 
 #include "store/network.h"
 
