@@ -102,23 +102,40 @@ static void advance(const mspring_network *network, const mspringi_contact_nodes
     }
 }
 
-// Store velocities and displacements. Return the largest speed from contact relative to the outline's mean, m/s.
-static double store_nodes(const mspring_network *network, const mspringi_contacts *contacts) {
+// Refresh the list if contact made a node faster than the last scan allows. If pairs may be missing in this substep
+// already, repeat the step, with this speed of the node in its scans.
+static void check_speed(mspringi_contacts *contacts, mspring_id p, double square) {
+    const double spare = MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt,
+                 assumed = contacts->is_uniform ? contacts->max_speed : contacts->assumed_speed[p];
+    const double expected = MSPRINGI_SPEED_MARGIN * assumed + spare,
+                 most = 3.0 * assumed + 0.25 * contacts->thickness / (double)contacts->h;
+    if (square > expected * expected)
+        contacts->valid = 1;
+    if (square > most * most) {
+        const double speed = sqrt(square);
+        contacts->is_missed = contacts->has_extra_speed = true;
+        contacts->extra_speed[p] = speed > contacts->extra_speed[p] ? speed : contacts->extra_speed[p];
+    }
+}
+
+// Store velocities and displacements, and check the speeds.
+static void store_nodes(const mspring_network *network, mspringi_contacts *contacts) {
     const mspringi_state *s = &network->state;
     const mspringi_contact_nodes *k = &contacts->nodes;
-    double most = 0.0;
+    const double least =
+        MSPRINGI_SPEED_MARGIN * contacts->min_speed + MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt;
     for (uint32_t i = 0; i < k->particle_count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
+        const double x = k->v[i].x - contacts->mean_vx, y = k->v[i].y - contacts->mean_vy, square = x * x + y * y;
+        if (square > least * least)
+            check_speed(contacts, k->particles[i], square);
         if (k->shift_x[i] == 0.0 && k->shift_y[i] == 0.0 && k->v[i].x == (double)s->vx[slot] &&
             k->v[i].y == (double)s->vy[slot])
             continue;
-        const double x = k->v[i].x - contacts->mean_vx, y = k->v[i].y - contacts->mean_vy, square = x * x + y * y;
-        most = square > most ? square : most;
         s->vx[slot] = (float)k->v[i].x;
         s->vy[slot] = (float)k->v[i].y;
         mspringi_move_by(s, slot, (float)k->shift_x[i], (float)k->shift_y[i]);
     }
-    return sqrt(most);
 }
 
 // Solve intervals of equal length. Divide the remaining ones if one fails.
@@ -149,18 +166,6 @@ static void solve_in_intervals(const mspring_network *network, mspringi_contacts
     }
 }
 
-// Refresh the list if contact made nodes faster than the last scan allows. If pairs may be missing in this substep
-// already, repeat the step, with this speed in its scan.
-static void check_speed(mspringi_contacts *contacts, double speed) {
-    const double spare = MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt;
-    if (speed > MSPRINGI_SPEED_MARGIN * contacts->speed + spare)
-        contacts->valid = 1;
-    if (speed > 3.0 * contacts->speed + 0.25 * contacts->thickness / (double)contacts->h) {
-        contacts->is_missed = true;
-        contacts->extra_speed = speed > contacts->extra_speed ? speed : contacts->extra_speed;
-    }
-}
-
 bool mspringi_contact_solve_nodes(const mspring_network *network, mspringi_contacts *contacts, double h) {
     contacts->share = 1.0;
     const double fastest = mspringi_contact_make_constraints(network, contacts, h, 0.0, MSPRINGI_MAX_PENDING);
@@ -179,6 +184,6 @@ bool mspringi_contact_solve_substep(const mspring_network *network, mspringi_con
     contacts->fall_x = contacts->fall_y = 0.0;
     if (!mspringi_contact_solve_nodes(network, contacts, (double)contacts->h))
         return false;
-    check_speed(contacts, store_nodes(network, contacts));
+    store_nodes(network, contacts);
     return true;
 }

@@ -9,6 +9,7 @@
 #include "features/contact/contacts.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "features/sleep/sleep.h"
 #include "store/stages.h"
@@ -86,6 +87,13 @@ static pair_sides sides_of(const mspring_network *network, const mspringi_contac
     return s;
 }
 
+// Largest speed at which both sides of a pair may approach before the next scan, m/s.
+static double approach_speed(const mspringi_contacts *contacts, const mspringi_pair *pair) {
+    return contacts->is_uniform ? 2.0 * contacts->max_speed
+                                : contacts->assumed_speed[pair->point] +
+                                      mspringi_max_of_ends(contacts, contacts->assumed_speed, pair->edge);
+}
+
 // Wake islands that an awake one, or a moving collider, can reach in this step.
 static void wake_touched(mspring_network *network, const mspringi_contacts *contacts) {
     const uint64_t changes = network->edits.sleep_changes;
@@ -97,7 +105,7 @@ static void wake_touched(mspring_network *network, const mspringi_contacts *cont
             const pair_sides s = sides_of(network, contacts, &contacts->list[i]);
             if (!s.are_two || (s.still[0] < 0.0) == (s.still[1] < 0.0) ||
                 !mspringi_pair_is_resting(network, contacts, &contacts->list[i],
-                                          2.0 * contacts->dt * contacts->speed))
+                                          contacts->dt * approach_speed(contacts, &contacts->list[i])))
                 continue;
             mspringi_sleep_wake_island(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
             again = true;
@@ -136,9 +144,16 @@ static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     contacts->is_missed = contacts->is_pair_list_full = contacts->is_out_of_room = false;
     contacts->substeps_done = contacts->touching = 0;
     contacts->substeps_since_scan = 0;
-    contacts->deepest = contacts->extra_speed = 0.0;
+    contacts->deepest = 0.0;
     mspringi_colliders_begin(network, contacts, substeps);
-    return mspringi_pair_list_scan(network, contacts);
+    return mspringi_pair_list_scan(network, contacts, 0);
+}
+
+static void clear_extra_speeds(mspringi_contacts *contacts) {
+    if (contacts->has_extra_speed)
+        memset(contacts->extra_speed, 0,
+               (contacts->particles + (size_t)contacts->colliders.point_capacity) * sizeof *contacts->extra_speed);
+    contacts->has_extra_speed = false;
 }
 
 // True if the step will be rejected.
@@ -152,6 +167,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     contacts->h = attempt->h;
     contacts->dt = attempt->dt;
     contacts->is_second_try = false;
+    clear_extra_speeds(contacts);
     contacts->work = 0;
     contacts->most_work = MOST_WORK;
     contacts->has_sleepers = network->sleep.sleeping > 0;
@@ -183,15 +199,14 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
 
 static void rescan(mspring_network *network, mspringi_contacts *contacts) {
     contacts->is_fresh = false;
-    (void)mspringi_pair_list_scan(network, contacts);
+    (void)mspringi_pair_list_scan(network, contacts, 0);
 }
 
 // Scan after `count` quiet substeps. They were missed if some pair could have touched at the speeds of now.
 static void check_quiet_substeps(mspring_network *network, mspringi_contacts *contacts, uint32_t count) {
-    const double room = contacts->room;
-    rescan(network, contacts);
-    contacts->is_missed |= !(2.0 * (double)contacts->h * (double)count * contacts->speed <= room) ||
-                           contacts->nearest < contacts->thickness;
+    contacts->is_fresh = false;
+    (void)mspringi_pair_list_scan(network, contacts, count);
+    contacts->is_missed |= contacts->nearest < contacts->thickness;
 }
 
 static void after_substep(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep) {
@@ -214,7 +229,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
         contacts->is_second_try)
         rescan(network, contacts);
     else if (--contacts->valid == 0 && contacts->substeps_done < attempt->substeps) // a step begins with a scan
-        (void)mspringi_pair_list_refresh(network, contacts);
+        (void)mspringi_pair_list_refresh(network, contacts, 0);
 }
 
 // Check quiet substeps since the last scan. If substeps_done is 0, all were taken at once.
@@ -248,10 +263,9 @@ static mspring_result report_work(mspring_network *network) {
     return mspringi_fail(
         &network->message, MSPRING_ERROR_LIMIT,
         "over %.3g comparisons of outline points and edges in a step, or impulses and solutions that "
-        "take as long, as many of %u edges are within %g m of many points, or at one particle (%u at "
+        "take as long, as many of %u edges are near many points, or at one particle (%u at "
         "particle %u): set contact with less thickness, take a shorter dt, or divide long springs",
-        (double)contacts->most_work, (unsigned)contacts->outline.edge_count, contacts->reach, (unsigned)edges,
-        (unsigned)hub);
+        (double)contacts->most_work, (unsigned)contacts->outline.edge_count, (unsigned)edges, (unsigned)hub);
 }
 
 static mspring_result verify(mspring_network *network) {

@@ -101,14 +101,19 @@ static const mspringi_array_entry members[] = {
     VIEW(outline.at),
     VIEW(outline.body),
     ARRAY(cells.first),
-    ARRAY(cells.long_edges),
-    VIEW(cells.found),
+    ARRAY(cells.level_of),
+    ARRAY(cells.found),
     ARRAY(cells.edges),
     ARRAY(list),
     ARRAY(seen_x),
     VIEW(seen_y),
     VIEW(x),
     VIEW(y),
+    VIEW(margin),
+    VIEW(speed),
+    VIEW(assumed_speed),
+    VIEW(square_moved),
+    VIEW(extra_speed),
     ARRAY(stamp),
     ARRAY(excluded_edges),
     ARRAY(nodes.particles),
@@ -167,7 +172,9 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     mspringi_outline *o = &made->outline;
     mspringi_contact_nodes *k = &made->nodes;
     double **const shape[] = {&o->shape_x, &o->shape_y};
-    double **const places[] = {&made->seen_x, &made->seen_y, &made->x, &made->y};
+    double **const places[] = {
+        &made->seen_x,        &made->seen_y,       &made->x,          &made->y, &made->margin, &made->speed,
+        &made->assumed_speed, &made->square_moved, &made->extra_speed};
     double **const motion[] = {&k->x,       &k->y,        &k->inverse_mass, &k->shift_x,
                                &k->shift_y, &k->extra_vx, &k->extra_vy};
     made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
@@ -187,7 +194,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     k->v_before = k->v_start + nodes;
     made->masks = made->groups + nodes;
     k->number = k->particles + nodes;
-    return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 4) &&
+    return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 9) &&
            reserve_doubles(memory, nodes, motion, 7);
 }
 
@@ -203,15 +210,15 @@ static bool reserve_edges(mspringi_contacts *made, mspringi_memory *memory, size
     o->a = mspringi_alloc(memory, 4 * edges + 3 * nodes + 1, sizeof *o->a);
     c->first = mspringi_alloc(memory, (size_t)c->bucket_capacity + 1, sizeof *c->first);
     c->edges = mspringi_alloc(memory, edges, sizeof *c->edges);
-    c->long_edges = mspringi_alloc(memory, 2 * edges + 1, sizeof *c->long_edges);
-    if (!o->is_edge || !o->a || !c->first || !c->edges || !c->long_edges)
+    c->level_of = mspringi_alloc(memory, edges, sizeof *c->level_of);
+    c->found = mspringi_alloc(memory, edges + 1, sizeof *c->found);
+    if (!o->is_edge || !o->a || !c->first || !c->edges || !c->level_of || !c->found)
         return false;
     o->b = o->a + edges;
     o->at = o->b + edges;
     o->points = o->at + 2 * edges;
     o->body = o->points + nodes;
     o->first = o->body + nodes;
-    c->found = c->long_edges + edges;
     return true;
 }
 

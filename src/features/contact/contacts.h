@@ -6,6 +6,7 @@
 ///   contacts.c           definition of contact, set by the host; memory
 ///   outline.c            outline: edges and points
 ///   edge_grid.c          broad phase: edges in a hashed grid
+///   point_speeds.c       speeds of outline points, and the margins that follow
 ///   pair_list.c          Verlet list of near pairs, candidates, substeps without contact
 ///   constraints.c        narrow phase: contact constraints of an interval, in a fixed order
 ///   contact_solver.c     intervals of a substep, and motion in them
@@ -59,6 +60,7 @@ typedef struct mspringi_outline {
 typedef struct mspringi_pair {
     mspring_id point;
     uint32_t edge;
+    float distance;                      ///< at the last scan that had has_distances, m
     uint16_t tested_bits, excluded_bits; ///< a bit for each neighbouring edge at both ends: tested; never touched
                                          ///< by the point (constraints.c)
 } mspringi_pair;
@@ -72,23 +74,37 @@ typedef struct mspringi_candidate {
 typedef struct mspringi_sought_edge {
     double x, y;             ///< one end, m
     double along_x, along_y; ///< direction from there, of length 1, or 0
-    double length, slack;    ///< m; radius of a collider's side, with rounding, m
+    double length, slack;    ///< m; margin, and radius of a collider's side, with rounding, m
     uint32_t edge;
     uint32_t below; ///< only points below this number form a pair with the edge
     int32_t row;    ///< of its cell
     uint32_t reserved;
 } mspringi_sought_edge;
 
+/// Edges of about the same reach: half their length and their margin.
+typedef struct mspringi_grid_level {
+    double reach;                      ///< the largest, m
+    double size;                       ///< side of a cell, m
+    double min_x, max_x, min_y, max_y; ///< bounds of the midpoints, m
+    uint32_t count;
+} mspringi_grid_level;
+
+#define MSPRINGI_GRID_LEVELS 8
+
 /// Edges by grid cell, in hash buckets (edge_grid.c).
 typedef struct mspringi_edge_grid {
     uint32_t *first;             ///< [bucket_count + 1]
-    mspringi_sought_edge *edges; ///< [edges] by bucket; then those too long for a cell
-    uint32_t *long_edges;        ///< [edges] edges too long for a cell
-    uint32_t *found; ///< [edges + 1] results of the last search; while the grid is filled, bucket of each edge
-    double size;     ///< side of a cell, m
-    double reach;    ///< largest distance from a point to the midpoint of a near edge, m
-    uint32_t bucket_count, bucket_capacity, long_count;
+    mspringi_sought_edge *edges; ///< [edges] by bucket
+    uint32_t *found;   ///< [edges + 1] results of the last search; while the grid is filled, bucket of each edge
+    uint8_t *level_of; ///< [edges]
+    mspringi_grid_level levels[MSPRINGI_GRID_LEVELS];
+    uint32_t bucket_count, bucket_capacity;
 } mspringi_edge_grid;
+
+/// Bound that grows with the speed of a point: at_rest + per_speed * speed.
+typedef struct mspringi_speed_bound {
+    double at_rest, per_speed;
+} mspringi_speed_bound;
 
 /// Velocity of a node, m/s. Both coordinates lie side by side, as sweeps load them.
 typedef struct mspringi_velocity {
@@ -266,9 +282,10 @@ struct mspringi_contacts {
     uint32_t candidate_count;
     bool is_listed, is_pair_list_full;
     uint64_t work, most_work; ///< comparisons of points with edges in this step, or what takes as long; their limit
-    double reach;             ///< the list held all pairs nearer than this when it was made, m
-    double *seen_x, *seen_y;  ///< [nodes] positions when the list was made, m
-    uint32_t *stamp;          ///< [particles] springs between the particle and stamp_of (outline.c)
+    double *margin;          ///< [nodes] the list held all pairs nearer than thickness and both margins when it was
+                             ///< made, m
+    double *seen_x, *seen_y; ///< [nodes] positions when the list was made, m
+    uint32_t *stamp;         ///< [particles] springs between the particle and stamp_of (outline.c)
     uint32_t stamp_of;
     bool are_all_stamped;     ///< false: particles two springs away are stamped on request
     uint32_t *excluded_edges; ///< [particles][MSPRINGI_EXCLUDED_EDGES] edges that the particle never touches, or
@@ -277,11 +294,19 @@ struct mspringi_contacts {
     // The last scan.
     double *x, *y; ///< [nodes] positions, m
     double mean_vx, mean_vy;
-    double speed;                  ///< largest speed relative to the mean, m/s
-    double moved;                  ///< largest displacement relative to the mean since the list was made, m
-    double nearest;                ///< distance of the nearest pair in the list, m
-    bool is_fresh;                 ///< nothing moved since
-    uint64_t state, sleep_changes; ///< counters of network->edits at the scan
+    double *speed;         ///< [nodes] relative to the mean, or min_speed, m/s
+    double *assumed_speed; ///< [nodes] the same, or that of a faster point that may hit this one, m/s
+    double *square_moved;  ///< [nodes] square of the displacement relative to the mean since the list was made, m^2
+    double mean_speed, min_speed, max_speed; ///< of `speed`, m/s
+    bool is_uniform;                         ///< all have max_speed
+    mspringi_speed_bound travel;             ///< way of a point in a substep, m
+    mspringi_speed_bound candidate_margin;   ///< way until the next scan, with what constraints reach beyond, m
+    double candidate_substeps;               ///< substeps until the next scan
+    double nearest;                          ///< distance of the nearest pair in the list, m
+    bool has_distances;                      ///< pairs have their distances
+    uint32_t calm_substeps;                  ///< substeps in which no pair can touch
+    bool is_fresh;                           ///< nothing moved since
+    uint64_t state, sleep_changes;           ///< counters of network->edits at the scan
     float scan_h;
     double scan_dt;
 
@@ -295,7 +320,8 @@ struct mspringi_contacts {
     bool has_sleepers;            ///< islands slept when the step began; bodies that reach them wake them
     uint32_t substeps_since_scan; ///< quiet substeps since the last scan
     double room;                  ///< gap of the nearest pair at the last scan, m
-    double extra_speed;           ///< speed from contact beyond the scan's assumption, m/s
+    double *extra_speed;          ///< [nodes] speed from contact beyond the scan's assumption, m/s; else 0
+    bool has_extra_speed;         ///< some are not 0
     bool is_missed;               ///< pairs could touch in a quiet substep: repeat the step
     bool is_second_try;           ///< repeated step: scan after each substep
 
@@ -359,12 +385,12 @@ bool mspringi_outline_are_neighbours(const mspring_network *network, mspringi_co
 
 /* edge_grid.c */
 
-/// Sort the edges into cells for searches of this reach, m. Long edges stay outside.
-void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *contacts, double reach);
+/// Sort the edges into cells, by their margins.
+void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *contacts);
 /// Find edges that may form a pair with a point. Return their number.
 uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_contacts *contacts, mspring_id p);
 
-/* pair_list.c */
+/* point_speeds.c */
 
 /// Allowed growth until the next scan: of the speed, as a factor; of the way in a step, as a share of the
 /// thickness.
@@ -382,10 +408,33 @@ static inline mspringi_closest_point mspringi_closest_point_on_edge(double px, d
     return (mspringi_closest_point){px - ax - share * ex, py - ay - share * ey, share};
 }
 
-/// Make a new list if pairs may be missing, and collect the candidates. False: the capacity is too small.
-bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts);
+static inline double mspringi_bound_at(const mspringi_speed_bound *bound, double speed) {
+    return bound->at_rest + bound->per_speed * speed;
+}
+
+/// Find positions of all points, their speeds, and their displacements since the list was made.
+void mspringi_points_measure(const mspring_network *network, mspringi_contacts *contacts);
+/// Choose the substeps until the next scan, and how fast points count at least.
+void mspringi_points_choose_margins(const mspring_network *network, mspringi_contacts *contacts);
+/// Margin that a point of this speed needs in the list, m.
+double mspringi_point_margin(const mspringi_contacts *contacts, double speed);
+
+/// Larger value of both ends of an edge.
+static inline double mspringi_max_of_ends(const mspringi_contacts *contacts, const double *values, uint32_t edge) {
+    const double a = values[contacts->outline.a[edge]], b = values[contacts->outline.b[edge]];
+    return a > b ? a : b;
+}
+static inline double mspringi_margin_of_edge(const mspringi_contacts *contacts, uint32_t edge) {
+    return mspringi_max_of_ends(contacts, contacts->margin, edge);
+}
+
+/* pair_list.c */
+
+/// Make a new list if pairs may be missing, and collect the candidates. is_missed becomes true if a pair could have
+/// touched in the last `quiet` substeps, which had no constraints. False: the capacity is too small.
+bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
 /// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. False: likewise.
-bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts);
+bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
 /// Replace the list by all pairs nearer than `reach`, m, for piles. The next scan makes its own list.
 void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
 

@@ -1,15 +1,17 @@
 /// Broad phase: outline edges in a hashed grid, and search around a point.
 ///
 /// An edge lies in the cell of its midpoint. The cells of a grid row take consecutive buckets, from one that a hash
-/// of the row gives. So distances between bodies do not matter, and a search reads a few runs of memory. Much
-/// longer edges than the mean lie in no cell.
+/// of the row gives. So distances between bodies do not matter, and a search reads a few runs of memory. Edges with
+/// a larger reach, long or fast ones, lie in coarser levels of the grid. A search visits all levels near its point.
 #include <math.h>
 #include <string.h>
 
 #include "features/contact/contacts.h"
 
-/// An edge this many times as long as the mean is a long one.
-#define LONG_EDGE 4.0
+/// Largest reach in the finest level, in units of the harmonic mean of all reaches, which few large ones do not
+/// raise; and that of a level in units of the next finer one's.
+#define FINEST_REACH 2.0
+#define LEVEL_RATIO 4.0
 
 /// Cells in the reach of a search. More of them cover its circle better, and need more runs.
 #define CELLS_IN_REACH 2.0
@@ -22,7 +24,7 @@
 #define PASSED_OF_WORK 4
 
 /// Cells in each direction from the origin; the last one has everything beyond.
-#define MOST_CELLS 1e9
+#define MOST_CELLS 1e8
 
 /// A point that has springs, or is a corner of a collider, is below all limits but that of edges with a length.
 #define ANY_POINT (MSPRING_NONE - 1)
@@ -34,6 +36,11 @@ static int32_t cell_of(double coordinate, double size) {
                                                    : -(int32_t)MOST_CELLS;
 }
 
+// Row of a level's cells, unlike those of all other levels.
+static int32_t row_of(const mspringi_grid_level *level, uint32_t number, double y) {
+    return cell_of(y, level->size) * MSPRINGI_GRID_LEVELS + (int32_t)number;
+}
+
 // Bucket of a cell.
 static uint32_t bucket_of(const mspringi_edge_grid *cells, int32_t row, uint32_t column) {
     uint32_t hash = (uint32_t)row * 0x9E3779B1u;
@@ -43,8 +50,8 @@ static uint32_t bucket_of(const mspringi_edge_grid *cells, int32_t row, uint32_t
 
 // Column of a node. Groups in the same place get different columns, unless there are colliders, which they share.
 static uint32_t column_of(const mspring_network *network, const mspringi_contacts *contacts, mspring_id node,
-                          double x) {
-    const uint32_t *group = network->groups.of_particle, column = (uint32_t)cell_of(x, contacts->cells.size);
+                          double x, double size) {
+    const uint32_t *group = network->groups.of_particle, column = (uint32_t)cell_of(x, size);
     const bool is_apart = group && contacts->colliders.count == 0;
     return is_apart ? column + group[node] * 0x9E3779B1u : column;
 }
@@ -60,27 +67,48 @@ static double length_of(const mspringi_contacts *contacts, uint32_t edge) {
                                                    : length;
 }
 
-// List the long edges, and choose the size of cells for the others.
-static void size_cells(mspringi_contacts *contacts, double reach) {
-    mspringi_edge_grid *cells = &contacts->cells;
-    double sum = 0.0, longest = 0.0;
-    for (uint32_t e = 0; e < contacts->outline.edge_count; ++e)
-        sum += cells->edges[e].length = length_of(contacts, e); // until the edge gets its place
-    const double most = LONG_EDGE * (sum / (double)contacts->outline.edge_count + reach);
-    cells->long_count = 0;
-    for (uint32_t e = 0; e < contacts->outline.edge_count; ++e) {
-        const double length = cells->edges[e].length;
-        if (!(length <= most))
-            cells->long_edges[cells->long_count++] = e;
-        else
-            longest = length > longest ? length : longest;
-    }
-    cells->reach = (0.5 * longest + reach) * (1.0 + ROUNDING);
-    cells->size = cells->reach / CELLS_IN_REACH;
-}
-
 static double middle_of(const double *at, const mspringi_outline *o, uint32_t edge) {
     return 0.5 * (at[o->a[edge]] + at[o->b[edge]]);
+}
+
+static void add_to_level(mspringi_grid_level *level, double reach, double x, double y) {
+    level->reach = reach > level->reach ? reach : level->reach;
+    level->min_x = x < level->min_x ? x : level->min_x;
+    level->max_x = x > level->max_x ? x : level->max_x;
+    level->min_y = y < level->min_y ? y : level->min_y;
+    level->max_y = y > level->max_y ? y : level->max_y;
+    ++level->count;
+}
+
+// Choose the level of each edge by its reach, and the sizes of cells.
+static void make_levels(mspringi_contacts *contacts) {
+    mspringi_edge_grid *cells = &contacts->cells;
+    const mspringi_outline *o = &contacts->outline;
+    double inverse_sum = 0.0, margin_sum = 0.0;
+    for (uint32_t e = 0; e < o->edge_count; ++e) {
+        const double margin = mspringi_margin_of_edge(contacts, e);
+        cells->edges[e].length = 0.5 * length_of(contacts, e) + margin; // its reach, until the edge gets its place
+        inverse_sum += 1.0 / cells->edges[e].length;
+        margin_sum += margin;
+    }
+    const double finest = FINEST_REACH * (double)o->edge_count / inverse_sum,
+                 margin = margin_sum / (double)o->edge_count;
+    for (uint32_t l = 0; l < MSPRINGI_GRID_LEVELS; ++l)
+        cells->levels[l] =
+            (mspringi_grid_level){.min_x = INFINITY, .max_x = -INFINITY, .min_y = INFINITY, .max_y = -INFINITY};
+    for (uint32_t e = 0; e < o->edge_count; ++e) {
+        const double reach = cells->edges[e].length;
+        uint32_t l = 0;
+        for (double most = finest; l + 1 < MSPRINGI_GRID_LEVELS && reach > most; most *= LEVEL_RATIO)
+            ++l;
+        cells->level_of[e] = (uint8_t)l;
+        add_to_level(&cells->levels[l], reach, middle_of(contacts->x, o, e), middle_of(contacts->y, o, e));
+    }
+    for (uint32_t l = 0; l < MSPRINGI_GRID_LEVELS; ++l) {
+        mspringi_grid_level *level = &cells->levels[l];
+        const double of_point = margin < level->reach ? margin : level->reach;
+        level->size = (level->reach + contacts->thickness + of_point) / CELLS_IN_REACH;
+    }
 }
 
 // Write what a search reads of an edge.
@@ -88,46 +116,42 @@ static void place(mspringi_contacts *contacts, uint32_t edge, uint32_t at) {
     mspringi_edge_grid *cells = &contacts->cells;
     const mspringi_outline *o = &contacts->outline;
     const mspring_id a = o->a[edge], b = o->b[edge];
+    const uint32_t level = cells->level_of[edge];
     const double ex = contacts->x[b] - contacts->x[a], ey = contacts->y[b] - contacts->y[a],
                  length = sqrt(ex * ex + ey * ey), part = length > 0.0 ? 1.0 / length : 0.0;
-    cells->edges[at] = (mspringi_sought_edge){.x = contacts->x[a],
-                                              .y = contacts->y[a],
-                                              .along_x = part * ex,
-                                              .along_y = part * ey,
-                                              .length = length,
-                                              .slack = ROUNDING_ALONG * length,
-                                              .edge = edge,
-                                              .below = a == b ? a : MSPRING_NONE,
-                                              .row = cell_of(middle_of(contacts->y, o, edge), cells->size)};
-    if (mspringi_is_collider_point(contacts, a))
-        cells->edges[at].slack += mspringi_collider_of(contacts, a)->radius;
+    const double margin = mspringi_margin_of_edge(contacts, edge),
+                 radius = mspringi_is_collider_point(contacts, a) ? mspringi_collider_of(contacts, a)->radius : 0.0;
+    cells->edges[at] =
+        (mspringi_sought_edge){.x = contacts->x[a],
+                               .y = contacts->y[a],
+                               .along_x = part * ex,
+                               .along_y = part * ey,
+                               .length = length,
+                               .slack = (margin + radius) * (1.0 + ROUNDING) + ROUNDING_ALONG * length,
+                               .edge = edge,
+                               .below = a == b ? a : MSPRING_NONE,
+                               .row = row_of(&cells->levels[level], level, middle_of(contacts->y, o, edge))};
 }
 
-void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *contacts, double reach) {
+void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *contacts) {
     mspringi_edge_grid *cells = &contacts->cells;
     const mspringi_outline *o = &contacts->outline;
-    size_cells(contacts, reach);
+    make_levels(contacts);
     cells->bucket_count = 1;
     while (cells->bucket_count < 2 * o->edge_count && cells->bucket_count < cells->bucket_capacity)
         cells->bucket_count *= 2;
     memset(cells->first, 0, ((size_t)cells->bucket_count + 1) * sizeof *cells->first);
-    for (uint32_t e = 0, l = 0; e < o->edge_count; ++e) {
-        if (l < cells->long_count && cells->long_edges[l] == e) {
-            ++l;
-            continue;
-        }
-        const uint32_t column = column_of(network, contacts, o->a[e], middle_of(contacts->x, o, e));
-        cells->found[e] = bucket_of(cells, cell_of(middle_of(contacts->y, o, e), cells->size), column);
+    for (uint32_t e = 0; e < o->edge_count; ++e) {
+        const mspringi_grid_level *level = &cells->levels[cells->level_of[e]];
+        const uint32_t column = column_of(network, contacts, o->a[e], middle_of(contacts->x, o, e), level->size);
+        const int32_t row = row_of(level, cells->level_of[e], middle_of(contacts->y, o, e));
+        cells->found[e] = bucket_of(cells, row, column);
         cells->first[cells->found[e]]++;
     }
     for (uint32_t i = 0; i < cells->bucket_count; ++i)
         cells->first[i + 1] += cells->first[i];
-    for (uint32_t e = o->edge_count, l = cells->long_count; e-- > 0;) {
-        if (l > 0 && cells->long_edges[l - 1] == e)
-            place(contacts, e, cells->first[cells->bucket_count] + --l);
-        else
-            place(contacts, e, --cells->first[cells->found[e]]);
-    }
+    for (uint32_t e = o->edge_count; e-- > 0;)
+        place(contacts, e, --cells->first[cells->found[e]]);
 }
 
 /* --------------------------------------------------------------------------------------------------- searching */
@@ -165,28 +189,48 @@ static uint32_t sieve_row(const mspringi_edge_grid *cells, const search *s, int3
     return count;
 }
 
+// Grid rows and columns of a level within reach of a point.
+typedef struct grid_range {
+    int32_t row, last_row;
+    uint32_t columns;
+    bool is_empty; ///< no edge of the level is near
+} grid_range;
+
+static grid_range range_of(const mspringi_grid_level *level, const search *s, double reach) {
+    return (grid_range){
+        .row = cell_of(s->y - reach, level->size),
+        .last_row = cell_of(s->y + reach, level->size),
+        .columns = (uint32_t)cell_of(s->x + reach, level->size) - (uint32_t)cell_of(s->x - reach, level->size) + 1,
+        .is_empty = level->count == 0 || s->x + reach < level->min_x || s->x - reach > level->max_x ||
+                    s->y + reach < level->min_y || s->y - reach > level->max_y};
+}
+
 uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
     const mspringi_edge_grid *cells = &contacts->cells;
     const mspringi_outline *o = &contacts->outline;
     const uint32_t own = o->at[o->first[p]];
     const double radius = mspringi_is_collider_point(contacts, p) ? mspringi_collider_of(contacts, p)->radius : 0.0;
-    const double x = contacts->x[p], y = contacts->y[p], reach = cells->reach + radius, size = cells->size;
-    const int32_t row = cell_of(y - reach, size), last_row = cell_of(y + reach, size);
-    const uint32_t columns = (uint32_t)cell_of(x + reach, size) - (uint32_t)cell_of(x - reach, size) + 1;
     uint64_t passed = 0;
-    const bool is_wide = !(((double)last_row - row + 1.0) * columns < (double)o->edge_count);
     // Two particles without springs are one pair, and such a particle pairs with a corner by the corner's edges.
-    search s = {.x = x,
-                .y = y,
-                .reach = (contacts->reach + radius) * (1.0 + ROUNDING),
+    search s = {.x = contacts->x[p],
+                .y = contacts->y[p],
+                .reach = (contacts->thickness + contacts->margin[p] + radius) * (1.0 + ROUNDING),
                 .point = o->a[own] == o->b[own] ? p : ANY_POINT,
                 .passed = &passed};
-    const uint32_t column = column_of(network, contacts, p, x - reach);
     uint32_t count = 0;
-    for (int32_t j = row; j <= last_row && !is_wide; ++j)
-        count = sieve_row(cells, &s, j, column, columns, count);
-    s.is_wide = true;
-    count = sieve(cells, &s, row, is_wide ? 0 : cells->first[cells->bucket_count], o->edge_count, count);
+    for (uint32_t l = 0; l < MSPRINGI_GRID_LEVELS && !s.is_wide; ++l) {
+        const mspringi_grid_level *level = &cells->levels[l];
+        const double reach = s.reach + level->reach * (1.0 + ROUNDING);
+        const grid_range range = range_of(level, &s, reach);
+        if (range.is_empty)
+            continue;
+        s.is_wide = !(((double)range.last_row - range.row + 1.0) * range.columns < (double)o->edge_count);
+        const uint32_t column = column_of(network, contacts, p, s.x - reach, level->size);
+        for (int32_t j = range.row; j <= range.last_row && !s.is_wide; ++j)
+            count = sieve_row(cells, &s, j * MSPRINGI_GRID_LEVELS + (int32_t)l, column, range.columns, count);
+    }
+    if (s.is_wide) // more cells than edges: look at all edges instead
+        count = sieve(cells, &s, 0, 0, o->edge_count, 0);
     contacts->work += passed / PASSED_OF_WORK;
     return count;
 }

@@ -1,33 +1,21 @@
 /// Verlet list of pairs: points near edges. From it follow the candidates, and the substeps in which nothing can
 /// touch.
 ///
-/// All motion is relative to the mean of the outline. The candidates, and the number of quiet substeps, follow from
-/// positions and velocities alone, not from when the list was made, nor from how far it reaches.
+/// All motion is relative to the mean of the outline. The list has all pairs whose distance is below the thickness
+/// and the margins of both sides, until a point has used up its margin. A point near a faster one counts as as
+/// fast, since that may throw it. So the candidates, and the number of quiet substeps, follow from positions and
+/// velocities alone, not from when the list was made, nor from how far it reaches.
 ///
-/// mspringi_pair_list_scan calls mspringi_pair_list_refresh. That measures the points (measure_points()), makes a
-/// new list if the old one may lack pairs (make_list()), and collects the candidates (collect_candidates()).
+/// mspringi_pair_list_scan calls mspringi_pair_list_refresh. That measures the points (point_speeds.c), makes a new
+/// list if the old one may lack pairs (make_list()), and collects the candidates (collect_candidates()).
 #include <math.h>
 #include <string.h>
 
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
 
-/// Required reach beyond the thickness: a share of it, plus the way of these steps; together at most another
-/// thickness.
-#define LEAST_SHARE 0.15
-#define STEPS_AHEAD 4.0
-
-/// Ways of a substep in the reach at least. Constraints reach as far as two points can approach in two substeps.
-#define SUBSTEPS_AHEAD 8.0
-
-/// Substeps between two collections of candidates. Fewer if bodies are so fast that pairs within a share of the
-/// thickness and more would be candidates.
-#define CANDIDATE_SUBSTEPS 8.0
-#define MIN_CANDIDATE_SUBSTEPS 4.0
-#define CANDIDATE_FRACTION 0.5
-
-/// Reach of a new list, as a multiple of the required reach beyond the thickness. A list with few candidates, one
-/// in SPARSE of the outline's points, reaches farther and lasts longer.
+/// Margins of a new list, as multiples of the required ones. A list with few candidates, one in SPARSE of the
+/// outline's points, reaches farther and lasts longer.
 #define REACH 2.0
 #define SPARSE_REACH 6.0
 #define SPARSE 4u
@@ -45,99 +33,6 @@ static double distance_of(const mspringi_contacts *contacts, mspring_id p, uint3
         contacts->x[p], contacts->y[p], contacts->x[a], contacts->y[a], contacts->x[b], contacts->y[b]);
     const double distance = sqrt(at.x * at.x + at.y * at.y);
     return contacts->colliders.count > 0 ? distance - mspringi_radius_of(contacts, p, edge) : distance;
-}
-
-/* --------------------------------------------------------------------------------------------------- the motion */
-
-// Sums over all points: velocity, and the way since the list was made.
-typedef struct mean_motion {
-    double vx, vy, wx, wy;
-} mean_motion;
-
-// Find positions and velocities of collider points, and add these to the sums.
-static void measure_colliders(const mspring_network *network, mspringi_contacts *contacts, mean_motion *sum) {
-    const mspringi_colliders *c = &contacts->colliders;
-    if (c->count == 0)
-        return;
-    mspringi_colliders_move_points(network, contacts, contacts->substeps_done);
-    for (uint32_t i = 0; i < c->point_count; ++i) {
-        const mspring_id p = contacts->particles + i;
-        double vx, vy;
-        mspringi_collider_velocity(&c->list[c->owner[i]], contacts->dt, &vx, &vy);
-        contacts->x[p] = c->x[i];
-        contacts->y[p] = c->y[i];
-        sum->vx += vx;
-        sum->vy += vy;
-        sum->wx += contacts->x[p] - contacts->seen_x[p];
-        sum->wy += contacts->y[p] - contacts->seen_y[p];
-    }
-}
-
-// Larger of two values; NaN if the found one is. One velocity that is NaN makes the mean NaN, and so all.
-static double max_or_nan(double known, double found) {
-    return found <= known ? known : found;
-}
-
-// Raise the largest squares of motion relative to the mean by those of collider points.
-static void compare_colliders(const mspringi_contacts *contacts, const mean_motion *mean, double *speed,
-                              double *moved) {
-    const mspringi_colliders *c = &contacts->colliders;
-    for (uint32_t i = 0; i < c->point_count; ++i) {
-        const mspring_id p = contacts->particles + i;
-        const mspringi_collider *owner = &c->list[c->owner[i]];
-        const double u = c->shape[2 * i], v = c->shape[2 * i + 1];
-        const double turning = fabs(mspringi_collider_spin(owner, contacts->dt)) * sqrt(u * u + v * v);
-        double vx, vy;
-        mspringi_collider_velocity(owner, contacts->dt, &vx, &vy);
-        vx -= mean->vx, vy -= mean->vy;
-        const double most = sqrt(vx * vx + vy * vy) + turning;
-        const double dx = contacts->x[p] - contacts->seen_x[p] - mean->wx,
-                     dy = contacts->y[p] - contacts->seen_y[p] - mean->wy;
-        const double way = dx * dx + dy * dy;
-        *speed = max_or_nan(*speed, most * most);
-        *moved = max_or_nan(*moved, way);
-    }
-}
-
-// Find the points' positions, largest speed and largest displacement since the list was made, both relative to the
-// mean.
-static void measure_points(const mspring_network *network, mspringi_contacts *contacts) {
-    const mspringi_outline *o = &contacts->outline;
-    const mspringi_state *s = &network->state;
-    const uint32_t *slot_of = network->topology.slot_of_particle;
-    const uint32_t own = o->point_count - contacts->colliders.point_count;
-    const mspringi_contact_nodes *k =
-        &contacts->nodes; // in use within substeps only: here for the motion of points
-    mean_motion mean = {0.0, 0.0, 0.0, 0.0};
-    double speed = 0.0, moved = 0.0;
-    for (uint32_t i = 0; i < own; ++i) {
-        const mspring_id p = o->points[i];
-        const uint32_t slot = slot_of[p];
-        const double x = mspringi_x_of(s, slot), y = mspringi_y_of(s, slot);
-        contacts->x[p] = x;
-        contacts->y[p] = y;
-        mean.vx += k->v[i].x = (double)s->vx[slot];
-        mean.vy += k->v[i].y = (double)s->vy[slot];
-        mean.wx += k->x[i] = x - contacts->seen_x[p];
-        mean.wy += k->y[i] = y - contacts->seen_y[p];
-    }
-    measure_colliders(network, contacts, &mean);
-    const double part = o->point_count > 0 ? 1.0 / (double)o->point_count : 0.0;
-    mean.vx *= part, mean.vy *= part, mean.wx *= part, mean.wy *= part;
-    for (uint32_t i = 0; i < own; ++i) {
-        const double ux = k->v[i].x - mean.vx, uy = k->v[i].y - mean.vy;
-        const double dx = k->x[i] - mean.wx, dy = k->y[i] - mean.wy;
-        const double u = ux * ux + uy * uy, d = dx * dx + dy * dy;
-        speed = max_or_nan(speed, u);
-        moved = max_or_nan(moved, d);
-    }
-    compare_colliders(contacts, &mean, &speed, &moved);
-    contacts->mean_vx = mean.vx;
-    contacts->mean_vy = mean.vy;
-    contacts->speed = sqrt(speed);
-    if (contacts->is_second_try && contacts->extra_speed > contacts->speed)
-        contacts->speed = contacts->extra_speed;
-    contacts->moved = sqrt(moved);
 }
 
 /* -------------------------------------------------------------------------------------------------------- list */
@@ -176,8 +71,10 @@ static bool is_excluded(const mspring_network *network, mspringi_contacts *conta
 static bool are_near(const mspring_network *network, mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
     const mspringi_outline *o = &contacts->outline;
     const mspring_id a = o->a[edge], b = o->b[edge];
-    return p != a && p != b && distance_of(contacts, p, edge) < contacts->reach && may_touch(network, p, a) &&
-           may_touch(network, p, b) && !is_excluded(network, contacts, p, edge);
+    return p != a && p != b &&
+           distance_of(contacts, p, edge) <
+               contacts->thickness + contacts->margin[p] + mspringi_margin_of_edge(contacts, edge) &&
+           may_touch(network, p, a) && may_touch(network, p, b) && !is_excluded(network, contacts, p, edge);
 }
 
 // Move a number down a heap to where none below it is larger.
@@ -296,33 +193,19 @@ static void activate_all(mspringi_contacts *contacts) {
     }
 }
 
-// Distance up to which the list must be complete, m.
-static double required_reach(const mspringi_contacts *contacts) {
-    const double thickness = contacts->thickness, substeps = SUBSTEPS_AHEAD * (double)contacts->h * contacts->speed;
-    const double ahead = LEAST_SHARE * thickness + STEPS_AHEAD * contacts->dt * contacts->speed;
-    const double usual = ahead < thickness || contacts->has_sleepers ? ahead : thickness;
-    return thickness + (usual > substeps ? usual : substeps);
-}
-
-// Distance up to which the list is still complete, m.
-static double guaranteed_reach(const mspringi_contacts *contacts) {
-    return contacts->reach - 2.0 * contacts->moved;
-}
-
-// List all pairs nearer than `reach`. False: there is no room for them, or they take too long to find.
-static bool make_list(const mspring_network *network, mspringi_contacts *contacts, double reach) {
+// List all pairs within the margins. False: there is no room for them, or they take too long to find.
+static bool make_list(const mspring_network *network, mspringi_contacts *contacts) {
     const mspringi_outline *o = &contacts->outline;
     contacts->count = 0;
     contacts->stamp_of = MSPRING_NONE;
-    contacts->reach = reach;
-    contacts->moved = 0.0;
     contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count;
     if (o->edge_count > 0) {
-        mspringi_edge_grid_fill(network, contacts, reach);
+        mspringi_edge_grid_fill(network, contacts);
         for (uint32_t i = 0; i < o->point_count; ++i) {
             const mspring_id p = o->points[i];
             contacts->seen_x[p] = contacts->x[p];
             contacts->seen_y[p] = contacts->y[p];
+            contacts->square_moved[p] = 0.0;
             if (!list_pairs_of_point(network, contacts, p))
                 return false;
         }
@@ -330,27 +213,39 @@ static bool make_list(const mspring_network *network, mspringi_contacts *contact
     return true;
 }
 
-// Longest way of a point in a substep, m.
-static double travel_per_substep(const mspringi_contacts *contacts) {
-    const double h = (double)contacts->h;
-    return MSPRINGI_SPEED_MARGIN * h * contacts->speed +
-           MSPRINGI_DRIFT_FRACTION * contacts->thickness * h / contacts->dt;
+// List all pairs within `ratio` times the margins that points of such speeds need. False: likewise.
+static bool make_list_for(const mspring_network *network, mspringi_contacts *contacts, const double *speed,
+                          double ratio) {
+    const mspringi_outline *o = &contacts->outline;
+    for (uint32_t i = 0; i < o->point_count; ++i)
+        contacts->margin[o->points[i]] = ratio * mspringi_point_margin(contacts, speed[o->points[i]]);
+    return make_list(network, contacts);
 }
 
-// Substeps for which candidates are collected.
-static double candidate_substeps(const mspringi_contacts *contacts) {
-    const double substeps = CANDIDATE_FRACTION * contacts->thickness / (2.0 * travel_per_substep(contacts));
-    return substeps > CANDIDATE_SUBSTEPS       ? CANDIDATE_SUBSTEPS
-           : substeps > MIN_CANDIDATE_SUBSTEPS ? floor(substeps)
-                                               : MIN_CANDIDATE_SUBSTEPS;
+// True if the list has all pairs within the margins that points of such speeds need.
+static bool is_complete(const mspringi_contacts *contacts, const double *speed) {
+    const mspringi_outline *o = &contacts->outline;
+    for (uint32_t i = 0; i < o->point_count; ++i) {
+        const mspring_id p = o->points[i];
+        const double spare = contacts->margin[p] - mspringi_point_margin(contacts, speed[p]);
+        if (!(spare >= 0.0 && contacts->square_moved[p] <= spare * spare))
+            return false;
+    }
+    return true;
 }
 
-// Substeps until a pair may be missing from the candidates.
-static uint32_t valid_substeps(const mspringi_contacts *contacts) {
-    const double half = 0.5 * (required_reach(contacts) - contacts->thickness);
-    const double valid = half / (2.0 * travel_per_substep(contacts));
-    return valid >= 1.0 ? valid < 1e6 ? (uint32_t)valid : 1000000 : 1;
+// Make a new list if this one may lack pairs: with larger margins than needed, if there is room.
+static void complete_list(const mspring_network *network, mspringi_contacts *contacts, const double *speed) {
+    if (contacts->is_out_of_room || (contacts->is_listed && is_complete(contacts, speed)))
+        return;
+    const bool is_sparse =
+        contacts->is_listed && SPARSE * (uint64_t)contacts->candidate_count < contacts->outline.point_count;
+    contacts->is_listed = make_list_for(network, contacts, speed, is_sparse ? SPARSE_REACH : REACH) ||
+                          make_list_for(network, contacts, speed, 1.0);
+    contacts->is_pair_list_full = !contacts->is_listed;
 }
+
+/* --------------------------------------------------------------------------------------------------- candidates */
 
 // True if both sides of a pair are particles without springs. Find the square of their distance.
 MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_contacts *contacts, const mspringi_pair *pair,
@@ -362,15 +257,19 @@ MSPRINGI_ALWAYS_INLINE bool are_loose(const mspringi_contacts *contacts, const m
            !mspringi_is_collider_point(contacts, a);
 }
 
-// Collect the candidates, and find the nearest pair. Pairs of particles without springs may be many, so they take
-// neither roots nor branches.
-static void collect_candidates(mspringi_contacts *contacts) {
-    const double wanted = contacts->thickness + 2.0 * candidate_substeps(contacts) * travel_per_substep(contacts) +
-                          4.0 * MSPRINGI_SPEED_MARGIN * (double)contacts->h * contacts->speed;
-    const double complete = required_reach(contacts), most = wanted < complete ? wanted : complete;
-    double least = contacts->reach * contacts->reach, square;
+// Whole number of quiet substeps; a single one is not worth it.
+static uint32_t substeps_of(double quiet) {
+    return quiet >= 2.0 ? quiet < 1e6 ? (uint32_t)quiet : 1000000 : 0;
+}
+
+// Collect the candidates, and find the nearest pair, if all points count as equally fast. Pairs of particles
+// without springs may be many, so they take neither roots nor branches.
+static void collect_uniform(mspringi_contacts *contacts) {
+    const double most =
+        contacts->thickness + 2.0 * mspringi_bound_at(&contacts->candidate_margin, contacts->max_speed);
+    const double complete = contacts->thickness + 2.0 * mspringi_point_margin(contacts, contacts->max_speed);
+    double least = complete * complete, nearest = complete, square;
     uint32_t count = 0;
-    contacts->nearest = contacts->reach;
     for (uint32_t i = 0; i < contacts->count; ++i) {
         contacts->candidates[count].pair = i;
         if (are_loose(contacts, &contacts->list[i], &square)) {
@@ -379,25 +278,122 @@ static void collect_candidates(mspringi_contacts *contacts) {
             continue;
         }
         const double distance = distance_of(contacts, contacts->list[i].point, contacts->list[i].edge);
-        contacts->nearest = distance >= contacts->nearest ? contacts->nearest : distance;
+        nearest = distance >= nearest ? nearest : distance;
         count += !(distance > most);
     }
-    contacts->candidate_count = count;
     least = sqrt(least);
-    contacts->nearest = least >= contacts->nearest ? contacts->nearest : least;
-    activate_all(contacts);
+    contacts->candidate_count = count;
+    contacts->nearest = least >= nearest ? nearest : least;
+    contacts->room = contacts->nearest - contacts->thickness;
+    contacts->calm_substeps =
+        substeps_of(contacts->room / (2.0 * mspringi_bound_at(&contacts->travel, contacts->max_speed)));
+    contacts->has_distances = false;
 }
 
-bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts) {
-    measure_points(network, contacts);
-    if (!contacts->is_out_of_room &&
-        (!contacts->is_listed || !(guaranteed_reach(contacts) >= required_reach(contacts)))) {
-        const bool is_sparse =
-            contacts->is_listed && SPARSE * (uint64_t)contacts->candidate_count < contacts->outline.point_count;
-        const double most = required_reach(contacts),
-                     more = contacts->thickness + (is_sparse ? SPARSE_REACH : REACH) * (most - contacts->thickness);
-        contacts->is_listed = make_list(network, contacts, more) || make_list(network, contacts, most);
-        contacts->is_pair_list_full = !contacts->is_listed;
+static void measure_pairs(mspringi_contacts *contacts) {
+    for (uint32_t i = 0; i < contacts->count; ++i) {
+        mspringi_pair *pair = &contacts->list[i];
+        double square;
+        pair->distance =
+            (float)(are_loose(contacts, pair, &square) ? sqrt(square)
+                                                       : distance_of(contacts, pair->point, pair->edge));
+    }
+    contacts->has_distances = true;
+}
+
+// Have each point count as fast as the fastest that it may meet before the next scan, where that is much faster.
+// Return true if this concerns any.
+static bool pass_speeds_on(mspringi_contacts *contacts) {
+    const mspringi_outline *o = &contacts->outline;
+    const double *speed = contacts->speed, negligible = MSPRINGI_SPEED_MARGIN * contacts->min_speed;
+    double *assumed = contacts->assumed_speed;
+    bool any = false;
+    for (uint32_t i = 0; i < o->point_count; ++i)
+        assumed[o->points[i]] = speed[o->points[i]];
+    for (uint32_t i = 0; i < contacts->count; ++i) {
+        const mspringi_pair *pair = &contacts->list[i];
+        const mspring_id p = pair->point, a = o->a[pair->edge], b = o->b[pair->edge];
+        const double of_edge = speed[a] > speed[b] ? speed[a] : speed[b],
+                     most = of_edge > speed[p] ? of_edge : speed[p];
+        if (most <= negligible)
+            continue;
+        const double of_ends = speed[a] < speed[b] ? speed[a] : speed[b],
+                     least = of_ends < speed[p] ? of_ends : speed[p];
+        if (most <= MSPRINGI_SPEED_MARGIN * least ||
+            !((double)pair->distance <= contacts->thickness + mspringi_point_margin(contacts, speed[p]) +
+                                            mspringi_point_margin(contacts, of_edge)))
+            continue;
+        assumed[p] = assumed[p] > most ? assumed[p] : most;
+        assumed[a] = assumed[a] > most ? assumed[a] : most;
+        assumed[b] = assumed[b] > most ? assumed[b] : most;
+        any = true;
+    }
+    return any;
+}
+
+// Collect the candidates by the speeds of their points, and find for how many substeps none can touch.
+static void collect_by_speed(mspringi_contacts *contacts) {
+    const mspringi_outline *o = &contacts->outline;
+    const mspringi_speed_bound *margin = &contacts->candidate_margin, *travel = &contacts->travel;
+    double quiet = 1e6, nearest = INFINITY;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < contacts->count; ++i) {
+        const mspringi_pair *pair = &contacts->list[i];
+        const double speeds = contacts->assumed_speed[pair->point] +
+                              mspringi_max_of_ends(contacts, contacts->assumed_speed, pair->edge);
+        const double distance = (double)pair->distance, room = distance - contacts->thickness,
+                     way = 2.0 * travel->at_rest + travel->per_speed * speeds;
+        contacts->candidates[count].pair = i;
+        count += !(room > 2.0 * margin->at_rest + margin->per_speed * speeds);
+        if (!(room >= quiet * way))
+            quiet = room / way;
+        nearest = distance >= nearest ? nearest : distance;
+    }
+    for (uint32_t i = 0; i < o->point_count && quiet >= 2.0; ++i) { // pairs outside the list
+        const double speed = contacts->assumed_speed[o->points[i]], room = mspringi_point_margin(contacts, speed),
+                     way = mspringi_bound_at(travel, speed);
+        quiet = room >= quiet * way ? quiet : room / way;
+    }
+    contacts->candidate_count = count;
+    contacts->nearest = nearest;
+    contacts->room = nearest - contacts->thickness;
+    contacts->calm_substeps = substeps_of(quiet);
+}
+
+// True if a pair could have touched in the last `quiet` substeps at the speeds of now, by the distances and margins
+// of the last scan.
+static bool could_have_touched(const mspringi_contacts *contacts, uint32_t quiet) {
+    const mspringi_outline *o = &contacts->outline;
+    const double seconds = (double)contacts->h * (double)quiet;
+    if (!contacts->has_distances)
+        return !(2.0 * seconds * contacts->max_speed <= contacts->room);
+    for (uint32_t i = 0; i < contacts->count; ++i) {
+        const mspringi_pair *pair = &contacts->list[i];
+        const double speeds =
+            contacts->speed[pair->point] + mspringi_max_of_ends(contacts, contacts->speed, pair->edge);
+        if (!(seconds * speeds <= (double)pair->distance - contacts->thickness))
+            return true;
+    }
+    for (uint32_t i = 0; i < o->point_count; ++i) { // pairs outside the list
+        const mspring_id p = o->points[i];
+        if (!(seconds * contacts->speed[p] <= mspringi_point_margin(contacts, contacts->assumed_speed[p])))
+            return true;
+    }
+    return false;
+}
+
+bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet) {
+    mspringi_points_measure(network, contacts);
+    if (quiet > 0 && contacts->is_listed && could_have_touched(contacts, quiet))
+        contacts->is_missed = true;
+    mspringi_points_choose_margins(network, contacts);
+    complete_list(network, contacts, contacts->speed);
+    if (contacts->is_listed && !contacts->is_uniform) {
+        measure_pairs(contacts);
+        if (pass_speeds_on(contacts) && !is_complete(contacts, contacts->assumed_speed)) {
+            complete_list(network, contacts, contacts->assumed_speed);
+            measure_pairs(contacts);
+        }
     }
     if (contacts->is_pair_list_full || contacts->is_out_of_room) {
         // The step will be rejected. Its other substeps have no candidates: these were of another list.
@@ -405,29 +401,23 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
         activate_all(contacts);
         return false;
     }
-    collect_candidates(contacts);
-    const uint32_t valid = valid_substeps(contacts);
-    const uint32_t planned = (uint32_t)candidate_substeps(contacts);
-    contacts->valid = valid < planned ? valid : planned;
+    if (contacts->is_uniform)
+        collect_uniform(contacts);
+    else
+        collect_by_speed(contacts);
+    activate_all(contacts);
+    contacts->valid = (uint32_t)contacts->candidate_substeps;
     return true;
 }
 
 /* -------------------------------------------------------------------------------------------------------- scan */
 
-static uint32_t count_quiet(mspringi_contacts *contacts) {
-    const double way = 2.0 * travel_per_substep(contacts);
-    const double most = required_reach(contacts), nearest = contacts->nearest < most ? contacts->nearest : most;
-    const double quiet = (nearest - contacts->thickness) / way;
-    contacts->room = nearest - contacts->thickness;
-    return quiet >= 2.0 ? quiet < 1e6 ? (uint32_t)quiet : 1000000 : 0;
-}
-
-bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts) {
+bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet) {
     const bool is_same = contacts->is_fresh && contacts->scan_h == contacts->h &&
                          contacts->scan_dt == contacts->dt && contacts->state == network->edits.state &&
                          contacts->sleep_changes == network->edits.sleep_changes && !network->is_open;
     if (!is_same) {
-        if (!mspringi_pair_list_refresh(network, contacts))
+        if (!mspringi_pair_list_refresh(network, contacts, quiet))
             return false;
         contacts->is_fresh = true;
         contacts->scan_h = contacts->h;
@@ -435,14 +425,17 @@ bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *
         contacts->state = network->edits.state;
         contacts->sleep_changes = network->edits.sleep_changes;
     }
-    contacts->quiet_substeps = contacts->is_second_try ? 0 : count_quiet(contacts);
+    contacts->quiet_substeps = contacts->is_second_try ? 0 : contacts->calm_substeps;
     return true;
 }
 
 void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach) {
+    const mspringi_outline *o = &contacts->outline;
     mspringi_outline_update(network, contacts);
-    measure_points(network, contacts);
-    if (!make_list(network, contacts, reach))
+    mspringi_points_measure(network, contacts);
+    for (uint32_t i = 0; i < o->point_count; ++i)
+        contacts->margin[o->points[i]] = 0.5 * (reach - contacts->thickness);
+    if (!make_list(network, contacts))
         contacts->count = 0;
     contacts->candidate_count = 0;
     activate_all(contacts);

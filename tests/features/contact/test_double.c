@@ -90,7 +90,7 @@ static void touch(stepper *s) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     show(s);
     contacts->is_fresh = false;
-    assert_true(mspringi_pair_list_scan(s->network, contacts));
+    assert_true(mspringi_pair_list_scan(s->network, contacts, 0));
     mspringi_contact_begin_substep(s->network, contacts);
     for (uint32_t i = 0; i < k->particle_count; i++) {
         const mspring_id p = k->particles[i];
@@ -174,7 +174,8 @@ static stepper *begin(uint64_t trial, const kind *of, double *speed) {
     contacts->h = (float)s->h;
     contacts->dt = DT;
     contacts->is_second_try = true; // looks in each substep, as if all had the speed of `thrown`
-    contacts->extra_speed = 3 * *speed;
+    for (uint32_t p = 0; p < s->b->count; p++)
+        contacts->extra_speed[p] = 3 * *speed;
     for (uint32_t p = 0; p < s->b->count; p++) {
         s->vx[p] = (double)s->b->vx[p];
         s->vy[p] = (double)s->b->vy[p];

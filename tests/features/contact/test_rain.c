@@ -74,22 +74,24 @@ static bool is_duplicate_pair(const mspringi_outline *o, mspring_id p, uint32_t 
 
 /// Whether the list lacks no pair that was near when it was made, and has no other; by brute force.
 static void check_list(const mspring_network *network) {
-    const mspringi_contacts *contacts = network->contacts;
+    mspringi_contacts *contacts = network->contacts;
     const mspringi_outline *o = &contacts->outline;
     uint32_t listed = 0;
     for (uint32_t i = 0; i < o->point_count; i++)
         for (uint32_t edge = 0; edge < o->edge_count; edge++) {
             const mspring_id p = o->points[i], a = o->a[edge], b = o->b[edge];
             const bool is_collider = mspringi_is_collider_point(contacts, a),
-                       is_apart = (p < BAR && a < BAR) || p == a;
-            if (is_apart || (mspringi_is_collider_point(contacts, p) && is_collider) ||
+                       is_apart = p < BAR && a < BAR &&
+                                  (mspringi_outline_are_neighbours(network, contacts, p, a) ||
+                                   mspringi_outline_are_neighbours(network, contacts, p, o->b[edge]));
+            if (is_apart || p == a || (mspringi_is_collider_point(contacts, p) && is_collider) ||
                 is_duplicate_pair(o, p, edge))
                 continue;
             const mspringi_closest_point at =
                 mspringi_closest_point_on_edge(contacts->seen_x[p], contacts->seen_y[p], contacts->seen_x[a],
                                                contacts->seen_y[a], contacts->seen_x[b], contacts->seen_y[b]);
             const double distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_radius_of(contacts, p, edge);
-            if (!(distance < contacts->reach))
+            if (!(distance < contacts->thickness + contacts->margin[p] + mspringi_margin_of_edge(contacts, edge)))
                 continue;
             assert_true(listed < contacts->count);
             assert_int_equal(contacts->list[listed].point, p);
