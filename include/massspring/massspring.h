@@ -667,8 +667,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_se
 /// set bodies at rest on a floor moving at gravity times that half (4 cm/s from 1/30 to 1e-6 s with four substeps
 /// before).
 /// @param dt  s, > 0; as a float, dt / substeps must be finite and at least 1.2e-38
-/// @threads exclusive   @allocates never   @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork();
-///          LIMIT if contact finds more pairs than its capacity, or compares too many (mspring_contact_def)
+/// @threads exclusive   @allocates only where contact needs more room (mspring_contact_def.max_capacity)
+/// @errors ARGUMENT, UNSTABLE, BUSY; THREAD in a child of fork(); MEMORY for that room; LIMIT if contact finds more
+///         pairs than max_capacity, or compares too many (mspring_network_set_contact())
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_step(mspring_network *network, double dt);
 
 /// Flags of mspring_step_info: how a step was made.
@@ -678,7 +679,8 @@ enum {
     MSPRING_STEP_PUT_BACK = 1u << 2, ///< particles were put back into the bounds (MSPRING_GUARD_CLAMP_BOUNDS)
     MSPRING_STEP_RETRIED = 1u << 3,  ///< with more substeps than were set (MSPRING_GUARD_RETRY)
     MSPRING_STEP_ASLEEP = 1u << 4,   ///< all of the network slept: nothing was computed
-    MSPRING_STEP_FEWER = 1u << 5 ///< with fewer substeps than its violent motion needs (mspring_solver_def.most_work)
+    MSPRING_STEP_FEWER = 1u << 5, ///< with fewer substeps than its violent motion needs (mspring_solver_def.most_work)
+    MSPRING_STEP_GREW = 1u << 6   ///< contact allocated room for more pairs (mspring_contact_def.max_capacity)
 };
 
 /// Report of the last step, and of all steps so far. Set struct_size first.

@@ -35,13 +35,14 @@ typedef struct mspring_contact_def {
     /// Distance (m) that points keep from springs, > 0, at most 1e6. With MSPRING_CONTACT_SELF at most 0.9 of the
     /// shortest rest length at creation. Default 0: half of that length; without springs, set another.
     double thickness;
-    float friction;    ///< of bodies that slide (Coulomb), 0 to 1e6; default 0
-    float restitution; ///< speed across the contact after it over that before, 0 to 1; default 0
-    float push_speed;  ///< overlaps are pushed apart at this speed at most, m/s, 0 to 1e6; default 3
-    uint32_t sweeps;   ///< over all contacts in a substep, 1 to 64; default 4. With more, stacks lie stiller.
-    uint32_t capacity; ///< pairs of a point and a spring that may be near each other, at most 2^26; default 0: 4096
-                       ///< + 2 for each particle + 64 for each particle of the outline
-    uint32_t reserved; ///< 0
+    float friction;        ///< of bodies that slide (Coulomb), 0 to 1e6; default 0
+    float restitution;     ///< speed across the contact after it over that before, 0 to 1; default 0
+    float push_speed;      ///< overlaps are pushed apart at this speed at most, m/s, 0 to 1e6; default 3
+    uint32_t sweeps;       ///< over all contacts in a substep, 1 to 64; default 4. With more, stacks lie stiller.
+    uint32_t capacity;     ///< pairs of a point and a spring that there is room for at first, at most 2^26; default 0:
+                           ///< 4096 + 2 for each particle + 16 for each particle of the outline
+    uint32_t max_capacity; ///< pairs that there may be room for; default 0: 2^26. A step with more near pairs than
+                           ///< there is room for makes more. Equal to capacity: no step allocates
 } mspring_contact_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
@@ -59,8 +60,8 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// start stay crossed.
 ///
 /// If the network has contact already, the outline keeps the shape that it was found by. Groups, surfaces, colliders
-/// with their moves, contacts and events that wait stay, too. All bodies wake. If only capacity changes, none wakes, and
-/// the next steps have the same bits as without the call. To begin anew, remove contact first.
+/// with their moves, contacts and events that wait stay, too. All bodies wake. If only capacity or max_capacity changes,
+/// none wakes, and the next steps have the same bits as without the call. To begin anew, remove contact first.
 ///
 /// All solvers have contact. With the implicit and the direct solver it is part of the linear system. Substeps in which
 /// bodies touch are then of implicit Euler, and keep the energy budget, whatever integrator and guard are set.
@@ -69,9 +70,12 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// Snapshots leave contact as it is, as they leave the floor. They hold the outline's shape only. Before you load one,
 /// set the same contact, groups and surfaces. Then the next steps have the same bits.
 ///
-/// If more than capacity pairs are near each other, a step fails with MSPRING_ERROR_LIMIT and is rolled back. It also
-/// does if more than an eighth of capacity and 1024 may touch in a substep. Then set the same contact with a larger
-/// capacity, and step again. A step fails likewise where it takes too much work: comparisons of points of the outline
+/// If more than capacity pairs are near each other, or more than an eighth of capacity and 1024 may touch in a substep,
+/// a step is undone, doubles the capacity, and is made again in the same call. It has the bits that it would have had
+/// with that room from the first, and MSPRING_STEP_GREW. So a game loop need not know of this. Without memory it returns
+/// MSPRING_ERROR_MEMORY, and beyond max_capacity MSPRING_ERROR_LIMIT, with the state of before.
+///
+/// A step returns MSPRING_ERROR_LIMIT, too, where it takes too much work: comparisons of points of the outline
 /// with springs near them that form no pair, visits of constraints beyond 768 for each, and iterations, solutions and
 /// factorisations of the implicit and direct solver while bodies are near. It may take what 3.1 million comparisons do,
 /// about 75 ms, and 32 for each point; with these solvers in each substep also 2.6 million, 3000 for each particle, and
@@ -80,14 +84,14 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// Springs inside a body are told by the triangles at them. In networks where hundreds of particles are joined to
 /// hundreds each, that may take over 16 million comparisons and 32 for each spring: then the call fails.
 /// @param def  copied; NULL: no contact, the default. Groups, surfaces, colliders and events are forgotten.
-/// @threads exclusive   @allocates yes; about 600 bytes for a particle, 3400 more for one of the outline, 100 for a
-///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1900 more.
+/// @threads exclusive   @allocates yes; about 700 bytes for a particle, 1000 more for one of the outline, 100 for a
+///          spring. With an implicit or a direct solver, also as the fallback, 60 and 1300 more.
 /// @errors ARGUMENT (the message names the field), STRUCT, MEMORY, BUSY; LIMIT (the message names a particle)
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_contact(
     mspring_network *network, const mspring_contact_def *def);
 
 /// Read the contact. Set struct_size first.
-/// Without contact capacity is 0. With it, thickness and capacity are those in use.
+/// Without contact capacity is 0. With it, thickness, capacity and max_capacity are those in use.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_contact(
     const mspring_network *network, mspring_contact_def *def);

@@ -252,7 +252,7 @@ static mspring_result take(mspring_network *network, mspringi_attempt *attempt) 
         result = mspringi_guard_end(network, attempt, extrema);
     if (result == MSPRING_OK)
         return MSPRING_OK;
-    if (network->groups.count > 0)
+    if (network->groups.count > 0 && result == MSPRING_ERROR_UNSTABLE)
         mspringi_held_groups->suspect(network);
     mspringi_attempt_take_back(network, attempt);
     return result;
@@ -262,6 +262,7 @@ void mspringi_attempt_make(mspring_network *network, mspringi_attempt *attempt) 
     if (attempt->result != MSPRING_OK)
         return;
     network->running = attempt->solver;
+    attempt->work_before = attempt->has_missed ? attempt->work_before : attempt->work;
     if (!attempt->has_missed)
         attempt->result = begin(network, attempt);
     if (attempt->result == MSPRING_OK && !attempt->is_idle)

@@ -6,6 +6,7 @@
 #include "stability/guard.h"
 #include "stability/stability.h"
 #include "step/pace.h"
+#include "store/feature.h"
 #include "store/group_ops.h"
 
 /* ------------------------------------------------------------------------------------------------- one attempt */
@@ -133,6 +134,21 @@ static bool try_groups(mspring_network *network, mspringi_attempt *attempt) {
                    attempt->substeps);
 }
 
+/* -------------------------------------------------------------------------------------------------------- room */
+
+// Give features the room that the attempt lacked, and make it again. It does not count.
+static bool grow(mspring_network *network, mspringi_attempt *attempt) {
+    mspring_result result = MSPRING_ERROR_LIMIT;
+#define GROWS(function) result = result == MSPRING_ERROR_LIMIT ? function(network) : result;
+#include "store/features.def"
+    attempt->result = result;
+    if (result != MSPRING_OK)
+        return false;
+    network->outcome.flags |= MSPRING_STEP_GREW;
+    attempt->work = attempt->work_before;
+    return prepare(network, attempt, attempt->kind, attempt->solver, attempt->substeps);
+}
+
 /* ------------------------------------------------------------------------------------------------ all attempts */
 
 void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages,
@@ -161,6 +177,10 @@ void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_
 bool mspringi_attempt_next(mspring_network *network, mspringi_attempt *attempt) {
     if (attempt->has_missed)
         return ++attempt->missed_count > 0;
+    if (attempt->result == MSPRING_ERROR_LIMIT && grow(network, attempt))
+        return true;
+    if (attempt->result == MSPRING_ERROR_MEMORY)
+        return false;
     if (network->groups.count > 0 && network->settings.guard != MSPRING_GUARD_CLAMP_BOUNDS)
         return !attempt->is_idle && try_groups(network, attempt);
     if (attempt->result != MSPRING_ERROR_UNSTABLE || attempt->kind == MSPRINGI_BY_FALLBACK)
@@ -173,6 +193,9 @@ void mspringi_attempt_accept(mspring_network *network, const mspringi_attempt *a
     network->steps.lag = attempt->solver->ops->lags ? network->full_lag : network->steps.lag;
     if (attempt->kind == MSPRINGI_BY_FALLBACK)
         accept_fallback(network, attempt);
-    if (network->groups.count > 0)
+    if (network->groups.count > 0) {
+        const uint32_t grew = network->outcome.flags & MSPRING_STEP_GREW;
         network->outcome = mspringi_outcome_none();
+        network->outcome.flags = grew;
+    }
 }

@@ -37,6 +37,7 @@ struct mspringi_attempt {
     // Of all attempts at the step.
     double given_dt;        ///< as the host gave it, s
     double work, calm_work; ///< spent so far; of a step with nothing repeated
+    double work_before;     ///< spent before this attempt
 };
 
 #endif

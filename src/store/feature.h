@@ -31,6 +31,7 @@ typedef struct mspringi_feature_state {
 #define FORGETS(function) void function(mspring_network *network, mspring_id particle);
 #define ACTS(function) bool function(const mspring_network *network);
 #define FINITE(function) bool function(const mspring_network *network);
+#define GROWS(function) mspring_result function(mspring_network *network);
 #include "store/features.def"
 
 /// Have a copied network's states lie in its own memory, with all that they point to.

@@ -282,7 +282,7 @@ const struct input inputs[] = {
     INPUT(settings, NO_FIELD, give_settings),
     INPUT(hook_def, offsetof(mspring_hook_def, reserved), give_hook),
     INPUT(floor_def, offsetof(mspring_floor_def, reserved), give_floor),
-    INPUT(contact_def, offsetof(mspring_contact_def, reserved), give_contact),
+    INPUT(contact_def, NO_FIELD, give_contact),
     INPUT(grip_def, offsetof(mspring_grip_def, reserved), give_grip),
     INPUT(area_def, offsetof(mspring_area_def, reserved), give_area),
     INPUT(angle_def, NO_FIELD, give_angle),

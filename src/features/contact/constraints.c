@@ -322,7 +322,7 @@ static void queue_constraint(const mspring_network *network, mspringi_contacts *
         belongs_to_other_edge(network, contacts, pair, at.fraction <= 0.0 ? 0 : 1))
         return;
     if (contacts->constraint_count + contacts->pending_count == contacts->constraint_capacity) {
-        contacts->is_out_of_room = true;
+        contacts->is_out_of_room = contacts->lacks_room = true;
         return;
     }
     const double inverse_mass = inverse_mass_of(k, c, at.fraction);

@@ -141,7 +141,7 @@ static void share_stillness(mspring_network *network, const mspringi_contacts *c
 // Begin the substeps of an attempt, or their repetition. Return true if all pairs have room.
 static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     mspringi_contacts *contacts = network->contacts;
-    contacts->is_missed = contacts->is_pair_list_full = contacts->is_out_of_room = false;
+    contacts->is_missed = contacts->is_pair_list_full = contacts->is_out_of_room = contacts->lacks_room = false;
     contacts->substeps_done = contacts->touching = 0;
     contacts->substeps_since_scan = 0;
     contacts->deepest = 0.0;
@@ -277,7 +277,7 @@ static mspring_result verify(mspring_network *network) {
     return mspringi_fail(
         &network->message, MSPRING_ERROR_LIMIT,
         "more than %u pairs of an outline point and an outline edge %s each other: set "
-        "contact with a larger capacity, or less thickness",
+        "contact with a larger max_capacity, or less thickness",
         (unsigned)(contacts->is_pair_list_full ? contacts->capacity : contacts->constraint_capacity),
         contacts->is_pair_list_full ? "are near" : "may touch");
 }

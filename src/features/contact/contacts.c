@@ -16,10 +16,10 @@
 #define MOST_SWEEPS 64
 #define MOST_PAIRS ((uint32_t)1 << 26)
 
-/// Room for pairs: for each particle, for each particle of the outline, and a constant. (Soft discs that fall at
-/// 25 m/s with one or two substeps a step have 45 for a particle of the outline.)
+/// Room for pairs at first: for each particle, for each particle of the outline, and a constant. (Wrecks have 2 to
+/// 4 for a particle of the outline; soft discs that fall at 25 m/s with one or two substeps a step have 45.)
 #define PAIRS_OF_PARTICLE 2
-#define PAIRS_OF_OUTLINE 64
+#define PAIRS_OF_OUTLINE 16
 #define PAIRS_BESIDES 4096
 
 /// Room for pairs of each collider point.
@@ -51,9 +51,14 @@ static mspring_result check_numbers(const mspring_contact_def *def, mspringi_mes
     if (def->sweeps < 1 || def->sweeps > MOST_SWEEPS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the contact's sweeps are %u, they must be 1 to %d",
                              (unsigned)def->sweeps, MOST_SWEEPS);
-    if (def->capacity > MOST_PAIRS)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the contact's capacity is %u, it must be at most %u",
-                             (unsigned)def->capacity, (unsigned)MOST_PAIRS);
+    if (def->capacity > MOST_PAIRS || def->max_capacity > MOST_PAIRS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the contact's capacity is %u and its max_capacity %u, they must be at most %u",
+                             (unsigned)def->capacity, (unsigned)def->max_capacity, (unsigned)MOST_PAIRS);
+    if (def->max_capacity > 0 && def->capacity > def->max_capacity)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the contact's capacity is %u, it must be at most max_capacity, %u",
+                             (unsigned)def->capacity, (unsigned)def->max_capacity);
     if (def->flags & ~(uint32_t)MSPRING_CONTACT_SELF)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "contact flags %#x are unknown",
                              (unsigned)def->flags);
@@ -70,6 +75,8 @@ static mspring_result check_def(const mspring_network *network, mspring_contact_
         return result;
     if (def->thickness == 0.0)
         def->thickness = 0.5 * shortest;
+    if (def->max_capacity == 0)
+        def->max_capacity = MOST_PAIRS;
     if (!(def->thickness <= THICKEST))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the contact's thickness is 0, and the network has no spring to tell it by");
@@ -252,7 +259,7 @@ static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory, size
     const uint64_t usual =
         PAIRS_OF_OUTLINE * (uint64_t)own + PAIRS_OF_PARTICLE * (uint64_t)particles + PAIRS_BESIDES;
     if (made->def.capacity == 0)
-        made->def.capacity = usual < MOST_PAIRS ? (uint32_t)usual : MOST_PAIRS;
+        made->def.capacity = usual < made->def.max_capacity ? (uint32_t)usual : made->def.max_capacity;
     made->capacity = made->def.capacity + PAIRS_OF_POINT * made->colliders.point_capacity;
     const uint32_t constraints = made->capacity / PAIRS_OF_CONSTRAINT + CONSTRAINTS_BESIDES;
     made->constraint_capacity = constraints < made->capacity ? constraints : made->capacity;
@@ -262,6 +269,13 @@ static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory, size
     made->near_misses = mspringi_alloc(memory, made->capacity, sizeof *made->near_misses);
     made->constraints = mspringi_alloc(memory, made->constraint_capacity, sizeof *made->constraints);
     return made->list && made->candidates && made->constraints && made->is_seen && made->near_misses;
+}
+
+// Reserve constraints of linear systems.
+static bool reserve_constraints(mspring_network *network, const mspringi_contacts *contacts) {
+    return mspringi_constraints_reserve(network, MSPRINGI_CONTACT_CONSTRAINT,
+                                        (size_t)2 * contacts->constraint_capacity,
+                                        (size_t)6 * contacts->constraint_capacity);
 }
 
 static void set_def(mspringi_contacts *contacts, const mspring_contact_def *def) {
@@ -368,8 +382,7 @@ static mspring_result make(mspring_network *network, const mspring_contact_def *
     if (result == MSPRING_OK &&
         (!reserve_pairs(made, memory, particles) ||
          (has_implicit_contact_solver(network) && !reserve_implicit_constraints(made, memory)) ||
-         !mspringi_constraints_reserve(network, MSPRINGI_CONTACT_CONSTRAINT, (size_t)2 * made->constraint_capacity,
-                                       (size_t)6 * made->constraint_capacity)))
+         !reserve_constraints(network, made)))
         result = MSPRING_ERROR_MEMORY;
     if (result == MSPRING_OK) {
         *contacts = made;
@@ -397,6 +410,50 @@ static mspring_result replace(mspring_network *network, const mspring_contact_de
 
 bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points) {
     return replace(network, &network->contacts->def, points) == MSPRING_OK;
+}
+
+// Drop the lists that grow, of which another copy of the struct has the pointers.
+static void drop_lists(mspringi_contacts *contacts) {
+    contacts->list = NULL;
+    contacts->candidates = NULL;
+    contacts->is_seen = NULL;
+    contacts->near_misses = NULL;
+    contacts->constraints = NULL;
+    contacts->implicit_constraints = NULL;
+}
+
+static void free_lists(const mspringi_contacts *contacts, mspringi_memory *memory) {
+    mspringi_free(memory, contacts->list);
+    mspringi_free(memory, contacts->candidates);
+    mspringi_free(memory, contacts->is_seen);
+    mspringi_free(memory, contacts->near_misses);
+    mspringi_free(memory, contacts->constraints);
+    mspringi_free(memory, contacts->implicit_constraints);
+}
+
+mspring_result mspringi_contact_grow(mspring_network *network) {
+    mspringi_contacts *contacts = network->contacts;
+    if (!contacts || !contacts->lacks_room || contacts->def.capacity == contacts->def.max_capacity)
+        return MSPRING_ERROR_LIMIT;
+    mspringi_memory *memory = &network->memory;
+    mspringi_contacts grown = *contacts;
+    drop_lists(&grown);
+    const uint32_t most = contacts->def.max_capacity;
+    grown.def.capacity = contacts->def.capacity < most / 2 ? 2 * contacts->def.capacity : most;
+    if (!reserve_pairs(&grown, memory, contacts->particles) ||
+        (contacts->implicit_constraints && !reserve_implicit_constraints(&grown, memory)) ||
+        !reserve_constraints(network, &grown)) {
+        free_lists(&grown, memory);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for %u pairs of an outline point and an outline edge that are near each "
+                             "other: use less thickness, or free memory",
+                             (unsigned)grown.def.capacity);
+    }
+    free_lists(contacts, memory);
+    *contacts = grown;
+    contacts->count = contacts->candidate_count = 0;
+    contacts->is_listed = contacts->is_fresh = contacts->lacks_room = false;
+    return MSPRING_OK;
 }
 
 mspring_result mspringi_contacts_reserve_implicit(mspring_network *network) {
@@ -460,8 +517,6 @@ mspring_result mspring_network_set_contact(mspring_network *network, const mspri
     if (!def)
         return remove_contact(network);
     result = mspringi_take_contact_def(&network->message, &def, &used);
-    if (result == MSPRING_OK)
-        result = mspringi_check_reserved(&network->message, "mspring_contact_def", used.reserved);
     if (result == MSPRING_OK)
         result = check_def(network, &used, &network->message);
     return result == MSPRING_OK ? use(network, &used) : result;

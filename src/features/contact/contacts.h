@@ -333,6 +333,7 @@ struct mspringi_contacts {
     uint32_t constraint_count, near_miss_count, constraint_capacity;
     mspringi_pending_constraint pending[MSPRINGI_MAX_PENDING];
     uint32_t pending_count, max_pending;
+    bool lacks_room;     ///< the step will be rejected because capacity is too small
     bool is_out_of_room; ///< constraint_capacity or most_work was exceeded: the step will be rejected
     mspringi_implicit_constraint *implicit_constraints; ///< [constraint_capacity] the same constraints in a linear
                                                         ///< system; NULL unless a solver has one

@@ -130,6 +130,7 @@ static bool list_pairs_of_point(const mspring_network *network, mspringi_contact
     sort(cells->found, close_count);
     for (uint32_t k = 0; k < close_count; ++k)
         contacts->list[contacts->count++] = (mspringi_pair){.point = p, .edge = cells->found[k]};
+    contacts->lacks_room = !has_room;
     return has_room && is_done;
 }
 
@@ -243,6 +244,7 @@ static void complete_list(const mspring_network *network, mspringi_contacts *con
     contacts->is_listed = make_list_for(network, contacts, speed, is_sparse ? SPARSE_REACH : REACH) ||
                           make_list_for(network, contacts, speed, 1.0);
     contacts->is_pair_list_full = !contacts->is_listed;
+    contacts->lacks_room &= contacts->is_pair_list_full;
 }
 
 /* --------------------------------------------------------------------------------------------------- candidates */

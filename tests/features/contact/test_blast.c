@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "allocator.h"
 #include "bodies.h"
 #include "snapshots.h"
 
@@ -22,7 +23,8 @@
 typedef struct setting {
     mspring_solver solver;
     mspring_simd level;
-    uint32_t workers, substeps;
+    uint32_t workers, substeps, capacity, max_capacity;
+    const mspring_allocator *allocator;
 } setting;
 
 /// Blocks that lie beside each other, apart by half a thickness more than they touch.
@@ -40,6 +42,7 @@ static mspring_network *blocks(const setting *of) {
     def.solver = of->solver;
     def.simd_level = of->level;
     def.worker_count = of->workers;
+    def.allocator = of->allocator;
     mspring_network *network = bodies_network(b, &def);
     static const double plane[4] = {0, -0.01, 0, 1};
     mspring_floor_def floor;
@@ -47,7 +50,10 @@ static mspring_network *blocks(const setting *of) {
     floor.planes = plane;
     floor.plane_count = 1;
     check_ok(mspring_network_set_floor(network, &floor));
-    check_ok(bodies_touch(network, THICKNESS, 0.3f, 0));
+    mspring_contact_def contact = bodies_contact(THICKNESS, 0.3f, 0);
+    contact.capacity = of->capacity;
+    contact.max_capacity = of->max_capacity;
+    check_ok(mspring_network_set_contact(network, &contact));
     bodies_free(b);
     return network;
 }
@@ -66,11 +72,25 @@ static void blow_up(mspring_network *network, float speed) {
     }
 }
 
+static mspring_step_info info_of(const mspring_network *network) {
+    mspring_step_info info = {.struct_size = sizeof info};
+    check_ok(mspring_network_get_step_info(network, &info));
+    return info;
+}
+
+static mspring_contact_def contact_of(const mspring_network *network) {
+    mspring_contact_def def = {.struct_size = sizeof def};
+    check_ok(mspring_network_get_contact(network, &def));
+    return def;
+}
+
 /// What a host does besides, none of which may change a bit.
 typedef enum besides { NOTHING, DROP_LISTS, ROLL_BACK } besides;
 
-static void fly(const setting *of, besides what, uint64_t *hashes) {
+/// Returns how many steps made room.
+static uint32_t fly(const setting *of, besides what, uint64_t *hashes) {
     mspring_network *network = blocks(of);
+    uint32_t grew = 0;
     for (uint32_t step = 0; step < STEPS; step++) {
         if (step == BLAST)
             blow_up(network, 40);
@@ -84,32 +104,36 @@ static void fly(const setting *of, besides what, uint64_t *hashes) {
         }
         support_steps(network, 1, DT);
         hashes[step] = support_hash(network);
+        grew += (info_of(network).flags & MSPRING_STEP_GREW) != 0;
+        assert_true(info_of(network).work == 1 || what != NOTHING || of->solver != MSPRING_SOLVER_EXPLICIT);
     }
     mspring_network_destroy(network);
+    return grew;
 }
 
-static void compare(const setting *of, besides what, const uint64_t *expected) {
+static uint32_t compare(const setting *of, besides what, const uint64_t *expected) {
     uint64_t hashes[STEPS];
-    fly(of, what, hashes);
+    const uint32_t grew = fly(of, what, hashes);
     for (uint32_t step = 0; step < STEPS; step++)
         if (hashes[step] != expected[step])
             fail_msg("solver %d, level %d, %u workers, %u substeps, besides %d: other bits in step %u", of->solver,
                      of->level, of->workers, of->substeps, what, step);
+    return grew;
 }
 
 static void fly_likewise(mspring_solver solver, uint32_t substeps) {
     mspring_simd levels[MSPRING_SIMD_AVX512];
     const uint32_t count = support_levels(levels);
-    setting of = {solver, MSPRING_SIMD_AUTO, 1, substeps};
+    setting of = {.solver = solver, .workers = 1, .substeps = substeps};
     uint64_t expected[STEPS];
-    fly(&of, NOTHING, expected);
-    compare(&of, DROP_LISTS, expected);
-    compare(&of, ROLL_BACK, expected);
+    (void)fly(&of, NOTHING, expected);
+    (void)compare(&of, DROP_LISTS, expected);
+    (void)compare(&of, ROLL_BACK, expected);
     of.workers = 3;
-    compare(&of, NOTHING, expected);
+    (void)compare(&of, NOTHING, expected);
     for (uint32_t i = 0; i < count; i++) {
         of.level = levels[i];
-        compare(&of, NOTHING, expected);
+        (void)compare(&of, NOTHING, expected);
     }
 }
 
@@ -122,7 +146,7 @@ static void bits_do_not_depend_on_lists(void **state) {
 
 /// Pairs and candidates in all steps after the first, whose list is made before the splinter has left.
 static void count_pairs(float speed, uint32_t sums[2]) {
-    mspring_network *network = blocks(&(setting){MSPRING_SOLVER_EXPLICIT, MSPRING_SIMD_AUTO, 1, 40});
+    mspring_network *network = blocks(&(setting){.workers = 1, .substeps = 40});
     const mspring_id splinter = BLOCKS * WIDTH * HEIGHT - 1; // thrown out of the last block, upwards
     const float x = 0;
     check_ok(mspring_network_detach_particles(network, &splinter, 1));
@@ -148,10 +172,119 @@ static void a_fast_splinter_adds_its_own_pairs_only(void **state) {
     assert_true(fast[0] < 2 * slow[0] && fast[1] < slow[1] + STEPS);
 }
 
+/* ------------------------------------------------------------------------------------------------------ room */
+
+static void grow(mspring_solver solver, uint32_t substeps) {
+    setting of = {.solver = solver, .workers = 1, .substeps = substeps, .capacity = 1u << 16};
+    uint64_t expected[STEPS];
+    assert_int_equal(fly(&of, NOTHING, expected), 0);
+    for (uint32_t part = 0; part < 5; part++) {
+        of.capacity = (uint32_t[]){0, 1, 100, 1000, 1u << 18}[part];
+        const uint32_t grew = compare(&of, NOTHING, expected);
+        assert_true(grew > 0 || (part != 1 && part != 2));
+    }
+    of.capacity = 50;
+    (void)compare(&of, DROP_LISTS, expected);
+    (void)compare(&of, ROLL_BACK, expected);
+}
+
+static void room_that_grows_changes_no_bits(void **state) {
+    (void)state;
+    grow(MSPRING_SOLVER_EXPLICIT, 40);
+    grow(MSPRING_SOLVER_IMPLICIT, 8);
+    grow(MSPRING_SOLVER_DIRECT, 8);
+}
+
+/// As many pairs as may be: no step allocates, and one that needs more changes nothing.
+static void fixed_room_never_grows(void **state) {
+    (void)state;
+    watched_allocator watched = {0};
+    const mspring_allocator allocator = watched_interface(&watched);
+    mspring_network *network = blocks(
+        &(setting){.workers = 1, .substeps = 40, .capacity = 150, .max_capacity = 150, .allocator = &allocator});
+    assert_int_equal(contact_of(network).max_capacity, 150);
+    support_steps(network, BLAST, DT);
+    blow_up(network, 40);
+    const size_t calls = watched.calls;
+    mspring_result result = MSPRING_OK;
+    uint64_t before = 0;
+    for (uint32_t step = 0; step < STEPS && result == MSPRING_OK; step++) {
+        before = support_hash(network);
+        result = mspring_network_step(network, DT);
+    }
+    assert_int_equal(result, MSPRING_ERROR_LIMIT);
+    check_contains(mspring_network_error(network), "larger max_capacity");
+    assert_true(watched.calls == calls && support_hash(network) == before);
+    mspring_contact_def def = contact_of(network);
+    def.max_capacity = 0; // from now on it may grow
+    check_ok(mspring_network_set_contact(network, &def));
+    assert_true(support_hash(network) == before);
+    check_ok(mspring_network_step(network, DT));
+    assert_true(info_of(network).flags & MSPRING_STEP_GREW);
+    assert_true(contact_of(network).capacity > 150 && contact_of(network).max_capacity == 1u << 26);
+    mspring_network_destroy(network);
+    check_watched_clean(&watched);
+}
+
+/// Whichever allocation fails, the step changes nothing, and the next one is as if it had not been tried.
+static void a_failed_allocation_changes_nothing(void **state) {
+    (void)state;
+    for (int solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
+        watched_allocator watched = {0};
+        const mspring_allocator allocator = watched_interface(&watched);
+        setting of = {.solver = (mspring_solver)solver, .workers = 1, .substeps = 40, .capacity = 1u << 16};
+        mspring_network *enough = blocks(&of);
+        of.capacity = 1;
+        of.allocator = &allocator;
+        mspring_network *network = blocks(&of);
+        const uint64_t before = support_hash(network);
+        mspring_result result = MSPRING_ERROR_MEMORY;
+        for (size_t n = 1; n < 200 && result != MSPRING_OK; n++) {
+            watched.fail_at = watched.calls + n;
+            result = mspring_network_step(network, DT);
+            assert_true(result == MSPRING_OK || result == MSPRING_ERROR_MEMORY);
+            if (result != MSPRING_OK)
+                check_contains(mspring_network_error(network), "pairs");
+            assert_true(result == MSPRING_OK || support_hash(network) == before);
+        }
+        watched.fail_at = 0;
+        check_ok(result);
+        support_steps(enough, 1, DT);
+        assert_true(support_hash(network) == support_hash(enough));
+        support_steps(network, 5, DT);
+        support_steps(enough, 5, DT);
+        assert_true(support_hash(network) == support_hash(enough));
+        mspring_network_destroy(network);
+        mspring_network_destroy(enough);
+        check_watched_clean(&watched);
+    }
+}
+
+static void wrong_room_is_refused(void **state) {
+    (void)state;
+    mspring_network *network = blocks(&(setting){.workers = 1, .substeps = 40});
+    mspring_contact_def def = contact_of(network);
+    const uint32_t capacity = def.capacity;
+    def.max_capacity = capacity - 1;
+    check_error(mspring_network_set_contact(network, &def), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_network_error(network), "max_capacity");
+    def.max_capacity = (1u << 26) + 1;
+    check_error(mspring_network_set_contact(network, &def), MSPRING_ERROR_ARGUMENT);
+    def.capacity = 0; // as much as there may be
+    def.max_capacity = 7;
+    check_ok(mspring_network_set_contact(network, &def));
+    assert_int_equal(contact_of(network).capacity, 7);
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bits_do_not_depend_on_lists),
         cmocka_unit_test(a_fast_splinter_adds_its_own_pairs_only),
+        cmocka_unit_test(room_that_grows_changes_no_bits),
+        cmocka_unit_test(fixed_room_never_grows),
+        cmocka_unit_test(a_failed_allocation_changes_nothing),
+        cmocka_unit_test(wrong_room_is_refused),
     };
     return cmocka_run_group_tests_name("blast", tests, NULL, NULL);
 }

@@ -260,7 +260,7 @@ static void refused_steps_end_their_work(void **state) {
         mspring_network *network = support_network(builder, &def);
         mspring_contact_def contact;
         check_ok(mspring_contact_def_init(&contact, sizeof contact));
-        contact.capacity = 8000;
+        contact.capacity = contact.max_capacity = 8000;
         check_ok(mspring_network_set_contact(network, &contact));
         const uint64_t hash = support_hash(network);
         check_error(mspring_network_step(network, 0.001), MSPRING_ERROR_LIMIT);
@@ -284,10 +284,14 @@ static void crowds_end_at_the_first_pair_too_many(void **state) {
     }
     const mspring_network_def def = support_def(0, 4);
     mspring_network *network = support_network(builder, &def);
-    check_ok(touch(network, 0.2));
+    mspring_contact_def contact;
+    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    contact.thickness = 0.2;
+    contact.capacity = contact.max_capacity = 300000;
+    check_ok(mspring_network_set_contact(network, &contact));
     const uint64_t hash = support_hash(network);
     check_error(mspring_network_step(network, 0.001), MSPRING_ERROR_LIMIT);
-    check_contains(mspring_network_error(network), "larger capacity");
+    check_contains(mspring_network_error(network), "larger max_capacity");
     // Two lists, one of them with a larger reach. At least every third edge that a point is compared with is a
     // pair.
     assert_true(network->contacts->work < 2 * 4 * (uint64_t)network->contacts->capacity);

@@ -381,7 +381,7 @@ static void bad_definitions_are_refused(void **state) {
     const struct {
         double thickness;
         float friction, restitution, push_speed;
-        uint32_t sweeps, capacity, flags, reserved;
+        uint32_t sweeps, capacity, flags, max_capacity;
         const char *part;
     } bad[] = {
         {NAN, 0, 0, 3, 4, 0, 1, 0, "thickness"},
@@ -397,8 +397,9 @@ static void bad_definitions_are_refused(void **state) {
         {0.5, 0, 0, 3, 0, 0, 1, 0, "sweeps"},
         {0.5, 0, 0, 3, 65, 0, 1, 0, "sweeps"},
         {0.5, 0, 0, 3, 4, UINT32_MAX, 1, 0, "capacity"},
+        {0.5, 0, 0, 3, 4, 8, 1, 7, "max_capacity, 7"},
+        {0.5, 0, 0, 3, 4, 0, 1, UINT32_MAX, "max_capacity"},
         {0.5, 0, 0, 3, 4, 0, 2, 0, "flags"},
-        {0.5, 0, 0, 3, 4, 0, 1, 1, "reserved"},
     };
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         mspring_contact_def def = bodies_contact(bad[i].thickness, bad[i].friction, bad[i].restitution);
@@ -406,7 +407,7 @@ static void bad_definitions_are_refused(void **state) {
         def.sweeps = bad[i].sweeps;
         def.capacity = bad[i].capacity;
         def.flags = bad[i].flags;
-        def.reserved = bad[i].reserved;
+        def.max_capacity = bad[i].max_capacity;
         check_error(mspring_network_set_contact(network, &def), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), bad[i].part);
     }
@@ -450,7 +451,7 @@ static void too_many_pairs_are_told(void **state) {
     (void)state;
     mspring_network *network = touching_crowd(MSPRING_SIMD_AUTO, 1), *same = touching_crowd(MSPRING_SIMD_AUTO, 1);
     mspring_contact_def def = bodies_contact(THICKNESS, 0.4f, 0.3f);
-    def.capacity = 20;
+    def.capacity = def.max_capacity = 20;
     check_ok(mspring_network_set_contact(network, &def));
     mspring_result result = MSPRING_OK;
     uint32_t steps = 0;
@@ -464,7 +465,7 @@ static void too_many_pairs_are_told(void **state) {
     }
     assert_int_equal(result, MSPRING_ERROR_LIMIT);
     check_contains(mspring_network_error(network), "capacity");
-    def.capacity = 0;
+    def.capacity = def.max_capacity = 0;
     check_ok(mspring_network_set_contact(network, &def));
     support_steps(network, 80 - steps, DT);
     support_steps(same, 80, DT);
