@@ -368,11 +368,13 @@ typedef enum mspring_integrator {
 ///  - A step that the guard rejects may end with one by the fallback, with the substeps of calm motion:
 ///    MSPRING_GUARD_CLAMP, _IMPLICIT, _CLAMP_BOUNDS.
 ///  - A step that counted on what did not hold, as on no floor within reach, is repeated: once at most for each of floor,
-///    contact, grips, hooks, one-way springs and yielding.
+///    contact, grips, hooks, one-way springs and yielding. That is not counted, as it may depend on the workers.
 ///  - With groups of particles, a step is repeated at most twice for each group that ends out of bounds or with NaN. No
 ///    group is held because many others go wrong.
-///  - The implicit and the direct solver repeat parts of a substep after impacts. They end that themselves after 16,384
-///    products, and 32 for each of the iterations asked for.
+///  - The implicit and the direct solver take 16 times as many calm steps, as substeps in which bodies touch have 16 times
+///    the iterations, and impacts some intervals, halves and passes. Where that ends, the rest is done once, by implicit
+///    Euler: the energy budget holds, and bodies near each other move on as rigid ones, which bump without friction. The
+///    step has MSPRING_STEP_FEWER. The solution that comes to the end may be one of two on top.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
@@ -386,8 +388,9 @@ typedef struct mspring_solver_def {
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
                             ///< if the network turns little in them; 0, the default: 1
     uint32_t most_work; ///< work in a step, in calm steps, up to which MSPRING_SUBSTEPS_AUTO and _EVEN take more
-                        ///< substeps for violent motion and MSPRING_GUARD_RETRY repeats; at most MSPRING_MAX_SUBSTEPS;
-                        ///< default 4; 0: no bound but max_substeps. See above
+                        ///< substeps for violent motion, MSPRING_GUARD_RETRY repeats, and the implicit and the direct
+                        ///< solver take parts again; at most MSPRING_MAX_SUBSTEPS; default 4; 0: no bound but
+                        ///< max_substeps. See above
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
@@ -679,7 +682,8 @@ enum {
     MSPRING_STEP_PUT_BACK = 1u << 2, ///< particles were put back into the bounds (MSPRING_GUARD_CLAMP_BOUNDS)
     MSPRING_STEP_RETRIED = 1u << 3,  ///< with more substeps than were set (MSPRING_GUARD_RETRY)
     MSPRING_STEP_ASLEEP = 1u << 4,   ///< all of the network slept: nothing was computed
-    MSPRING_STEP_FEWER = 1u << 5, ///< with fewer substeps than its violent motion needs (mspring_solver_def.most_work)
+    MSPRING_STEP_FEWER = 1u << 5, ///< with fewer substeps, or parts of these, than its violent motion needs
+                                  ///< (mspring_solver_def.most_work)
     MSPRING_STEP_GREW = 1u << 6   ///< contact allocated room for more pairs (mspring_contact_def.max_capacity)
 };
 

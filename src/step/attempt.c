@@ -153,6 +153,8 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
     network->backup_is_start = !is_cut && network->sleep.sleeping == 0;
     if (ops->keep)
         ops->keep(attempt->solver->object);
+    if (ops->allow_work)
+        ops->allow_work(attempt->solver->object, attempt->most_work / attempt->dt);
     if (is_cut)
         base = mspringi_stages_forces(network, attempt);
     run_substeps(network, attempt, base, is_cut);
@@ -190,10 +192,14 @@ static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_clear_empty_slots(network);
 }
 
-// Count the work of substeps that were taken, whatever comes of them.
-static void count_work(mspringi_attempt *attempt, uint32_t substeps) {
+// Count the work of substeps that were taken, whatever comes of them. Runs in which an assumption failed do not
+// count: with several workers there are more of them, and the next attempt depends on the work that is left.
+static void count_work(const mspring_network *network, mspringi_attempt *attempt) {
     const mspringi_solver *solver = attempt->solver;
-    attempt->work += solver->ops->count_work ? solver->ops->count_work(solver->object)
+    const uint32_t substeps = attempt->substeps + network->added_substeps;
+    if (mspringi_sleep_is_whole(network))
+        return;
+    attempt->work += solver->ops->count_work ? solver->ops->count_work(solver->object, &attempt->is_spent)
                                              : (double)substeps * mspringi_solver_calm_work(solver);
 }
 
@@ -237,8 +243,6 @@ static mspring_result begin(mspring_network *network, mspringi_attempt *attempt)
 static mspring_result take(mspring_network *network, mspringi_attempt *attempt) {
     attempt->is_cut = mspringi_stages_split_step(network, attempt);
     const mspringi_extrema extrema = run(network, attempt);
-    if (!mspringi_sleep_is_whole(network))
-        count_work(attempt, attempt->substeps + network->added_substeps);
     if (mspringi_hook_count(network) > 0)
         network->seen = mspringi_guard_bound(network, attempt->h, extrema);
     attempt->has_missed =
@@ -247,6 +251,7 @@ static mspring_result take(mspring_network *network, mspringi_attempt *attempt) 
         go_back(network, attempt);
         return MSPRING_OK;
     }
+    count_work(network, attempt);
     mspring_result result = mspringi_stages_verify(network, attempt);
     if (result == MSPRING_OK)
         result = mspringi_guard_end(network, attempt, extrema);

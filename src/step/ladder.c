@@ -2,6 +2,7 @@
 #include "step/ladder.h"
 
 #include <float.h>
+#include <math.h>
 
 #include "stability/guard.h"
 #include "stability/stability.h"
@@ -14,6 +15,7 @@
 // Choose solver and substeps. Each substep must be a number.
 static bool prepare(mspring_network *network, mspringi_attempt *attempt, mspringi_attempt_kind kind,
                     const mspringi_solver *solver, uint32_t substeps) {
+    const double calm = (double)substeps * mspringi_solver_calm_work(solver);
     attempt->kind = kind;
     attempt->solver = solver;
     attempt->substeps = substeps;
@@ -21,6 +23,8 @@ static bool prepare(mspring_network *network, mspringi_attempt *attempt, mspring
     attempt->h = (float)(network->step_time / (double)substeps);
     attempt->relative_h = network->relative_h;
     attempt->missed_count = 0;
+    attempt->is_spent = false;
+    attempt->most_work = network->most_work > 0 ? (double)network->most_work * calm : INFINITY;
     attempt->result =
         attempt->h >= FLT_MIN && attempt->h <= FLT_MAX
             ? MSPRING_OK
@@ -55,6 +59,8 @@ static bool fall_back(mspring_network *network, mspringi_attempt *attempt, const
     uint32_t substeps;
     if (choose_substeps(network, attempt->given_dt, false, &substeps) != MSPRING_OK)
         substeps = (uint32_t)((double)network->max_substeps / mspringi_solver_calm_work(fallback));
+    if (!(attempt->calm_work > 0.0)) // it is the first attempt
+        attempt->calm_work = fmax((double)substeps, 1.0) * mspringi_solver_calm_work(&network->solver);
     substeps = fallback->ops->takes_one_substep || substeps == 0 ? 1 : substeps;
     mspringi_solver_forget(fallback);
     return prepare(network, attempt, MSPRINGI_BY_FALLBACK, fallback, substeps);
@@ -108,7 +114,9 @@ static bool take_more(mspring_network *network, mspringi_attempt *attempt) {
         return false;
     }
     network->outcome.flags |= MSPRING_STEP_RETRIED;
-    return prepare(network, attempt, MSPRINGI_WITH_MORE_SUBSTEPS, &network->solver, more);
+    const bool is_prepared = prepare(network, attempt, MSPRINGI_WITH_MORE_SUBSTEPS, &network->solver, more);
+    attempt->most_work = fmin(attempt->most_work, network->most_work > 0 ? left : INFINITY);
+    return is_prepared;
 }
 
 /* ------------------------------------------------------------------------------------------------------ groups */
@@ -160,10 +168,9 @@ void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_
     first->group = 0;
     first->has_missed = first->is_idle = first->keeps_substeps = false;
     first->given_dt = dt;
-    first->work = 0.0;
+    first->work = first->calm_work = 0.0;
     if (fallback && network->guard.fallback_steps > 0) {
         (void)fall_back(network, first, fallback);
-        first->calm_work = (double)first->substeps;
         return;
     }
     first->result = choose_substeps(network, dt, true, &calm);
@@ -193,6 +200,8 @@ void mspringi_attempt_accept(mspring_network *network, const mspringi_attempt *a
     network->steps.lag = attempt->solver->ops->lags ? network->full_lag : network->steps.lag;
     if (attempt->kind == MSPRINGI_BY_FALLBACK)
         accept_fallback(network, attempt);
+    if (attempt->is_spent)
+        network->outcome.flags |= MSPRING_STEP_FEWER;
     if (network->groups.count > 0) {
         const uint32_t grew = network->outcome.flags & MSPRING_STEP_GREW;
         network->outcome = mspringi_outcome_none();

@@ -1,14 +1,15 @@
 /// @file ladder.h
 /// The attempts at a step, from the one that the host's settings ask for to the last resort of the guard.
 ///
-///   result of an attempt                                    next one
-///   a stage counted on what did not hold                    the same without that (at most once for each stage)
-///   groups went wrong                                       with these held, then with doubtful ones released
-///   singly unstable, CLAMP, IMPLICIT; CLAMP_BOUNDS if overflowed   one of the fallback unstable, RETRY twice the
-///   substeps, while max_substeps and most_work last anything else                                           none
+///   - a stage counted on what did not hold: the same without that, at most once for each stage, and not counted;
+///   - groups went wrong: with these held, then with doubtful ones released;
+///   - unstable, with MSPRING_GUARD_CLAMP or _IMPLICIT; overflowed, with _CLAMP_BOUNDS: one of the fallback;
+///   - unstable, with MSPRING_GUARD_RETRY: twice the substeps, while max_substeps and most_work last;
+///   - anything else: none.
 ///
 /// Work is counted from what was computed, never from time: an explicit substep 1, a clamped one 3, an implicit or
-/// direct one 1 for each 8 products and for each pass of the active set.
+/// direct one 1 for each 8 products and for each pass of the active set. Their own repetitions within a substep are
+/// bounded by attempt->most_work, too (solvers/implicit/work.c).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_LADDER_H

@@ -25,10 +25,12 @@ struct mspringi_attempt {
     float relative_h;      ///< substep that relative springs were derived for before, s
     uint32_t group;        ///< the one released, or the first that may be next
     uint32_t missed_count; ///< runs undone so far because a stage counted on what did not hold
+    double most_work;      ///< beyond which its solver repeats nothing
     bool is_cut;           ///< stages act between its substeps
 
     // Outcome.
     mspring_result result;
+    bool is_spent;        ///< its solver would have repeated more
     bool has_missed;      ///< run undone, for one without that assumption
     bool is_idle;         ///< all sleeps: there was nothing to do
     bool keeps_substeps;  ///< the next step takes the network's substeps, though this one failed

@@ -84,9 +84,11 @@ struct mspringi_solver_ops {
     void (*end)(mspring_network *network);
 
     // Work, in explicit substeps or what counts as one. calm_work: of a substep in which nothing is repeated;
-    // NULL: 1. count_work: of the substeps since keep(); NULL: each was calm.
+    // NULL: 1. allow_work: that a second of the substeps after keep() is allowed; beyond it they repeat nothing.
+    // count_work: of the substeps since keep(), and whether they would have repeated more; NULL: each was calm.
     double (*calm_work)(const void *object);
-    double (*count_work)(const void *object);
+    void (*allow_work)(void *object, double rate);
+    double (*count_work)(const void *object, bool *is_spent);
 
     // Undo. keep: before a step. restore: to what was kept. forget: a new motion begins. is_finite: all numbers are
     // finite that it carries to the next step.

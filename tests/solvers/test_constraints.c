@@ -474,7 +474,8 @@ static void unknown_forces_solve_the_whole_system(void **state) {
     for (uint64_t round = 0; round < ROUNDS(60); round++) {
         uint64_t seed = round;
         double x[2 * (SLOTS + 1)] = {0}, expected[SIZE], row[SIZE];
-        mspringi_implicit implicit = {.mass = mass, .direct = {.answer = answer}, .iterations = 8};
+        mspringi_implicit implicit = {
+            .mass = mass, .direct = {.answer = answer}, .iterations = 8, .most_work = INFINITY};
         mspringi_solver running = {.object = &implicit};
         static mspring_network network;
         make_list(&seed);

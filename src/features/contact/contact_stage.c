@@ -262,7 +262,7 @@ static mspring_result report_work(mspring_network *network) {
     network->outcome.particle = hub;
     return mspringi_fail(
         &network->message, MSPRING_ERROR_LIMIT,
-        "over %.3g comparisons of outline points and edges in a step, or impulses and solutions that "
+        "over %.3g comparisons of outline points and edges in a step, or impulses that "
         "take as long, as many of %u edges are near many points, or at one particle (%u at "
         "particle %u): set contact with less thickness, take a shorter dt, or divide long springs",
         (double)contacts->most_work, (unsigned)contacts->outline.edge_count, (unsigned)edges, (unsigned)hub);

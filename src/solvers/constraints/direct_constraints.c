@@ -151,7 +151,7 @@ static double answer_search(mspring_network *network, const unknowns *u) {
         }
     }
     u->solve(network, x, y);
-    mspringi_implicit_count_solve(network);
+    mspringi_implicit_of(network)->product_count++;
     if (u->elements)
         iterate(network, u->elements, x, y, false);
     for (multiplier *m = u->list; m < u->end; ++m) {
@@ -177,8 +177,7 @@ static void iterate(mspring_network *network, const unknowns *u, double *x, doub
     for (multiplier *m = u->list; m < u->end; ++m)
         m->search = m->solution;
     for (uint32_t iteration = 0; iteration < most && product > least; ++iteration) {
-        if (u->elements &&
-            (!mspringi_may_iterate(mspringi_implicit_of(network)) || mspringi_implicit_is_too_much(network)))
+        if (u->elements && !mspringi_implicit_may_repeat(mspringi_implicit_of(network)))
             break;
         const double alpha = product / answer_search(network, u);
         if (!(alpha > 0.0))

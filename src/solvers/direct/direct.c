@@ -374,7 +374,6 @@ static bool solve_in_single(mspring_network *network) {
     mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_system *s = &n->system;
     fill_edges(n);
-    mspringi_implicit_count_factorisation(network);
     const mspringi_blocks_float e = n->direct.edges;
     const mspringi_cholesky_matrix_float matrix = {s->xx, s->xy, s->yy, e.xx, e.xy, e.yy};
     memcpy(n->displacement.x, n->residual.x, 2 * mspringi_slot_count(network) * sizeof *n->displacement.x);
@@ -484,7 +483,6 @@ static bool solve_in_double(mspring_network *network) {
     }
     for (double added = 0.0; added <= MOST_ADDED; added = added > 0.0 ? 64.0 * added : LEAST_ADDED) {
         fill_twice(network, added);
-        mspringi_implicit_count_factorisation(network);
         if (mspringi_cholesky_double_factor_solve(&d->twice, &matrix, x, y) != MSPRING_NONE)
             continue;
         mspringi_direct_solve_constraints(network, solve_more_in_double, x, y);

@@ -183,7 +183,7 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
     for (;;) {
         const double curvature = mspringi_multiply(substep, member);
         if (member->index == 0)
-            mspringi_implicit_count_solve(network);
+            n->product_count++;
         if (!(curvature < INFINITY && product < INFINITY))
             return NAN;
         // Converged, or at the limit of this precision.

@@ -50,11 +50,10 @@ typedef mspringi_mass_centre centre;
 
 static mspringi_motion motion_of(const mspring_network *network) {
     const mspringi_state s = network->state;
-    const float *weights = network->inverse_mass;
-    return (mspringi_motion){s.x, s.y, s.vx, s.vy, s.low_x, s.low_y, s.low_vx, s.low_vy, weights};
+    return (mspringi_motion){s.x, s.y, s.vx, s.vy, s.low_x, s.low_y, s.low_vx, s.low_vy, network->inverse_mass};
 }
 
-static mspringi_motion motion_before(const mspring_network *network) {
+mspringi_motion mspringi_budget_motion_before(const mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
     const float *s = budget->is_in_backup ? network->backup.x : budget->state, *weights = network->inverse_mass;
     const size_t n = mspringi_slot_count(network);
@@ -91,8 +90,8 @@ static void begin_component_budget(const mspring_network *network, component *a)
     for (size_t i = 0; i < 4; ++i)
         a->origin[i] = (double)state[i][a->first_slot];
     a->is_asleep = mspringi_slot_is_asleep(network, a->first_slot);
-    a->is_driven = a->is_stopped = a->is_held = a->is_touched = false;
-    a->frame_x = a->frame_y = 0.0;
+    a->is_driven = a->is_stopped = a->is_held = a->is_touched = a->is_rigid = false;
+    a->frame_x = a->frame_y = a->push_x = a->push_y = a->push_turn = 0.0;
     a->frame_pin = MSPRING_NONE;
 }
 
@@ -210,7 +209,7 @@ typedef struct balance {
 // and with motion outwards, and once it has its spin back there is no room for that.
 static void judge(component *a, const balance *b) {
     const double over = b->motion - b->room, more = b->has - b->had, gain = over < more ? over : more;
-    a->exceeds = b->room < -b->rounding;
+    a->exceeds = b->room < -b->rounding && !(a->is_rigid && a->elastic <= a->rigid_elastic + b->rounding);
     a->gains = (gain > -b->room ? gain : -b->room) > MUCH * (b->has + b->fall) + b->rounding;
     a->keep = velocity_scale_of(b->room, b->motion);
 }
@@ -228,7 +227,8 @@ static void check_free(const mspring_network *network, component *a, const centr
         o->left * (a->origin[2] + a->vx) + o->seconds * ((double)network->settings.gravity_x + fx / mass);
     const double vy =
         o->left * (a->origin[3] + a->vy) + o->seconds * ((double)network->settings.gravity_y + fy / mass);
-    const double work = s[MSPRINGI_EFFECT_WORK] - (fx * (c->x - a->x) + fy * (c->y - a->y));
+    const double work = s[MSPRINGI_EFFECT_WORK] - (fx * (c->x - a->x) + fy * (c->y - a->y)) +
+                        0.5 * mass * (a->push_x * a->push_x + a->push_y * a->push_y);
     const double turns = c->inertia > 0.0 ? c->spin / c->inertia : 0.0;
     const double turn = c->inertia > 0.0 ? spin / c->inertia : 0.0;
     const double rest = c->kinetic - 0.5 * c->spin * turns;
@@ -559,7 +559,7 @@ static void remember_elastic(const mspring_network *network) {
 bool mspringi_budget_end(mspring_network *network, float h, mspringi_field base, bool may_halve) {
     mspringi_budget_sums all = {.network = network,
                                 .motion = motion_of(network),
-                                .before = motion_before(network),
+                                .before = mspringi_budget_motion_before(network),
                                 .base = base,
                                 .h = h,
                                 .is_after = true};
@@ -589,9 +589,9 @@ bool mspringi_budget_end(mspring_network *network, float h, mspringi_field base,
 
 void mspringi_budget_undo(mspring_network *network) {
     const budget_of *budget = &mspringi_implicit_of(network)->budget;
-    const size_t slots = mspringi_slot_count(network);
-    const size_t kept = budget->is_in_backup ? mspringi_used_slots(network) : slots;
-    const float *before = motion_before(network).x;
+    const size_t slots = mspringi_slot_count(network),
+                 kept = budget->is_in_backup ? mspringi_used_slots(network) : slots;
+    const float *before = mspringi_budget_motion_before(network).x;
     for (size_t i = 0; i < mspringi_state_arrays(network); ++i)
         memcpy(network->state.x + i * slots, before + i * slots, kept * sizeof *before);
     if (network->floor)

@@ -20,7 +20,8 @@
 ///     help them.
 ///   - If the gain is large, or moving back does not help, the substep is repeated by implicit Euler with twice the
 ///     iterations. If that does not help, two halves are taken, and so on, MSPRINGI_MOST_HALVINGS times. The
-///     shortest one is always accepted. The next MSPRINGI_RECOVERY_SUBSTEPS are of implicit Euler, too.
+///     shortest one is always accepted, and each one once the step has spent its work (work.c). The next
+///     MSPRINGI_RECOVERY_SUBSTEPS are of implicit Euler, too.
 ///
 /// All sums have a fixed order, whatever the number of workers: blocks by kernels, then components in the order of
 /// blocks.
@@ -85,11 +86,15 @@ typedef struct mspringi_component_budget {
     double internal, flight; ///< before: elastic and kinetic about it; kinetic of it, J
     double keep;             ///< new velocities are keep v + (add_x, add_y) + turn x (r - centre)
     double add_x, add_y, turn;
-    double shift_x, shift_y; ///< of all positions, m
-    bool is_free;            ///< neither a pin nor the floor holds it
-    bool is_stopped;         ///< the floor or a collider is in its way, though it gave it no impulse
-    uint32_t stop_slot;      ///< slot where the floor is; MSPRING_NONE: a collider
-    double share;            ///< share of its way back that it moves
+    double shift_x, shift_y;               ///< of all positions, m
+    bool is_free;                          ///< neither a pin nor the floor holds it
+    bool is_stopped;                       ///< the floor or a collider is in its way, though it gave it no impulse
+    uint32_t stop_slot;                    ///< slot where the floor is; MSPRING_NONE: a collider
+    double share;                          ///< share of its way back that it moves
+    bool is_rigid;                         ///< contact moves it as a rigid body
+    double rigid_vx, rigid_vy, rigid_turn; ///< m/s, rad/s: of that motion before impulses
+    double rigid_elastic;                  ///< energy of its springs, which keep their lengths, J
+    double push_x, push_y, push_turn;      ///< m/s, rad/s: by these; 0 if it is none
     double floor_impulse_x, floor_impulse_y; ///< N s that the floor has given it, but for what is counted
     uint32_t support_count;                  ///< floor contacts that hold it
     uint32_t second_support_slot;            ///< slot of another particle that the floor acts on
@@ -136,6 +141,9 @@ void mspringi_budget_find_frames(const mspring_network *network);
 
 /// Save the state before a substep.
 void mspringi_budget_begin(mspring_network *network);
+
+/// The state before the substep.
+mspringi_motion mspringi_budget_motion_before(const mspring_network *network);
 
 /// Apply the budget after a substep of h seconds and the floor. Return false if the substep should be halved, only
 /// with may_halve. Then mspringi_budget_undo() takes it back.

@@ -449,7 +449,8 @@ void mspringi_implicit_keep(mspringi_implicit *n) {
     n->has_changed = false;
     n->kept_age = n->has_constraints_in_coarse ? 0 : n->age;
     n->kept_restarts = n->history.restarts;
-    n->solves = n->pass_count = 0;
+    n->product_count = n->pass_count = n->intervals_left = 0;
+    n->is_spent = false;
     if (n->kept_age > 0)
         mspringi_coarse_keep(&n->coarse);
 }

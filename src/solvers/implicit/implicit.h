@@ -48,14 +48,6 @@ typedef struct mspringi_history {
     uint32_t restarts;     ///< coming substeps of implicit Euler, because the history is missing or of no use
 } mspringi_history;
 
-/// Iterations of a step after which its substeps are accepted: no interval is repeated, and contact acts by
-/// impulses alone. They bound the product of substeps, intervals, halvings, passes and nested iterations. (Heaps
-/// and presses need 8,000. A tangle of 87 springs with contact and angles took 310,000 in a substep, 1.3 s; these
-/// take 70 ms. 35 thrown particles with 16 substeps: 0.10 s instead of 0.63 s.) A host that asks for many
-/// iterations gets more.
-#define MSPRINGI_MOST_SOLVES 16384u
-#define MSPRINGI_TIMES_SOLVED 32u
-
 /// Contact between bodies in a substep: with friction; without it, where friction and normal forces would raise
 /// each other; by impulses after the substep only.
 typedef enum mspringi_contact_mode {
@@ -72,9 +64,12 @@ typedef struct mspringi_implicit {
     bool has_constraints_in_coarse; ///< with bounds: they come and go, so it is not used again
     uint32_t kept_age;              ///< before the step; 0: nothing to restore
     uint32_t kept_restarts;         ///< restarts of the history before the step
-    uint32_t retry_count;           ///< intervals of this substep that were undone
-    uint32_t solves;                ///< products with A or its inverse in this step
+    uint32_t product_count;         ///< products with A or its inverse in this step; a direct solution is one more
     uint32_t pass_count;            ///< solutions in this step
+    uint32_t intervals_left;        ///< of the substep, behind the present one
+    double work_rate;               ///< work that a second is allowed
+    double most_work;               ///< of this step up to the present substep: beyond it nothing is repeated
+    bool is_spent;                  ///< something was not, for that reason
     double scale;                   ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup: before the step, once the step has changed it
@@ -105,6 +100,7 @@ typedef struct mspringi_implicit {
     bool uses_euler;          ///< the present substep is of implicit Euler: an impact, or a history of no use
     bool restarts_with_euler; ///< repeat it as one of implicit Euler
     bool must_solve_again;    ///< solve again: the active set has changed
+    bool is_cut_off;          ///< it has, but no work is left for that
     mspringi_contact_mode contact_mode; ///< of the present substep
     bool is_piece;                      ///< it is a half of one that gained energy, or of such a half
     mspringi_system system;
@@ -221,20 +217,18 @@ static inline bool mspringi_is_coupled(const mspring_network *network, const msp
     return n->is_coupled && n->is_coupled[slot - (size_t)network->topology.loose_first * MSPRINGI_WIDTH];
 }
 
-/// True if a step may take more iterations.
-static inline bool mspringi_may_iterate(const mspringi_implicit *n) {
-    return n->solves < MSPRINGI_MOST_SOLVES + MSPRINGI_TIMES_SOLVED * n->iterations;
-}
+/* work.c: in the unit of mspring_solver_def.most_work */
 
-/* work.c */
-
-/// Allow a substep with contact the work that one of its size takes.
-void mspringi_implicit_allow_work(const mspring_network *network);
-/// Count an iteration, or a solution with the factor; a factorisation.
-void mspringi_implicit_count_solve(const mspring_network *network);
-void mspringi_implicit_count_factorisation(const mspring_network *network);
-/// True if contact has taken too much work. The step will be rejected, so nothing more is done for it.
-bool mspringi_implicit_is_too_much(const mspring_network *network);
+/// Work of a substep in which nothing is repeated.
+double mspringi_implicit_calm_work(const mspringi_implicit *n);
+/// Work of this step so far.
+double mspringi_implicit_work(const mspringi_implicit *n);
+/// Set the work that a second of the coming step is allowed.
+void mspringi_implicit_allow_work(mspringi_implicit *n, double rate);
+/// True if something may be repeated: the intervals that are still to come have work left, too.
+bool mspringi_implicit_may_repeat(mspringi_implicit *n);
+/// Return so many intervals of a substep, or as many as have work left.
+uint32_t mspringi_implicit_limit_intervals(mspringi_implicit *n, uint32_t intervals);
 
 /* integrator.c */
 

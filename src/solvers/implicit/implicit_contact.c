@@ -41,6 +41,11 @@
 #define PIECE_SHARE 1.0
 #define MOST_PIECES 40u
 
+/// Comparisons of points with edges that a substep is allowed, as its intervals find constraints anew, and for each
+/// particle.
+#define WORK_OF_SUBSTEP 2621440u
+#define WORK_OF_PARTICLE 3000u
+
 typedef mspringi_implicit_constraint hold;
 
 static mspringi_contacts *pairs_of(const mspring_network *network) {
@@ -111,6 +116,12 @@ static void begin_constraint(const mspring_network *network, const mspringi_cont
     }
     to->spare = t->gap > 0.0 ? t->gap + h * t->target_speed : 0.0;
     to->is_active = product(to->across, way) - h * t->target_speed + to->spare < 0.0;
+}
+
+void mspringi_implicit_contact_allow_work(const mspring_network *network) {
+    mspringi_contacts *contacts = pairs_of(network);
+    if (contacts && !contacts->is_out_of_room)
+        contacts->most_work += WORK_OF_SUBSTEP + WORK_OF_PARTICLE * (uint64_t)network->topology.particle_count;
 }
 
 bool mspringi_implicit_contact_begin(mspring_network *network, float h) {
@@ -274,18 +285,22 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
     if (!contacts || contacts->constraint_count == 0)
         return;
     // If contact acts by impulses alone, tolerances of many intervals would add up.
-    const bool is_isolated = mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES;
-    const double given = is_isolated ? 0.0 : MENDED_SHARE * contacts->thickness;
+    const bool is_rigid = mspringi_implicit_of(network)->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES;
+    const double given = is_rigid ? 0.0 : MENDED_SHARE * contacts->thickness;
     const mspringi_contact_nodes *k = &contacts->nodes;
     for (uint32_t i = 0; i < k->particle_count; ++i) {
         const uint32_t slot = slot_of(network, i);
         k->v[i].x = (mspringi_x_of(s, slot) - k->x[i]) / h;
         k->v[i].y = (mspringi_y_of(s, slot) - k->y[i]) / h;
     }
+    const mspringi_motion before = mspringi_budget_motion_before(network);
+    if (is_rigid)
+        mspringi_rigid_contact_find_impulses(network, &before, h, UNSEEN_SHARE * contacts->thickness);
     for (uint32_t sweep = 0, again = 1; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
         again = 0;
         for (uint32_t i = 0; i < contacts->constraint_count; ++i)
-            again |= mend(contacts, &contacts->constraints[i], h, given);
+            again |= !(is_rigid && mspringi_rigid_contact_has(network, &contacts->constraints[i])) &&
+                     mend(contacts, &contacts->constraints[i], h, given);
         any |= again;
     }
     // Colliders last: nothing passes them, whatever else lies deeper for it.
@@ -293,9 +308,10 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
         again = 0;
         for (uint32_t i = 0; i < contacts->constraint_count; ++i)
             again |= contacts->constraints[i].collider != MSPRING_NONE &&
+                     !(is_rigid && mspringi_rigid_contact_has(network, &contacts->constraints[i])) &&
                      mend(contacts, &contacts->constraints[i], h, given);
     }
-    for (uint32_t i = 0; i < k->particle_count && any; ++i) {
+    for (uint32_t i = 0; i < k->particle_count && (any || is_rigid); ++i) {
         const uint32_t slot = slot_of(network, i);
         const double vx = k->v[i].x - (mspringi_x_of(s, slot) - k->x[i]) / h;
         const double vy = k->v[i].y - (mspringi_y_of(s, slot) - k->y[i]) / h;
@@ -304,6 +320,8 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
         mspringi_set_velocity_in_full(s, slot, mspringi_vx_of(s, slot) + vx, mspringi_vy_of(s, slot) + vy);
         mspringi_move_by(s, slot, (float)(h * vx), (float)(h * vy));
     }
+    if (is_rigid)
+        mspringi_rigid_contact_move(network, &before, h);
 }
 
 /* ---------------------------------------------------------------------------------------------------- the check */
@@ -465,8 +483,13 @@ static void account(const mspringi_budget_sums *all, const mspringi_contact_cons
     const double fx = (c->across[i][0] * t->normal_impulse + c->along[i][0] * t->tangent_impulse) / (double)all->h;
     const double fy = (c->across[i][1] * t->normal_impulse + c->along[i][1] * t->tangent_impulse) / (double)all->h;
     const double mass = a->sums[MSPRINGI_MOMENT_MASS];
-    const double x = (double)all->motion.x[slot] + (double)all->motion.low_x[slot] - k->x[node];
-    const double y = (double)all->motion.y[slot] + (double)all->motion.low_y[slot] - k->y[node];
+    double x = (double)all->motion.x[slot] + (double)all->motion.low_x[slot] - k->x[node];
+    double y = (double)all->motion.y[slot] + (double)all->motion.low_y[slot] - k->y[node];
+    if (a->is_rigid) { // its velocity changes at once: the work is that of the mean
+        const double turn = a->rigid_turn + 0.5 * a->push_turn, h = (double)all->h;
+        x = h * (a->rigid_vx + 0.5 * a->push_x - turn * (k->y[node] - a->origin[1] - a->y));
+        y = h * (a->rigid_vy + 0.5 * a->push_y + turn * (k->x[node] - a->origin[0] - a->x));
+    }
     const double rx = k->x[node] - a->origin[0] + 0.5 * (a->sums[MSPRINGI_MOMENT_X] / mass - a->x);
     const double ry = k->y[node] - a->origin[1] + 0.5 * (a->sums[MSPRINGI_MOMENT_Y] / mass - a->y);
     a->sums[MSPRINGI_EFFECT_X] += fx;

@@ -86,18 +86,18 @@ static void substeps(mspring_network *network, void *object, float h, mspringi_f
     mspringi_implicit_run_substeps(network, h, base, count);
 }
 
-/// Products that count as one of work.
-#define PRODUCTS_OF_ONE 8.0
-
 static double calm_work(const void *object) {
-    const mspringi_implicit *n = object;
-    return 1.0 + (n->is_direct ? 1.0 : (double)(n->iterations - 1)) / PRODUCTS_OF_ONE; // the last step takes none
+    return mspringi_implicit_calm_work(object);
 }
 
-static double count_work(const void *object) {
+static void allow_work(void *object, double rate) {
+    mspringi_implicit_allow_work(object, rate);
+}
+
+static double count_work(const void *object, bool *is_spent) {
     const mspringi_implicit *n = object;
-    const uint32_t products = n->solves + (n->is_direct ? n->pass_count : 0); // each solution is one, uncounted
-    return (double)n->pass_count + (double)products / PRODUCTS_OF_ONE;
+    *is_spent = n->is_spent;
+    return mspringi_implicit_work(n);
 }
 
 static void keep(void *object) {
@@ -207,10 +207,10 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
     .has_implicit_areas = true, .create = create, .build = build, .fits = fits, .adjust = adjust,                  \
     .destroy = destroy, .relocate = relocate, .reserve = reserve, .get_def = get_def, .take_over = take_over,      \
     .get_basis = get_basis, .set_basis = set_basis, .substeps = substeps, .calm_work = calm_work,                  \
-    .count_work = count_work, .keep = keep, .restore = restore, .forget = forget, .is_finite = is_finite,          \
-    .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring, .new_floor = new_floor,        \
-    .is_isolated = is_isolated, .has_isolated = has_isolated, .describe = describe, .save = save, .check = check,  \
-    .load = load
+    .allow_work = allow_work, .count_work = count_work, .keep = keep, .restore = restore, .forget = forget,        \
+    .is_finite = is_finite, .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring,        \
+    .new_floor = new_floor, .is_isolated = is_isolated, .has_isolated = has_isolated, .describe = describe,        \
+    .save = save, .check = check, .load = load
 
 const mspringi_solver_ops mspringi_implicit_ops = {.can_add = true, BOTH};
 

@@ -11,8 +11,9 @@
 /// as one; with 4 they are 1.3 to 1.7 times as fast.)
 ///
 /// A sleep costs some 50 us, a product with the matrix 6 ns a slot. So a substep bears one sleep more for each
-/// 64,000 slots of its products, and each further worker as many. (With 6 for all together, two workers of 1200x1200
-/// were sent home in five substeps of six, though each had a core: a barrier there waits longer than it polls.)
+/// 64,000 slots of its products, and each further worker as many. (With 6 for all together, two workers of
+/// 1200x1200 were sent home in five substeps of six, though each had a core: a barrier there waits longer than it
+/// polls.)
 #define BEARABLE_SLEEPS 6
 #define SLOTS_OF_SLEEP 64000
 #define SHORTEST_PATIENCE 4
@@ -81,9 +82,11 @@ static bool solve_with_terms(const mspringi_implicit_substep *substep, mspringi_
             return false;
         *alpha = solve(substep, member);
         mspringi_team_barrier(member);
-        if (member->index == 0)
-            n->must_solve_again = update_active_set(network, *alpha, pass) && mspringi_may_iterate(n) &&
-                                  !mspringi_implicit_is_too_much(network);
+        if (member->index == 0) {
+            const bool has_changed = update_active_set(network, *alpha, pass);
+            n->must_solve_again = has_changed && mspringi_implicit_may_repeat(n);
+            n->is_cut_off = has_changed && !n->must_solve_again;
+        }
         mspringi_team_barrier(member);
         if (n->restarts_with_euler)
             return false;
@@ -158,18 +161,20 @@ static void run_team(mspringi_implicit_substep *substep) {
 static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks), products = n->solves;
+    const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks), products = n->product_count;
     choose_team(substep);
     n->is_piece = is_piece;
-    n->uses_euler = mspringi_implicit_contact_begin(network, substep->h);
-    n->restarts_with_euler = false;
+    n->uses_euler =
+        mspringi_implicit_contact_begin(network, substep->h) || n->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES;
+    n->restarts_with_euler = n->is_cut_off = false;
     run_team(substep);
     if (n->restarts_with_euler) {
         n->uses_euler = true;
         run_team(substep);
     }
     if (substep->progress)
-        judge_team(n, mspringi_tasks_sleeps(network->tasks) - sleeps, substep->workers, n->solves - products);
+        judge_team(n, mspringi_tasks_sleeps(network->tasks) - sleeps, substep->workers,
+                   n->product_count - products);
     if (network->floor)
         mspringi_floor_record_impulses(network, substep->h);
     mspringi_integrator_accept(substep);
@@ -180,34 +185,33 @@ static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
         mspringi_floor_apply_all(network, substep->h);
 }
 
-/// Most repeated intervals in a substep; later ones are accepted. (Heaps need 60. A tangle of some hundred crossing
-/// springs took 8,000 in each, and half a minute for a step.)
-#define MOST_RETAKEN 512u
-
-/// Iterations that take as long as finding the constraints of an interval.
-#define INTERVAL_SOLVES 8u
-
 static void take_halves(mspringi_implicit_substep *substep, uint32_t halvings);
+
+// True if contact has no room for its constraints. The step will be rejected, so nothing more is done for it.
+static bool is_out_of_room(const mspring_network *network) {
+    return network->contacts && network->contacts->is_out_of_room;
+}
 
 // Take a substep of substep->h. If it exceeds the energy budget, repeat it by implicit Euler and with more
 // iterations, then in halves.
 static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    if (mspringi_implicit_is_too_much(network))
+    if (is_out_of_room(network))
         return;
     const bool are_near = mspringi_implicit_contact_is_near(network), watches = substep->watches || are_near;
-    const bool may_halve = tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS) &&
-                           n->retry_count < MOST_RETAKEN && mspringi_may_iterate(n);
-    if (tries == 0)
-        n->contact_mode = mspringi_may_iterate(n) ? MSPRINGI_CONTACT_WITH_FRICTION : MSPRINGI_CONTACT_BY_IMPULSES;
+    const bool may_repeat = mspringi_implicit_may_repeat(n);
+    const bool may_halve =
+        may_repeat && tries <= (are_near ? MSPRINGI_MOST_HALVINGS_OF_BODIES : MSPRINGI_MOST_HALVINGS);
+    if (tries == 0 || !may_repeat)
+        n->contact_mode = may_repeat ? MSPRINGI_CONTACT_WITH_FRICTION : MSPRINGI_CONTACT_BY_IMPULSES;
     if (watches)
         mspringi_budget_begin(network);
     else
         n->budget.knows_elastic = false;
-    n->solves += are_near ? INTERVAL_SOLVES : 0;
     run_substep(substep, tries > 0);
-    const bool is_sound = mspringi_implicit_contact_kept_energy(network, substep->h);
+    const bool is_sound =
+        !(n->is_cut_off && are_near) && mspringi_implicit_contact_kept_energy(network, substep->h);
     const bool is_last = !may_halve && (is_sound || n->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES);
     const bool is_thrown = may_halve && mspringi_implicit_contact_missed_pairs(network, substep->h);
     if (!watches || ((is_sound || is_last) && !is_thrown &&
@@ -218,7 +222,6 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
         return;
     }
     mspringi_budget_undo(network);
-    n->retry_count++;
     n->history.restarts = MSPRINGI_RECOVERY_SUBSTEPS;
     n->age = 0;
     if (!is_sound || !may_halve)
@@ -231,32 +234,37 @@ static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
 
 static void take_halves(mspringi_implicit_substep *substep, uint32_t tries) {
     mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const float h = substep->h;
     substep->h = 0.5f * h;
     for (int half = 0; half < 2; ++half) {
-        mspringi_implicit_of(network)->age = 0; // the coarse matrix is one of another substep
+        n->age = 0; // the coarse matrix is one of another substep
         if (network->floor)
             mspringi_floor_save_positions(network, substep->h);
+        n->intervals_left += half == 0;
         take_substep(substep, tries);
+        n->intervals_left -= half == 0;
     }
-    mspringi_implicit_of(network)->age = 0;
+    n->age = 0;
     substep->h = h;
 }
 
 // Divide a substep into intervals before hard impacts on the floor or between bodies.
 static void take_pieces(mspringi_implicit_substep *substep) {
     mspring_network *network = substep->network;
+    mspringi_implicit *n = mspringi_implicit_of(network);
     const float h = substep->h;
     const bool has_floor = network->floor != NULL;
     if (has_floor)
         mspringi_floor_save_positions(network, h);
     const uint32_t by_floor = has_floor ? mspringi_floor_count_intervals(network, h) : 1;
     const uint32_t by_bodies = mspringi_implicit_contact_count_intervals(network, h);
-    const uint32_t pieces = by_floor > by_bodies ? by_floor : by_bodies;
+    const uint32_t pieces = mspringi_implicit_limit_intervals(n, by_floor > by_bodies ? by_floor : by_bodies);
     substep->h = h / (float)pieces;
     for (uint32_t i = 0; i < pieces; ++i) {
         if (pieces > 1 && has_floor)
             mspringi_floor_save_positions(network, substep->h);
+        n->intervals_left = pieces - 1 - i;
         take_substep(substep, 0);
         if (has_floor)
             mspringi_floor_apply_silt(network, substep->h);
@@ -274,8 +282,8 @@ void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_
     mspringi_implicit_substep substep = {
         .network = network, .base = base, .h = h, .watches = mspringi_guard_checks_limit(network->settings.guard)};
     for (uint32_t i = 0; i < count; ++i) {
-        mspringi_implicit_of(network)->retry_count = 0;
-        mspringi_implicit_allow_work(network);
+        mspringi_implicit_of(network)->most_work += mspringi_implicit_of(network)->work_rate * (double)h;
+        mspringi_implicit_contact_allow_work(network);
         if (network->floor || mspringi_implicit_contact_is_near(network))
             take_pieces(&substep);
         else

@@ -52,6 +52,8 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
 static inline bool mspringi_implicit_contact_is_near(const mspring_network *network) {
     return network->contacts && network->contacts->quiet_substeps == 0;
 }
+/// Allow a substep the comparisons that one of its size takes.
+void mspringi_implicit_contact_allow_work(const mspring_network *network);
 /// Make the constraints of an interval of h. Return true if one is active. The second one: intervals that the
 /// substep should have.
 bool mspringi_implicit_contact_begin(mspring_network *network, float h);
@@ -71,5 +73,15 @@ void mspringi_implicit_contact_count_impulses(mspring_network *network, float h)
 void mspringi_implicit_contact_push_free_particles(const mspring_network *network);
 /// Add contact impulses to the components' sums after a substep.
 void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all);
+
+/* rigid_contact.c: instead of contact in the system, after an interval of h */
+
+/// Find the motion of bodies near others, and the impulses that keep these apart by more than unseen.
+void mspringi_rigid_contact_find_impulses(const mspring_network *network, const mspringi_motion *before, double h,
+                                          double unseen);
+/// True if a side of the constraint is of such a body.
+bool mspringi_rigid_contact_has(const mspring_network *network, const mspringi_contact_constraint *t);
+/// Move them from where they were before.
+void mspringi_rigid_contact_move(const mspring_network *network, const mspringi_motion *before, double h);
 
 #endif

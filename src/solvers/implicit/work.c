@@ -1,73 +1,51 @@
-/// Work of the solver while bodies are near, in the unit of contact: a comparison of a point with an edge, 25 ns.
+/// Work of a step, in the unit of mspring_solver_def.most_work: its passes, and its products with the matrix.
 ///
-/// Active sets, halvings and intervals repeat substeps, and each repetition may factor the matrix. Contact counts
-/// its comparisons and refuses the step where they are too many; here are what takes as long.
-#include "features/contact/contacts.h"
+/// It is counted from what is computed, so it is the same for any number of workers. Beyond what a substep is
+/// allowed nothing is repeated: intervals are accepted by the energy budget, and bodies that touch are rigid
+/// (rigid_contact.c).
 #include "solvers/implicit/implicit.h"
 
-/// Springs that an iteration takes in the time of a comparison; comparisons in that of an iteration without any,
-/// and of a constraint in an iteration or solution.
-#define SPRINGS_OF_WORK 5.0
-#define WORK_OF_ITERATION 60.0
-#define WORK_OF_CONSTRAINT 1.5
+#include <math.h>
 
-/// Numbers of the factor that a solution reads and that a factorisation writes, and products that it subtracts, in
-/// that time.
-#define READS_OF_WORK 40.0
-#define WRITES_OF_WORK 6.0
-#define PRODUCTS_OF_WORK 1600.0
+/// Products that count as one.
+#define PRODUCTS_OF_ONE 8.0
 
-/// Work that a substep is allowed: 65 ms, 75 us for a particle, and solutions with a factorisation or with so many
-/// iterations each. (A substep takes 30 us a particle of a grid of 3,200 that is folded onto itself, 15 of a comb
-/// of 8,000, and a millisecond a particle of a chain of 90 in a tangle.)
-#define WORK_OF_SUBSTEP 0x1.4p21
-#define WORK_OF_PARTICLE 3000.0
-#define FREE_SOLUTIONS 16.0
-#define ITERATIONS_OF_SOLUTION 64.0
+/// Calm steps for each that the host allows: bodies that touch take 16 times the iterations, and some passes. (With
+/// 4, a stack of five at rest was cut off in a third of its steps, with 16 in one of 200. A heap of eight beams of
+/// 12x3 took up to 330 without a bound, tangles of rods 3,000; overlaps are as deep with 16.)
+#define TIMES_ALLOWED 16.0
 
-static double work_of_constraints(const mspring_network *network) {
-    return WORK_OF_CONSTRAINT * (double)network->contacts->constraint_count;
+static double work_of_pass(const mspringi_implicit *n, double products) {
+    return 1.0 + (n->is_direct ? 1.0 : products) / PRODUCTS_OF_ONE;
 }
 
-// Without constraints.
-static double work_of_solve(const mspring_network *network) {
-    const mspringi_implicit *n = mspringi_implicit_of(network);
-    return n->is_direct ? WORK_OF_ITERATION + (double)n->direct.plan.panel_reals / READS_OF_WORK
-                        : WORK_OF_ITERATION + (double)network->topology.spring_count / SPRINGS_OF_WORK;
+// Work of an interval that repeats nothing: one pass, with twice the iterations.
+static double work_of_interval(const mspringi_implicit *n) {
+    return work_of_pass(n, 2.0 * (double)n->iterations);
 }
 
-static double work_of_factorisation(const mspring_network *network) {
-    const mspringi_cholesky_symbolic *plan = &mspringi_implicit_of(network)->direct.plan;
-    return work_of_solve(network) + (double)plan->panel_reals / WRITES_OF_WORK +
-           plan->multiply_adds / PRODUCTS_OF_WORK;
+double mspringi_implicit_calm_work(const mspringi_implicit *n) {
+    return work_of_pass(n, (double)n->iterations - 1.0); // the last step takes none
 }
 
-static bool is_counted(const mspring_network *network) {
-    return network->contacts && network->contacts->quiet_substeps == 0;
+double mspringi_implicit_work(const mspringi_implicit *n) {
+    const uint32_t products = n->product_count + (n->is_direct ? n->pass_count : 0); // each solution is one
+    return (double)n->pass_count + (double)products / PRODUCTS_OF_ONE;
 }
 
-void mspringi_implicit_allow_work(const mspring_network *network) {
-    const double solution = mspringi_implicit_of(network)->is_direct
-                                ? work_of_factorisation(network)
-                                : ITERATIONS_OF_SOLUTION * work_of_solve(network);
-    if (is_counted(network) && !network->contacts->is_out_of_room)
-        network->contacts->most_work +=
-            (uint64_t)(WORK_OF_SUBSTEP + WORK_OF_PARTICLE * network->topology.particle_count +
-                       FREE_SOLUTIONS * solution);
+void mspringi_implicit_allow_work(mspringi_implicit *n, double rate) {
+    n->work_rate = TIMES_ALLOWED * rate;
+    n->most_work = 0.0;
 }
 
-void mspringi_implicit_count_solve(const mspring_network *network) {
-    mspringi_implicit_of(network)->solves++;
-    if (is_counted(network))
-        network->contacts->work += (uint64_t)(work_of_solve(network) + work_of_constraints(network));
+bool mspringi_implicit_may_repeat(mspringi_implicit *n) {
+    const bool is_left = mspringi_implicit_work(n) + n->intervals_left * work_of_interval(n) < n->most_work;
+    n->is_spent |= !is_left;
+    return is_left;
 }
 
-void mspringi_implicit_count_factorisation(const mspring_network *network) {
-    if (is_counted(network))
-        network->contacts->work += (uint64_t)work_of_factorisation(network);
-}
-
-bool mspringi_implicit_is_too_much(const mspring_network *network) {
-    return network->contacts &&
-           (network->contacts->is_out_of_room || mspringi_contact_is_too_much(network->contacts));
+uint32_t mspringi_implicit_limit_intervals(mspringi_implicit *n, uint32_t intervals) {
+    const double most = fmax((n->most_work - mspringi_implicit_work(n)) / work_of_interval(n), 1.0);
+    n->is_spent |= (double)intervals > most;
+    return (double)intervals > most ? (uint32_t)most : intervals;
 }

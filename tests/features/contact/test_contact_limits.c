@@ -195,8 +195,9 @@ static void hubs_are_counted(void **state) {
     check_refusal(network, 0);
 }
 
-// Rods that lie across each other: active sets and pieces take thousands of solutions. (They took 0.4 s a step.)
-static void heaps_of_rods_are_counted(void **state) {
+// Rods that lie across each other: active sets and intervals took thousands of solutions, and steps were refused. The
+// work of a step bounds them (test_iteration_limit), so nothing is.
+static void heaps_of_rods_are_not_refused(void **state) {
     (void)state;
     for (uint32_t solver = MSPRING_SOLVER_IMPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
         mspring_builder *builder = support_builder();
@@ -212,12 +213,7 @@ static void heaps_of_rods_are_counted(void **state) {
         def.solver = (mspring_solver)solver;
         mspring_network *network = support_network(builder, &def);
         check_ok(touch(network, 0.2));
-        const uint64_t hash = support_hash(network);
-        check_error(mspring_network_step(network, 1.0 / 60), MSPRING_ERROR_LIMIT);
-        check_contains(mspring_network_error(network), "impulses and solutions that take as long");
-        assert_true(network->contacts->most_work < 7000000);                           // 25 to 35 ns each
-        assert_true(network->contacts->work <= network->contacts->most_work + 600000); // 128 iterations of 4,700
-        assert_true(support_hash(network) == hash);
+        check_ok(mspring_network_step(network, 1.0 / 60));
         mspring_network_destroy(network);
     }
 }
@@ -314,7 +310,7 @@ int main(void) {
         cmocka_unit_test(crowds_end_at_the_first_pair_too_many),
         cmocka_unit_test(refused_steps_end_their_work),
         cmocka_unit_test(hubs_are_counted),
-        cmocka_unit_test(heaps_of_rods_are_counted),
+        cmocka_unit_test(heaps_of_rods_are_not_refused),
         cmocka_unit_test(hubs_at_rest_are_no_burden),
     };
     return cmocka_run_group_tests_name("contact_limits", tests, NULL, NULL);

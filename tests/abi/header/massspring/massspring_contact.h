@@ -76,10 +76,10 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// MSPRING_ERROR_MEMORY, and beyond max_capacity MSPRING_ERROR_LIMIT, with the state of before.
 ///
 /// A step returns MSPRING_ERROR_LIMIT, too, where it takes too much work: comparisons of points of the outline
-/// with springs near them that form no pair, visits of constraints beyond 768 for each, and iterations, solutions and
-/// factorisations of the implicit and direct solver while bodies are near. It may take what 3.1 million comparisons do,
-/// about 75 ms, and 32 for each point; with these solvers in each substep also 2.6 million, 3000 for each particle, and
-/// 16 solutions. Large scenes stay far below. The message names the particle with the most springs of the outline.
+/// with springs near them that form no pair, and visits of constraints beyond 768 for each. It may take what 3.1 million
+/// comparisons do, about 75 ms, and 32 for each point; with the implicit and the direct solver in each substep also 2.6
+/// million, and 3000 for each particle. Large scenes stay far below. The message names the particle with the most springs
+/// of the outline.
 ///
 /// Springs inside a body are told by the triangles at them. In networks where hundreds of particles are joined to
 /// hundreds each, that may take over 16 million comparisons and 32 for each spring: then the call fails.
