@@ -34,12 +34,15 @@ static bool prepare(mspring_network *network, mspringi_attempt *attempt, mspring
     return attempt->result == MSPRING_OK;
 }
 
-// Substeps of the next attempt with the host's solver: as set, or chosen for this step.
+// Substeps of the next attempt with the host's solver: as set, or chosen for this step. If they are too many, a
+// calm step has as many as there may be.
 static mspring_result choose_substeps(mspring_network *network, double dt, bool may_raise, uint32_t *calm) {
-    if (mspringi_can_choose_substeps(network))
-        return mspringi_pace_choose(network, dt, may_raise, calm);
     *calm = network->substeps;
-    return MSPRING_OK;
+    if (!mspringi_can_choose_substeps(network))
+        return MSPRING_OK;
+    const mspring_result result = mspringi_pace_choose(network, dt, may_raise, calm);
+    *calm = result == MSPRING_OK ? *calm : network->max_substeps;
+    return result;
 }
 
 /* -------------------------------------------------------------------------------------------------- a fallback */
@@ -56,11 +59,11 @@ static const mspringi_solver *fallback_of(const mspring_network *network) {
 // It takes the substeps of calm motion. Where even these are more than max_substeps, it takes as many as cost that
 // many of the explicit solver: no frame is late for it. It has no history.
 static bool fall_back(mspring_network *network, mspringi_attempt *attempt, const mspringi_solver *fallback) {
-    uint32_t substeps;
-    if (choose_substeps(network, attempt->given_dt, false, &substeps) != MSPRING_OK)
-        substeps = (uint32_t)((double)network->max_substeps / mspringi_solver_calm_work(fallback));
+    uint32_t calm, substeps;
+    const bool is_chosen = choose_substeps(network, attempt->given_dt, false, &calm) == MSPRING_OK;
+    substeps = is_chosen ? calm : (uint32_t)((double)calm / mspringi_solver_calm_work(fallback));
     if (!(attempt->calm_work > 0.0)) // it is the first attempt
-        attempt->calm_work = fmax((double)substeps, 1.0) * mspringi_solver_calm_work(&network->solver);
+        attempt->calm_work = (double)calm * mspringi_solver_calm_work(&network->solver);
     substeps = fallback->ops->takes_one_substep || substeps == 0 ? 1 : substeps;
     mspringi_solver_forget(fallback);
     return prepare(network, attempt, MSPRINGI_BY_FALLBACK, fallback, substeps);
@@ -162,7 +165,7 @@ static bool grow(mspring_network *network, mspringi_attempt *attempt) {
 void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages,
                             mspringi_attempt *first) {
     const mspringi_solver *fallback = fallback_of(network);
-    uint32_t calm = network->substeps;
+    uint32_t calm;
     first->stages = stages;
     first->solver = &network->solver;
     first->group = 0;
