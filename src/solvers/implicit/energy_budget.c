@@ -571,8 +571,8 @@ bool mspringi_budget_end(mspring_network *network, float h, mspringi_field base,
         const bool gains = check_all(network, &o, &exceeds);
         if ((gains || (exceeds && step > MOST_STEPS_BACK)) && may_halve)
             return false;
-        if (mspringi_implicit_of(network)->contact_mode != MSPRINGI_CONTACT_BY_IMPULSES &&
-            mspringi_implicit_contact_gained_energy(network, o.h, base))
+        if (mspringi_implicit_contact_gained_energy(network, o.h, base) &&
+            !mspringi_implicit_contact_end_vibration(network))
             return false;
         if (!exceeds || step > MOST_STEPS_BACK)
             break;

@@ -184,6 +184,9 @@ mspringi_mass_centre mspringi_mass_centre_of(const mspringi_component_budget *co
 double mspringi_energy_rounding(const mspringi_component_budget *component, double energy);
 /// True if all bodies in contact gained energy in a substep of h, beyond the work from outside.
 bool mspringi_implicit_contact_gained_energy(const mspring_network *network, double h, mspringi_field base);
+/// Let bodies in contact keep no motion but that of rigid ones, if contact acts by impulses alone; false: it does
+/// not.
+bool mspringi_implicit_contact_end_vibration(const mspring_network *network);
 /// Work of gravity in a substep on a component in contact, J. Impulses between bodies err as much in an interval,
 /// however short. (Without it heaps had seven of ten substeps taken in 16 to 256 intervals, and half of these
 /// without friction.)
