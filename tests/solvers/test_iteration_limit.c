@@ -15,7 +15,7 @@
 #define DT (1.0 / 64)
 
 /// Calm steps for each of most_work, as work.c has it.
-#define TIMES 16.0
+#define TIMES 32.0
 
 typedef enum scene {
     TANGLE,  ///< a thrown chain with angles that touches itself

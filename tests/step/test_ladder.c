@@ -248,7 +248,7 @@ static worst play(mspring_guard guard, uint32_t substeps, uint32_t most_work, ui
     return seen;
 }
 
-/// most_work calm steps and a fallback: 3 if it is clamped, 16 times most_work if it is implicit, and its last
+/// most_work calm steps and a fallback: 3 if it is clamped, 32 times most_work if it is implicit, and its last
 /// pass.
 static void the_worst_step_is_bounded(void **state) {
     (void)state;
@@ -263,7 +263,7 @@ static void the_worst_step_is_bounded(void **state) {
                           (unsigned)seen.flagged);
             // A retry has the substeps that are stable in any shape for a calm step, which are 18 here.
             const double calm = guard == MSPRING_GUARD_RETRY && is_set ? 18.0 / count : 1;
-            const double implicit = (16 * most * (1 + 7 / 8.0) + 3 + 17) / (is_set ? count : 1);
+            const double implicit = (32 * most * (1 + 7 / 8.0) + 3 + 17) / (is_set ? count : 1);
             const double fallback = guard == MSPRING_GUARD_IMPLICIT ? implicit : 3;
             assert_true(seen.work <= most * calm + fallback);
             assert_true(guard < MSPRING_GUARD_IMPLICIT || seen.refused == 0);

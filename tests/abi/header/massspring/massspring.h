@@ -371,7 +371,7 @@ typedef enum mspring_integrator {
 ///    contact, grips, hooks, one-way springs and yielding. That is not counted, as it may depend on the workers.
 ///  - With groups of particles, a step is repeated at most twice for each group that ends out of bounds or with NaN. No
 ///    group is held because many others go wrong.
-///  - The implicit and the direct solver take 16 times as many calm steps, as substeps in which bodies touch have 16 times
+///  - The implicit and the direct solver take 32 times as many calm steps, as substeps in which bodies touch have 16 times
 ///    the iterations, and impacts some intervals, halves and passes. Where that ends, the rest is done once, by implicit
 ///    Euler: the energy budget holds, and bodies near each other move on as rigid ones, which bump without friction. The
 ///    step has MSPRING_STEP_FEWER. The solution that comes to the end may be one of two on top.
