@@ -30,7 +30,7 @@
 #define MSPRING_SVG_LEGEND 50.0  ///< pixels below
 #define MSPRING_SVG_COLOURS 21
 
-/// What a picture is made of.
+/// A picture that is being written, and what it shows.
 typedef struct mspring_svg {
     FILE *file;
     uint32_t particles, springs;

@@ -1,9 +1,8 @@
 /// Holding and releasing groups: those that go wrong are held where they were, and the others go on.
 ///
-/// What is no number may spread in the step in which it comes up: arithmetic with springs that are not there turns
-/// it into more of its kind in neighbouring lanes. So a group that has such numbers is to blame only if it has them
-/// when it steps with none of the others that had. Each of these is tried once. A group that is out of bounds by
-/// numbers is to blame for sure.
+/// NaN may spread in the step in which it comes up: arithmetic with springs that are not there hands it to
+/// neighbouring lanes. So a group that has such numbers is to blame only if it has them when it steps with none of
+/// the others that had. Each of these is tried once. A group that is out of bounds by numbers is to blame for sure.
 #include "store/group_ops.h"
 
 #include <math.h>
