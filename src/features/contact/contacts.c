@@ -22,6 +22,10 @@
 #define PAIRS_OF_OUTLINE 16
 #define PAIRS_BESIDES 4096
 
+/// Most room for pairs, in rooms at first, unless the host gives it: what is crowded more would take seconds a
+/// step. (30 lattices of 5 x 5 that begin in the same place took six.)
+#define TIMES_USUAL 4
+
 /// Room for pairs of each collider point.
 #define PAIRS_OF_POINT 8
 
@@ -75,8 +79,6 @@ static mspring_result check_def(const mspring_network *network, mspring_contact_
         return result;
     if (def->thickness == 0.0)
         def->thickness = 0.5 * shortest;
-    if (def->max_capacity == 0)
-        def->max_capacity = MOST_PAIRS;
     if (!(def->thickness <= THICKEST))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the contact's thickness is 0, and the network has no spring to tell it by");
@@ -252,14 +254,25 @@ static bool reserve_implicit_constraints(mspringi_contacts *contacts, mspringi_m
     return contacts->implicit_constraints != NULL;
 }
 
-// Reserve pairs by the size of the outline, and of what it may become. Constraints are fewer: most pairs do not
-// touch.
-static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory, size_t particles) {
-    const uint32_t own = made->outline.point_count - made->colliders.listed_points;
-    const uint64_t usual =
-        PAIRS_OF_OUTLINE * (uint64_t)own + PAIRS_OF_PARTICLE * (uint64_t)particles + PAIRS_BESIDES;
+// Room by the size of the outline, and of what it may become.
+static uint64_t usual_pairs(const mspringi_contacts *contacts) {
+    const uint32_t own = contacts->outline.point_count - contacts->colliders.listed_points;
+    return PAIRS_OF_OUTLINE * (uint64_t)own + PAIRS_OF_PARTICLE * (uint64_t)contacts->particles + PAIRS_BESIDES;
+}
+
+static uint32_t most_pairs(const mspringi_contacts *contacts) {
+    const mspring_contact_def *def = &contacts->def;
+    const uint64_t by_outline = TIMES_USUAL * usual_pairs(contacts);
+    const uint64_t most = by_outline > def->capacity ? by_outline : def->capacity;
+    return def->max_capacity > 0 ? def->max_capacity : most < MOST_PAIRS ? (uint32_t)most : MOST_PAIRS;
+}
+
+// Reserve pairs. Constraints are fewer: most pairs do not touch.
+static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory) {
+    const uint64_t usual = usual_pairs(made);
+    const uint32_t most = most_pairs(made);
     if (made->def.capacity == 0)
-        made->def.capacity = usual < made->def.max_capacity ? (uint32_t)usual : made->def.max_capacity;
+        made->def.capacity = usual < most ? (uint32_t)usual : most;
     made->capacity = made->def.capacity + PAIRS_OF_POINT * made->colliders.point_capacity;
     const uint32_t constraints = made->capacity / PAIRS_OF_CONSTRAINT + CONSTRAINTS_BESIDES;
     made->constraint_capacity = constraints < made->capacity ? constraints : made->capacity;
@@ -380,7 +393,7 @@ static mspring_result make(mspring_network *network, const mspring_contact_def *
         take_over(made, had, springs);
     mspring_result result = ok ? find_outline(network, made, !had) : MSPRING_ERROR_MEMORY;
     if (result == MSPRING_OK &&
-        (!reserve_pairs(made, memory, particles) ||
+        (!reserve_pairs(made, memory) ||
          (has_implicit_contact_solver(network) && !reserve_implicit_constraints(made, memory)) ||
          !reserve_constraints(network, made)))
         result = MSPRING_ERROR_MEMORY;
@@ -433,14 +446,14 @@ static void free_lists(const mspringi_contacts *contacts, mspringi_memory *memor
 
 mspring_result mspringi_contact_grow(mspring_network *network) {
     mspringi_contacts *contacts = network->contacts;
-    if (!contacts || !contacts->lacks_room || contacts->def.capacity == contacts->def.max_capacity)
+    if (!contacts || !contacts->lacks_room || contacts->def.capacity >= most_pairs(contacts))
         return MSPRING_ERROR_LIMIT;
     mspringi_memory *memory = &network->memory;
     mspringi_contacts grown = *contacts;
     drop_lists(&grown);
-    const uint32_t most = contacts->def.max_capacity;
+    const uint32_t most = most_pairs(contacts);
     grown.def.capacity = contacts->def.capacity < most / 2 ? 2 * contacts->def.capacity : most;
-    if (!reserve_pairs(&grown, memory, contacts->particles) ||
+    if (!reserve_pairs(&grown, memory) ||
         (contacts->implicit_constraints && !reserve_implicit_constraints(&grown, memory)) ||
         !reserve_constraints(network, &grown)) {
         free_lists(&grown, memory);
@@ -474,7 +487,9 @@ mspring_result mspring_network_get_contact(const mspring_network *network, mspri
     const mspring_result result = mspringi_check_report(network, &mspringi_struct_contact_def, def);
     if (result != MSPRING_OK)
         return result;
-    const mspring_contact_def had = def_of(network);
+    mspring_contact_def had = def_of(network);
+    if (network->contacts)
+        had.max_capacity = most_pairs(network->contacts);
     mspringi_put_contact_def(def, &had);
     return MSPRING_OK;
 }
