@@ -567,6 +567,16 @@ void mspringi_colliders_finish_step(const mspring_network *network, mspringi_con
 
 /// Reserve collider points. False: no memory, and nothing changed.
 bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points);
+
+/* contact_room.c */
+
+/// Most pairs that there may be room for.
+#define MSPRINGI_MOST_PAIRS ((uint32_t)1 << 26)
+
+/// Reserve pairs and constraints for an outline; def.capacity is set if it is 0. On error some of it is there.
+bool mspringi_contacts_reserve_room(mspring_network *network, mspringi_contacts *made);
+/// Pairs that steps may make room for.
+uint32_t mspringi_contacts_most_pairs(const mspringi_contacts *contacts);
 /// Reserve implicit constraints, for solvers with contact in their system. Does nothing without contact.
 mspring_result mspringi_contacts_reserve_implicit(mspring_network *network);
 

@@ -1,0 +1,126 @@
+/// Room for pairs and constraints of contact: at first by the size of the outline, later what steps lack.
+#include "features/contact/contacts.h"
+#include "store/feature.h"
+
+/// Room for pairs at first: for each particle, for each particle of the outline, and a constant. (Wrecks have 2 to
+/// 4 for a particle of the outline; soft discs that fall at 25 m/s with one or two substeps a step have 45.)
+#define PAIRS_OF_PARTICLE 2
+#define PAIRS_OF_OUTLINE 16
+#define PAIRS_BESIDES 4096
+
+/// The room at first times this is the most, unless the host gives another: crowds that need more would take
+/// seconds a step. (30 lattices of 5 x 5 that begin in the same place took six.)
+#define TIMES_USUAL 4
+
+/// Room for pairs of each collider point.
+#define PAIRS_OF_POINT 8
+
+/// Room for constraints: pairs for each of them, and a constant.
+#define PAIRS_OF_CONSTRAINT 8
+#define CONSTRAINTS_BESIDES 1024
+
+static bool has_implicit_contact_solver(const mspring_network *network) {
+    const mspringi_solver_ops *fallback = network->fallback.ops;
+    return network->solver.ops->has_implicit_contact || (fallback && fallback->has_implicit_contact);
+}
+
+static bool reserve_implicit_constraints(mspringi_contacts *contacts, mspringi_memory *memory) {
+    if (!contacts->implicit_constraints)
+        contacts->implicit_constraints =
+            mspringi_alloc(memory, contacts->constraint_capacity, sizeof *contacts->implicit_constraints);
+    return contacts->implicit_constraints != NULL;
+}
+
+// Room by the size of the outline, and of what it may become.
+static uint64_t usual_pairs(const mspringi_contacts *contacts) {
+    const uint32_t own = contacts->outline.point_count - contacts->colliders.listed_points;
+    return PAIRS_OF_OUTLINE * (uint64_t)own + PAIRS_OF_PARTICLE * (uint64_t)contacts->particles + PAIRS_BESIDES;
+}
+
+uint32_t mspringi_contacts_most_pairs(const mspringi_contacts *contacts) {
+    const mspring_contact_def *def = &contacts->def;
+    const uint64_t by_outline = TIMES_USUAL * usual_pairs(contacts);
+    const uint64_t most = by_outline > def->capacity ? by_outline : def->capacity;
+    return def->max_capacity > 0        ? def->max_capacity
+           : most < MSPRINGI_MOST_PAIRS ? (uint32_t)most
+                                        : MSPRINGI_MOST_PAIRS;
+}
+
+// Reserve pairs. Constraints are fewer: most pairs do not touch.
+static bool reserve_pairs(mspringi_contacts *made, mspringi_memory *memory) {
+    const uint64_t usual = usual_pairs(made);
+    const uint32_t most = mspringi_contacts_most_pairs(made);
+    if (made->def.capacity == 0)
+        made->def.capacity = usual < most ? (uint32_t)usual : most;
+    made->capacity = made->def.capacity + PAIRS_OF_POINT * made->colliders.point_capacity;
+    const uint32_t constraints = made->capacity / PAIRS_OF_CONSTRAINT + CONSTRAINTS_BESIDES;
+    made->constraint_capacity = constraints < made->capacity ? constraints : made->capacity;
+    made->list = mspringi_alloc(memory, made->capacity, sizeof *made->list);
+    made->candidates = mspringi_alloc(memory, made->capacity, sizeof *made->candidates);
+    made->is_seen = mspringi_alloc(memory, made->capacity, sizeof *made->is_seen);
+    made->near_misses = mspringi_alloc(memory, made->capacity, sizeof *made->near_misses);
+    made->constraints = mspringi_alloc(memory, made->constraint_capacity, sizeof *made->constraints);
+    return made->list && made->candidates && made->constraints && made->is_seen && made->near_misses;
+}
+
+// Reserve constraints of linear systems.
+static bool reserve_constraints(mspring_network *network, const mspringi_contacts *contacts) {
+    return mspringi_constraints_reserve(network, MSPRINGI_CONTACT_CONSTRAINT,
+                                        (size_t)2 * contacts->constraint_capacity,
+                                        (size_t)6 * contacts->constraint_capacity);
+}
+
+bool mspringi_contacts_reserve_room(mspring_network *network, mspringi_contacts *made) {
+    mspringi_memory *memory = &network->memory;
+    return reserve_pairs(made, memory) &&
+           (!has_implicit_contact_solver(network) || reserve_implicit_constraints(made, memory)) &&
+           reserve_constraints(network, made);
+}
+
+// Drop the lists that grow, of which another copy of the struct has the pointers.
+static void drop_lists(mspringi_contacts *contacts) {
+    contacts->list = NULL;
+    contacts->candidates = NULL;
+    contacts->is_seen = NULL;
+    contacts->near_misses = NULL;
+    contacts->constraints = NULL;
+    contacts->implicit_constraints = NULL;
+}
+
+static void free_lists(const mspringi_contacts *contacts, mspringi_memory *memory) {
+    mspringi_free(memory, contacts->list);
+    mspringi_free(memory, contacts->candidates);
+    mspringi_free(memory, contacts->is_seen);
+    mspringi_free(memory, contacts->near_misses);
+    mspringi_free(memory, contacts->constraints);
+    mspringi_free(memory, contacts->implicit_constraints);
+}
+
+mspring_result mspringi_contact_grow(mspring_network *network) {
+    mspringi_contacts *contacts = network->contacts;
+    if (!contacts || !contacts->lacks_room || contacts->def.capacity >= mspringi_contacts_most_pairs(contacts))
+        return MSPRING_ERROR_LIMIT;
+    mspringi_memory *memory = &network->memory;
+    mspringi_contacts grown = *contacts;
+    drop_lists(&grown);
+    const uint32_t most = mspringi_contacts_most_pairs(contacts);
+    grown.def.capacity = contacts->def.capacity < most / 2 ? 2 * contacts->def.capacity : most;
+    if (!mspringi_contacts_reserve_room(network, &grown)) {
+        free_lists(&grown, memory);
+        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
+                             "no memory for %u pairs of an outline point and an outline edge that are near each "
+                             "other: use less thickness, or free memory",
+                             (unsigned)grown.def.capacity);
+    }
+    free_lists(contacts, memory);
+    *contacts = grown;
+    contacts->count = contacts->candidate_count = 0;
+    contacts->is_listed = contacts->is_fresh = contacts->lacks_room = false;
+    return MSPRING_OK;
+}
+
+mspring_result mspringi_contacts_reserve_implicit(mspring_network *network) {
+    if (!network->contacts || reserve_implicit_constraints(network->contacts, &network->memory))
+        return MSPRING_OK;
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for contact in the solver's system");
+}
