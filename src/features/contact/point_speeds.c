@@ -153,7 +153,10 @@ static void choose_scan(mspringi_contacts *contacts, double usual_speed, bool sc
     const double wanted = substeps > CANDIDATE_SUBSTEPS       ? CANDIDATE_SUBSTEPS
                           : substeps > MIN_CANDIDATE_SUBSTEPS ? floor(substeps)
                                                               : MIN_CANDIDATE_SUBSTEPS;
-    const double chosen = scans_each ? 1.0 : wanted <= of_step ? wanted : of_step > 1.0 ? ceil(of_step - 0.5) : 1.0;
+    const double chosen = scans_each          ? 1.0
+                          : wanted <= of_step ? wanted
+                          : of_step > 1.0     ? -floor(0.5 - of_step)
+                                              : 1.0;
     contacts->travel = travel;
     contacts->candidate_substeps = chosen;
     contacts->candidate_margin.at_rest = chosen * travel.at_rest + MSPRINGI_NEAR_MISS_FRACTION * thickness;
