@@ -1,6 +1,6 @@
 /// @file refused.c
-/// What a library of base, floor and contact with the explicit solver says: it has no more features than these, and
-/// refuses what other parts would do by the name of the part.
+/// A library of base, floor and contact with the explicit solver: it has no more features than these, and refuses
+/// fields of other parts by the name of the part.
 ///
 /// SPDX-License-Identifier: MIT
 #include <massspring/massspring_batch.h>

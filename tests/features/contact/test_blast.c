@@ -84,7 +84,7 @@ static mspring_contact_def contact_of(const mspring_network *network) {
     return def;
 }
 
-/// What a host does besides, none of which may change a bit.
+/// Other things that a host does. None of them may change a bit.
 typedef enum besides { NOTHING, DROP_LISTS, ROLL_BACK } besides;
 
 /// Returns how many steps made room.
