@@ -176,6 +176,8 @@ static void bars_80x5(void **state) {
 static void bars_544x68(void **state) {
     (void)state;
     check_bending(544, 68, 6.7643e7, 188.464);
+    if (ROUNDS_ARE_FEW)
+        return;
     check_bending(544, 68, 4 * 6.7643e7, 50.798);
     check_bending(544, 68, 1e9, 13.779);
     check_bending(544, 68, 1e10, 1.3769);
@@ -184,6 +186,8 @@ static void bars_544x68(void **state) {
 static void bars_1800x5(void **state) {
     (void)state;
     check_bending(1800, 5, 6.7643e7, 1806.7);
+    if (ROUNDS_ARE_FEW)
+        return;
     check_bending(1800, 5, 1e9, 1775.7);
     check_bending(1800, 5, 1e10, 1715.7);
     check_bending(1800, 5, 1e12, 364.5);

@@ -585,7 +585,7 @@ static void compaction_keeps_the_floor(void **state) {
 
 static void implicit_contact_gives_no_energy(void **state) {
     (void)state;
-    for (uint32_t i = 0; i < COUNT_OF(implicit_ways); i++) {
+    for (uint32_t i = 0; i < COUNT_OF(implicit_ways); i += ROUNDS_ARE_FEW ? 3 : 1) {
         contact_gives_no_energy(&implicit_ways[i], 0, 1.0 / 64, 0.01);
         contact_gives_no_energy(&implicit_ways[i], 0.5, 1.0 / 64, 0.01);
     }
