@@ -7,10 +7,10 @@
 
 #include "features/contact/floor.h"
 #include "features/hooks/hooks.h"
-#include "features/sleep/sleep.h"
 #include "network/job.h"
 #include "stability/stability_limit.h"
 #include "store/changed.h"
+#include "store/sleepers.h"
 #include "store/spring_limits.h"
 #include "store/springs.h"
 #include "store/store.h"
@@ -188,7 +188,7 @@ mspring_network mspringi_relayout_copy_shell(const mspring_network *network) {
     to.topology = (mspringi_topology){0};
     to.halos = (mspringi_halos){0};
     to.rest_lengths = (mspringi_rest_lengths){0};
-    mspringi_sleep_forget(&to.sleep);
+    to.sleep = (mspringi_sleep){0};
     to.solver.object = to.fallback.object = NULL;
     to.floor = NULL;
     to.job = NULL;
@@ -219,7 +219,8 @@ static mspring_result fill(mspring_network *to, const mspring_network *network, 
     mspringi_store_move_slots(to, network);
     if (network->guard_scratch)
         move_values(network->guard_scratch, to->guard_scratch, network, to);
-    mspringi_sleep_move(to, network);
+    if (network->sleep.count > 0)
+        mspringi_sleepers->move(to, network);
     result = adopt_solver(to, &to->solver, &job->to.solver, &network->solver, job->solvers[0].tile_size);
     if (result == MSPRING_OK)
         result = adopt_solver(to, &to->fallback, &job->to.fallback, &network->fallback, job->solvers[1].tile_size);

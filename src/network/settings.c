@@ -4,12 +4,12 @@
 
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
-#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "stability/guard.h"
 #include "store/changed.h"
 #include "store/group_ops.h"
 #include "store/network.h"
+#include "store/sleepers.h"
 
 static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {
     if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)

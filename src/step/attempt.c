@@ -5,11 +5,11 @@
 
 #include "base/cpu.h"
 #include "features/hooks/hooks.h"
-#include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
 #include "store/group_ops.h"
 #include "store/id_pool.h"
+#include "store/sleepers.h"
 #include "store/stages.h"
 
 typedef struct copying {
@@ -55,12 +55,13 @@ static void run_substeps(mspring_network *network, const mspringi_attempt *attem
         const mspringi_field force = mspringi_stages_before_substep(network, attempt, substep, base, &outside);
         if (substep == 0 && is_cut)
             mspringi_stages_forces_known(network, attempt, outside);
-        if (stages->follow_substeps)
-            mspringi_sleep_hold(network);
+        const bool holds = stages->follow_substeps && network->sleep.sleeping > 0;
+        if (holds)
+            mspringi_sleepers->hold(network);
         if (!mspringi_sleep_is_whole(network))
             run_solver(network, attempt, force, count);
-        if (stages->follow_substeps)
-            mspringi_sleep_put_back(network);
+        if (holds)
+            mspringi_sleepers->put_back(network);
         mspringi_stages_after_substep(network, attempt, substep + count - 1);
     }
 }
@@ -221,8 +222,8 @@ static bool is_idle(const mspring_network *network, const mspringi_stages *stage
 
 // Until substeps are taken. A step in which all sleeps takes none.
 static mspring_result begin(mspring_network *network, mspringi_attempt *attempt) {
-    if (attempt->kind != MSPRINGI_WITHOUT_SUSPECTS && attempt->kind != MSPRINGI_WITH_DOUBTFUL)
-        mspringi_sleep_begin(network, attempt);
+    if (network->sleep.sleeping > 0)
+        mspringi_sleepers->begin(network, attempt);
     attempt->is_idle = is_idle(network, attempt->stages);
     if (attempt->is_idle) {
         tidy(network);

@@ -3,12 +3,12 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "features/sleep/sleep.h"
 #include "stability/guard.h"
 #include "step/finite.h"
 #include "step/ladder.h"
 #include "step/pace.h"
 #include "store/group_ops.h"
+#include "store/sleepers.h"
 
 /// Global damping times dt from which on a speed that is no speed any more (MSPRING_MAX_SPEED) could be one again
 /// by the end of the step: exp(-20) is 2e-9, and at 1e24 m/s nothing overflows yet.
@@ -61,7 +61,8 @@ static void give_up(mspring_network *network, const mspringi_attempt *last, uint
                     const mspringi_any_shape *any_shape) {
     network->substeps = last->keeps_substeps ? network->substeps : substeps;
     network->any_shape = *any_shape;
-    mspringi_sleep_undo(network);
+    if (network->sleep.has_kept)
+        mspringi_sleepers->undo(network);
 }
 
 static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt) {

@@ -214,13 +214,6 @@ void support_steps(mspring_network *network, uint32_t count, double dt) {
     }
 }
 
-void support_fall_asleep(mspring_network *network, double dt) {
-    for (int i = 0; i < 6400 && !mspring_network_is_asleep(network); i++) {
-        support_steps(network, 1, dt);
-    }
-    assert_int_equal(mspring_network_is_asleep(network), 1);
-}
-
 void support_kick(mspring_network *network, mspring_id particle, float speed) {
     const float along = 0.3f * speed;
     check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along, 1));
@@ -281,13 +274,6 @@ void support_bring(const mspring_network *from, mspring_network *to, mspring_sna
     check_ok(mspring_network_save(from, contents, bytes, size, NULL));
     check_ok(mspring_network_load(to, bytes, size));
     free(bytes);
-}
-
-bool support_sleeps(const mspring_network *network, mspring_id particle) {
-    uint8_t asleep = 2;
-    check_ok(mspring_network_get_sleepers(network, particle, 1, &asleep, 1));
-    assert_true(asleep <= 1);
-    return asleep == 1;
 }
 
 double support_energy_of_motion(const mspring_network *network) {

@@ -7,7 +7,6 @@
 
 #include "analysis/tune/tuning.h"
 #include "base/hash.h"
-#include "features/sleep/sleep.h"
 #include "store/changed.h"
 #include "store/springs.h"
 

@@ -5,7 +5,6 @@
 #include "analysis/tune/reference.h"
 #include "analysis/tune/tuning.h"
 #include "features/ramps/ramps.h"
-#include "features/sleep/sleep.h"
 #include "step/origin.h"
 #include "store/changed.h"
 #include "store/spring_limits.h"
@@ -135,8 +134,8 @@ bool mspringi_tuning_has_time(mspringi_tuning *tuning, double part) {
 
 // Disable sleep and fallbacks, so that the setting itself is measured.
 void mspringi_tune_disable_fallbacks(mspring_network *clone) {
-    mspringi_wake(clone);
     clone->settings.sleep_speed = 0.0f;
+    mspringi_notify_change(clone, MSPRINGI_CHANGED_SLEEP, 0);
     if (clone->settings.guard == MSPRING_GUARD_IMPLICIT || clone->settings.guard == MSPRING_GUARD_CLAMP)
         clone->settings.guard = MSPRING_GUARD_GROWTH;
     else if (clone->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS)

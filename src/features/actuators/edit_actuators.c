@@ -3,7 +3,6 @@
 
 #include "base/cpu.h"
 #include "builder/builder.h"
-#include "features/sleep/sleep.h"
 #include "store/changed.h"
 #include "store/feature.h"
 #include "store/id_pool.h"
@@ -171,6 +170,6 @@ mspring_result mspring_network_set_signals(mspring_network *network, uint32_t fi
     mspringi_fp_leave(before);
     a->are_pending = a->have_moved = true;
     if (network->sleep.sleeping > 0)
-        mspringi_wake(network);
+        mspringi_notify_change(network, MSPRINGI_CHANGED_SIGNALS, 0);
     return MSPRING_OK;
 }

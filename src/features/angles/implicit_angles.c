@@ -7,10 +7,10 @@
 
 #include <math.h>
 
-#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 #include "store/elements.h"
+#include "store/sleepers.h"
 
 // A sleeper is swept by the direct solver only, where it is as heavy as a pinned particle.
 static bool sleeps(const mspring_network *network, const mspringi_corner *corners) {

@@ -11,10 +11,10 @@
 #include <math.h>
 
 #include "base/shoelace.h"
-#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 #include "store/elements.h"
+#include "store/sleepers.h"
 
 /// A polygon where its corners are predicted, from its first corner on.
 typedef struct polygon {

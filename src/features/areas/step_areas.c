@@ -1,19 +1,23 @@
 /// The stage in which areas push: those that no sweep has in it, as forces from outside.
 #include "features/areas/areas.h"
-#include "features/sleep/sleep.h"
+#include "store/sleepers.h"
 #include "store/stages.h"
 
 static bool is_used(const mspring_network *network) {
     return mspringi_area_count(network) > 0;
 }
 
-// Wake the corners of an area of which others are awake: its pressure changes.
-static void wake_corners(mspring_network *network, const mspringi_area *area) {
+// Wake the corners of an area of which others are awake: its pressure changes. True if any slept.
+static bool wake_corners(mspring_network *network, const mspringi_area *area) {
     uint32_t asleep = 0;
     for (uint32_t i = 0; i < area->count; ++i)
         asleep += mspringi_slot_is_asleep(network, mspringi_area_slot(network, area, i));
-    for (uint32_t i = 0; asleep > 0 && asleep < area->count && i < area->count; ++i)
-        mspringi_wake_slot(network, mspringi_area_slot(network, area, i));
+    if (asleep == 0 || asleep == area->count)
+        return false;
+    for (uint32_t i = 0; i < area->count; ++i)
+        mspringi_sleepers->wake(network, network->sleep.island[mspringi_area_slot(network, area, i)]);
+    mspringi_sleepers->finish_waking(network);
+    return true;
 }
 
 // Corners of cells are always of one island.
@@ -21,11 +25,12 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     mspringi_areas *a = network->areas;
     (void)attempt;
     mspringi_areas_refresh(network);
-    if (network->sleep.sleeping == 0 || a->unswept == 0)
-        return;
-    for (size_t i = 0; i < a->count; ++i)
-        if (a->list[i].cell == MSPRINGI_NO_CELL && !a->list[i].is_open)
-            wake_corners(network, &a->list[i]);
+    for (bool again = network->sleep.sleeping > 0 && a->unswept > 0; again;) {
+        again = false;
+        for (size_t i = 0; i < a->count; ++i)
+            again |=
+                a->list[i].cell == MSPRINGI_NO_CELL && !a->list[i].is_open && wake_corners(network, &a->list[i]);
+    }
 }
 
 // Whether the solver's substeps have an area in them: the sweeps that of a cell, a linear system any with springs

@@ -6,11 +6,11 @@
 
 #include "base/cpu.h"
 #include "features/breaking/breaking.h"
-#include "features/sleep/sleep.h"
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/id_pool.h"
 #include "store/properties.h"
+#include "store/sleepers.h"
 #include "store/spring_limits.h"
 #include "store/springs.h"
 #include "store/stages.h"

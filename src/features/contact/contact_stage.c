@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "features/sleep/sleep.h"
+#include "store/sleepers.h"
 #include "store/stages.h"
 
 /// Points this near rest on each other, as a share of the thickness.
@@ -96,7 +96,6 @@ static double approach_speed(const mspringi_contacts *contacts, const mspringi_p
 
 // Wake islands that an awake one, or a moving collider, can reach in this step.
 static void wake_touched(mspring_network *network, const mspringi_contacts *contacts) {
-    const uint64_t changes = network->edits.sleep_changes;
     if (network->sleep.sleeping == 0)
         return;
     for (bool again = true; again;) {
@@ -107,11 +106,11 @@ static void wake_touched(mspring_network *network, const mspringi_contacts *cont
                 !mspringi_pair_is_resting(network, contacts, &contacts->list[i],
                                           contacts->dt * approach_speed(contacts, &contacts->list[i])))
                 continue;
-            mspringi_sleep_wake_island(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
+            mspringi_sleepers->wake(network, s.island[s.still[0] < 0.0 ? 0 : 1]);
             again = true;
         }
     }
-    mspringi_sleep_finish_waking(network, changes);
+    mspringi_sleepers->finish_waking(network);
 }
 
 // Give islands that rest on each other the shortest time for which one of them was still, so that they fall asleep
@@ -119,7 +118,7 @@ static void wake_touched(mspring_network *network, const mspringi_contacts *cont
 static void share_stillness(mspring_network *network, const mspringi_contacts *contacts) {
     if (!(network->settings.sleep_speed > 0.0f) || mspringi_sleep_is_whole(network))
         return;
-    mspringi_islands_find(network);
+    mspringi_sleepers->find_islands(network);
     for (bool again = true; again;) {
         again = false;
         for (uint32_t i = 0; i < contacts->count; ++i) {

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "features/sleep/sleep.h"
 #include "store/changed.h"
 #include "store/feature.h"
 #include "store/selection.h"
+#include "store/sleepers.h"
 #include "store/stages.h"
 
 #define SHORTEST_SPACING 1e-9

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#include "features/sleep/sleep.h"
+#include "store/sleepers.h"
 
 /// A box in double precision.
 typedef struct box {

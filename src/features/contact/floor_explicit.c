@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/decay.h"
-#include "features/sleep/sleep.h"
+#include "store/sleepers.h"
 
 bool mspringi_floor_is_near(const mspring_network *network, const mspringi_strip *strip) {
     return network->floor && !network->floor->clearances[strip - network->topology.strips].is_far;

@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "features/sleep/sleep.h"
+#include "store/sleepers.h"
 
 /// Most passes over all surfaces for one particle. Corners need more than one.
 #define ROUNDS 4

@@ -3,7 +3,7 @@
 /// The host, a view or breaking springs may move an island from below another before contact looks at them again.
 /// So piles are found when islands fall asleep. They follow from the positions, so a snapshot does not save them.
 #include "features/contact/contacts.h"
-#include "features/sleep/sleep.h"
+#include "store/sleepers.h"
 #include "store/stages.h"
 
 /// Distance beyond the thickness, as a share of it, up to which islands rest on each other; as for falling asleep

@@ -4,9 +4,9 @@
 #include <math.h>
 
 #include "base/cpu.h"
-#include "features/sleep/sleep.h"
 #include "store/changed.h"
 #include "store/feature.h"
+#include "store/sleepers.h"
 
 #define STRONGEST 1e30f
 

@@ -2,8 +2,8 @@
 #include <math.h>
 
 #include "features/hooks/reach.h"
-#include "features/sleep/sleep.h"
 #include "store/feature.h"
+#include "store/sleepers.h"
 #include "store/stages.h"
 
 /// Fewest slots that are worth to be handed to another worker, if the host does not say.

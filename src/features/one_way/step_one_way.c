@@ -12,9 +12,9 @@
 #include <math.h>
 
 #include "features/one_way/one_way.h"
-#include "features/sleep/sleep.h"
 #include "store/feature.h"
 #include "store/id_pool.h"
+#include "store/sleepers.h"
 #include "store/springs.h"
 #include "store/stages.h"
 

@@ -15,23 +15,6 @@
 #include "store/id_pool.h"
 #include "store/selection.h"
 #include "store/stages.h"
-#include "store/store.h"
-
-/* ---------------------------------------------------------------------------------------------------- memory */
-
-mspring_result mspringi_sleep_reserve(mspring_network *network) {
-    if (network->sleep.state)
-        return MSPRING_OK;
-    mspring_result result = mspringi_incidence_reserve(network);
-    if (result == MSPRING_OK && !mspringi_store_reserve(network, MSPRINGI_STORE_SLEEP))
-        result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to let %zu slots sleep",
-                               mspringi_slot_count(network));
-    return result;
-}
-
-void mspringi_sleep_forget(mspringi_sleep *s) {
-    *s = (mspringi_sleep){0};
-}
 
 /* ------------------------------------------------------------------------------------------------------ state */
 
@@ -57,12 +40,6 @@ static bool block_differs(const mspring_network *network, size_t block, bool sta
     for (size_t i = 0; state && i < mspringi_state_arrays(network); ++i)
         differs |= memcmp(network->state.x + i * slots + first, s->state + i * slots + first, size) != 0;
     return differs;
-}
-
-bool mspringi_sleeper_is_disturbed(const mspring_network *network, size_t slot) {
-    const mspringi_sleep *s = &network->sleep;
-    return network->origin_x != s->origin_x || network->origin_y != s->origin_y || state_differs(network, slot) ||
-           mass_differs(network, slot);
 }
 
 // True if positions, velocities or masses may have changed since the last check.
@@ -100,10 +77,6 @@ size_t mspringi_next_disturbed_sleeper(const mspring_network *network, size_t sl
     return slot;
 }
 
-bool mspringi_sleep_is_disturbed(const mspring_network *network) {
-    return mspringi_next_disturbed_sleeper(network, 0) < mspringi_slot_count(network);
-}
-
 /* -------------------------------------------------------------------------------------------------- waking */
 
 static void save_rest_times(mspringi_sleep *s) {
@@ -117,9 +90,11 @@ static bool set_one_awake(mspring_network *network, uint32_t island) {
     mspringi_sleep *s = &network->sleep;
     const bool slept = s->still[island] < 0.0;
     s->still[island] = 0.0;
-    s->sleeping -= slept;
-    if (slept)
+    if (slept) {
+        s->sleeping--;
+        s->is_mapped = false;
         mspringi_notify_change(network, MSPRINGI_CHANGED_NAPS, 0);
+    }
     return slept;
 }
 
@@ -138,42 +113,39 @@ static void set_all_awake(mspring_network *network) {
         set_awake(network, i);
 }
 
-void mspringi_wake(mspring_network *network) {
+static void wake_all(mspring_network *network) {
     network->sleep.has_kept = network->sleep.has_force = false;
     set_all_awake(network);
 }
 
-void mspringi_sleep_reset(mspring_network *network) {
-    mspringi_wake(network);
-    network->sleep.count = 0;
+// Without effect in networks that never sleep.
+static void wake_slot(mspring_network *network, uint32_t slot) {
+    const mspringi_sleep *s = &network->sleep;
+    if (s->count > 0 && s->island[slot] != MSPRING_NONE)
+        set_awake(network, s->island[slot]);
 }
 
-void mspringi_wake_slot(mspring_network *network, uint32_t slot) {
-    mspringi_sleep *s = &network->sleep;
-    if (s->count == 0 || s->island[slot] == MSPRING_NONE)
-        return;
-    const bool slept = s->still[s->island[slot]] < 0.0;
-    set_awake(network, s->island[slot]);
-    if (slept && s->sleeping > 0)
-        s->is_mapped = false;
-}
-
-void mspringi_wake_spring(mspring_network *network, mspring_id spring) {
+static void wake_spring(mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
     if (network->sleep.count == 0)
         return;
     mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
-    mspringi_wake_slot(network, base);
-    mspringi_wake_slot(network, tip);
+    wake_slot(network, base);
+    wake_slot(network, tip);
 }
 
-static void map_if_changed(mspring_network *network, uint64_t sleep_changes) {
+static void finish_waking(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
-    if (s->sleeping > 0 && (!s->is_mapped || sleep_changes != network->edits.sleep_changes))
+    if (s->sleeping > 0 && !s->is_mapped)
         mspringi_islands_map(network);
     else if (s->sleeping > 0 && s->masses != network->edits.masses)
         mspringi_islands_update_masses(network);
+}
+
+static void wake(mspring_network *network, uint32_t island) {
+    save_rest_times(&network->sleep);
+    set_awake(network, island);
 }
 
 static void wake_disturbed(mspring_network *network, bool state, bool masses) {
@@ -181,17 +153,13 @@ static void wake_disturbed(mspring_network *network, bool state, bool masses) {
     const size_t slots = mspringi_slot_count(network);
     for (size_t slot = 0; (slot = next_disturbed(network, slot, state, masses)) < slots;) {
         const size_t block = slot / MSPRINGI_WIDTH;
-        save_rest_times(s);
-        set_awake(network, s->island[slot]);
+        wake(network, s->island[slot]);
         slot = s->block_island[block] != MSPRING_NONE ? (block + 1) * MSPRINGI_WIDTH : slot + 1;
     }
 }
 
-void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *attempt) {
+static void begin(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_sleep *s = &network->sleep;
-    if (s->sleeping == 0)
-        return;
-    const uint64_t sleep_changes = network->edits.sleep_changes;
     // Relative springs change with the substep, and an automatic number of substeps may change.
     const bool same_h = !network->fractions.values || attempt->h == network->relative_h;
     if (!same_h || network->origin_x != s->origin_x || network->origin_y != s->origin_y) {
@@ -206,20 +174,7 @@ void mspringi_sleep_begin(mspring_network *network, const mspringi_attempt *atte
         wake_disturbed(network, state, masses);
     if (!network->is_open && !s->has_kept)
         s->moved = network->edits.state;
-    map_if_changed(network, sleep_changes);
-}
-
-void mspringi_sleep_wake_island(mspring_network *network, uint32_t island) {
-    save_rest_times(&network->sleep);
-    set_awake(network, island);
-}
-
-void mspringi_sleep_finish_waking(mspring_network *network, uint64_t sleep_changes) {
-    map_if_changed(network, sleep_changes);
-}
-
-bool mspringi_sleep_is_idle(const mspring_network *network) {
-    return mspringi_sleep_is_whole(network) && !network->sleep.has_force && !network->forces.held_any;
+    finish_waking(network);
 }
 
 // Lanes to wake: the change of force would bring a particle to the sleep speed within the sleep time.
@@ -246,7 +201,6 @@ static void wake_by_forces(mspring_network *network, mspringi_field force) {
     s->in_force = force;
     if (s->sleeping == 0 || (!force.x && !s->has_force))
         return;
-    const uint64_t sleep_changes = network->edits.sleep_changes;
     for (size_t block = 0; block < network->topology.block_count; ++block) {
         if (s->sleepers[block] == 0)
             continue;
@@ -254,11 +208,10 @@ static void wake_by_forces(mspring_network *network, mspringi_field force) {
         for (uint32_t bits = find_forced_lanes(network, force, first), lane = 0; bits >> lane != 0; ++lane) {
             if (!(bits >> lane & 1))
                 continue;
-            save_rest_times(s);
-            set_awake(network, s->island[first + lane]);
+            wake(network, s->island[first + lane]);
         }
     }
-    map_if_changed(network, sleep_changes);
+    finish_waking(network);
 }
 
 /* ------------------------------------------------------------------------------------------------------ step */
@@ -270,10 +223,10 @@ static bool is_held(const mspring_network *network, size_t block) {
     return s->sleepers[block] != 0 && (s->swept[block] || !network->running->ops->skips_sleepers);
 }
 
-void mspringi_sleep_hold(const mspring_network *network) {
+static void hold(const mspring_network *network) {
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network), size = MSPRINGI_WIDTH * sizeof *s->held;
-    for (size_t block = 0; s->sleeping > 0 && block < network->topology.block_count; ++block) {
+    for (size_t block = 0; block < network->topology.block_count; ++block) {
         const size_t first = block * MSPRINGI_WIDTH;
         if (!is_held(network, block))
             continue;
@@ -284,10 +237,10 @@ void mspringi_sleep_hold(const mspring_network *network) {
     }
 }
 
-void mspringi_sleep_put_back(const mspring_network *network) {
+static void put_back(const mspring_network *network) {
     const mspringi_sleep *s = &network->sleep;
     const size_t slots = mspringi_slot_count(network);
-    for (size_t block = 0; s->sleeping > 0 && block < network->topology.block_count; ++block) {
+    for (size_t block = 0; block < network->topology.block_count; ++block) {
         for (size_t lane = 0; is_held(network, block) && lane < MSPRINGI_WIDTH; ++lane) {
             const size_t slot = block * MSPRINGI_WIDTH + lane;
             if (!(s->sleepers[block] >> lane & 1))
@@ -305,9 +258,8 @@ static void update_sleep(mspring_network *network, double dt) {
     (void)dt;
     if (network->sleep.sleeping == 0 || mspringi_hook_count(network) == 0)
         return;
-    const uint64_t sleep_changes = network->edits.sleep_changes;
     wake_disturbed(network, true, false);
-    map_if_changed(network, sleep_changes);
+    finish_waking(network);
 }
 
 static void restore(mspring_network *network) {
@@ -318,10 +270,8 @@ static void restore(mspring_network *network) {
             network->state.x[i * slots + slot] = s->state[i * slots + slot];
 }
 
-void mspringi_sleep_undo(mspring_network *network) {
+static void undo(mspring_network *network) {
     mspringi_sleep *s = &network->sleep;
-    if (!s->has_kept)
-        return;
     memcpy(s->still, s->kept, s->count * sizeof *s->still);
     s->has_kept = false;
     s->sleeping = 0;
@@ -493,11 +443,9 @@ static void move_piles(mspring_network *to, const mspring_network *from) {
     to->sleep.piled = to->edits.sleep_changes - (had->piled != from->edits.sleep_changes);
 }
 
-void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
+static void move(mspring_network *to, const mspring_network *from) {
     mspringi_sleep *s = &to->sleep;
     const mspringi_sleep *had = &from->sleep;
-    if (had->count == 0)
-        return;
     mspringi_islands_find(to);
     for (uint32_t i = 0; i < s->count; ++i)
         s->still[i] = INFINITY;
@@ -530,12 +478,21 @@ void mspringi_sleep_move(mspring_network *to, const mspring_network *from) {
     s->masses = had->masses;
 }
 
+const mspringi_sleep_ops mspringi_ops_of_sleep = {.begin = begin,
+                                                  .hold = hold,
+                                                  .put_back = put_back,
+                                                  .undo = undo,
+                                                  .wake = wake,
+                                                  .finish_waking = finish_waking,
+                                                  .find_islands = mspringi_islands_find,
+                                                  .move = move};
+
 /* --------------------------------------------------------------------------------------------------------- API */
 
 mspring_result mspring_network_wake(mspring_network *network) {
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
-        mspringi_wake(network);
+        wake_all(network);
     return result;
 }
 
@@ -557,7 +514,8 @@ mspring_result mspring_network_get_sleepers(const mspring_network *network, mspr
 }
 
 uint32_t mspring_network_is_asleep(const mspring_network *network) {
-    return network && mspringi_sleep_is_whole(network) && !mspringi_sleep_is_disturbed(network);
+    return network && mspringi_sleep_is_whole(network) &&
+           mspringi_next_disturbed_sleeper(network, 0) == mspringi_slot_count(network);
 }
 
 void mspringi_sleep_react(mspring_network *network, mspringi_change change, uint32_t index) {
@@ -566,23 +524,25 @@ void mspringi_sleep_react(mspring_network *network, mspringi_change change, uint
     case MSPRINGI_CHANGED_SOLVER:
     case MSPRINGI_CHANGED_GRAVITY:
     case MSPRINGI_CHANGED_RELAX:
+    case MSPRINGI_CHANGED_SIGNALS:
     case MSPRINGI_CHANGED_NEW_FLOOR:
     case MSPRINGI_CHANGED_CONTACT:
     case MSPRINGI_CHANGED_AREA:
     case MSPRINGI_CHANGED_REST_ANGLES:
-        mspringi_wake(network);
+        wake_all(network);
         break;
     case MSPRINGI_CHANGED_SPRING:
     case MSPRINGI_CHANGED_BROKEN_SPRING:
     case MSPRINGI_CHANGED_LIVE_SPRING:
-        mspringi_wake_spring(network, index);
+        wake_spring(network, index);
         break;
     case MSPRINGI_CHANGED_GRIP:
-        mspringi_wake_slot(network, index);
+        wake_slot(network, index);
         break;
     case MSPRINGI_CHANGED_COUNTS:
     case MSPRINGI_CHANGED_SLEEP:
-        mspringi_sleep_reset(network);
+        wake_all(network);
+        network->sleep.count = 0; // find the islands again
         break;
     default:
         break;

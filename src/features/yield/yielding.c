@@ -18,12 +18,12 @@
 #include <string.h>
 
 #include "features/breaking/strain.h"
-#include "features/sleep/sleep.h"
 #include "features/yield/plastic.h"
 #include "store/changed.h"
 #include "store/events.h"
 #include "store/id_pool.h"
 #include "store/record_sharing.h"
+#include "store/sleepers.h"
 #include "store/spring_limits.h"
 #include "store/springs.h"
 #include "store/stages.h"

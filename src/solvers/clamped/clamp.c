@@ -23,9 +23,9 @@
 
 #include "base/decay.h"
 #include "features/contact/floor.h"
-#include "features/sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
 #include "stability/stability_limit.h"
+#include "store/sleepers.h"
 
 /// Scratch arrays by slot.
 enum { CHANGE_X, CHANGE_Y, RATIO = 3 };

@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "features/contact/floor.h"
-#include "features/sleep/sleep.h"
 #include "solvers/explicit/explicit.h"
 #include "solvers/explicit/strip.h"
 #include "store/precise.h"
+#include "store/sleepers.h"
 
 /// Substeps times springs from which more than one worker is worth it.
 #define SMALLEST_SHARED_WORK 400000u

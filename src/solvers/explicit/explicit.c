@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "features/contact/floor.h"
-#include "features/sleep/sleep.h"
 #include "solvers/explicit/bundles.h"
 #include "solvers/explicit/flush.h"
 #include "solvers/explicit/halo.h"
@@ -14,6 +13,7 @@
 #include "solvers/explicit/small_network.h"
 #include "solvers/explicit/strip.h"
 #include "store/record_sharing.h"
+#include "store/sleepers.h"
 #include "tasks/team.h"
 
 /// Cache for the strips of a pass: the second level, or the third where the second holds FEW_SUBSTEPS at most. Of

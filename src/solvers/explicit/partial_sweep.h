@@ -5,8 +5,8 @@
 #ifndef MSPRINGI_PARTIAL_SWEEP_H
 #define MSPRINGI_PARTIAL_SWEEP_H
 
-#include "features/sleep/sleep.h"
 #include "solvers/explicit/strip.h"
+#include "store/sleepers.h"
 
 /// How far a row has been gone through.
 typedef struct mspringi_partial_cursor {

@@ -1,8 +1,8 @@
 /// Equal shares.
 #include "solvers/explicit/partition.h"
 
-#include "features/sleep/sleep.h"
 #include "solvers/explicit/halo.h"
+#include "store/sleepers.h"
 
 /// Substeps of a step times springs from which more than one worker is worth it, and those of a pass: workers meet
 /// in each.

@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "features/sleep/sleep.h"
 #include "kernels/spring_law.h"
 #include "store/elements.h"
+#include "store/sleepers.h"
 #include "store/springs.h"
 
 /* ----------------------------------------------------------------------------------------------- matrix rows */

@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "features/contact/floor.h"
-#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 #include "store/elements.h"
+#include "store/sleepers.h"
 #include "store/springs.h"
 
 typedef mspringi_budget budget_of;

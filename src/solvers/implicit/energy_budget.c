@@ -6,10 +6,10 @@
 
 #include "base/decay.h"
 #include "features/contact/floor.h"
-#include "features/sleep/sleep.h"
 #include "solvers/implicit/implicit.h"
 #include "store/elements.h"
 #include "store/feature.h"
+#include "store/sleepers.h"
 
 /// Excess of elastic energy that is tolerated, as a share: rounding of solutions in single precision.
 #define TOLERATED 1e-6

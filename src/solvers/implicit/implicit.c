@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "features/sleep/sleep.h"
+#include "store/sleepers.h"
 
 #define DEFAULT_ITERATIONS 8
 

@@ -141,6 +141,52 @@ static void settling_finds_where_motion_ends(void **state) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------ sleep */
+
+enum { RUNGS = 5 };
+
+// A ladder of springs that lie apart, with areas between them, the upper ones first.
+static mspring_network *ladder(mspring_solver solver) {
+    mspring_builder *builder = support_builder();
+    for (int i = 0; i < RUNGS; i++) {
+        const mspring_id a = support_particle(builder, 0, i, 1), b = support_particle(builder, 1, i, 1);
+        (void)support_spring(builder, a, b, 1000, 1);
+    }
+    mspring_network_def def = support_def(0, 16);
+    def.sleep_speed = 0.02f;
+    def.sleep_time = 0.25f;
+    def.solver = solver;
+    mspring_network *network = support_network(builder, &def);
+    for (mspring_id i = RUNGS - 1; i-- > 0;) {
+        const mspring_id corners[4] = {2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2};
+        const mspring_area_def area = elastic(100);
+        mspring_id id;
+        check_ok(mspring_network_add_area(network, &area, corners, 4, &id));
+    }
+    return network;
+}
+
+// A disturbed island wakes those that areas join it to, and these others, in the same step.
+static void areas_wake_their_other_corners(void **state) {
+    (void)state;
+    const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT};
+    for (size_t i = 0; i < COUNT_OF(solvers); i++) {
+        mspring_network *asleep = ladder(solvers[i]), *awake;
+        support_fall_asleep(asleep, 1.0 / 64);
+        check_ok(mspring_network_clone(asleep, NULL, &awake));
+        check_ok(mspring_network_wake(awake));
+        support_kick(asleep, 0, 1);
+        support_kick(awake, 0, 1);
+        support_steps(asleep, 1, 1.0 / 64);
+        support_steps(awake, 1, 1.0 / 64);
+        for (mspring_id p = 0; p < 2 * RUNGS; p++)
+            assert_false(support_sleeps(asleep, p));
+        assert_true(support_hash(asleep) == support_hash(awake));
+        mspring_network_destroy(asleep);
+        mspring_network_destroy(awake);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(other_solvers_have_areas),
@@ -148,6 +194,7 @@ int main(void) {
         cmocka_unit_test(stiff_areas_are_stable_in_any_substep),
         cmocka_unit_test(others_are_forces),
         cmocka_unit_test(settling_finds_where_motion_ends),
+        cmocka_unit_test(areas_wake_their_other_corners),
     };
     return cmocka_run_group_tests_name("area_solvers", tests, NULL, NULL);
 }
