@@ -11,8 +11,6 @@
     .plastic_limit = MSPRING_PLASTIC_LIMIT_DEFAULT
 
 // A network has all fields of its settings and of its solver.
-#define SETTINGS                                                                                                   \
-    .guard = MSPRING_GUARD_CLAMP, .gravity_y = -9.8f, .max_speed = 1e6f, .sleep_time = 0.5f, .relax_fraction = 0.8f
 #define SOLVER .solver = MSPRING_SOLVER_EXPLICIT, .substeps = MSPRING_SUBSTEPS_AUTO, .max_substeps = 1000
 
 static const mspring_allocator default_allocator = {0};
@@ -27,9 +25,14 @@ static const mspring_rope_def default_rope_def = {
 static const mspring_mesh_def default_mesh_def = {.area_density = 1.0f, NO_LIMITS};
 static const mspring_disc_def default_disc_def = {.ring_count = 1, .radius = 1.0, .area_density = 1.0f, NO_LIMITS};
 static const mspring_solver_def default_solver_def = {SOLVER, .most_work = MSPRINGI_MOST_WORK};
-static const mspring_settings default_settings = {SETTINGS};
+static const mspring_settings default_settings = {
+#define SETTING(name, first, range, is_good, change) .name = first,
+#include "base/settings.def"
+    .guard = MSPRING_GUARD_CLAMP};
 static const mspring_network_def default_network_def = {
-    .simd_level = MSPRING_SIMD_AUTO, .worker_count = 1, SETTINGS, SOLVER};
+#define SETTING(name, first, range, is_good, change) .name = first,
+#include "base/settings.def"
+    .guard = MSPRING_GUARD_CLAMP, .simd_level = MSPRING_SIMD_AUTO, .worker_count = 1, SOLVER};
 static const mspring_clone_def default_clone_def = {.worker_count = 1};
 static const mspring_hook_def default_hook_def = {.phase = MSPRING_PHASE_BEFORE_STEP, .period = 1};
 static const mspring_floor_def default_floor_def = {.spacing = 1.0};

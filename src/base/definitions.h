@@ -12,15 +12,10 @@
 
 /// Initial settings of a network.
 static inline mspring_settings mspringi_settings_of(const mspring_network_def *def) {
-    return (mspring_settings){.struct_size = sizeof(mspring_settings),
-                              .guard = def->guard,
-                              .gravity_x = def->gravity_x,
-                              .gravity_y = def->gravity_y,
-                              .global_damping = def->global_damping,
-                              .max_speed = def->max_speed,
-                              .sleep_speed = def->sleep_speed,
-                              .sleep_time = def->sleep_time,
-                              .relax_fraction = def->relax_fraction};
+    return (mspring_settings){
+#define SETTING(name, first, range, is_good, change) .name = def->name,
+#include "base/settings.def"
+        .struct_size = sizeof(mspring_settings), .guard = def->guard};
 }
 
 /// Initial solver of a network.

@@ -127,30 +127,15 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
 
 /* ---------------------------------------------------------------------------------------------------- settings */
 
-static bool is_within(float value, float min, float max) {
-    return value >= min && value <= max;
-}
-
 mspring_result mspringi_check_settings(const mspring_settings *settings, mspringi_message *message) {
-    const mspring_settings *s = settings;
-    const struct {
-        const char *name, *range;
-        float value;
-        bool is_good;
-    } values[] = {
-        {"gravity_x", "finite", s->gravity_x, isfinite(s->gravity_x)},
-        {"gravity_y", "finite", s->gravity_y, isfinite(s->gravity_y)},
-        {"global_damping", "0 to 1e6 1/s", s->global_damping, is_within(s->global_damping, 0.0f, 1e6f)},
-        {"max_speed", "> 0 and at most 1e15 m/s", s->max_speed, s->max_speed > 0.0f && s->max_speed <= 1e15f},
-        {"sleep_speed", "0 to 1e15 m/s", s->sleep_speed, is_within(s->sleep_speed, 0.0f, 1e15f)},
-        {"sleep_time", "0 to 1e6 s", s->sleep_time, is_within(s->sleep_time, 0.0f, 1e6f)},
-        {"relax_fraction", "0 to 1", s->relax_fraction, is_within(s->relax_fraction, 0.0f, 1.0f)},
-    };
-    for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
-        if (!values[i].is_good)
-            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s is %g, it must be %s", values[i].name,
-                                 (double)values[i].value, values[i].range);
-    return mspringi_guard_check(s->guard, message);
+    float value;
+#define SETTING(name, first, range, is_good, change)                                                               \
+    value = settings->name;                                                                                        \
+    if (!(is_good))                                                                                                \
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s is %g, it must be %s", #name, (double)value,     \
+                             range);
+#include "base/settings.def"
+    return mspringi_guard_check(settings->guard, message);
 }
 
 mspring_result mspring_network_get_settings(const mspring_network *network, mspring_settings *settings) {
@@ -191,11 +176,9 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
         network->guard.h = network->guard.peak = 0.0f;
         network->guard.fallback_steps = 0;
     }
-    if (settings->gravity_x != old.gravity_x || settings->gravity_y != old.gravity_y)
-        mspringi_notify_change(network, MSPRINGI_CHANGED_GRAVITY, 0);
-    if (settings->relax_fraction != old.relax_fraction)
-        mspringi_notify_change(network, MSPRINGI_CHANGED_RELAX, 0);
-    if (settings->sleep_speed != old.sleep_speed || settings->sleep_time != old.sleep_time)
-        mspringi_notify_change(network, MSPRINGI_CHANGED_SLEEP, 0);
+#define SETTING(name, first, range, is_good, change)                                                               \
+    if (settings->name != old.name)                                                                                \
+        mspringi_notify_change(network, change, 0);
+#include "base/settings.def"
     return MSPRING_OK;
 }

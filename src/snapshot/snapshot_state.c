@@ -14,30 +14,33 @@
 
 typedef struct settings {
     double origin_x, origin_y;
-    float recentre_distance, relative_h, gravity_x, gravity_y, global_damping, max_speed, relax;
+    float recentre_distance, relative_h;
+    mspring_settings values;
     uint32_t substeps, max_substeps, auto_substeps, most_work;
 } settings;
 
 static void hand_settings(mspringi_io *io, settings *s) {
     MSPRINGI_HAND(io, s->origin_x);
     MSPRINGI_HAND(io, s->origin_y);
-    mspringi_hand(io, &s->recentre_distance, 7, sizeof(float)); // and the next six
+    mspringi_hand(io, &s->recentre_distance, 2, sizeof(float)); // and the next one
+#define SETTING(name, first, range, is_good, change) MSPRINGI_HAND(io, s->values.name);
+#define SLEEP_SETTING(name, first, range, is_good, change)
+#include "base/settings.def"
     mspringi_hand(io, &s->substeps, 4, sizeof(uint32_t));
 }
 
 static void settings_save(const mspring_network *network, mspringi_writer *to) {
     mspringi_io io = mspringi_io_to(to);
     hand_settings(&io, &(settings){network->origin_x, network->origin_y, network->recentre_distance,
-                                   network->relative_h, network->settings.gravity_x, network->settings.gravity_y,
-                                   network->settings.global_damping, network->settings.max_speed,
-                                   network->settings.relax_fraction, network->substeps, network->max_substeps,
+                                   network->relative_h, network->settings, network->substeps, network->max_substeps,
                                    network->auto_substeps, network->most_work});
 }
 
 static mspring_result settings_check(mspring_network *network, const uint8_t *from, size_t size) {
     const mspringi_section *section = &mspringi_section_settings;
     mspringi_io io = mspringi_io_from(from, size);
-    settings s;
+    settings s = {.values = network->settings};
+    mspringi_message message;
     hand_settings(&io, &s);
     if (mspringi_section_end(network, section, &io) != MSPRING_OK)
         return MSPRING_ERROR_SNAPSHOT;
@@ -48,12 +51,8 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
     if (!(s.relative_h == 0.0f || (s.relative_h >= FLT_MIN && s.relative_h <= FLT_MAX)))
         return mspringi_section_fail(network, section, "relative springs are for a substep of %g s",
                                      (double)s.relative_h);
-    if (!(isfinite(s.gravity_x) && isfinite(s.gravity_y) && s.global_damping >= 0.0f && s.global_damping <= 1e6f))
-        return mspringi_section_fail(network, section, "gravity is (%g, %g) m/s^2, global damping %g 1/s",
-                                     (double)s.gravity_x, (double)s.gravity_y, (double)s.global_damping);
-    if (!(s.max_speed > 0.0f && s.max_speed <= 1e15f && s.relax >= 0.0f && s.relax <= 1.0f))
-        return mspringi_section_fail(network, section, "max_speed is %g m/s, the relax fraction %g",
-                                     (double)s.max_speed, (double)s.relax);
+    if (mspringi_check_settings(&s.values, &message) != MSPRING_OK)
+        return mspringi_section_fail(network, section, "%s", message.text);
     if (s.substeps < 1 || s.substeps > MSPRING_MAX_SUBSTEPS || s.max_substeps < 1 ||
         s.max_substeps > MSPRING_MAX_SUBSTEPS || s.auto_substeps > MSPRINGI_SUBSTEPS_EVEN ||
         s.most_work > MSPRING_MAX_SUBSTEPS)
@@ -64,15 +63,11 @@ static mspring_result settings_check(mspring_network *network, const uint8_t *fr
 
 static void settings_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_io io = mspringi_io_from(from, size);
-    settings s;
+    settings s = {.values = network->settings};
     hand_settings(&io, &s);
     mspringi_origin_set(network, s.origin_x, s.origin_y);
     network->recentre_distance = s.recentre_distance;
-    network->settings.gravity_x = s.gravity_x;
-    network->settings.gravity_y = s.gravity_y;
-    network->settings.global_damping = s.global_damping;
-    network->settings.max_speed = s.max_speed;
-    network->settings.relax_fraction = s.relax;
+    network->settings = s.values;
     network->substeps = s.substeps;
     network->max_substeps = s.max_substeps;
     network->auto_substeps = s.auto_substeps;
