@@ -36,6 +36,7 @@ static bool create(const bench_scene *subject, mspring_simd level, uint32_t work
     mspring_solver_def def = {0};
     mspring_result result = mspring_solver_def_init(&def, sizeof def);
     def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.residual = 0; // as many iterations in each step
     if (result == MSPRING_OK) {
         result = mspring_network_set_solver(out->network, &def);
     }

@@ -251,6 +251,7 @@ static uint32_t list_solvers(mspring_network *network, mspring_solver_def *setti
     }
     mspring_solver_def_init(&settings[count], sizeof *settings);
     settings[count].iterations = 8;
+    settings[count].residual = 0;
     settings[count++].solver = MSPRING_SOLVER_IMPLICIT;
     if (mspring_network_particle_count(network) <= 20000) {
         mspring_solver_def_init(&settings[count], sizeof *settings);

@@ -35,7 +35,7 @@ static const char help[] =
     "  --dt S             length of a step, s (default 1/64)\n"
     "  --solver NAME      explicit, implicit or direct (default explicit)\n"
     "  --substeps N       substeps in a step (default 30, of ships 40; implicit and direct 1)\n"
-    "  --iterations N     of the implicit solver in a substep (default 8)\n"
+    "  --iterations N     of the implicit solver in a substep, at most (default 30)\n"
     "  --steps N          give up after so many steps (default 2000000)\n"
     "  --at-once          find where it rests without stepping there, by mspring_network_settle()\n"
     "  --gravity G        m/s^2, downwards (default 9.8)\n"

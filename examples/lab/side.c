@@ -39,6 +39,7 @@ static mspring_solver_def solver_def(const lab_solver *solver) {
     def.integrator = solver->integrator;
     def.substeps = solver->substeps ? solver->substeps : MSPRING_SUBSTEPS_AUTO;
     def.iterations = solver->iterations;
+    def.residual = 0; // exactly these: the slider shows what they do
     return def;
 }
 

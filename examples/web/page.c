@@ -302,6 +302,7 @@ mspring_result page_set_solver(uint32_t solver, uint32_t substeps, uint32_t iter
     def.solver = (mspring_solver)solver;
     def.substeps = substeps ? substeps : MSPRING_SUBSTEPS_AUTO;
     def.iterations = iterations;
+    def.residual = iterations ? 0 : def.residual;
     return page_done(mspring_network_set_solver(page.network, &def));
 }
 

@@ -319,8 +319,8 @@ typedef enum mspring_solver {
     /// Conserves momentum; cost is proportional to the substeps.
     /// Stable while omega_max * h < 2: on a full lattice of equal springs and masses, stiffness < mass / (2 h^2).
     MSPRING_SOLVER_EXPLICIT = 0,
-    /// One linear system in each substep, solved by conjugate gradients with a fixed number of iterations. Stable for
-    /// any dt and stiffness; the cost does not depend on them. Vibration that a substep cannot follow is damped.
+    /// One linear system in each substep, solved by conjugate gradients until the residual is small. Stable for
+    /// any dt and stiffness; the cost hardly depends on them. Vibration that a substep cannot follow is damped.
     MSPRING_SOLVER_IMPLICIT = 1,
     /// The same system, solved by a factorisation: exact but for rounding. Cheap for networks that are thin, such as
     /// bars and ropes. The library rejects networks whose factor needs over 2^27 numbers.
@@ -372,9 +372,10 @@ typedef enum mspring_integrator {
 ///  - With groups of particles, a step is repeated at most twice for each group that ends out of bounds or with NaN. No
 ///    group is held because many others go wrong.
 ///  - The implicit and the direct solver take 32 times as many calm steps, as substeps in which bodies touch have 16 times
-///    the iterations, and impacts some intervals, halves and passes. Where that ends, the rest is done once, by implicit
-///    Euler: the energy budget holds, and bodies near each other move on as rigid ones, which bump without friction. The
-///    step has MSPRING_STEP_FEWER. The solution that comes to the end may be one of two on top.
+///    the iterations, and impacts some intervals, halves and passes. A calm one has 8 iterations, or a quarter of the most
+///    if that is more; with residual 0 all. Where that ends, the rest is done once, by implicit Euler: the energy budget
+///    holds, and bodies near each other move on as rigid ones, which bump without friction. The step has
+///    MSPRING_STEP_FEWER. The solution that comes to the end may be one of two on top.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
@@ -382,7 +383,8 @@ typedef struct mspring_solver_def {
     uint32_t max_substeps; ///< most that MSPRING_SUBSTEPS_AUTO or MSPRING_GUARD_RETRY may choose, 1 to
                            ///< MSPRING_MAX_SUBSTEPS; default 1000. If a step needs more, the guard decides.
     mspring_integrator integrator; ///< of the implicit and the direct solver; default MSPRING_INTEGRATOR_GA0
-    uint32_t iterations;    ///< of conjugate gradients in a substep, at most 10000; 1: springs hardly act; default 0: 8
+    uint32_t iterations;    ///< most iterations of conjugate gradients in a substep, at most 10000; 1: springs hardly
+                            ///< act; default 0: 30, or 8 if residual is 0
     uint32_t tile_size;     ///< of the implicit solver's tiles, in rows and columns of a lattice: 8, 16, 32, 64, 128 or
                             ///< 256; 0, the default: chosen by the plan
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
@@ -391,6 +393,9 @@ typedef struct mspring_solver_def {
                         ///< substeps for violent motion, MSPRING_GUARD_RETRY repeats, and the implicit and the direct
                         ///< solver take parts again; at most MSPRING_MAX_SUBSTEPS; default 4; 0: no bound but
                         ///< max_substeps. See above
+    float residual; ///< 0 to 1; default 0.01: iterations of the implicit solver end where r . z, a square of what is
+                    ///< unbalanced, is this share of what the first one left, of whole tiles. Larger is cheaper, smaller
+                    ///< is closer. 0: exactly `iterations`. It is squared with a floor; bodies that touch have their own
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
@@ -467,7 +472,7 @@ typedef struct mspring_settings {
 /// A network at the start. Fill with mspring_network_def_init() first.
 ///
 /// It has the fields of mspring_settings and of mspring_solver_def, with the same meanings and defaults. Of most_work
-/// the network has the default; mspring_network_set_solver() sets it.
+/// and residual the network has the defaults; mspring_network_set_solver() sets them.
 typedef struct mspring_network_def {
     uint32_t struct_size;
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks is no
@@ -621,7 +626,7 @@ MSPRING_API uint32_t MSPRING_CALL mspring_network_spring_count(const mspring_net
 
 /// Choose the solver and its settings. The state goes on from where it is.
 /// If they are set already, nothing changes.
-/// @threads exclusive   @allocates for an implicit or direct solver, unless only substeps, iterations or
+/// @threads exclusive   @allocates for an implicit or direct solver, unless only substeps, iterations, residual or
 ///          coarse_period change   @errors ARGUMENT also for a solver that this build lacks; LIMIT if the solver's
 ///          matrix is too large (the message says how large); STRUCT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_solver(

@@ -24,7 +24,8 @@ static const mspring_rope_def default_rope_def = {
     .from = MSPRING_NONE, .to = MSPRING_NONE, .segment_count = 1, .mass = 1.0f, .slack = 1.0f, NO_LIMITS};
 static const mspring_mesh_def default_mesh_def = {.area_density = 1.0f, NO_LIMITS};
 static const mspring_disc_def default_disc_def = {.ring_count = 1, .radius = 1.0, .area_density = 1.0f, NO_LIMITS};
-static const mspring_solver_def default_solver_def = {SOLVER, .most_work = MSPRINGI_MOST_WORK};
+static const mspring_solver_def default_solver_def = {SOLVER, .most_work = MSPRINGI_MOST_WORK,
+                                                      .residual = MSPRINGI_RESIDUAL};
 static const mspring_settings default_settings = {
 #define SETTING(name, first, range, is_good, change) .name = first,
 #include "base/settings.def"

@@ -10,6 +10,9 @@
 /// Default of mspring_solver_def.most_work.
 #define MSPRINGI_MOST_WORK 4u
 
+/// Default of mspring_solver_def.residual.
+#define MSPRINGI_RESIDUAL 0.01f
+
 /// Initial settings of a network.
 static inline mspring_settings mspringi_settings_of(const mspring_network_def *def) {
     return (mspring_settings){
@@ -28,7 +31,8 @@ static inline mspring_solver_def mspringi_solver_of(const mspring_network_def *d
                                 .iterations = def->iterations,
                                 .tile_size = def->tile_size,
                                 .coarse_period = def->coarse_period,
-                                .most_work = MSPRINGI_MOST_WORK};
+                                .most_work = MSPRINGI_MOST_WORK,
+                                .residual = MSPRINGI_RESIDUAL};
 }
 
 #endif

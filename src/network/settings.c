@@ -23,6 +23,9 @@ static mspring_result check_implicit(const mspring_solver_def *def, mspringi_mes
     if (def->coarse_period > MSPRINGI_MOST_ITERATIONS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "coarse_period is %u, it must be at most %d",
                              (unsigned)def->coarse_period, MSPRINGI_MOST_ITERATIONS);
+    if (!(def->residual >= 0.0f && def->residual <= 1.0f)) // NaN is refused, too
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "residual is %g, it must be 0 to 1",
+                             (double)def->residual);
     const bool is_power_of_two = (def->tile_size & (def->tile_size - 1)) == 0;
     if (def->tile_size != 0 && (def->tile_size < 8 || def->tile_size > 256 || !is_power_of_two))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,

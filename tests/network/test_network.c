@@ -177,6 +177,10 @@ static void bad_solver_is_refused(void **state) {
     REFUSED(integrator, MSPRING_INTEGRATOR_EULER + 1, MSPRING_ERROR_ARGUMENT, "integrator");
     REFUSED(iterations, 10001, MSPRING_ERROR_ARGUMENT, "iterations");
     REFUSED(coarse_period, 10001, MSPRING_ERROR_ARGUMENT, "coarse_period");
+    REFUSED(residual, -0.01f, MSPRING_ERROR_ARGUMENT, "residual is -0.01");
+    REFUSED(residual, 1.5f, MSPRING_ERROR_ARGUMENT, "residual");
+    REFUSED(residual, NAN, MSPRING_ERROR_ARGUMENT, "residual");
+    REFUSED(residual, INFINITY, MSPRING_ERROR_ARGUMENT, "residual");
     REFUSED(tile_size, 4, MSPRING_ERROR_ARGUMENT, "tile_size");
     REFUSED(tile_size, 12, MSPRING_ERROR_ARGUMENT, "tile_size");
     REFUSED(tile_size, 512, MSPRING_ERROR_ARGUMENT, "tile_size");

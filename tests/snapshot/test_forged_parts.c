@@ -144,7 +144,10 @@ static void values_of_an_implicit_solver_have_their_ranges(void **state) {
                                  {"impl", 32, 0, "substeps old of 0"},
                                  {"impl", 32, 10001, "substeps old of 10001"},
                                  {"impl", 36, 7, "7 substeps old of 7"},
-                                 {"impl", 36, UINT32_MAX, "substeps old of 7"}};
+                                 {"impl", 36, UINT32_MAX, "substeps old of 7"},
+                                 {"impl", 40, 0x7fc00000, "its residual is"},  // NaN
+                                 {"impl", 40, 0xbf800000, "its residual is"},  // -1
+                                 {"impl", 40, 0x3f800001, "its residual is"}}; // next to 1
     for (size_t i = 0; i < COUNT_OF(words); i++) {
         saved forged = snapshots_copy(&good);
         snapshots_put_word(snapshots_section_of(&forged, words[i].tag, &size) + words[i].at, words[i].value);
@@ -480,8 +483,8 @@ static void what_nobody_has_does_nothing(void **state) {
         uint8_t *forces = snapshots_section_of(&forged, "forc", &size);
         assert_int_equal(size, 8 * (uint64_t)view.slot_count);
         const bool remembers = solver != MSPRING_SOLVER_EXPLICIT;
-        uint8_t *history = remembers ? snapshots_section_of(&forged, "impl", &size) + 40 : NULL;
-        const uint64_t fields = remembers ? (size - 40) / 4 / view.slot_count : 0;
+        uint8_t *history = remembers ? snapshots_section_of(&forged, "impl", &size) + 44 : NULL;
+        const uint64_t fields = remembers ? (size - 44) / 4 / view.slot_count : 0;
         assert_true(!remembers || fields >= 2);
         uint32_t count = 0;
         for (uint32_t slot = 0; slot < view.slot_count; slot++) {

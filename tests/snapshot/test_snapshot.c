@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <fenv.h>
+#include <float.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -215,6 +216,7 @@ static void all_goes_into_a_new_network(void **state) {
 typedef struct extremes {
     float global_damping, max_speed, relax;
     uint32_t substeps, max_substeps, iterations, coarse_period;
+    float residual;
 } extremes;
 
 static mspring_network *extreme_network(const extremes *set, mspring_solver kind) {
@@ -235,6 +237,7 @@ static mspring_network *extreme_network(const extremes *set, mspring_solver kind
     solver.max_substeps = set->max_substeps;
     solver.iterations = set->iterations;
     solver.coarse_period = set->coarse_period;
+    solver.residual = set->residual;
     check_ok(mspring_network_set_solver(network, &solver));
     recipe_free(&made);
     return network;
@@ -243,11 +246,11 @@ static mspring_network *extreme_network(const extremes *set, mspring_solver kind
 /// Whatever a setting may be comes back with a snapshot, into a network that has other settings.
 static void settings_may_be_all_that_they_can_be(void **state) {
     (void)state;
-    const extremes usual = {0.5f, 100, 0.8f, 3, 1000, 5, 3};
-    const extremes sets[] = {{0, 1e15f, 1, 1, 1, 1, 10000},
-                             {1e6f, 1e-3f, 0, 1, 2, 10000, 1},
-                             {1e6f, 1e15f, 0, MSPRING_MAX_SUBSTEPS, MSPRING_MAX_SUBSTEPS, 2, 2},
-                             {0, 1, 1, MSPRING_SUBSTEPS_AUTO, 1, 2, 2}};
+    const extremes usual = {0.5f, 100, 0.8f, 3, 1000, 5, 3, 0.01f};
+    const extremes sets[] = {{0, 1e15f, 1, 1, 1, 1, 10000, 0},
+                             {1e6f, 1e-3f, 0, 1, 2, 10000, 1, 1},
+                             {1e6f, 1e15f, 0, MSPRING_MAX_SUBSTEPS, MSPRING_MAX_SUBSTEPS, 2, 2, 0.1f},
+                             {0, 1, 1, MSPRING_SUBSTEPS_AUTO, 1, 2, 2, FLT_MIN}};
     for (size_t i = 0; i < COUNT_OF(sets); i++) {
         for (mspring_solver kind = MSPRING_SOLVER_EXPLICIT; kind <= MSPRING_SOLVER_DIRECT; kind++) {
             mspring_network *network = extreme_network(&sets[i], kind), *other = extreme_network(&usual, kind);
@@ -268,6 +271,7 @@ static void settings_may_be_all_that_they_can_be(void **state) {
                 check_ok(mspring_network_get_plan(other, &plan));
                 assert_int_equal(plan.iterations, sets[i].iterations);
                 assert_int_equal(plan.coarse_period, sets[i].coarse_period);
+                assert_true(plan.residual == sets[i].residual);
             }
             // In 0.01 s they fall to 0.098 m/s more, or with much damping to 9.8e-6 m/s.
             if (sets[i].substeps == 1) {
@@ -364,7 +368,7 @@ static void a_version_has_one_format(void **state) {
     describe(network, text, sizeof text);
     assert_string_equal(
         text, "11: grow 23 sett 60 step 72 moti 24/slot mass 28 valu 24 brks 8 strs 8 rlxs 8 stsd 4 ramp 32 "
-              "slee 24 impl 1320 guar 56");
+              "slee 24 impl 1324 guar 56");
     mspring_network_destroy(network);
 }
 

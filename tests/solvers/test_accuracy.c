@@ -109,6 +109,7 @@ static errors errors_of(const motion *m, const setting *s, uint32_t steps, uint3
     solver.solver = s->solver;
     solver.integrator = s->integrator;
     solver.substeps = substeps;
+    solver.residual = 0; // what iterations leave goes down by steps only as far as they are many
     check_ok(mspring_network_set_solver(network, &solver));
     support_steps(network, steps, m->seconds / steps);
     errors sum = {0, 0};

@@ -19,6 +19,7 @@ static void use_implicit(mspring_network *network, mspring_integrator integrator
     solver.solver = tested;
     solver.integrator = integrator;
     solver.iterations = iterations;
+    solver.residual = iterations > 0 ? 0 : solver.residual; // exactly these
     check_ok(mspring_network_set_solver(network, &solver));
 }
 

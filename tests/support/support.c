@@ -173,6 +173,12 @@ mspring_solver_def support_solver(const mspring_network *network) {
     return def;
 }
 
+void support_set_residual(mspring_network *network, float residual) {
+    mspring_solver_def def = support_solver(network);
+    def.residual = residual;
+    check_ok(mspring_network_set_solver(network, &def));
+}
+
 mspring_settings support_settings(const mspring_network *network) {
     mspring_settings settings = {.struct_size = sizeof settings};
     check_ok(mspring_network_get_settings(network, &settings));

@@ -126,6 +126,7 @@ mspring_step_info support_step_info(const mspring_network *network);
 uint32_t support_substeps(const mspring_network *network);
 uint64_t support_fallback_count(const mspring_network *network);
 mspring_solver_def support_solver(const mspring_network *network);
+void support_set_residual(mspring_network *network, float residual);
 
 typedef struct support_point {
     double x, y;

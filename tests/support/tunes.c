@@ -32,6 +32,7 @@ mspring_solver_def tunes_setting(mspring_solver solver, uint32_t substeps, uint3
     def.solver = solver;
     def.substeps = substeps;
     def.iterations = iterations;
+    def.residual = 0;
     return def;
 }
 

@@ -45,7 +45,7 @@ class TuneTable(List[Dict[str, Any]]):
     def solver_of(row: Dict[str, Any]) -> Dict[str, Any]:
         """The arguments of Network.set_solver() for a row."""
         return {name: row[name] for name in ("solver", "substeps", "integrator", "iterations", "tile_size",
-                                             "coarse_period")}
+                                             "coarse_period", "residual")}
 
     def columns(self) -> Dict[str, List[Any]]:
         """The table by columns."""

@@ -247,6 +247,7 @@ static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *setti
             .iterations = setting->iterations,
             .tile_size = setting->tile_size,
             .coarse_period = setting->coarse_period,
+            .residual = setting->residual,
         };
     }
 }

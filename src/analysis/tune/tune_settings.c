@@ -28,6 +28,7 @@ static void add(settings *s, mspring_solver solver, mspring_integrator integrato
     def.integrator = integrator;
     def.substeps = substeps;
     def.iterations = iterations;
+    def.residual = 0.0f; // exactly these
     s->list[s->count++] = def;
 }
 
@@ -90,6 +91,7 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
 mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solver_def *solver) {
     mspring_solver_def made;
     mspring_tune_row taken;
+    const bool has_residual = row && row->struct_size > offsetof(mspring_tune_row, residual); // it came later
     mspring_result result = mspringi_take_tune_row(NULL, &row, &taken);
     if (result == MSPRING_OK)
         result = mspringi_check_output(NULL, &mspringi_struct_solver_def, solver);
@@ -102,6 +104,8 @@ mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solv
     made.iterations = row->iterations;
     made.tile_size = row->tile_size;
     made.coarse_period = row->coarse_period;
+    if (has_residual)
+        made.residual = row->residual;
     mspringi_put_solver_def(solver, &made);
     return MSPRING_OK;
 }

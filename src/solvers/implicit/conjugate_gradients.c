@@ -6,8 +6,8 @@
 /// from its mass centre, [1 0 -Y; 0 1 X] in t's three columns. (Nicolaides 1987 has the additive coarse correction
 /// by domains; rigid bodies as the coarse space of elasticity are Mandel's, 1993.)
 ///
-/// The number of iterations is fixed, and every sum has a fixed order, whatever the instruction set and however
-/// many workers there are. All workers run the same code and compute the same scalars from the same sums.
+/// Every sum has a fixed order, whatever the instruction set and however many workers there are. All workers run
+/// the same code, compute the same scalars from the same sums, and end after the same iteration.
 #include "solvers/implicit/implicit.h"
 #include "solvers/implicit/implicit_terms.h"
 
@@ -17,17 +17,20 @@
 
 typedef mspringi_implicit_substep substep_of;
 
-/// Relative product of residuals at the end of the iteration. A last place squared is 1e-14. Products far below are
-/// denormal, and their quotients are noise that grows with the iterations.
+/// Relative product of residuals, r . z, that ends a solution whose iterations are counted. A last place squared is
+/// 1e-14. Products far below are denormal, and their quotients are noise that grows with the iterations.
 #define LEAST_PRODUCT 1e-30
 
 /// Smallest usable product of residuals or of a direction. Below it single precision loses digits, so quotients are
 /// noise or infinite. Masses are scaled to be near 1, so it moves nothing by more than 1e-19 m.
 #define NO_PRODUCT ((double)FLT_MIN)
 
-/// LEAST_PRODUCT with constraints between bodies, and their factor on the iterations.
+/// The same with constraints between bodies, and their factor on the iterations.
 #define LEAST_PRODUCT_WITH_ROWS 1e-9
 #define TIMES_WITH_ROWS 16
+
+/// Factor on the iterations with the floor, and in halves.
+#define TIMES_OF_MORE 2
 
 /* ------------------------------------------------------------------------------------------------- coarse space */
 
@@ -161,6 +164,22 @@ static double begin_anew(const substep_of *substep, mspringi_team_member *member
     return advance(substep, member, 0.0f, true);
 }
 
+// Share of the first r . z that ends a solution. Where more iterations are needed, it is squared: errors shrink by
+// a factor in each, so that takes twice as many.
+static double least_share(const mspringi_implicit *n, uint32_t times) {
+    const double residual = (double)n->residual_share;
+    if (times == TIMES_WITH_ROWS)
+        return LEAST_PRODUCT_WITH_ROWS;
+    if (residual == 0.0)
+        return LEAST_PRODUCT;
+    return fmax(times == TIMES_OF_MORE ? residual * residual : residual, LEAST_PRODUCT);
+}
+
+// True if the iteration has converged, or is at the limit of this precision. Not a NaN.
+static bool is_small(double product, double least) {
+    return product < NO_PRODUCT || product <= least;
+}
+
 float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
@@ -169,8 +188,8 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
     const bool has_contacts = mspringi_next_floor_push(&network->constraints, NULL) != NULL;
     // The coarse matrix may lack entries for the tiles of bodies that touch.
     const bool has_rows = mspringi_contact_constraint_is_active(&network->constraints);
-    const uint32_t times = has_rows ? TIMES_WITH_ROWS : has_contacts || n->is_piece ? 2 : 1;
-    uint32_t left = times * n->iterations;
+    const uint32_t times = has_rows ? TIMES_WITH_ROWS : has_contacts || n->is_piece ? TIMES_OF_MORE : 1;
+    uint32_t left = mspringi_implicit_most_iterations(n, times);
     invert(network, mspringi_slots_of(network, member));
     assemble_coarse(network, member);
     mspringi_team_barrier(member);
@@ -178,7 +197,7 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
     double product = tiles_first ? solve_tiles(substep, member) : begin_anew(substep, member);
     left -= tiles_first;
     product += correct(substep, member, !tiles_first);
-    const double least = (has_rows ? LEAST_PRODUCT_WITH_ROWS : LEAST_PRODUCT) * product;
+    const double least = least_share(n, times) * product;
     turn(substep, member, MSPRINGI_SEARCH_RESTART, 0.0f);
     for (;;) {
         const double curvature = mspringi_multiply(substep, member);
@@ -186,14 +205,15 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
             n->product_count++;
         if (!(curvature < INFINITY && product < INFINITY))
             return NAN;
-        // Converged, or at the limit of this precision.
-        if (curvature < NO_PRODUCT || product < NO_PRODUCT || product <= least)
+        if (curvature < NO_PRODUCT || is_small(product, least))
             return 0.0f;
         const float alpha = (float)(product / curvature);
         if (--left == 0)
             return alpha;
         double next = advance(substep, member, alpha, false);
         next += correct(substep, member, false);
+        if (is_small(next, least))
+            return 0.0f;
         turn(substep, member, MSPRINGI_SEARCH_CONTINUE, (float)(next / product));
         product = next;
     }

@@ -4,9 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/definitions.h"
 #include "store/sleepers.h"
 
-#define DEFAULT_ITERATIONS 8
+/// Default of the most iterations if the residual ends them, and of their number if it does not.
+#define MOST_ITERATIONS_BY_DEFAULT 30
+#define ITERATIONS_BY_DEFAULT 8
 
 /// Most multiply-adds that factoring the coarse matrix may take, for each slot but spare ones: about as long as one
 /// product with A takes.
@@ -365,11 +368,14 @@ mspring_result mspringi_implicit_make(mspringi_implicit *n, bool *is_done) {
 }
 
 void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *def) {
-    const uint32_t iterations = !n->is_direct && def->iterations > 0 ? def->iterations : DEFAULT_ITERATIONS;
+    const float residual = n->is_direct ? MSPRINGI_RESIDUAL : def->residual;
+    const uint32_t usual = residual > 0.0f ? MOST_ITERATIONS_BY_DEFAULT : ITERATIONS_BY_DEFAULT;
+    const uint32_t iterations = !n->is_direct && def->iterations > 0 ? def->iterations : usual;
     const uint32_t coarse_period = !n->is_direct && def->coarse_period > 0 ? def->coarse_period : 1;
-    if (iterations != n->iterations || coarse_period != n->coarse_period)
+    if (iterations != n->iterations || residual != n->residual_share || coarse_period != n->coarse_period)
         n->age = 0;
     n->iterations = iterations;
+    n->residual_share = residual;
     n->coarse_period = coarse_period;
 }
 

@@ -58,19 +58,20 @@ typedef enum mspringi_contact_mode {
 
 typedef struct mspringi_implicit {
     mspring_integrator integrator;
-    uint32_t iterations, coarse_period;
-    uint32_t tile_size;             ///< as requested; 0: automatic
-    uint32_t age;                   ///< substeps since the coarse matrix was factored; 0: factor it
-    bool has_constraints_in_coarse; ///< with bounds: they come and go, so it is not used again
-    uint32_t kept_age;              ///< before the step; 0: nothing to restore
-    uint32_t kept_restarts;         ///< restarts of the history before the step
-    uint32_t product_count;         ///< products with A or its inverse in this step; a direct solution is one more
-    uint32_t pass_count;            ///< solutions in this step
-    uint32_t intervals_left;        ///< of the substep, behind the present one
-    double work_rate;               ///< work that a second is allowed
-    double most_work;               ///< of this step up to the present substep: beyond it nothing is repeated
-    bool is_spent;                  ///< something was not, for that reason
-    double scale;                   ///< power of two that brings masses near 1
+    uint32_t iterations, coarse_period; ///< iterations: the most of a solution
+    float residual_share;               ///< that ends them: mspring_solver_def.residual
+    uint32_t tile_size;                 ///< as requested; 0: automatic
+    uint32_t age;                       ///< substeps since the coarse matrix was factored; 0: factor it
+    bool has_constraints_in_coarse;     ///< with bounds: they come and go, so it is not used again
+    uint32_t kept_age;                  ///< before the step; 0: nothing to restore
+    uint32_t kept_restarts;             ///< restarts of the history before the step
+    uint32_t product_count;  ///< products with A or its inverse in this step; a direct solution is one more
+    uint32_t pass_count;     ///< solutions in this step
+    uint32_t intervals_left; ///< of the substep, behind the present one
+    double work_rate;        ///< work that a second is allowed
+    double most_work;        ///< of this step up to the present substep: beyond it nothing is repeated
+    bool is_spent;           ///< something was not, for that reason
+    double scale;            ///< power of two that brings masses near 1
 
     mspringi_history history, backup; ///< backup: before the step, once the step has changed it
     mspringi_history previous;        ///< output of the next substep; until then, before the last one
@@ -219,6 +220,8 @@ static inline bool mspringi_is_coupled(const mspring_network *network, const msp
 
 /* work.c: in the unit of mspring_solver_def.most_work */
 
+/// Most iterations of a solution for which calm ones are multiplied by `times`.
+uint32_t mspringi_implicit_most_iterations(const mspringi_implicit *n, uint32_t times);
 /// Work of a substep in which nothing is repeated.
 double mspringi_implicit_calm_work(const mspringi_implicit *n);
 /// Work of this step so far.

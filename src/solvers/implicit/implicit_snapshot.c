@@ -13,6 +13,7 @@ typedef struct implicit_head {
     double scale;
     float h;
     uint32_t restarts, integrator, iterations, coarse_period, age;
+    float residual;
 } implicit_head;
 
 static void hand_head(mspringi_io *io, implicit_head *head) {
@@ -20,6 +21,7 @@ static void hand_head(mspringi_io *io, implicit_head *head) {
     MSPRINGI_HAND(io, head->scale);
     MSPRINGI_HAND(io, head->h);
     mspringi_hand(io, &head->restarts, 5, sizeof(uint32_t)); // and those that follow
+    MSPRINGI_HAND(io, head->residual);
 }
 
 // Of what it was made for: other tiles, or another order, would give other bits.
@@ -43,7 +45,8 @@ void mspringi_implicit_save(const mspring_network *network, const mspringi_impli
     const bool ended = n->seen.motion != network->edits.motion;
     mspringi_io io = mspringi_io_to(to);
     hand_head(&io, &(implicit_head){fingerprint_of(n), n->scale, n->history.h, ended ? 1 : n->history.restarts,
-                                    (uint32_t)n->integrator, n->iterations, n->coarse_period, age_of(network, n)});
+                                    (uint32_t)n->integrator, n->iterations, n->coarse_period, age_of(network, n),
+                                    n->residual_share});
     if (ended)
         mspringi_put_zeros(to, n->history_size * sizeof(float));
     else
@@ -61,6 +64,8 @@ static mspring_result check_head(mspring_network *network, const mspringi_implic
         head->restarts > MSPRINGI_RECOVERY_SUBSTEPS)
         return mspringi_section_fail(network, section, "its scale is %g, its substep %g s", head->scale,
                                      (double)head->h);
+    if (!(head->residual >= 0.0f && head->residual <= 1.0f))
+        return mspringi_section_fail(network, section, "its residual is %g", (double)head->residual);
     if (head->iterations < 1 || head->iterations > MSPRINGI_MOST_ITERATIONS || head->coarse_period < 1 ||
         head->coarse_period > MSPRINGI_MOST_ITERATIONS || head->age >= head->coarse_period)
         return mspringi_section_fail(
@@ -111,6 +116,7 @@ void mspringi_implicit_load(mspring_network *network, mspringi_implicit *n, cons
     n->history.restarts = head.restarts;
     n->iterations = head.iterations;
     n->coarse_period = head.coarse_period;
+    n->residual_share = head.residual;
     n->budget.is_known = n->budget.knows_elastic = false;
     mspringi_hand(&io, n->history.first.x, n->history_size, sizeof(float));
     clear_history(network, n);

@@ -46,6 +46,7 @@ static void get_def(const void *object, mspring_solver_def *def) {
     def->solver = n->is_direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
     def->integrator = n->integrator;
     def->iterations = n->iterations;
+    def->residual = n->residual_share;
     def->tile_size = n->tile_size;
     def->coarse_period = n->coarse_period;
 }
@@ -184,6 +185,7 @@ static void describe(const void *object, mspring_plan *plan) {
     if (n->is_direct)
         return;
     plan->iterations = n->iterations;
+    plan->residual = n->residual_share;
     plan->tile_size = n->tiles.cells.size;
     plan->tile_count = n->tiles.count;
     plan->coarse_values = (uint32_t)(n->coarse.value_count < UINT32_MAX ? n->coarse.value_count : UINT32_MAX);

@@ -628,6 +628,8 @@ typedef struct mspring_tune_row {
     double scene_spread[MSPRING_TUNE_QUANTITIES]; ///< standard deviations
     double fine_mean[MSPRING_TUNE_QUANTITIES];    ///< the same of the fine runs from the same starts
     double fine_spread[MSPRING_TUNE_QUANTITIES];
+    float residual;    ///< as in mspring_solver_def
+    uint32_t reserved; ///< 0
 } mspring_tune_row;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
@@ -737,7 +739,7 @@ typedef struct mspring_plan {
     uint64_t factor_values;    ///< of the direct solver: numbers in its factor, which exists in both precisions
     double factor_products;    ///< products that computing that factor takes
     uint32_t pass_workers;     ///< workers that share passes over lattice rows in explicit steps; 1: no sharing
-    uint32_t reserved;         ///< 0
+    float residual;            ///< of the implicit solver, see mspring_solver_def; 0 for others
 } mspring_plan;
 
 /// Get the plan. Set struct_size first.
