@@ -35,13 +35,15 @@ static mspring_result check_values(mspring_network *network, const mspringi_sele
 
 static mspring_result set_values(mspring_network *network, const mspringi_selection *at,
                                  const mspringi_values *values) {
+    const bool is_of_springs = mspringi_property_of(values->property)->kind == MSPRINGI_SPRINGS;
+    if (is_of_springs && mspringi_springs_have_values(network, at, values))
+        return MSPRING_OK;
     mspring_result result = check_values(network, at, values);
     if (result != MSPRING_OK || at->count == 0)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
-    result = mspringi_property_of(values->property)->kind == MSPRINGI_PARTICLES
-                 ? mspringi_set_particle_values(network, at, values)
-                 : mspringi_set_spring_values(network, at, values);
+    result = is_of_springs ? mspringi_set_spring_values(network, at, values)
+                           : mspringi_set_particle_values(network, at, values);
     mspringi_fp_leave(before);
     return result;
 }

@@ -252,6 +252,7 @@ typedef struct lattice_setter {
     double rate;
     bool is_damping, has_relative;
     float mass_a, mass_b; ///< masses of the relative spring set before
+    uint32_t changed;     ///< springs of which set_run() changed the value
     double reduced_mass;
 } lattice_setter;
 
@@ -326,17 +327,17 @@ static inline bool set_in_plane(mspring_network *network, const plane *known, ms
     return true;
 }
 
-// Set stiffness or damping of springs from index i on, while they are live and in a lattice. Notifies only the
+// Set stiffness or damping of springs from index i to end, while they are live and in a lattice. Notifies only the
 // fingerprint of each. Returns the index of the first spring left.
 MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi_selection *at,
                                         const mspringi_values *values, lattice_setter *with, uint32_t i,
-                                        bool has_relative, uint64_t *traces) {
+                                        uint32_t end, bool has_relative, uint64_t *traces) {
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring;
     const mspringi_shared_records shared = network->shared_records;
     const plane records = with->records;
     const uint32_t count = at->count;
     uint64_t sum = 0, changes = 0;
-    for (; i < count; ++i) {
+    for (; i < end; ++i) {
         const mspring_id spring = mspringi_selected(at, i);
         const mspringi_spring_slot spring_slot = spring_slots[spring];
         const uint32_t block = spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH);
@@ -367,28 +368,39 @@ MSPRINGI_ALWAYS_INLINE uint32_t set_run(mspring_network *network, const mspringi
         sum += trace(i, spring, value);
     }
     network->shared_records.changes += changes;
+    with->changed += (uint32_t)changes;
     *traces += sum;
     return i;
 }
 
-// Set changed springs from index i on.
-static MSPRINGI_NOINLINE void set_changed(mspring_network *network, const mspringi_selection *at,
-                                          const mspringi_values *values, uint32_t i) {
+/// Springs after a changed one that are set without another look at what was sent.
+#define RUN_AFTER_CHANGE 64u
+
+// Set changed springs from index `next` on. sent: values of all that were sent before, or NULL. Returns how many
+// changed.
+static MSPRINGI_NOINLINE uint32_t set_changed(mspring_network *network, const mspringi_selection *at,
+                                              const mspringi_values *values, const float *sent, uint32_t next) {
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring;
     const mspring_property property = values->property;
     const bool may_sleep = network->sleep.count > 0;
     const bool is_part = property == MSPRING_STIFFNESS || property == MSPRING_DAMPING;
     lattice_setter lattice = lattice_setter_of(network, property);
     const bool runs = is_part && !at->list && !may_sleep && !network->job;
+    uint32_t changed = 0, end = sent ? next : at->count;
     uint64_t traces = 0;
-    for (; i < at->count; ++i) {
+    while (next < at->count) {
+        if (next == end) {
+            next = mspringi_sent_skip(sent, values, next, at->count);
+            end = at->count - next > RUN_AFTER_CHANGE ? next + RUN_AFTER_CHANGE : at->count;
+        }
         if (runs)
-            i = lattice.has_relative ? set_run(network, at, values, &lattice, i, true, &traces)
-                                     : set_run(network, at, values, &lattice, i, false, &traces);
+            next = lattice.has_relative ? set_run(network, at, values, &lattice, next, end, true, &traces)
+                                        : set_run(network, at, values, &lattice, next, end, false, &traces);
         else if (at->list)
-            i = next_changed(network, at, values, i);
-        if (i == at->count)
-            break;
+            next = next_changed(network, at, values, next);
+        if (next == end)
+            continue;
+        const uint32_t i = next++;
         const mspring_id spring = mspringi_selected(at, i);
         const mspringi_spring_slot spring_slot = spring_slots[spring];
         const float value = mspringi_value_of(values, i);
@@ -406,6 +418,7 @@ static MSPRINGI_NOINLINE void set_changed(mspring_network *network, const msprin
         }
         if (!is_new)
             continue;
+        ++changed;
         traces += trace(i, spring, value);
         if (may_sleep)
             mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING, spring);
@@ -416,17 +429,33 @@ static MSPRINGI_NOINLINE void set_changed(mspring_network *network, const msprin
     }
     if (is_part || property == MSPRING_REST_LENGTH || property == MSPRING_PLASTIC_STRAIN)
         mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING_VALUES, 0);
+    return changed + lattice.changed;
 }
 
 mspring_result mspringi_set_spring_values(mspring_network *network, const mspringi_selection *at,
                                           const mspringi_values *values) {
     mspring_result result =
         values->property == MSPRING_DAMPING ? check_room_for_damping(network, at, values) : MSPRING_OK;
-    const uint32_t first = result == MSPRING_OK ? next_changed(network, at, values, 0) : at->count;
-    if (first >= at->count)
+    if (result != MSPRING_OK)
         return result;
-    result = reserve(network, at, values, first);
-    if (result == MSPRING_OK)
-        set_changed(network, at, values, first);
-    return result;
+    mspringi_sent_edit edit = mspringi_sent_begin(network, values->property);
+    const float *sent = mspringi_sent_range(network, at, values->property);
+    const uint32_t from = sent ? mspringi_sent_skip(sent, values, 0, at->count) : 0;
+    const uint32_t first = next_changed(network, at, values, from);
+    edit.equal = from;
+    if (first < at->count) {
+        result = reserve(network, at, values, first);
+        if (result != MSPRING_OK)
+            return result;
+        edit.changed = set_changed(network, at, values, sent, first);
+    }
+    mspringi_sent_end(network, at, values, edit);
+    return MSPRING_OK;
+}
+
+bool mspringi_springs_have_values(mspring_network *network, const mspringi_selection *at,
+                                  const mspringi_values *values) {
+    const bool again = mspringi_sent_again(network, at, values);
+    MSPRINGI_ASSERT(!again || next_changed(network, at, values, 0) == at->count);
+    return again;
 }

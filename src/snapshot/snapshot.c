@@ -309,6 +309,8 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
     if (result != MSPRING_OK)
         return result;
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
+    for (int i = 0; i < MSPRINGI_SENT_COUNT; ++i)
+        mspringi_sent_forget(&network->sent[i]);
 #define LOADS(function) function(network);
 #include "store/features.def"
     for (int i = 0; i < SECTIONS; ++i)

@@ -18,6 +18,7 @@
 #include "store/constraint_list.h"
 #include "store/edit_counters.h"
 #include "store/groups.h"
+#include "store/sent_values.h"
 #include "store/sleep_state.h"
 #include "store/solver.h"
 #include "store/state.h"
@@ -195,6 +196,7 @@ struct mspring_network {
     double shortest;    ///< smallest rest length at first, m, but for welds
     float shortest_set; ///< and of all that have been set since, but for flow
     bool has_welds;     ///< there has been one
+    mspringi_sent sent[MSPRINGI_SENT_COUNT]; ///< by property, from MSPRING_STIFFNESS on
 
     mspringi_edits edits;
 /// Of features: NULL as long as the network does not use them.

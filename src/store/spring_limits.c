@@ -48,6 +48,8 @@ mspring_result mspringi_limits_match_layout(mspring_network *to, const mspring_n
 
 void mspringi_limit_store(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
                           float value) {
+    if (property <= MSPRING_RELAX_STRAIN)
+        mspringi_sent_forget(&network->sent[mspringi_sent_index(property)]);
     owner_of(property)->store(network, spring_slot, property, value);
 }
 

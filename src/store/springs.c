@@ -140,6 +140,7 @@ void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spr
                     !mspringi_rest_lengths_are_shared(&network->rest_lengths, spring_slot) ||
                     *records.ends[0].rest_length == rest_length);
     mspringi_shared_records_unshare_yielding(network, spring_slot);
+    mspringi_sent_forget(&network->sent[mspringi_sent_index(MSPRING_REST_LENGTH)]);
     for (int i = 0; i < records.count; ++i)
         *records.ends[i].rest_length = rest_length;
     mspringi_note_rest_length(network, rest_length);

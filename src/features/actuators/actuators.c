@@ -43,6 +43,7 @@ static void set_lengths(mspring_network *network, const float *to) {
     const mspringi_actuators a = *network->actuators;
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring, end = plain_end(network);
     float *lengths = network->rest_lengths.lengths;
+    mspringi_sent_forget(&network->sent[mspringi_sent_index(MSPRING_REST_LENGTH)]);
     for (uint32_t i = 0; i < a.count; ++i) {
         if (spring_slots[a.spring[i]] < end)
             lengths[spring_slots[a.spring[i]]] = to[i];
@@ -56,6 +57,7 @@ static void set_between(mspring_network *network, float share) {
     const mspringi_actuators a = *network->actuators;
     const mspringi_spring_slot *spring_slots = network->topology.slot_of_spring, end = plain_end(network);
     float *lengths = network->rest_lengths.lengths;
+    mspringi_sent_forget(&network->sent[mspringi_sent_index(MSPRING_REST_LENGTH)]);
     for (uint32_t i = 0; i < a.count; ++i) {
         const float length = a.from[i] + (a.to[i] - a.from[i]) * share;
         if (spring_slots[a.spring[i]] < end)

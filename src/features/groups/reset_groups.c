@@ -155,6 +155,7 @@ static void put_back(mspring_network *network, const mspringi_mark *mark, uint32
     if (g->flags[group] & MSPRINGI_HELD)
         mspringi_ops_of_groups.release(network, group);
     restore_motion(network, mark, group);
+    mspringi_sent_forget(&network->sent[mspringi_sent_index(MSPRING_REST_LENGTH)]);
     for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i)
         put_length_back(network, g->springs[i], mark->lengths + 2 * (size_t)i);
 }

@@ -1,0 +1,270 @@
+/// @file test_sent.c
+/// Values that the host sends again: only a comparison, unless something else has changed them since.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <string.h>
+
+#include "allocator.h"
+#include "recipe.h"
+#include "support.h"
+
+#define DT (1.0 / 64)
+#define MOST 3000
+#define FIRST ((int)MSPRING_STIFFNESS)
+#define END ((int)MSPRING_RELAX_STRAIN + 1)
+
+static float values[MOST], others[MOST], read[MOST];
+
+static mspring_network *lattice(recipe *made, const mspring_network_def *def) {
+    *made = recipe_rows(21, 0, 1, 5);
+    assert_true(made->spring_count < MOST);
+    return recipe_network(made, def);
+}
+
+static float value_of(mspring_property property, uint64_t *seed) {
+    static const double low[END] = {0, 0, 200, 1, 0.9, 1.5, 0.5, 0.1};
+    return (float)support_random_between(seed, low[property], 1.2 * low[property]);
+}
+
+static void fill(mspring_property property, float *to, uint64_t seed) {
+    for (uint32_t i = 0; i < MOST; i++) {
+        to[i] = value_of(property, &seed);
+    }
+}
+
+static void send(mspring_network *network, mspring_property property, const float *from) {
+    check_ok(mspring_network_set(network, property, 0, mspring_network_spring_count(network), from, 1));
+}
+
+static void check_has(const mspring_network *network, mspring_property property, const float *expected) {
+    const uint32_t count = mspring_network_spring_count(network);
+    check_ok(mspring_network_get(network, property, 0, count, read, 1));
+    assert_memory_equal(read, expected, count * sizeof *read);
+}
+
+/// Values of all springs that the network compares with from now on.
+static void send_twice(mspring_network *network, mspring_property property) {
+    fill(property, values, 5);
+    send(network, property, values);
+    send(network, property, values);
+}
+
+/// The second call for a range makes a copy, later ones do not. Without memory for it the call succeeds.
+static void a_copy_is_made_once(void **state) {
+    (void)state;
+    for (mspring_property p = FIRST; p < END; p++) {
+        for (int fails = 0; fails < 2; fails++) {
+            recipe made;
+            watched_allocator watched = {0};
+            const mspring_allocator allocator = watched_interface(&watched);
+            mspring_network_def def = support_def(0, 4);
+            def.allocator = &allocator;
+            mspring_network *network = lattice(&made, &def);
+            fill(p, values, 5);
+            send(network, p, values);
+            const uint64_t before = mspring_network_memory_used(network);
+            watched.fail_at = fails ? watched.calls + 1 : 0;
+            send(network, p, values);
+            const uint64_t after = mspring_network_memory_used(network);
+            // 64 bytes: the allocator's header, and rounding up
+            assert_true(fails ? after == before
+                              : after > before && after <= before + sizeof(float) * made.spring_count + 128);
+            watched.fail_at = 0;
+            for (int i = 0; i < 3; i++) {
+                send(network, p, values);
+            }
+            assert_true(fails || mspring_network_memory_used(network) == after);
+            check_has(network, p, values);
+            mspring_network_destroy(network);
+            check_watched_clean(&watched);
+            recipe_free(&made);
+        }
+    }
+}
+
+/// Ranges, lists, strides and one value for all, of equal and other values, do what calls too small for a copy do.
+static void it_does_what_small_calls_do(void **state) {
+    (void)state;
+    recipe made;
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.spare_springs = 8;
+    mspring_network *network = lattice(&made, &def), *twin = recipe_network(&made, &def);
+    uint64_t seed = 11;
+    static float wide[3 * MOST];
+    for (mspring_property p = FIRST; p < END; p++) {
+        const uint32_t count = made.spring_count;
+        fill(p, values, p);
+        for (int round = 0; round < SAMPLE(200); round++) {
+            const uint32_t first = (uint32_t)(support_random(&seed) % count), kind = support_random(&seed) % 8;
+            const uint32_t length =
+                kind < 4 ? count - first : 1 + (uint32_t)(support_random(&seed) % (count - first));
+            const uint32_t start = kind < 4 ? 0 : first, stride = kind % 4 == 1 ? 3 : kind == 7 ? 0 : 1;
+            const uint32_t number = kind < 4 ? count : length;
+            if (round % 3 == 0) {
+                values[support_random(&seed) % count] = value_of(p, &seed);
+            }
+            for (uint32_t i = 0; i < number; i++) {
+                wide[(size_t)i * stride] = values[start + i];
+            }
+            if (kind == 6) { // the last value of an id counts
+                const mspring_id twice[] = {first, 0, first};
+                const float three[] = {value_of(p, &seed), values[0], values[first]};
+                check_ok(mspring_network_set_at(network, p, twice, 3, three, 1));
+                check_ok(mspring_network_set_at(twin, p, twice, 3, three, 1));
+            } else {
+                check_ok(mspring_network_set(network, p, start, number, wide, stride));
+                for (uint32_t i = 0; i < number; i++) {
+                    check_ok(mspring_network_set(twin, p, start + i, 1, &wide[(size_t)i * stride], 1));
+                }
+            }
+            check_ok(mspring_network_get(twin, p, 0, count, others, 1));
+            check_has(network, p, others);
+        }
+        support_steps(network, 1, DT);
+        support_steps(twin, 1, DT);
+        assert_true(support_hash(network) == support_hash(twin));
+    }
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+    recipe_free(&made);
+}
+
+/// A failed call changes nothing, neither the network nor what it compares with.
+static void what_is_no_value_is_refused(void **state) {
+    (void)state;
+    static const float bad[] = {NAN, -2, -INFINITY};
+    recipe made;
+    mspring_network_def def = support_def(0, 4);
+    mspring_network *network = lattice(&made, &def);
+    const uint32_t count = made.spring_count;
+    for (mspring_property p = FIRST; p < END; p++) {
+        send_twice(network, p);
+        memcpy(others, values, sizeof others);
+        for (size_t i = 0; i < COUNT_OF(bad); i++) {
+            others[count - 7] = bad[i];
+            others[3] = value_of(p, &(uint64_t){i});
+            for (int again = 0; again < 2; again++) {
+                check_error(mspring_network_set(network, p, 0, count, others, 1), MSPRING_ERROR_ARGUMENT);
+            }
+            check_has(network, p, values);
+        }
+        check_error(mspring_network_set(network, p, 1, count, values, 1), MSPRING_ERROR_ID);
+        check_error(mspring_network_set_at(network, p, (const mspring_id[]){2, count}, 2, values + 2, 1),
+                    MSPRING_ERROR_ID);
+    }
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+/// -0 is 0: no edit, so that a frame of before fits.
+static void a_negative_zero_changes_nothing(void **state) {
+    (void)state;
+    recipe made;
+    mspring_network_def def = support_def(0, 4);
+    mspring_network *network = lattice(&made, &def);
+    fill(MSPRING_DAMPING, values, 5);
+    values[9] = 0;
+    send(network, MSPRING_DAMPING, values);
+    send(network, MSPRING_DAMPING, values);
+    mspring_network *twin = NULL;
+    check_ok(mspring_network_clone(network, NULL, &twin));
+    values[9] = -0.0f;
+    send(twin, MSPRING_DAMPING, values);
+    send(twin, MSPRING_DAMPING, values);
+    support_bring(network, twin, MSPRING_SNAPSHOT_FRAME);
+    mspring_network_destroy(network);
+    mspring_network_destroy(twin);
+    recipe_free(&made);
+}
+
+/// What was sent is set again after anything else has changed it.
+static void it_sees_other_changes(void **state) {
+    (void)state;
+    for (mspring_property p = FIRST; p < END; p++) {
+        recipe made;
+        mspring_network_def def = support_def(0, 4);
+        def.spare_springs = 4;
+        mspring_network *network = lattice(&made, &def), *other = recipe_network(&made, &def), *clone = NULL;
+        const mspring_id list[] = {5, 90}, spring = 40;
+        fill(p, others, 77);
+        send(other, p, others);
+        send_twice(network, p);
+        check_ok(mspring_network_set_at(network, p, list, 2, others, 1));
+        send(network, p, values);
+        check_has(network, p, values);
+        support_bring(other, network, MSPRING_SNAPSHOT_ALL);
+        check_has(network, p, others);
+        send(network, p, values);
+        check_has(network, p, values);
+        check_ok(mspring_network_clone(network, NULL, &clone));
+        send(clone, p, others);
+        check_has(network, p, values);
+        send(network, p, values);
+        check_has(network, p, values);
+        mspring_network_destroy(clone);
+        // A value of a spring that is not there is ignored, until there is one again.
+        mspring_id id, again;
+        check_ok(mspring_network_remove_springs(network, &spring, 1));
+        check_ok(mspring_network_add_springs(network, &made.springs[spring], 1, &id));
+        check_ok(mspring_network_remove_springs(network, &id, 1));
+        values[id] = NAN;
+        send(network, p, values);
+        send(network, p, values);
+        check_ok(mspring_network_recycle(network));
+        check_ok(mspring_network_add_springs(network, &made.springs[spring], 1, &again));
+        assert_int_equal(again, id);
+        check_error(mspring_network_set(network, p, 0, id + 1, values, 1), MSPRING_ERROR_ARGUMENT);
+        mspring_network_destroy(network);
+        mspring_network_destroy(other);
+        recipe_free(&made);
+    }
+}
+
+/// Rest lengths also change within steps, by ramps and actuators, and when groups are put back.
+static void it_sees_rest_lengths_change(void **state) {
+    (void)state;
+    recipe made;
+    mspring_network_def def = support_def(0, 4);
+    def.guard = MSPRING_GUARD_BOUNDS;
+    mspring_network *network = lattice(&made, &def);
+    const mspring_id springs[] = {20, 300};
+    const mspring_id firsts[] = {0, made.particle_count};
+    float length;
+    send_twice(network, MSPRING_REST_LENGTH);
+    check_ok(mspring_network_break_springs(network, springs, 2));
+    check_ok(mspring_network_restore_springs(network, springs, 2, 10.0));
+    support_steps(network, 1, DT);
+    send(network, MSPRING_REST_LENGTH, values); // which ends the ramp
+    check_ok(mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, 20, 1, &length, 1));
+    assert_true(length == values[20]);
+    const float signals[] = {1.25f, 0.75f};
+    check_ok(mspring_network_set_actuators(network, springs, 2, 1));
+    send(network, MSPRING_REST_LENGTH, values);
+    check_ok(mspring_network_set_signals(network, 0, 2, signals, 1));
+    support_steps(network, 1, DT);
+    check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, 20, 1, &length, 1));
+    assert_true(length != values[20]);
+    send(network, MSPRING_REST_LENGTH, values);
+    check_has(network, MSPRING_REST_LENGTH, values);
+    check_ok(mspring_network_set_actuators(network, NULL, 0, 1));
+    check_ok(mspring_network_set_groups(network, firsts, 1));
+    fill(MSPRING_REST_LENGTH, others, 8);
+    send(network, MSPRING_REST_LENGTH, others);
+    send(network, MSPRING_REST_LENGTH, others);
+    check_ok(mspring_network_reset_groups(network, NULL, 0, MSPRING_RESET_START));
+    check_has(network, MSPRING_REST_LENGTH, values);
+    send(network, MSPRING_REST_LENGTH, others);
+    check_has(network, MSPRING_REST_LENGTH, others);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_copy_is_made_once),         cmocka_unit_test(it_does_what_small_calls_do),
+        cmocka_unit_test(what_is_no_value_is_refused), cmocka_unit_test(a_negative_zero_changes_nothing),
+        cmocka_unit_test(it_sees_other_changes),       cmocka_unit_test(it_sees_rest_lengths_change),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
