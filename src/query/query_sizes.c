@@ -40,6 +40,10 @@ static double largest_speed(const mspring_network *network) {
     return sqrt(largest);
 }
 
+uint32_t mspring_network_step_flags(const mspring_network *network) {
+    return network ? network->steps.outcome.flags : 0;
+}
+
 mspring_result mspring_network_get_step_info(const mspring_network *network, mspring_step_info *info) {
     const mspring_result result = mspringi_check_report(network, &mspringi_struct_step_info, info);
     if (result != MSPRING_OK)

@@ -645,6 +645,7 @@ static void add_hook(arguments *a) {
     X(mspring_network_get_collider_impulse, "n", NOTHING, with_collider(a, get_collider_impulse))                  \
     X(mspring_network_get_sleepers, "nR0", NOTHING,                                                                \
       mspring_network_get_sleepers(a->network, a->first, a->count, a->out[0], 1))                                  \
+    X(mspring_network_step_flags, "v", NOTHING, note_size(mspring_network_step_flags(a->network)))                 \
     X(mspring_network_is_asleep, "v", NOTHING, note_size(mspring_network_is_asleep(a->network)))                   \
     X(mspring_network_wake, "N", NOTHING, mspring_network_wake(a->network))                                        \
     X(mspring_network_compact, "N", NOTHING, mspring_network_compact(a->network))                                  \

@@ -106,6 +106,7 @@ static void it_tells_what_the_guard_did(void **state) {
         const mspring_step_info info = support_step_info(network);
         assert_int_equal(info.result, MSPRING_OK);
         assert_int_equal(info.flags, guards[i].flags);
+        assert_int_equal(mspring_network_step_flags(network), guards[i].flags);
         assert_int_equal(info.substeps, guards[i].substeps);
         assert_int_equal(info.fallback_count, guards[i].fallback_count);
         assert_int_equal(info.spring, 0); // what it was for
@@ -134,6 +135,8 @@ static void it_tells_that_nothing_was_computed(void **state) {
     check_ok(mspring_network_step(network, DT));
     const mspring_step_info info = support_step_info(network);
     assert_int_equal(info.flags, MSPRING_STEP_ASLEEP);
+    assert_int_equal(mspring_network_step_flags(network), MSPRING_STEP_ASLEEP);
+    assert_int_equal(mspring_network_step_flags(NULL), 0);
     assert_int_equal(info.step_count, count + 1);
     mspring_network_destroy(network);
 }

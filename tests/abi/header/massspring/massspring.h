@@ -33,7 +33,7 @@
 ///                 network_def_init, settings_init, floor_def_init, allocator_init, tasks_init
 ///     network     network_create, _destroy, _error, _particle_count, _spring_count
 ///     settings    network_set_settings, _get_settings, _set_solver, _get_solver
-///     step        network_step, _get_step_info; sleep: _is_asleep, _wake
+///     step        network_step, _get_step_info, _step_flags; sleep: _is_asleep, _wake
 ///     forces      network_apply_force, _apply_forces(_at), _apply_impulses(_at)
 ///     floor       network_set_floor, _get_floor, _get_floor_impulses
 ///     state       network_view, _get_positions(_float)(_at), _get_velocities(_at), _set_positions(_float)(_at),
@@ -710,12 +710,16 @@ typedef struct mspring_step_info {
                              ///< nothing was repeated or raised; 0 if nothing was computed
 } mspring_step_info;
 
-/// Read the report of the last step. Takes a pass over the velocities.
+/// Read the report of the last step. Takes a pass over the velocities; mspring_network_step_flags() does not.
 /// Snapshots and clones have step_count, fallback_count, time and substeps. After loading a snapshot, the rest is
 /// that of a new network. Inside a hook it is that of the step before.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_step_info(
     const mspring_network *network, mspring_step_info *info);
+
+/// Return the flags of the last step, as mspring_step_info has them, at once. 0 before the first; NULL gives 0.
+/// @threads shared   @allocates never
+MSPRING_API uint32_t MSPRING_CALL mspring_network_step_flags(const mspring_network *network);
 
 /// Return 1 if all of the network sleeps, else 0. NULL gives 0.
 /// Each component sleeps by itself; the guide calls it an island. It falls asleep after a step if it has been slower
