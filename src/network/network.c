@@ -351,6 +351,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = set_sides(network, builder);
     if (result == MSPRING_OK)
         result = set_limits(network, builder);
+    if (result == MSPRING_OK && !relative) // else the first step derives all records
+        mspringi_shared_records_find(network);
     if (result == MSPRING_OK)
         result = mspringi_features_create(network, builder);
     if (result == MSPRING_OK && network->guard_scratch && network->solver.ops->has_stability_limit)

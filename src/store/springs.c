@@ -220,13 +220,47 @@ void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, ms
     mspringi_spring_slot_set(network, spring_slot, nominal.stiffness, nominal.damping);
 }
 
+/// Arguments for deriving the springs of lattices.
+typedef struct deriving {
+    const float *mass;
+    double rate;
+    float mass_a, mass_b; ///< masses of the spring before: most springs have the same
+    double reduced_mass;
+} deriving;
+
+// As mspringi_spring_set_nominal(), of a live relative spring in a lattice.
+static inline void derive_in_lattice(mspring_network *network, deriving *with, mspringi_spring_slot spring_slot,
+                                     mspringi_relative fractions) {
+    const mspringi_topology *t = &network->topology;
+    uint32_t base, tip;
+    mspringi_lattice_ends(t, spring_slot, &base, &tip);
+    const float a = with->mass[t->particle_of_slot[base]], b = with->mass[t->particle_of_slot[tip]];
+    if (a != with->mass_a || b != with->mass_b) {
+        with->mass_a = a;
+        with->mass_b = b;
+        with->reduced_mass = mspringi_reduced_mass((double)a, (double)b);
+    }
+    const spring_record record = lattice_record(network, spring_slot);
+    mspringi_shared_records_unshare(network, spring_slot);
+    *record.stiffness = mspringi_derived_stiffness(fractions.stiffness, with->reduced_mass, with->rate);
+    if (record.damping)
+        *record.damping = mspringi_derived_damping(fractions.damping, with->reduced_mass, with->rate);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_PLACE, spring_slot);
+}
+
 // While a snapshot is loaded, springs that are not there any more are live until its section of broken ones.
 void mspringi_renew_relative(mspring_network *network) {
+    deriving with = {.mass = mspringi_spring_masses(network), .rate = mspringi_relative_rate(network)};
     for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
-        if (mspringi_spring_exists(network, s) && mspringi_spring_is_relative(network, s) &&
-            mspringi_spring_slot_is_live(network, spring_slot))
-            mspringi_spring_set_nominal(network, s, spring_slot, mspringi_fractions_of(&network->fractions, s));
+        const mspringi_relative fractions = mspringi_fractions_of(&network->fractions, s);
+        if (!(fractions.stiffness >= 0.0f) || !mspringi_spring_exists(network, s) ||
+            !mspringi_spring_slot_is_live(network, spring_slot))
+            continue;
+        if (spring_slot < network->topology.lattice_spring_slots)
+            derive_in_lattice(network, &with, spring_slot, fractions);
+        else
+            mspringi_spring_set_nominal(network, s, spring_slot, fractions);
     }
 }
 
