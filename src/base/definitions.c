@@ -38,7 +38,7 @@ static const mspring_clone_def default_clone_def = {.worker_count = 1};
 static const mspring_hook_def default_hook_def = {.phase = MSPRING_PHASE_BEFORE_STEP, .period = 1};
 static const mspring_floor_def default_floor_def = {.spacing = 1.0};
 static const mspring_contact_def default_contact_def = {
-    .flags = MSPRING_CONTACT_SELF, .push_speed = 3.0f, .sweeps = 4};
+    .flags = MSPRING_CONTACT_SELF, .push_speed = -1.0f, .sweeps = 4};
 static const mspring_grip_def default_grip_def = {.particle = MSPRING_NONE, .max_force = MSPRING_NEVER};
 static const mspring_collider_def default_collider_def = {
     .kind = MSPRING_COLLIDER_CHAIN, .width = 1.0, .height = 1.0, .groups = 1, .masks = UINT32_MAX};

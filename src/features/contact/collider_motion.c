@@ -102,15 +102,16 @@ double mspringi_collider_surface_speed(const mspringi_contacts *contacts, const 
     return -mspringi_collider_spin(c, contacts->dt) * arm;
 }
 
-void mspringi_colliders_add_impulse(mspringi_contacts *contacts, const mspringi_contact_constraint *t) {
+void mspringi_colliders_add_impulse(mspringi_contacts *contacts, const mspringi_contact_constraint *t,
+                                    double normal_impulse, double tangent_impulse) {
     mspringi_colliders *all = &contacts->colliders;
     mspringi_collider *c = &all->list[t->collider];
     const mspringi_contact_nodes *k = &contacts->nodes;
     const mspringi_pose end = pose_after(c, all->substeps, all->substeps);
     const double sign = is_point_of_collider(contacts, t) ? 1.0 : -1.0,
                  grip = mspringi_collider_friction_offset(contacts, t);
-    const double jx = sign * (t->normal_impulse * t->nx - t->tangent_impulse * t->ny),
-                 jy = sign * (t->normal_impulse * t->ny + t->tangent_impulse * t->nx);
+    const double jx = sign * (normal_impulse * t->nx - tangent_impulse * t->ny),
+                 jy = sign * (normal_impulse * t->ny + tangent_impulse * t->nx);
     const double arm_x = k->x[t->p] - grip * t->nx - (end.x - all->origin_x),
                  arm_y = k->y[t->p] - grip * t->ny - (end.y - all->origin_y);
     c->pushed_x += jx;

@@ -18,7 +18,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "features/contact/contacts.h"
+#include "features/contact/relaxation.h"
 #include "store/network.h"
 
 /// Share of an overlap that is pushed out in a substep, within the host's limit on speed. Intervals of an implicit
@@ -155,7 +155,7 @@ static double gravity_normal_speed(const mspringi_contacts *contacts, const mspr
 }
 
 // Set the target speed: restitution or push-out, whichever is larger.
-static void set_target_speed(const mspringi_contacts *contacts, mspringi_contact_constraint *t, double restitution,
+static void set_target_speed(mspringi_contacts *contacts, mspringi_contact_constraint *t, double restitution,
                              double h) {
     t->target_speed = -t->gap / h;
     t->clear_speed = t->target_speed;
@@ -164,6 +164,8 @@ static void set_target_speed(const mspringi_contacts *contacts, mspringi_contact
         t->clear_speed = DBL_MAX;
         t->target_speed *= PUSHOUT_FRACTION * contacts->share;
         t->target_speed = t->target_speed < contacts->push ? t->target_speed : contacts->push;
+        if (t->target_speed > contacts->kept_push)
+            mspringi_relaxation_limit_push(contacts, t);
     }
     const double before = mspringi_normal_speed(t, contacts->nodes.v_start);
     if (!(before < -RESTITUTION_THRESHOLD))
@@ -208,7 +210,7 @@ static mspringi_contact_material material_of(const mspringi_contacts *contacts, 
 }
 
 // Make the constraint of a pending one in an interval of h seconds.
-static void make_constraint(const mspringi_contacts *contacts, const mspringi_pending_constraint *pending,
+static void make_constraint(mspringi_contacts *contacts, const mspringi_pending_constraint *pending,
                             mspringi_contact_constraint *t, double h) {
     const mspringi_candidate *c = &contacts->candidates[pending->candidate];
     const mspringi_pair *pair = &contacts->list[c->pair];
@@ -230,6 +232,7 @@ static void make_constraint(const mspringi_contacts *contacts, const mspringi_pe
     t->friction = material.friction;
     t->couple_x = t->couple_y = t->couple_response = t->tangent_mass = t->surface_speed = t->normal_impulse =
         t->tangent_impulse = 0.0;
+    t->is_pushed = false;
     set_target_speed(contacts, t, (double)material.restitution, h);
     if (material.friction > 0.0f)
         add_friction(contacts, t);
@@ -404,6 +407,7 @@ double mspringi_contact_make_constraints(const mspring_network *network, mspring
                                          double given, uint32_t pending) {
     double fastest = 0.0;
     contacts->max_pending = pending;
+    contacts->has_push = false;
     contacts->constraint_count = contacts->pending_count = contacts->near_miss_count = 0;
     queue_constraints(network, contacts, h, given, false, &fastest);
     flush_or_end(contacts, h);
@@ -413,6 +417,7 @@ double mspringi_contact_make_constraints(const mspring_network *network, mspring
 double mspringi_contact_prepare_implicit(const mspring_network *network, mspringi_contacts *contacts, double h) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     contacts->share = h / (double)contacts->h;
+    contacts->kept_push = DBL_MAX;
     contacts->fall_x = h * (double)network->settings.gravity_x;
     contacts->fall_y = h * (double)network->settings.gravity_y;
     memcpy(k->v, k->v_start, k->particle_count * sizeof *k->v);

@@ -112,6 +112,18 @@ void mspringi_contact_events_add_impulse(const mspring_network *network, mspring
     m->friction += t->tangent_impulse < 0.0 ? -t->tangent_impulse : t->tangent_impulse;
 }
 
+void mspringi_contact_events_subtract(mspringi_contacts *contacts, const mspringi_contact_constraint *t,
+                                      double impulse) {
+    mspringi_contact_events *all = &contacts->events;
+    const mspring_id *ids = contacts->nodes.particles;
+    const mspringi_ongoing_contact wanted = contact_of(contacts, ids[t->p], ids[t->a], ids[t->b]);
+    const uint32_t at = index_of(all, &wanted);
+    if (at == all->count || is_before(&wanted, &all->list[at]))
+        return;
+    const double left = all->list[at].impulse - impulse;
+    all->list[at].impulse = left > 0.0 ? left : 0.0;
+}
+
 void mspringi_contact_events_end_interval(mspringi_contacts *contacts) {
     mspringi_contact_events *all = &contacts->events;
     all->max_dropped = all->dropped > all->max_dropped ? all->dropped : all->max_dropped;

@@ -1,11 +1,13 @@
 /// Contact in a substep: make constraints, find impulses, add constraints of pairs that these made fast.
 ///
 /// A substep is divided into intervals in which no node moves further than the thickness. In the order of an
-/// interval: mspringi_contact_make_constraints, solve_interval(), mspringi_contact_count_impulses, advance().
+/// interval: mspringi_contact_make_constraints, solve_interval(), mspringi_contact_count_impulses, advance(),
+/// mspringi_relaxation_finish.
 #include <math.h>
 #include <string.h>
 
-#include "features/contact/contacts.h"
+#include "base/cpu.h"
+#include "features/contact/relaxation.h"
 #include "store/network.h"
 
 /// Most intervals of a substep.
@@ -69,7 +71,7 @@ void mspringi_contact_count_impulses(const mspring_network *network, mspringi_co
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
         if (t->collider != MSPRING_NONE)
-            mspringi_colliders_add_impulse(contacts, t);
+            mspringi_colliders_add_impulse(contacts, t, t->normal_impulse, t->tangent_impulse);
         count += t->normal_impulse > 0.0;
         contacts->deepest = -t->gap > contacts->deepest ? -t->gap : contacts->deepest;
     }
@@ -84,13 +86,8 @@ static void restore_velocities(const mspringi_contact_nodes *k) {
     memcpy(k->v, k->v_before, k->particle_count * sizeof *k->v);
 }
 
-// Move the nodes for an interval of h seconds, and add up the displacement by contact. The next interval bounces at
-// the velocities that this one leaves.
+// Move the nodes for an interval of h seconds, and add up the displacement by contact.
 static void advance(const mspring_network *network, const mspringi_contact_nodes *k, double h, bool is_last) {
-    for (uint32_t i = 0; i < k->particle_count && !is_last; ++i) {
-        k->v_start[i].x += k->v[i].x - k->v_before[i].x;
-        k->v_start[i].y += k->v[i].y - k->v_before[i].y;
-    }
     for (uint32_t i = 0; i < k->particle_count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
         k->shift_x[i] += h * (k->v[i].x - (double)network->state.vx[slot]);
@@ -99,6 +96,14 @@ static void advance(const mspring_network *network, const mspringi_contact_nodes
     for (uint32_t i = 0; i < k->count && !is_last; ++i) {
         k->x[i] += h * k->v[i].x;
         k->y[i] += h * k->v[i].y;
+    }
+}
+
+// Bounces of the next interval start at the velocities that this one leaves.
+static void update_start_velocities(const mspringi_contact_nodes *k) {
+    for (uint32_t i = 0; i < k->particle_count; ++i) {
+        k->v_start[i].x += k->v[i].x - k->v_before[i].x;
+        k->v_start[i].y += k->v[i].y - k->v_before[i].y;
     }
 }
 
@@ -118,17 +123,27 @@ static void check_speed(mspringi_contacts *contacts, mspring_id p, double square
     }
 }
 
+// Speed that no scan has to expect, m/s.
+static double unchecked_speed(const mspringi_contacts *contacts) {
+    return MSPRINGI_SPEED_MARGIN * contacts->min_speed +
+           MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt;
+}
+
+MSPRINGI_ALWAYS_INLINE void check_node(mspringi_contacts *contacts, uint32_t i, double unchecked) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    const double x = k->v[i].x - contacts->mean_vx, y = k->v[i].y - contacts->mean_vy, square = x * x + y * y;
+    if (square > unchecked * unchecked)
+        check_speed(contacts, k->particles[i], square);
+}
+
 // Store velocities and displacements, and check the speeds.
 static void store_nodes(const mspring_network *network, mspringi_contacts *contacts) {
     const mspringi_state *s = &network->state;
     const mspringi_contact_nodes *k = &contacts->nodes;
-    const double least =
-        MSPRINGI_SPEED_MARGIN * contacts->min_speed + MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt;
+    const double unchecked = unchecked_speed(contacts);
     for (uint32_t i = 0; i < k->particle_count; ++i) {
         const uint32_t slot = network->topology.slot_of_particle[k->particles[i]];
-        const double x = k->v[i].x - contacts->mean_vx, y = k->v[i].y - contacts->mean_vy, square = x * x + y * y;
-        if (square > least * least)
-            check_speed(contacts, k->particles[i], square);
+        check_node(contacts, i, unchecked);
         if (k->shift_x[i] == 0.0 && k->shift_y[i] == 0.0 && k->v[i].x == (double)s->vx[slot] &&
             k->v[i].y == (double)s->vy[slot])
             continue;
@@ -136,6 +151,16 @@ static void store_nodes(const mspring_network *network, mspringi_contacts *conta
         s->vy[slot] = (float)k->v[i].y;
         mspringi_move_by(s, slot, (float)k->shift_x[i], (float)k->shift_y[i]);
     }
+}
+
+// Move the nodes for an interval of h seconds. Push-out of overlaps moves them, and then leaves no velocity.
+static void move_nodes(const mspring_network *network, mspringi_contacts *contacts, double h, bool is_last) {
+    const bool has_pushed = contacts->has_push && mspringi_relaxation_begin(contacts, h);
+    for (uint32_t i = 0; i < contacts->nodes.particle_count && has_pushed; ++i)
+        check_node(contacts, i, unchecked_speed(contacts));
+    advance(network, &contacts->nodes, h, is_last && !has_pushed);
+    if (has_pushed)
+        mspringi_relaxation_finish(contacts);
 }
 
 // Solve intervals of equal length. Divide the remaining ones if one fails.
@@ -159,8 +184,10 @@ static void solve_in_intervals(const mspring_network *network, mspringi_contacts
             continue;
         }
         mspringi_contact_count_impulses(network, contacts);
+        move_nodes(network, contacts, interval, left == 1);
         mspringi_floor_support_end(network, contacts);
-        advance(network, k, interval, left == 1);
+        if (left > 1)
+            update_start_velocities(k);
         h -= interval;
         --left;
     }
@@ -168,6 +195,7 @@ static void solve_in_intervals(const mspring_network *network, mspringi_contacts
 
 bool mspringi_contact_solve_nodes(const mspring_network *network, mspringi_contacts *contacts, double h) {
     contacts->share = 1.0;
+    mspringi_relaxation_set_limits(network, contacts);
     const double fastest = mspringi_contact_make_constraints(network, contacts, h, 0.0, MSPRINGI_MAX_PENDING);
     if (contacts->constraint_count == 0)
         return false;

@@ -15,6 +15,10 @@
 #define THICKNESS_SHARE 0.9
 #define MOST_SWEEPS 64
 
+/// Default of push_speed: thicknesses a second, and at most, m/s.
+#define PUSHED_SHARE 0.5
+#define MOST_PUSH 3.0
+
 /// Most comparisons to find the outline: a constant (50 ms), and more for each spring. Usual networks take 10 for
 /// each.
 #define MOST_TRIES ((uint64_t)1 << 24)
@@ -28,7 +32,7 @@ static mspring_result check_numbers(const mspring_contact_def *def, mspringi_mes
         double value, most;
     } values[] = {{"friction", (double)def->friction, 1e6},
                   {"restitution", (double)def->restitution, 1.0},
-                  {"push_speed", (double)def->push_speed, 1e6},
+                  {"push_speed", def->push_speed == -1.0f ? 0.0 : (double)def->push_speed, 1e6},
                   {"thickness", def->thickness, THICKEST}};
     for (size_t i = 0; i < sizeof values / sizeof values[0]; ++i)
         if (!(values[i].value >= 0.0 && values[i].value <= values[i].most))
@@ -70,6 +74,9 @@ static mspring_result check_def(const mspring_network *network, mspring_contact_
             "the contact's thickness is %g m, it must be at most 0.9 of the shortest spring, %g m, "
             "for bodies that touch themselves",
             def->thickness, shortest);
+    if (def->push_speed == -1.0f)
+        def->push_speed =
+            (float)(def->thickness < MOST_PUSH / PUSHED_SHARE ? PUSHED_SHARE * def->thickness : MOST_PUSH);
     return MSPRING_OK;
 }
 

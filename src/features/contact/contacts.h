@@ -11,6 +11,7 @@
 ///   constraints.c        narrow phase: contact constraints of an interval, in a fixed order
 ///   contact_solver.c     intervals of a substep, and motion in them
 ///   gauss_seidel.c       impulses: projected Gauss-Seidel
+///   relaxation.c         explicit solver: velocities without what pushed overlaps apart
 ///   floor_support.c      floor below bodies, in the same sweeps
 ///   contact_events.c     begin and end events for the host
 ///   contact_stage.c      stage: when to scan; islands that wake or fall asleep together
@@ -142,10 +143,12 @@ typedef struct mspringi_contact_constraint {
     double surface_speed;      ///< tangential speed of a turning collider's surface, m/s
     double normal_impulse, tangent_impulse; ///< accumulated, N s
 
-    double gap, distance; ///< distance minus thickness and radius; distance between point and edge, m
-    uint32_t candidate;   ///< index of its candidate
-    uint32_t collider;    ///< index of the collider of the point or edge, or MSPRING_NONE
-    bool is_bounce;       ///< target_speed comes from restitution
+    double gap, distance;  ///< distance minus thickness and radius; distance between point and edge, m
+    double pushed_impulse; ///< normal_impulse before relaxation, N s
+    uint32_t candidate;    ///< index of its candidate
+    uint32_t collider;     ///< index of the collider of the point or edge, or MSPRING_NONE
+    bool is_bounce;        ///< target_speed comes from restitution
+    bool is_pushed;        ///< it pushes an overlap apart, and will be relaxed
 } mspringi_contact_constraint;
 
 /// Closest point of an edge to a point.
@@ -340,6 +343,9 @@ struct mspringi_contacts {
     double passed;                                      ///< time taken in intervals of an implicit substep, s
     double fall_x, fall_y; ///< change of velocity by gravity in an implicit interval, m/s; 0 after forces
     double share;          ///< length of an implicit interval as a share of its substep; else 1
+    double kept_push;      ///< faster push-out of overlaps is relaxed, m/s; DBL_MAX: none is
+    double max_push;       ///< largest speed of such push-out, m/s; weights are in it
+    bool has_push;         ///< constraints of this interval may have such push-out
     mspringi_floor_support *supports; ///< [MSPRINGI_MAX_SUPPORTS * nodes]
     uint32_t support_count;
     uint32_t touching; ///< largest number of pushing constraints in an interval
@@ -494,6 +500,10 @@ static inline double mspringi_normal_speed(const mspringi_contact_constraint *t,
 /// deeper.
 bool mspringi_contact_sweep(mspringi_contacts *contacts, double h, uint32_t sweeps);
 
+/// Sweep the constraints that push overlaps apart. Return true if that changed a normal speed by more than `least`,
+/// m/s.
+bool mspringi_contact_sweep_pushed(mspringi_contacts *contacts, double least);
+
 /* piles.c */
 
 /// Find the piles: islands that sleep on each other.
@@ -513,6 +523,9 @@ void mspringi_contact_events_discard_step(mspringi_contacts *contacts);
 /// Add the impulses of a constraint in an accepted interval to its ongoing contact.
 void mspringi_contact_events_add_impulse(const mspring_network *network, mspringi_contacts *contacts,
                                          const mspringi_contact_constraint *t);
+/// Subtract what relaxation took from the normal impulse of a constraint, N s.
+void mspringi_contact_events_subtract(mspringi_contacts *contacts, const mspringi_contact_constraint *t,
+                                      double impulse);
 /// End an accepted interval: count the constraints that had no room.
 void mspringi_contact_events_end_interval(mspringi_contacts *contacts);
 /// Queue the events of an accepted step.
@@ -558,8 +571,9 @@ void mspringi_colliders_discard_step(mspringi_contacts *contacts);
 double mspringi_collider_friction_offset(const mspringi_contacts *contacts, const mspringi_contact_constraint *t);
 /// Tangential speed of a turning collider's surface, m/s. Sides have it in the velocities of their ends.
 double mspringi_collider_surface_speed(const mspringi_contacts *contacts, const mspringi_contact_constraint *t);
-/// Add a constraint's impulses to its collider.
-void mspringi_colliders_add_impulse(mspringi_contacts *contacts, const mspringi_contact_constraint *t);
+/// Add impulses of a constraint, N s, to its collider.
+void mspringi_colliders_add_impulse(mspringi_contacts *contacts, const mspringi_contact_constraint *t,
+                                    double normal_impulse, double tangent_impulse);
 /// Finish an accepted step: poses become the targets.
 void mspringi_colliders_finish_step(const mspring_network *network, mspringi_contacts *contacts);
 

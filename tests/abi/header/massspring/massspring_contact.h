@@ -37,7 +37,8 @@ typedef struct mspring_contact_def {
     double thickness;
     float friction;        ///< of bodies that slide (Coulomb), 0 to 1e6; default 0
     float restitution;     ///< speed across the contact after it over that before, 0 to 1; default 0
-    float push_speed;      ///< overlaps are pushed apart at this speed at most, m/s, 0 to 1e6; default 3
+    float push_speed;      ///< overlaps are pushed apart at this speed at most, m/s, 0 to 1e6; default -1: half the
+                           ///< thickness a second, at most 3
     uint32_t sweeps;       ///< over all contacts in a substep, 1 to 64; default 4. With more, stacks lie stiller.
     uint32_t capacity;     ///< pairs of a point and a spring that there is room for at first, at most 2^26; default 0:
                            ///< 4096 + 2 for each particle + 16 for each particle of the outline
@@ -57,8 +58,11 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// follows breaks, additions and removals. The guide examples/guides/contact.md has the guarantees.
 ///
 /// Which side of a spring is free follows from the positions at this call, and from those at which particles were added
-/// later. So set contact before the network deforms. Overlaps at the start are pushed apart. Springs that cross at the
-/// start stay crossed.
+/// later. So set contact before the network deforms. Springs that cross at the start stay crossed.
+///
+/// Overlaps, at the start or after a break, are pushed apart. With the explicit solver that leaves no velocity. Where
+/// springs press an overlap together by more than half of push_speed in a substep it stays, so that they do not store
+/// energy for it; weights of 64 particles may. With the implicit and the direct solver what is pushed keeps push_speed.
 ///
 /// If the network has contact already, the outline keeps the shape that it was found by. Groups, surfaces, colliders
 /// with their moves, contacts and events that wait stay, too. All bodies wake. If only capacity or max_capacity changes,
@@ -92,7 +96,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_co
     mspring_network *network, const mspring_contact_def *def);
 
 /// Read the contact. Set struct_size first.
-/// Without contact capacity is 0. With it, thickness, capacity and max_capacity are those in use.
+/// Without contact capacity is 0. With it, thickness, push_speed, capacity and max_capacity are those in use.
 /// @threads shared   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_contact(
     const mspring_network *network, mspring_contact_def *def);
@@ -156,7 +160,8 @@ typedef struct mspring_contact_event {
     double x, y;               ///< where, on the spring or the collider's surface, m, world coordinates
     double normal_x, normal_y; ///< of length 1, from the spring or the sides to the particle or the corner; 0, 0 if
                                ///< a loaded contact ends without an impulse since
-    double impulse;            ///< across, of the step, sum of sizes, N s; 0 if kind is MSPRING_CONTACT_ENDED
+    double impulse;            ///< across, of the step, sum of sizes, N s; 0 if kind is MSPRING_CONTACT_ENDED. With
+                               ///< the explicit solver without what pushed an overlap apart, else with it
     double friction;           ///< along, likewise
 } mspring_contact_event;
 
@@ -277,7 +282,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_co
 
 /// Read the impulses that bodies gave to a collider in the last step.
 /// To move the collider as a rigid body, add the impulse to its momentum, and the angular impulse to its angular
-/// momentum around its position. Both totals are then conserved. Bodies that sleep give nothing.
+/// momentum around its position. Both totals are then conserved. Bodies that sleep give nothing. With the explicit
+/// solver impulses leave out what pushed an overlap apart; with the others they have it.
 /// @param x, y     impulse, N s
 /// @param angular  angular impulse around the position at the end of the step, N m s, counterclockwise
 /// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT
