@@ -401,7 +401,7 @@ typedef struct mspring_solver_def {
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
 /// on x86; scalar < NEON on 64-bit ARM; scalar < WASM in a browser. Between kinds there is no order.
 typedef enum mspring_simd {
-    MSPRING_SIMD_AUTO = 0, ///< the best that CPU and operating system offer; a narrower one if rows are short
+    MSPRING_SIMD_AUTO = 0, ///< the best that CPU and operating system offer; a narrower one for small networks
     MSPRING_SIMD_SCALAR = 1,
     MSPRING_SIMD_SSE2 = 2,
     MSPRING_SIMD_AVX2 = 3,

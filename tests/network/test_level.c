@@ -1,6 +1,6 @@
 /// @file test_level.c
-/// Where the host leaves the level to the library, narrow lattices run at AVX2 where AVX-512 is there, and no bit
-/// changes. Other networks run at the best level, and so do narrow ones if the host asks for it.
+/// Where the host leaves the level to the library, small networks run at AVX2 or SSE2 if these are no slower, and
+/// no bit changes. Other networks run at the best level, and so do narrow ones if the host asks for it.
 ///
 /// SPDX-License-Identifier: MIT
 #include "recipe.h"
@@ -23,16 +23,21 @@ static outcome run(const recipe *made, mspring_simd setting) {
 
 static const recipe_stuff stuff = {.mass = {0.5, 2}, .stiffness = {500, 3000}};
 
-static mspring_simd expected(bool is_narrow) {
+// The best level of this machine, or a narrower one that suits.
+static mspring_simd expected(mspring_simd suits) {
     const mspring_simd best = mspring_simd_supported();
-    return is_narrow && best == MSPRING_SIMD_AVX512 ? MSPRING_SIMD_AVX2 : best;
+    return (best == MSPRING_SIMD_AVX512 || best == MSPRING_SIMD_AVX2) && suits < best ? suits : best;
+}
+
+static void check_level_is(const recipe *made, mspring_simd suits) {
+    const outcome chosen = run(made, MSPRING_SIMD_AUTO), best = run(made, mspring_simd_supported());
+    assert_int_equal(chosen.level, expected(suits));
+    assert_int_equal(best.level, mspring_simd_supported());
+    assert_int_equal(chosen.hash, best.hash);
 }
 
 static void check_level(const recipe *made, bool is_narrow) {
-    const outcome chosen = run(made, MSPRING_SIMD_AUTO), best = run(made, mspring_simd_supported());
-    assert_int_equal(chosen.level, expected(is_narrow));
-    assert_int_equal(best.level, mspring_simd_supported());
-    assert_int_equal(chosen.hash, best.hash);
+    check_level_is(made, is_narrow ? MSPRING_SIMD_AVX2 : MSPRING_SIMD_AVX512);
 }
 
 static void narrow_lattices(void **state) {
@@ -52,6 +57,39 @@ static void narrow_lattices(void **state) {
     }
 }
 
+/// Chains and small irregular parts, by the registers that they fill.
+static void small_networks(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t width, height;
+        mspring_simd suits;
+    } cases[] = {{2, 1, MSPRING_SIMD_SSE2},    {4, 1, MSPRING_SIMD_SSE2},   {5, 1, MSPRING_SIMD_AVX2},
+                 {8, 1, MSPRING_SIMD_AVX2},    {9, 1, MSPRING_SIMD_AVX512}, {16, 1, MSPRING_SIMD_AVX512},
+                 {17, 1, MSPRING_SIMD_AVX2},   {24, 1, MSPRING_SIMD_AVX2},  {25, 1, MSPRING_SIMD_AVX512},
+                 {40, 1, MSPRING_SIMD_AVX512}, {2, 2, MSPRING_SIMD_SSE2},   {3, 2, MSPRING_SIMD_AVX2},
+                 {4, 2, MSPRING_SIMD_AVX2},    {3, 3, MSPRING_SIMD_AVX512}, {4, 4, MSPRING_SIMD_AVX512}};
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        recipe made = {0};
+        uint64_t seed = 7;
+        recipe_lattice(&made, cases[i].width, cases[i].height, 0, 0, 1, &stuff, &seed);
+        recipe_disturb(&made, 0.05, 0.5, &seed);
+        check_level_is(&made, cases[i].suits);
+        recipe_free(&made);
+    }
+}
+
+/// A bundle fills registers with equal components.
+static void a_bundle_is_wide(void **state) {
+    (void)state;
+    recipe made = {0};
+    uint64_t seed = 7;
+    for (uint32_t i = 0; i < 16; i++) {
+        recipe_lattice(&made, 3, 1, 10.0 * i, 0, 1, &stuff, &seed);
+    }
+    check_level(&made, false);
+    recipe_free(&made);
+}
+
 /// Side by side they share rows, which fill the widest registers.
 static void many_narrow_lattices(void **state) {
     (void)state;
@@ -69,6 +107,8 @@ int main(void) {
     support_set_variable("MSPRING_SIMD", NULL);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(narrow_lattices),
+        cmocka_unit_test(small_networks),
+        cmocka_unit_test(a_bundle_is_wide),
         cmocka_unit_test(many_narrow_lattices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
