@@ -102,6 +102,25 @@ mspringi_area_end mspringi_area_end_of(const mspring_network *network, const msp
                                .y = 0.5 * (mspringi_x_of(s, before) - mspringi_x_of(s, behind))};
 }
 
+// mspringi_area_push() for the four corners of a cell, whose coordinates stay in registers.
+static void push_cell(const mspringi_state *s, const mspringi_area *area, const mspringi_corner *corners,
+                      double share, mspringi_field field) {
+    double x[4], y[4];
+    mspringi_shoelace polygon = {0};
+    for (int i = 0; i < 4; ++i) {
+        x[i] = mspringi_x_of(s, corners[i].slot);
+        y[i] = mspringi_y_of(s, corners[i].slot);
+    }
+    for (int i = 1; i < 4; ++i)
+        mspringi_shoelace_add(&polygon, x[i] - x[0], y[i] - y[0]);
+    const double half = 0.5 * share * mspringi_area_pressure(area, 0.5 * polygon.twice);
+    for (int i = 0; i < 4; ++i) {
+        const int before = (i + 3) % 4, next = (i + 1) % 4;
+        field.x[corners[i].slot] += mspringi_bounded(half * (y[next] - y[before]));
+        field.y[corners[i].slot] += mspringi_bounded(half * (x[before] - x[next]));
+    }
+}
+
 void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
                         mspringi_field field) {
     if (area->is_angle) {
@@ -110,6 +129,10 @@ void mspringi_area_push(const mspring_network *network, const mspringi_area *are
     }
     const mspringi_state *s = &network->state;
     const mspringi_corner *corners = network->areas->corners + area->first;
+    if (area->count == 4) {
+        push_cell(s, area, corners, share, field);
+        return;
+    }
     const uint32_t first = corners[0].slot, last = corners[area->count - 1].slot;
     const double first_x = mspringi_x_of(s, first), first_y = mspringi_y_of(s, first);
     const double last_x = mspringi_x_of(s, last), last_y = mspringi_y_of(s, last);

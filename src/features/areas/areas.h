@@ -117,7 +117,8 @@ static inline uint32_t mspringi_area_slot(const mspring_network *network, const 
 
 /// Within what a float can be: the guard finds what is that large.
 static inline float mspringi_bounded(double value) {
-    return (float)fmin(fmax(value, -(double)FLT_MAX), (double)FLT_MAX);
+    const double most = (double)FLT_MAX, above = value > -most ? value : -most; // -most if it is no number
+    return (float)(above < most ? above : most);
 }
 
 /// Add the forces of an area, or a share of them, to a field.
