@@ -253,11 +253,12 @@ double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team
     multiply_panels(network, member);
     mspringi_team_barrier(member);
     const bool has_others = network->topology.irregular_blocks > 0 || network->topology.irregular_count > 0 ||
-                            network->constraints.active_count > 0;
+                            network->constraints.active_count > 0 || n->paths.count > 0;
     if (has_others) {
         if (member->index == 0)
             n->irregular_product = multiply_irregular(network, n->direction, n->product) +
-                                   mspringi_constraints_multiply(&network->constraints, n->direction, n->product);
+                                   mspringi_constraints_multiply(&network->constraints, n->direction, n->product) +
+                                   mspringi_condense_multiply(network, n->direction, n->product);
         mspringi_team_barrier(member);
     }
     double sum = has_others ? n->irregular_product : 0.0;

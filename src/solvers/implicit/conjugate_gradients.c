@@ -83,6 +83,7 @@ static void factor_coarse(const mspring_network *network) {
         return;
     mspringi_coarse_complete(&n->coarse, &n->tiles, &parts);
     mspringi_constraints_stiffen(network);
+    mspringi_condense_stiffen(network);
     mspringi_coarse_factor(&n->coarse);
 }
 
@@ -180,7 +181,8 @@ static bool is_small(double product, double least) {
     return product < NO_PRODUCT || product <= least;
 }
 
-float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
+// The same for a system without paths.
+static float solve_without_paths(const substep_of *substep, mspringi_team_member *member) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
     // Contacts are far stiffer than springs: with the usual iterations a bar on the floor trembles at 0.01 m/s.
@@ -217,4 +219,13 @@ float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
         turn(substep, member, MSPRINGI_SEARCH_CONTINUE, (float)(next / product));
         product = next;
     }
+}
+
+float mspringi_solve(const substep_of *substep, mspringi_team_member *member) {
+    mspringi_condense(substep->network, member);
+    const float alpha = solve_without_paths(substep, member);
+    mspringi_condense_finish(substep->network, member, alpha);
+    if (mspringi_implicit_of(substep->network)->paths.count > 0)
+        mspringi_team_barrier(member);
+    return alpha;
 }

@@ -28,6 +28,7 @@ typedef struct mspringi_implicit_builder {
     uint32_t tile_size; ///< asked for; 0: by plan
     mspringi_tile_builder tiling;
     mspringi_direct_builder direct;
+    mspringi_path_builder finding;
 } making;
 
 static bool reserve_field(mspringi_memory *memory, mspringi_field *field, size_t slots) {
@@ -157,6 +158,7 @@ static void wire(mspringi_implicit *n, const mspring_network *network) {
     const size_t slots = mspringi_slot_count(network);
     mspringi_system *s = &n->system;
     n->y = n->x + slots;
+    n->tiles.paths = &n->paths;
     n->irregular_factors = n->factors + (size_t)t->chain_spring_slots * MSPRINGI_FACTORS;
     n->seen.link_log = network->edits.link_log;
     s->x = n->x;
@@ -232,7 +234,8 @@ static mspring_result check_coarse(const mspringi_implicit *n, mspring_network *
 
 static void begin_tiles(making *m, uint32_t size) {
     mspring_network *network = m->network;
-    mspringi_tiles_begin(&m->tiling, &m->made->tiles, network, size, &network->memory, &network->message);
+    mspringi_tiles_begin(&m->tiling, &m->made->tiles, network, &m->made->paths, size, &network->memory,
+                         &network->message);
 }
 
 static mspring_result choose_tiles(making *m) {
@@ -259,6 +262,26 @@ static mspring_result cut_tiles(making *m) {
         begin_tiles(m, 2 * size);
     }
     return MSPRING_OK;
+}
+
+static mspring_result begin_paths(making *m) {
+    m->finding.paths = &m->made->paths;
+    return mspringi_paths_begin(&m->finding);
+}
+
+static mspring_result count_path_springs(making *m, uint32_t first, uint32_t end) {
+    mspringi_paths_count_springs(&m->finding, first, end);
+    return MSPRING_OK;
+}
+
+static uint32_t springs_in(const making *m) {
+    return m->network->topology.spring_count;
+}
+
+static mspring_result list_paths(making *m) {
+    const mspring_result result = mspringi_paths_list(&m->finding);
+    mspringi_paths_end(&m->finding);
+    return result;
 }
 
 static mspring_result make_coarse(making *m) {
@@ -311,6 +334,7 @@ static void end_making(mspringi_implicit *n, mspringi_memory *memory) {
         return;
     mspringi_tiles_end(&n->making->tiling);
     mspringi_direct_end(&n->making->direct);
+    mspringi_paths_end(&n->making->finding);
     mspringi_free(memory, n->making);
     n->making = NULL;
 }
@@ -322,6 +346,9 @@ MSPRINGI_PASSES(implicit, making)
         MSPRINGI_EACH(clear_budget, components_of, 2000)
 static const implicit_pass two_level_passes[] = {
     COMMON,
+    MSPRINGI_ONCE(begin_paths),
+    MSPRINGI_EACH(count_path_springs, springs_in, 32000),
+    MSPRINGI_ONCE(list_paths),
     MSPRINGI_ONCE(choose_tiles),
     MSPRINGI_ONCE(cut_tiles),
     MSPRINGI_ONCE(make_coarse),
@@ -346,6 +373,8 @@ mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_s
     }
     *m = (making){.network = network, .made = n, .tile_size = def->tile_size > 0 ? def->tile_size : tile_size};
     m->tiling.memory = m->tiling.cutting.memory = &network->memory;
+    m->finding =
+        (mspringi_path_builder){.network = network, .memory = &network->memory, .message = &network->message};
     n->making = m;
     n->tile_size = def->tile_size;
     n->integrator = def->integrator;
@@ -400,6 +429,7 @@ void mspringi_implicit_destroy(mspringi_implicit *n, mspringi_memory *memory) {
     mspringi_budget_destroy(&n->budget, memory);
     mspringi_tiles_destroy(&n->tiles, memory);
     mspringi_coarse_destroy(&n->coarse, memory);
+    mspringi_array_table_free(mspringi_paths_columns, &n->paths, memory);
     mspringi_array_table_free(columns, n, memory);
     mspringi_free(memory, n);
 }
@@ -412,6 +442,7 @@ void mspringi_implicit_relocate(mspringi_implicit *n, const mspring_network *net
     mspringi_array_table_relocate(mspringi_cells_columns, &n->tiles.cells, from, to);
     mspringi_array_table_relocate(mspringi_tiles_columns, &n->tiles, from, to);
     mspringi_array_table_relocate(mspringi_coarse_columns, &n->coarse, from, to);
+    mspringi_array_table_relocate(mspringi_paths_columns, &n->paths, from, to);
     mspringi_direct_relocate(&n->direct, from, to);
     wire(n, network);
 }

@@ -7,6 +7,7 @@
 ///   assemble    matrix A and right-hand side b of A d = b, linearised there       assemble.c
 ///   terms       floor, contact and areas in the system                            implicit_terms.h
 ///               constraints: angles, grips                                        constraints/
+///   condense    ropes out of the system, and their displacements at the end       paths.h, condense.c
 ///   solve       conjugate gradients with a two-level preconditioner               conjugate_gradients.c
 ///                 its coarse space: cells, tiles, the coarse matrix               cells.h, tiles.h, coarse.h
 ///               or, in the direct solver, a factorisation                         solvers/direct/direct.c
@@ -32,6 +33,7 @@
 #include "solvers/implicit/coarse.h"
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/panels.h"
+#include "solvers/implicit/paths.h"
 #include "solvers/implicit/tiles.h"
 
 /// Fewest slots for more than one worker.
@@ -118,6 +120,7 @@ typedef struct mspringi_implicit {
     mspringi_direct direct; ///< zero unless is_direct
     mspringi_tiles tiles;   ///< tiles and coarse are empty if is_direct
     mspringi_coarse coarse;
+    mspringi_paths paths; ///< likewise
 } mspringi_implicit;
 
 /// The running solver's implicit object.

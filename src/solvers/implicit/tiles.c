@@ -58,6 +58,10 @@ static bool is_in_tile(const mspring_network *network, uint32_t slot) {
 
 /* ------------------------------------------------------------------------------------------------- components */
 
+static bool is_path_node(const mspringi_paths *paths, uint32_t slot) {
+    return paths->node_of_slot && paths->node_of_slot[slot] != MSPRING_NONE;
+}
+
 // Join the loose particles of a cell that added springs connect.
 static void join_loose(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
     const mspringi_cells *cells = &tiles->cells;
@@ -73,8 +77,9 @@ static void join_loose(mspringi_tiles *tiles, const mspring_network *network, ui
     }
 }
 
-// Join the free particles of a cell that live springs connect. The root of a component is its lowest slot.
-static void find_components(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
+// Join the free particles of a cell that live springs connect: all, or none of a path with one that is on none. The
+// root of a component is its lowest slot.
+static void join_springs(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell, bool are_all) {
     const mspringi_cells *cells = &tiles->cells;
     const mspringi_topology *t = &network->topology;
     for (uint32_t i = cells->first_slot[cell]; i < cells->first_slot[cell + 1]; ++i)
@@ -86,10 +91,41 @@ static void find_components(mspringi_tiles *tiles, const mspring_network *networ
         mspringi_topology_ends(t, spring_slot, &a, &b);
         // The id may be that of a spring that was added since, which lies elsewhere.
         if (!mspringi_spring_slot_is_laid_out(t, spring_slot) || !is_free(network, a) || !is_free(network, b) ||
+            (!are_all && is_path_node(tiles->paths, a) != is_path_node(tiles->paths, b)) ||
             !is_live(network, spring, spring_slot))
             continue;
         mspringi_union_find_join(tiles->parent, a, b);
     }
+}
+
+// Find the components of a cell without the paths between them, since what a path joins does not move with it once
+// that is condensed. Free particles of paths that were in one component are in one tile, which is of use only where
+// they are not condensed. (With a tile for each path there was no room for those of a hull with lines.)
+static void part_paths(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
+    const uint32_t *const begin = tiles->cells.slots + tiles->cells.first_slot[cell];
+    const uint32_t *const end = tiles->cells.slots + tiles->cells.first_slot[cell + 1];
+    uint32_t *const of_slot =
+        tiles->of_slot; // free until tiles are numbered: the root, and at a root the first node
+    for (const uint32_t *slot = begin; slot < end; ++slot) {
+        const bool is_node = is_path_node(tiles->paths, *slot) && is_free(network, *slot);
+        of_slot[*slot] = is_node ? mspringi_union_find_root(tiles->parent, *slot) : MSPRING_NONE;
+    }
+    join_springs(tiles, network, cell, false);
+    for (const uint32_t *slot = begin; slot < end; ++slot) {
+        if (!is_path_node(tiles->paths, *slot) || of_slot[*slot] == MSPRING_NONE)
+            continue;
+        const uint32_t root = of_slot[*slot];
+        if (!is_path_node(tiles->paths, root) && of_slot[root] == MSPRING_NONE)
+            of_slot[root] = *slot;
+        mspringi_union_find_join(tiles->parent, is_path_node(tiles->paths, root) ? root : of_slot[root], *slot);
+    }
+}
+
+static void find_components(mspringi_tiles *tiles, const mspring_network *network, uint32_t cell) {
+    const mspringi_cells *cells = &tiles->cells;
+    join_springs(tiles, network, cell, true);
+    if (tiles->paths->count > 0)
+        part_paths(tiles, network, cell);
     if (is_loose(network, cells->slots[cells->first_slot[cell]]))
         join_loose(tiles, network, cell);
 }
@@ -345,6 +381,8 @@ static void take_fingerprint(mspringi_tiles *tiles, size_t slots) {
     tiles->fingerprint = mspringi_hash_floats(MSPRINGI_HASH_START, tiles->turn_inertia, 0.0f);
     for (size_t slot = 0; slot < slots; ++slot)
         tiles->fingerprint = mspringi_hash(tiles->fingerprint, tiles->cells.of_slot[slot]);
+    for (uint32_t node = 0; node < tiles->paths->node_count; ++node)
+        tiles->fingerprint = mspringi_hash(tiles->fingerprint, tiles->paths->slots[node]);
 }
 
 static mspring_result no_memory(const mspringi_tile_builder *m) {
@@ -478,8 +516,9 @@ static const tiles_pass tiles_passes[] = {
 };
 
 void mspringi_tiles_begin(mspringi_tile_builder *m, mspringi_tiles *tiles, const mspring_network *network,
-                          uint32_t size, mspringi_memory *memory, mspringi_message *message) {
-    *tiles = (mspringi_tiles){0};
+                          const mspringi_paths *paths, uint32_t size, mspringi_memory *memory,
+                          mspringi_message *message) {
+    *tiles = (mspringi_tiles){.paths = paths};
     *m = (mspringi_tile_builder){
         .network = network, .memory = memory, .message = message, .tiles = tiles, .most = UINT32_MAX};
     mspringi_cells_begin(&m->cutting, &tiles->cells, network, size, memory, message);

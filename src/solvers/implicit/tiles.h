@@ -8,8 +8,10 @@
 #define MSPRINGI_TILES_H
 
 #include "solvers/implicit/cells.h"
+#include "solvers/implicit/paths.h"
 
 typedef struct mspringi_tiles {
+    const mspringi_paths *paths; ///< their particles have tiles of their own
     mspringi_cells cells;
     uint32_t count, capacity;
     uint32_t *first_part;              ///< [capacity + 1]
@@ -44,7 +46,8 @@ typedef struct mspringi_tile_builder {
 
 /// Make tiles in cells of that size: begin, then run until it is done, then end, on failure too.
 void mspringi_tiles_begin(mspringi_tile_builder *tiling, mspringi_tiles *tiles, const mspring_network *network,
-                          uint32_t size, mspringi_memory *memory, mspringi_message *message);
+                          const mspringi_paths *paths, uint32_t size, mspringi_memory *memory,
+                          mspringi_message *message);
 mspring_result mspringi_tiles_run(mspringi_tile_builder *tiling, bool *is_done);
 void mspringi_tiles_end(mspringi_tile_builder *tiling);
 /// Set the added moment of inertia to that of other tiles of the same network, whose rest lengths may have
