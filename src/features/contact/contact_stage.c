@@ -259,12 +259,12 @@ static mspring_result report_work(mspring_network *network) {
     uint32_t edges;
     const mspring_id hub = hub_of(contacts, &edges);
     network->outcome.particle = hub;
-    return mspringi_fail(
-        &network->message, MSPRING_ERROR_LIMIT,
-        "over %.3g comparisons of outline points and edges in a step, or impulses that "
-        "take as long, as many of %u edges are near many points, or at one particle (%u at "
-        "particle %u): set contact with less thickness, take a shorter dt, or divide long springs",
-        (double)contacts->most_work, (unsigned)contacts->outline.edge_count, (unsigned)edges, (unsigned)hub);
+    return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                         "over %.3g comparisons of outline points and edges in a step, or impulses that "
+                         "take as long, as many of %u edges are near many points, or at one particle (%u at "
+                         "particle %u): set contact with less thickness, take a shorter dt, or divide long springs",
+                         (double)contacts->most_work, (unsigned)contacts->outline.edge_count, (unsigned)edges,
+                         (unsigned)hub);
 }
 
 static mspring_result verify(mspring_network *network) {
