@@ -101,7 +101,8 @@ static void none_counts_the_iterations(void **state) {
         float residual;
         uint32_t iterations;
         double calm;
-    } cases[] = {{0, 0, 8, 8}, {0, 1e-12f, 30, 8}, {12, 0, 12, 12}, {12, 1e-12f, 12, 8}, {3, 1e-12f, 3, 3}};
+    } cases[] = {{0, 0, 8, 8},        {0, 1e-12f, 30, 8}, {12, 0, 12, 12},
+                 {12, 1e-12f, 12, 8}, {3, 1e-12f, 3, 3},  {0, -0.0f, 8, 8}};
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         mspring_network *network = recipe_network(&made, NULL);
         use(network, cases[i].given, cases[i].residual);
@@ -112,6 +113,11 @@ static void none_counts_the_iterations(void **state) {
         assert_true(products_of(network, cases[i].calm) == cases[i].iterations - 1);
         mspring_network_destroy(network);
     }
+    mspring_network *network = recipe_network(&made, NULL);
+    use(network, 0, 1);
+    support_steps(network, 3, DT);
+    assert_true(products_of(network, 8) == 1); // the one that finds that it is enough
+    mspring_network_destroy(network);
     recipe_free(&made);
 }
 

@@ -394,8 +394,9 @@ typedef struct mspring_solver_def {
                         ///< solver take parts again; at most MSPRING_MAX_SUBSTEPS; default 4; 0: no bound but
                         ///< max_substeps. See above
     float residual; ///< 0 to 1; default 0.01: iterations of the implicit solver end where r . z, a square of what is
-                    ///< unbalanced, is this share of what the first one left, of whole tiles. Larger is cheaper, smaller
-                    ///< is closer. 0: exactly `iterations`. It is squared with a floor; bodies that touch have their own
+                    ///< unbalanced, is this share of what the first left, of whole tiles. 1: springs hardly act, 0:
+                    ///< exactly `iterations`. With a floor it is squared, or they are two times as many; bodies that
+                    ///< touch have their own
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
