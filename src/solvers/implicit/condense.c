@@ -19,7 +19,7 @@
 /// that.
 #define LEAST_SHARE 1e-15
 
-static mspringi_segment *segments_of(const mspringi_paths *p, const mspringi_path *path) {
+static mspringi_path_segment *segments_of(const mspringi_paths *p, const mspringi_path *path) {
     return p->segments + path->first / MSPRINGI_LEAST_PATH;
 }
 
@@ -84,7 +84,7 @@ static void divide_path(const mspringi_implicit *n, const mspringi_paths *p, msp
             ++end;
         if (end - i < MSPRINGI_LEAST_PATH)
             continue;
-        segments_of(p, path)[path->segment_count++] = (mspringi_segment){
+        segments_of(p, path)[path->segment_count++] = (mspringi_path_segment){
             .first = i,
             .end = end,
             .ends = {moving_end(n, i == path->first ? path->ends[0] : p->slots[i - 1]),
@@ -144,8 +144,8 @@ static path_block inverse_of(path_block block) {
 }
 
 // Forward: pivots, and the responses but for what comes back. The system loses the segment.
-static void eliminate_segment(const mspringi_implicit *n, const mspringi_paths *p, const mspringi_segment *segment,
-                              const uint32_t *factors) {
+static void eliminate_segment(const mspringi_implicit *n, const mspringi_paths *p,
+                              const mspringi_path_segment *segment, const uint32_t *factors) {
     path_block before = block_of_spring(n, factors[segment->first]);
     const path_block first = before, last = block_of_spring(n, factors[segment->end]);
     for (uint32_t i = segment->first; i < segment->end; ++i) {
@@ -181,7 +181,7 @@ static void eliminate_segment(const mspringi_implicit *n, const mspringi_paths *
     clear_factors(n, factors[segment->end]);
 }
 
-static void substitute_back(const mspringi_paths *p, const mspringi_segment *segment) {
+static void substitute_back(const mspringi_paths *p, const mspringi_path_segment *segment) {
     for (uint32_t i = segment->end - 1; i-- > segment->first;) {
         const mspringi_path_response *next = &p->responses[i + 1];
         mspringi_path_response *own = &p->responses[i];
@@ -194,7 +194,7 @@ static void substitute_back(const mspringi_paths *p, const mspringi_segment *seg
 }
 
 // Rows of S and of the load at an end whose spring is `outer`, beside a node with this response.
-static void leave_at_end(mspringi_segment *segment, int end, path_block outer,
+static void leave_at_end(mspringi_path_segment *segment, int end, path_block outer,
                          const mspringi_path_response *response) {
     const double rows[2][2] = {{outer.xx, outer.xy}, {outer.xy, outer.yy}};
     segment->lost[end][0] = outer.xx;
@@ -214,8 +214,8 @@ static void leave_at_end(mspringi_segment *segment, int end, path_block outer,
 static void condense_path(const mspringi_implicit *n, const mspringi_paths *p, mspringi_path *path) {
     const uint32_t *factors = p->factors + (path - p->list);
     divide_path(n, p, path);
-    mspringi_segment *const segments = segments_of(p, path);
-    for (mspringi_segment *s = segments; s < segments + path->segment_count; ++s) {
+    mspringi_path_segment *const segments = segments_of(p, path);
+    for (mspringi_path_segment *s = segments; s < segments + path->segment_count; ++s) {
         const path_block first = block_of_spring(n, factors[s->first]), last = block_of_spring(n, factors[s->end]);
         eliminate_segment(n, p, s, factors);
         substitute_back(p, s);
@@ -228,7 +228,8 @@ static void condense_path(const mspringi_implicit *n, const mspringi_paths *p, m
 
 #define EACH_SEGMENT(p, s)                                                                                         \
     for (const mspringi_path *path = (p)->list; path < (p)->list + (p)->count; ++path)                             \
-        for (const mspringi_segment *s = segments_of(p, path); s < segments_of(p, path) + path->segment_count; ++s)
+        for (const mspringi_path_segment *s = segments_of(p, path);                                                \
+             s < segments_of(p, path) + path->segment_count; ++s)
 
 // What is left of a diagonal block without a spring. Rounding must not leave less than nothing.
 static void subtract_spring(const mspringi_system *s, uint32_t slot, const double *spring) {
@@ -239,7 +240,7 @@ static void subtract_spring(const mspringi_system *s, uint32_t slot, const doubl
     s->xy[slot] = xx > 0.0f && yy > 0.0f && xy * xy <= xx * yy ? xy : 0.0f;
 }
 
-static void add_segment(const mspringi_implicit *n, const mspringi_segment *s, int end) {
+static void add_segment(const mspringi_implicit *n, const mspringi_path_segment *s, int end) {
     const uint32_t slot = s->ends[end];
     n->system.xx[slot] += (float)s->block[2 * end][2 * end];
     n->system.xy[slot] += (float)s->block[2 * end][2 * end + 1];
@@ -292,7 +293,7 @@ void mspringi_condense(const mspring_network *network, mspringi_team_member *mem
     mspringi_team_barrier(member);
 }
 
-static void gather_ends(const mspringi_segment *s, mspringi_field from, double *to) {
+static void gather_ends(const mspringi_path_segment *s, mspringi_field from, double *to) {
     for (int end = 0; end < 2; ++end) {
         const uint32_t slot = s->ends[end];
         to[2 * end] = slot != MSPRING_NONE ? (double)from.x[slot] : 0.0;
@@ -321,7 +322,7 @@ double mspringi_condense_multiply(const mspring_network *network, mspringi_field
     return sum;
 }
 
-static void finish_segment(const mspringi_implicit *n, const mspringi_paths *p, const mspringi_segment *s,
+static void finish_segment(const mspringi_implicit *n, const mspringi_paths *p, const mspringi_path_segment *s,
                            double alpha) {
     double d[4], along[4];
     gather_ends(s, n->displacement, d);
@@ -343,7 +344,7 @@ void mspringi_condense_finish(const mspring_network *network, mspringi_team_memb
     const mspringi_paths *p = &n->paths;
     const size_t end = mspringi_range_end(member, p->count);
     for (size_t i = mspringi_range_begin(member, p->count); i < end; ++i) {
-        const mspringi_segment *segments = segments_of(p, &p->list[i]);
+        const mspringi_path_segment *segments = segments_of(p, &p->list[i]);
         for (uint32_t k = 0; k < p->list[i].segment_count; ++k)
             finish_segment(n, p, &segments[k], (double)alpha);
     }
@@ -352,7 +353,7 @@ void mspringi_condense_finish(const mspring_network *network, mspringi_team_memb
 /* ----------------------------------------------------------------------------------------------- coarse matrix */
 
 // Add a column of S's root, as a constraint's, to the tiles of the ends.
-static void add_column(mspringi_implicit *n, const mspringi_segment *s, const double *column) {
+static void add_column(mspringi_implicit *n, const mspringi_path_segment *s, const double *column) {
     mspringi_coarse_rank_one pulls;
     pulls.count = 0;
     for (int end = 0; end < 2; ++end) {
@@ -374,7 +375,7 @@ static void add_column(mspringi_implicit *n, const mspringi_segment *s, const do
 }
 
 // S = L L^T, by columns. A pivot that rounding has left is none.
-static void stiffen_segment(mspringi_implicit *n, const mspringi_segment *s) {
+static void stiffen_segment(mspringi_implicit *n, const mspringi_path_segment *s) {
     double block[4][4];
     memcpy(block, s->block, sizeof block);
     for (int j = 0; j < 4; ++j) {

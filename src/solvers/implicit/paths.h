@@ -32,13 +32,13 @@ typedef struct mspringi_path {
 } mspringi_path;
 
 /// What a solution eliminates: nodes `first` to `end` - 1.
-typedef struct mspringi_segment {
+typedef struct mspringi_path_segment {
     uint32_t first, end;
     uint32_t ends[2];   ///< slots; MSPRING_NONE: nothing is there, or it does not move
     double block[4][4]; ///< S
     double lost[2][3];  ///< xx, xy, yy of the ends' springs, which their blocks lose
     double load[4];     ///< what b_E gets
-} mspringi_segment;
+} mspringi_path_segment;
 
 /// Response of a node, A_CC^-1 (A_CE, b_C): rows x and y of five columns.
 typedef struct mspringi_path_response {
@@ -48,7 +48,7 @@ typedef struct mspringi_path_response {
 typedef struct mspringi_paths {
     uint32_t count, node_count;
     mspringi_path *list;               ///< [count] by their lowest slots
-    mspringi_segment *segments;        ///< those of a path begin at first / MSPRINGI_LEAST_PATH
+    mspringi_path_segment *segments;   ///< those of a path begin at first / MSPRINGI_LEAST_PATH
     uint32_t *node_of_slot;            ///< [slots] MSPRING_NONE: none; NULL without paths
     uint32_t *slots;                   ///< [node_count] along the path
     uint32_t *factors;                 ///< [node_count + count] of the springs; MSPRING_NONE: there is none
