@@ -178,7 +178,7 @@ static void a_negative_zero_changes_nothing(void **state) {
     recipe_free(&made);
 }
 
-/// What was sent is set again after anything else has changed it.
+/// Values that were sent are set again after anything else has changed them.
 static void it_sees_other_changes(void **state) {
     (void)state;
     for (mspring_property p = FIRST; p < END; p++) {

@@ -121,7 +121,7 @@ static void none_counts_the_iterations(void **state) {
     recipe_free(&made);
 }
 
-/// What a network has without being told, and a program of before the field was there.
+/// Default of a network, and of a program from before the field was there.
 static void the_default_is_a_hundredth(void **state) {
     (void)state;
     recipe made = bar(6, 3, 1e7);

@@ -231,7 +231,7 @@ static void condense_path(const mspringi_implicit *n, const mspringi_paths *p, m
         for (const mspringi_path_segment *s = segments_of(p, path);                                                \
              s < segments_of(p, path) + path->segment_count; ++s)
 
-// What is left of a diagonal block without a spring. Rounding must not leave less than nothing.
+// Subtract a spring from a diagonal block. Rounding must not leave less than nothing.
 static void subtract_spring(const mspringi_system *s, uint32_t slot, const double *spring) {
     const float xx = s->xx[slot] - (float)spring[0], yy = s->yy[slot] - (float)spring[2];
     const float xy = s->xy[slot] - (float)spring[1];

@@ -31,7 +31,7 @@ typedef struct mspringi_path {
     uint32_t segment_count; ///< in the present solution
 } mspringi_path;
 
-/// What a solution eliminates: nodes `first` to `end` - 1.
+/// Run of nodes that a solution eliminates: `first` to `end` - 1.
 typedef struct mspringi_path_segment {
     uint32_t first, end;
     uint32_t ends[2];   ///< slots; MSPRING_NONE: nothing is there, or it does not move

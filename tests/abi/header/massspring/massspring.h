@@ -393,10 +393,10 @@ typedef struct mspring_solver_def {
                         ///< substeps for violent motion, MSPRING_GUARD_RETRY repeats, and the implicit and the direct
                         ///< solver take parts again; at most MSPRING_MAX_SUBSTEPS; default 4; 0: no bound but
                         ///< max_substeps. See above
-    float residual; ///< 0 to 1; default 0.01: iterations of the implicit solver end where r . z, a square of what is
-                    ///< unbalanced, is this share of what the first left, of whole tiles. 1: springs hardly act, 0:
-                    ///< exactly `iterations`. With a floor it is squared, or they are two times as many; bodies that
-                    ///< touch have their own
+    float residual; ///< 0 to 1; default 0.01: the implicit solver stops iterating when r . z, a square of the forces
+                    ///< out of balance, has fallen to this share of its value after the first iteration. 0: exactly
+                    ///< `iterations`; 1: springs hardly act. With a floor it is squared, or the iterations double;
+                    ///< bodies that touch have a tolerance of their own
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
