@@ -36,7 +36,7 @@ typedef struct mspringi_sleep {
     mspringi_field force;          ///< from outside
     mspringi_field in_force;       ///< of the step that is being made; else NULL
     uint64_t masses, links, moved; ///< edits that it has seen; the last is edits.state
-    uint64_t piled;                ///< edits.naps for which piles were found
+    uint64_t piled;                ///< edits.sleep_changes for which piles were found
 } mspringi_sleep;
 
 #endif

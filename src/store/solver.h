@@ -2,7 +2,7 @@
 /// What a solver is to the rest of the library: a table of operations, some properties, and an object of its own.
 ///
 /// A network has the solver that the host chose, and perhaps a fallback for steps which that one cannot take; a
-/// step chooses between them (step.c). To add one: its table in its own folder, and a line in solvers.def.
+/// step chooses between them (step/ladder.c). To add one: its table in its own folder, and a line in solvers.def.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SOLVER_H
