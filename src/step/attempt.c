@@ -32,7 +32,7 @@ static void copy_state(const mspring_network *network, const mspringi_state *fro
 
 /* -------------------------------------------------------------------------------------------------- substeps */
 
-// Take a substep, or count of them. A single one may have to be taken in pieces.
+// Take `count` substeps. A single one is divided if a stage wants it (max_parts).
 static void run_solver(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force,
                        uint32_t count) {
     const mspringi_solver *solver = attempt->solver;
@@ -76,8 +76,8 @@ void mspringi_drop_stale_lows(const mspring_network *network) {
     }
 }
 
-// Contact may leave a velocity with the low word of another: that is no reason to drop it, but one written by a
-// host is.
+// Drop low words that do not belong to the velocities which a hook or a view wrote. (Contact leaves such low words,
+// too: these stay.)
 static void drop_stale_low_velocities(const mspring_network *network) {
     const mspringi_state *s = &network->state;
     const size_t slots = network->is_precise ? mspringi_used_slots(network) : 0;
@@ -93,7 +93,7 @@ void mspringi_clear_unused_slots(const mspring_network *network) {
         memset(network->state.x + i * slots + used, 0, (slots - used) * sizeof *network->state.x);
 }
 
-// Put in order what somebody outside may have written to.
+// Clean up after hooks and views, which may have written to the state.
 static void tidy(const mspring_network *network) {
     if (!network->is_open)
         return;
@@ -104,9 +104,9 @@ static void tidy(const mspring_network *network) {
     drop_stale_low_velocities(network);
 }
 
-// Set the lag with which a step begins. After an edit, the last substep may be too long a time for springs to act,
-// and relative springs are as stiff as this step's substeps allow. A reset takes groups back to velocities that
-// count as half a substep old.
+// Set the lag at the start of a step. After an edit, the last substep may be longer than springs allow: then the
+// lag is shorter. Relative springs follow from this step's substeps, so its h is the lag. Groups that were reset
+// have velocities half a substep old.
 static void begin_lag(mspring_network *network, const mspringi_attempt *attempt) {
     const float h = attempt->h, lag = network->steps.lag;
     mspring_id spring;
@@ -120,13 +120,13 @@ static void begin_lag(mspring_network *network, const mspringi_attempt *attempt)
             fminf(lag, fmaxf((float)fmin(mspringi_stable_in_any_shape(network, &spring), (double)FLT_MAX), h));
 }
 
-// Gravity alone is rounded the same way in each substep; precise networks have low words for it.
+// True if gravity is dithered: it would be rounded the same way in each substep. Precise networks have low words.
 static bool has_dither(const mspring_network *network) {
     const mspring_settings *settings = &network->settings;
     return !network->is_precise && (settings->gravity_x != 0.0f || settings->gravity_y != 0.0f);
 }
 
-// Keep the state in the backup, run all substeps, and look at what they have led to.
+// Save the state in the backup, run all substeps, and return the extrema of the new state.
 static mspringi_extrema run(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver_ops *ops = attempt->solver->ops;
     const bool is_cut = attempt->is_cut;
@@ -182,7 +182,7 @@ void mspringi_clear_empty_slots(const mspring_network *network) {
         mspringi_id_pool_clear_slots(network);
 }
 
-// To the state of before the step.
+// Return to the state before the step.
 static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_solver *solver = attempt->solver;
     copy_state(network, &network->backup, &network->state);
@@ -193,8 +193,8 @@ static void go_back(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_clear_empty_slots(network);
 }
 
-// Count the work of substeps that were taken, whatever comes of them. Runs in which an assumption failed do not
-// count: with several workers there are more of them, and the next attempt depends on the work that is left.
+// Count the work of the substeps, whether the attempt succeeds or not. Runs in which an assumption failed do not
+// count: several workers have more of them, and the next attempt depends on the work left.
 static void count_work(const mspring_network *network, mspringi_attempt *attempt) {
     const mspringi_solver *solver = attempt->solver;
     const uint32_t substeps = attempt->substeps + network->added_substeps;
@@ -204,7 +204,7 @@ static void count_work(const mspring_network *network, mspringi_attempt *attempt
                                              : (double)substeps * mspringi_solver_calm_work(solver);
 }
 
-// Undo what an attempt has done; the state is that of before.
+// Undo the rest of an attempt, once the state is that before the step.
 static void undo(mspring_network *network, const mspringi_attempt *attempt) {
     network->guard = attempt->guard;
     mspringi_stages_undo(network, attempt);
@@ -215,12 +215,12 @@ void mspringi_attempt_take_back(mspring_network *network, const mspringi_attempt
     undo(network, attempt);
 }
 
-// True if a step has nothing to do at all.
+// True if a step has nothing to do: everything sleeps and nothing acts.
 static bool is_idle(const mspring_network *network, const mspringi_stages *stages) {
     return mspringi_sleep_is_idle(network) && !stages->give_forces && !stages->cut_substeps && !stages->move;
 }
 
-// Until substeps are taken. A step in which all sleeps takes none.
+// Begin an attempt, up to its substeps. An idle one takes none.
 static mspring_result begin(mspring_network *network, mspringi_attempt *attempt) {
     if (network->sleep.sleeping > 0)
         mspringi_sleepers->begin(network, attempt);
@@ -240,9 +240,9 @@ static mspring_result begin(mspring_network *network, mspringi_attempt *attempt)
     return result;
 }
 
-// Take the substeps, or leave everything as it is.
+// Take the substeps, and undo them if they must be repeated or fail.
 static mspring_result take(mspring_network *network, mspringi_attempt *attempt) {
-    attempt->is_cut = mspringi_stages_split_step(network, attempt);
+    attempt->is_cut = mspringi_stages_must_cut_step(network, attempt);
     const mspringi_extrema extrema = run(network, attempt);
     if (mspringi_hook_count(network) > 0)
         network->seen = mspringi_guard_bound(network, attempt->h, extrema);

@@ -1,4 +1,4 @@
-/// Going through the stages of a step.
+/// Calls of the stages of a step.
 #include "store/stages.h"
 
 // By place; NULL where a build has no stage.
@@ -31,7 +31,7 @@ mspringi_stages mspringi_stages_of(const mspring_network *network) {
     return stages;
 }
 
-bool mspringi_stages_split_step(const mspring_network *network, const mspringi_attempt *attempt) {
+bool mspringi_stages_must_cut_step(const mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_stages *stages = attempt->stages;
     bool cut = stages->cut_substeps;
     for (size_t i = 0; stages->can_be_quiet && i < stages->count && !cut; ++i)

@@ -23,7 +23,7 @@ mspring_result mspringi_added_springs_reserve(mspring_network *network) {
 
 /* ------------------------------------------------------------------------------------------------------ making */
 
-// List the ends of the live springs in places of their own, by slot; those at one slot in the order of the ids.
+// List the ends of the live added springs, by slot; those at one slot by rising ids.
 static void list_nodes(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_added_springs *graft = &network->added_springs;
@@ -139,7 +139,7 @@ void mspringi_added_springs_pull(const mspring_network *network, const mspringi_
     for (uint32_t node = find_node(graft, first_slot); node < graft->count && slots[node] < end_slot;) {
         const uint32_t slot = slots[node];
         float force_x = pull_x[node], force_y = pull_y[node];
-        // What pulls to and fro at one slot is summed first, as it may be much more than what is left of it.
+        // Sum the forces at one slot before they act: they may be much larger than their sum.
         for (++node; node < graft->count && slots[node] == slot; ++node) {
             force_x = force_x + pull_x[node];
             force_y = force_y + pull_y[node];

@@ -1,10 +1,10 @@
 /// @file added_springs.h
 /// Springs that were added after the topology was made, for the explicit solver.
 ///
-/// Whatever they join, they are taken one substep at a time: first their forces are computed, all at once, from
-/// where their ends are before the substep; then each strip is swept as if they were not there, and pulled at. So
-/// an added spring needs no place in a plan, and costs the rest of the network the passes of several substeps;
-/// compacting the network takes it into the plan.
+/// A network that has some takes one substep at a time: compute the forces of all added springs from the positions
+/// before the substep, sweep each strip without them, then apply the forces to its particles. So an added spring
+/// needs no place in the layout, but costs the whole network the passes of several substeps. Compaction takes it
+/// into the layout.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ADDED_SPRINGS_H
@@ -17,37 +17,37 @@
 struct mspring_network;
 struct mspringi_sweep;
 
-/// The live added springs as an irregular part whose nodes are their ends, by rising slot, one slice column to a
-/// group.
+/// The graft: the live added springs as an irregular part. Its nodes are their ends, by rising slot; each slice has
+/// one slice column.
 typedef struct mspringi_added_springs {
     mspringi_sell irregular;
-    mspring_id *springs;      ///< [capacity] of each node
+    mspring_id *springs;      ///< [capacity] spring of each node
     float *records;           ///< [capacity / MSPRINGI_WIDTH][parts][MSPRINGI_WIDTH]
-    float *gathered;          ///< [capacity][4] where the nodes are before the substep
-    float *pulls;             ///< forces on the nodes, all x and then all y
-    uint64_t *keys, *scratch; ///< [capacity] to sort the nodes by
-    uint32_t *node_of_end;    ///< [capacity]
-    uint32_t capacity;        ///< nodes, whole groups; 0: springs cannot be added
+    float *gathered;          ///< [halves][capacity][4] motion of the nodes before the substep (store/precise.h)
+    float *pulls;             ///< forces on the nodes, N, all x and then all y
+    uint64_t *keys, *scratch; ///< [capacity] to sort the nodes by slot
+    uint32_t *node_of_end;    ///< [capacity] node of each end; end e is that of the spare spring number e / 2
+    uint32_t capacity;        ///< nodes, whole slices; 0: springs cannot be added
     uint32_t count;           ///< nodes that there are
-    uint64_t growth, links;   ///< edits that it has seen
+    uint64_t growth, links;   ///< counters of edits at the last update
 } mspringi_added_springs;
 
 /// Allocate what added springs will need.
 mspring_result mspringi_added_springs_reserve(struct mspring_network *network);
 
-/// Have the graft be that of the springs there are now, with the values that they have now.
+/// Bring the graft up to date with the added springs and their values.
 void mspringi_added_springs_update(struct mspring_network *network);
-/// Have the next mspringi_added_springs_update() begin anew, as slots have changed.
+/// Make the next update begin anew, because slots have changed.
 void mspringi_added_springs_reset(mspringi_added_springs *graft);
 
 /// Compute the forces of all added springs, for a substep that is about to be taken.
 void mspringi_added_springs_begin(const struct mspring_network *network, const struct mspringi_sweep *sweep);
 
-/// Do to the slots first_slot ... end_slot - 1, which have been swept in this substep, what these forces do.
+/// Apply these forces to the slots first_slot to end_slot - 1, which this substep has swept.
 void mspringi_added_springs_pull(const struct mspring_network *network, const struct mspringi_sweep *sweep,
                                  uint32_t first_slot, uint32_t end_slot);
 
-/// The first block, of those first_block ... end_block - 1, whose slots are pulled at (or, if not pulled, are not);
+/// Find the first of the blocks first_block to end_block - 1 with a node, or, if not pulled, without one. Return
 /// end_block if there is none.
 uint32_t mspringi_added_springs_find_block(const mspringi_added_springs *graft, uint32_t first_block,
                                            uint32_t end_block, bool pulled);

@@ -1,5 +1,5 @@
 /// @file attempt.h
-/// An attempt at a step, which travels through the step's stages. What the network says of substeps is a setting.
+/// An attempt at a step. Stages read its substeps here: a fallback may take others than network->substeps.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ATTEMPT_H
@@ -23,22 +23,22 @@ struct mspringi_attempt {
     const mspringi_solver *solver; ///< the one that runs, which may be the fallback
     const struct mspringi_stages *stages;
     float relative_h;      ///< substep that relative springs were derived for before, s
-    uint32_t group;        ///< the one released, or the first that may be next
-    uint32_t missed_count; ///< runs undone so far because a stage counted on what did not hold
-    double most_work;      ///< beyond which its solver repeats nothing
+    uint32_t group;        ///< the group released, or the first that may be released next
+    uint32_t missed_count; ///< runs undone so far because an assumption of a stage failed
+    double most_work;      ///< beyond which its solver repeats nothing, in explicit substeps
     bool is_cut;           ///< stages act between its substeps
 
     // Outcome.
     mspring_result result;
     bool is_spent;        ///< its solver would have repeated more
-    bool has_missed;      ///< run undone, for one without that assumption
+    bool has_missed;      ///< the run was undone, and must be made without an assumption
     bool is_idle;         ///< all sleeps: there was nothing to do
-    bool keeps_substeps;  ///< the next step takes the network's substeps, though this one failed
+    bool keeps_substeps;  ///< network->substeps stays raised for the next step, though this one failed
     mspringi_guard guard; ///< before it
 
     // Of all attempts at the step.
     double given_dt;        ///< as the host gave it, s
-    double work, calm_work; ///< spent so far; of a step with nothing repeated
+    double work, calm_work; ///< spent so far; of a calm step. In explicit substeps
     double work_before;     ///< spent before this attempt
 };
 

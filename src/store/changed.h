@@ -1,5 +1,5 @@
 /// @file changed.h
-/// Telling whoever has to know that something of a network has changed: the table is changes.def.
+/// Notification of changes of a network. changes.def lists who is told of which.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_CHANGED_H
@@ -20,14 +20,15 @@ void mspringi_dispatch_change(mspring_network *network, mspringi_change what, ui
 /// Allocate the log of springs that were broken or restored, if it is not there yet: before any is.
 mspring_result mspringi_changed_reserve_log(mspring_network *network);
 
-/// The same. (Springs are set by the million, and nobody listens but a compaction that is under way.)
+/// Tell all listeners, but of a single spring slot only during a job, which alone listens: springs are set by the
+/// million.
 static inline void mspringi_notify_change(mspring_network *network, mspringi_change what, uint32_t index) {
     if (what != MSPRINGI_CHANGED_PLACE || network->job)
         mspringi_dispatch_change(network, what, index);
 }
 
-/// What edits are mixed into the fingerprint of parameters as, by which a snapshot tells whether it fits. Those of
-/// a spring's values are its parts.
+/// Numbers of edits in the fingerprint of parameters, by which a snapshot tells if it fits a network. Edits of a
+/// spring's values have the numbers of its parts.
 typedef enum mspringi_edit {
     MSPRINGI_EDIT_PARTS = 0,
     MSPRINGI_EDIT_BREAK_STRAIN = 8,

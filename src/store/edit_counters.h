@@ -10,11 +10,10 @@
 #include "base/assert.h"
 #include <massspring/massspring.h>
 
-/// What has been edited between steps, in counters that only ever grow. Whoever keeps something that follows from
-/// the edited (a solver its history or its tiles, a measurement its components) remembers the counters that it has
-/// seen and looks whether they are still the same: mspringi_edits_have_link() and mspringi_edits_link() then tell
-/// which springs it was. Views may be written to without any counter knowing; what relative springs derive from a
-/// new substep is no edit either.
+/// Counters of edits, which only grow. Whoever caches something derived (a solver its history or tiles, a
+/// measurement its components) stores the counters that it used, and compares them later.
+/// mspringi_edits_have_link() and mspringi_edits_link() tell which springs broke or were restored since. Writing
+/// through a view counts as no edit, nor does what relative springs derive from a new substep.
 typedef struct mspringi_edits {
     uint64_t state;         ///< calls that set positions or velocities
     uint64_t motion;        ///< calls that set the positions of all particles at once: a new motion begins
@@ -23,17 +22,17 @@ typedef struct mspringi_edits {
     uint64_t growth;        ///< calls that added or removed particles or springs
     uint64_t grafts;        ///< those among them in which springs were added or removed
     uint64_t links;         ///< springs that were broken or restored, added or removed, one by one
-    uint64_t sleep_changes; ///< times that islands fell asleep or woke
+    uint64_t sleep_changes; ///< times that islands fell asleep or woke (MSPRINGI_CHANGED_NAPS)
     uint64_t layouts;       ///< times that all slots changed
     uint64_t origins;       ///< times that the local origin moved
     uint64_t flows;         ///< times that rest lengths changed within a step
     mspring_id
         *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
     uint32_t link_mask;
-    bool broke; ///< there have been such changes, here or in what was loaded
+    bool broke; ///< a spring broke or was restored, here or in a loaded snapshot
 } mspringi_edits;
 
-/// Whether the log still has everything from change number seen on; if not, any spring may have changed.
+/// True if the log still has all changes from number `seen` on; if not, any spring may have changed.
 static inline bool mspringi_edits_have_link(const mspringi_edits *edits, uint64_t seen) {
     return edits->links - seen <= (uint64_t)edits->link_mask + 1;
 }

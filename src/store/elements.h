@@ -8,12 +8,13 @@
 
 #include "store/network.h"
 
-/// Functions of an element, NULL where it has none: is_used always is there.
+/// Functions of an element; NULL if it needs none.
 typedef struct mspringi_element_ops {
-    bool (*is_used)(const mspring_network *network);
-    void (*add_terms)(const mspring_network *network);  ///< to the assembled system, each time
-    void (*list_constraints)(mspring_network *network); ///< once a substep, as predicted; room is reserved
-    void (*add_energy)(const mspring_network *network); ///< to the components' budgets
+    bool (*is_used)(const mspring_network *network);   ///< never NULL
+    void (*add_terms)(const mspring_network *network); ///< add to each assembled system
+    void (*list_constraints)(
+        mspring_network *network); ///< list its constraints at the prediction, once a substep; room is reserved
+    void (*add_energy)(const mspring_network *network); ///< add its energies to the components' budgets
     bool (*forgets_energy)(
         const mspring_network *network); ///< what a substep ended with is not what the next begins with
 } mspringi_element_ops;

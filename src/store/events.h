@@ -1,5 +1,5 @@
 /// @file events.h
-/// What happened, for the host to read between steps.
+/// Events, which the host reads between steps.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_EVENTS_H
@@ -7,11 +7,11 @@
 
 #include "store/network.h"
 
-/// The events that the host has not read yet: a ring, which there is if the host has asked for one.
+/// Unread events, in a ring that the host reserves.
 typedef struct mspringi_events {
-    mspring_event *ring; ///< [capacity]
-    uint32_t first, count, capacity;
-    uint64_t lost;
+    mspring_event *ring;             ///< [capacity]
+    uint32_t first, count, capacity; ///< oldest event; unread events; 0: no ring
+    uint64_t lost;                   ///< events without room
 } mspringi_events;
 
 /// Queue an event, or count it as lost if the queue is full. Without a queue, do nothing.

@@ -8,7 +8,7 @@
 #include "base/array_table.h"
 #include "store/changed.h"
 
-/// The arrays that a feature's state holds, none of them by slot or place.
+/// The arrays that a feature's state holds, none of them by slot or spring slot.
 typedef struct mspringi_feature_state {
     mspringi_array_table arrays;
     void (*relocate)(void *state, const mspringi_memory *from,
@@ -42,13 +42,13 @@ void mspringi_features_forget(mspring_network *network);
 /// Give a new network what its builder has of each feature.
 mspring_result mspringi_features_create(mspring_network *network, const mspring_builder *builder);
 
-/// Append what features have of the particles to a builder, where ids[particle] is not MSPRING_NONE: first make
-/// room.
+/// Append to a builder the features' data of each particle whose ids[particle], its id there, is not MSPRING_NONE.
+/// Make room first.
 mspring_result mspringi_features_reserve_append(const mspring_network *network, const mspring_id *ids,
                                                 mspring_builder *builder);
 void mspringi_features_append(const mspring_network *network, const mspring_id *ids, mspring_builder *builder);
 
-/// Forget what the end of a step gave: the guard has put it back.
+/// Forget what the end of a step gave, because the guard has clamped it.
 void mspringi_features_discard_step(mspring_network *network);
 
 /// True if rest lengths of springs follow from the time in the next step.

@@ -1,4 +1,4 @@
-/// Keeping fractions that many springs have in common.
+/// Storage of fractions that many springs share.
 #include "store/fractions.h"
 
 /// Most that a byte can tell apart.

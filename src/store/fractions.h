@@ -1,7 +1,7 @@
 /// @file fractions.h
-/// What relative springs are like: fractions of stiffness and damping, of which most networks have a few only, by
-/// material. Those are kept once, and for each spring a byte that tells which it has. (8 bytes per spring would be
-/// 32 of 116 per particle of a full lattice.)
+/// Relative springs: fractions of stiffness and damping. Most networks have a few pairs of them, one for each
+/// material. These are stored once, with a byte for each spring. (8 bytes a spring would be 32 of 116 bytes a
+/// particle of a full lattice.)
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_FRACTIONS_H
@@ -9,8 +9,8 @@
 
 #include "store/network.h"
 
-/// Keep the fractions of the builder's springs, with room for so many in all: those of springs to come are their
-/// own.
+/// Store the fractions of the builder's springs, with room for `room` springs in all. Later springs have fractions
+/// of their own.
 mspring_result mspringi_fractions_create(mspringi_fractions *fractions, const mspring_builder *builder, size_t room,
                                          mspringi_memory *memory, mspringi_message *message);
 
@@ -21,7 +21,7 @@ static inline mspringi_relative mspringi_fractions_of(const mspringi_fractions *
     return fractions->values[fractions->of_spring ? fractions->of_spring[spring] : spring];
 }
 
-/// After mspringi_fractions_separate(), unless it is what the spring has.
+/// Set the fractions of a spring. A value that changes needs mspringi_fractions_separate() before.
 static inline void mspringi_fractions_set(const mspringi_fractions *fractions, mspring_id spring,
                                           mspringi_relative value) {
     if (fractions->of_spring)
@@ -31,7 +31,7 @@ static inline void mspringi_fractions_set(const mspringi_fractions *fractions, m
         fractions->values[spring] = value;
 }
 
-/// Where a spring's fractions are: its own after mspringi_fractions_separate(), else not to be written.
+/// Address of a spring's fractions. Write to it only after mspringi_fractions_separate().
 static inline mspringi_relative *mspringi_fractions_at(const mspringi_fractions *fractions, mspring_id spring) {
     return &fractions->values[fractions->of_spring ? fractions->of_spring[spring] : spring];
 }

@@ -1,4 +1,4 @@
-/// What adding and removing keeps, and the springs of a particle.
+/// State of added and removed ids, and the springs of a particle.
 #include "store/id_pool.h"
 
 #include <string.h>

@@ -1,8 +1,8 @@
 /// @file id_pool.h
 /// Particles and springs that are added to a network, and removed from it.
 ///
-/// A removed particle keeps its slot, in which nothing is; a removed spring keeps its place and is broken. What
-/// goes over ids leaves both out (mspringi_particle_exists(), mspringi_spring_exists()).
+/// A removed particle keeps its slot, which is empty; a removed spring keeps its spring slot and is broken. Loops
+/// over ids leave both out (mspringi_particle_exists(), mspringi_spring_exists()).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ID_POOL_H
@@ -10,7 +10,7 @@
 
 #include "store/network.h"
 
-/// Allocate what adding and removing needs; all of it if the network has spare ids, else what removing does.
+/// Allocate what adding and removing needs; for removing alone if the network has no spare ids.
 mspring_result mspringi_id_pool_reserve(mspring_network *network);
 
 /// Clear the slots that are empty because of what was removed or has not been added.
@@ -20,13 +20,14 @@ void mspringi_id_pool_clear_slots(const mspring_network *network);
 uint32_t mspringi_id_pool_added_particles(const mspring_network *network);
 uint32_t mspringi_id_pool_added_springs(const mspring_network *network);
 
-/// Take a particle whose springs are gone out of its slot, or a spring out of the lists; nothing else is looked at.
+/// Take a particle without springs out of its slot, or a spring out of the lists of its particles. Nothing else
+/// changes.
 void mspringi_id_pool_take_particle(mspring_network *network, mspring_id particle);
 void mspringi_id_pool_unlink(mspring_network *network, mspring_id spring);
-/// Let the ends of a spare spring be among those of these particles.
+/// Add the ends of a spare spring to the lists of these particles.
 void mspringi_id_pool_link(mspring_network *network, mspring_id spring, mspring_id a, mspring_id b);
 
-/// What was there and what is now: the topologies' numbers, and the edit counted.
+/// Set the numbers of particles and springs in the topologies, and notify.
 void mspringi_id_pool_count(mspring_network *network, uint32_t particle_count, uint32_t spring_count);
 
 /* ------------------------------------------------------------------------------------ the springs of a particle */
@@ -34,16 +35,15 @@ void mspringi_id_pool_count(mspring_network *network, uint32_t particle_count, u
 /// Make the lists of springs by particle, if they are not there.
 mspring_result mspringi_incidence_reserve(mspring_network *network);
 
-/// Where one is in the springs of a particle.
+/// Iterator over the springs of a particle.
 typedef struct mspringi_incident_springs {
     uint32_t next, end; ///< of the incidence
     uint32_t spare_end; ///< of the added springs
 } mspringi_incident_springs;
 mspringi_incident_springs mspringi_incident_springs_begin(const mspring_network *network, mspring_id particle);
-/// The next of them that there is; MSPRING_NONE behind the last. It may be removed before the one after it is asked
-/// for.
+/// Return the next existing spring, or MSPRING_NONE behind the last. It may be removed before the next call.
 mspring_id mspringi_incident_springs_next(const mspring_network *network, mspringi_incident_springs *around);
-/// The one that has this place.
+/// Find the spring of a particle that has this spring slot.
 mspring_id mspringi_incident_springs_find(const mspring_network *network, mspring_id particle,
                                           mspringi_spring_slot spring_slot);
 

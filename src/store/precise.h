@@ -1,6 +1,6 @@
 /// @file precise.h
-/// Where the explicit solver goes apart for networks in whose springs' lengths low words count: other kernels, and
-/// more that is packed of an irregular part's nodes for its springs to read.
+/// Precise networks, in which low words count in the lengths of springs: the explicit solver has other kernels for
+/// them, and packs more of each node for the irregular springs to read.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_PRECISE_H
@@ -8,7 +8,8 @@
 
 #include "store/network.h"
 
-/// What sweeps rows of that kind, with or without forces from outside, and looks for springs that yield or not.
+/// Kernel that sweeps rows of this kind, with forces from outside if forced. tested: it also tests springs for
+/// yield.
 static inline mspringi_row_fn mspringi_row_kernel(const mspring_network *network, mspringi_row_kind kind,
                                                   bool forced, bool tested) {
     const mspringi_kernels *k = network->kernels;
@@ -38,8 +39,8 @@ static inline mspringi_attached_fn mspringi_attached_kernel(const mspring_networ
     return network->is_precise ? k->precise.attached : k->attached[network->parts > MSPRINGI_DAMPING];
 }
 
-/// Of each node four values are packed: x, y, vx and vy. Of a precise network these are x, y, low_x and low_y; with
-/// damping there is a second half, of vx, vy and two that nobody reads.
+/// True if nodes are packed in two halves. A node has four packed values: x, y, vx and vy. In a precise network
+/// these are x, y, low_x and low_y; with damping a second half has vx, vy and two unused values.
 static inline bool mspringi_packs_halves(const mspring_network *network) {
     return network->is_precise && network->parts > MSPRINGI_DAMPING;
 }
@@ -48,12 +49,12 @@ static inline uint32_t mspringi_gathered_values(const mspring_network *network) 
     return mspringi_packs_halves(network) ? 8 : 4;
 }
 
-/// From a node's first half to its second; 0 if there is none.
+/// Floats from a node's first half to its second; 0 if there is none.
 static inline size_t mspringi_gathered_distance(const mspring_network *network, const mspringi_sell *irregular) {
     return mspringi_packs_halves(network) ? mspringi_gathered_half(irregular) : 0;
 }
 
-/// Pack what is in a slot.
+/// Pack the motion of a slot's particle.
 static inline void mspringi_pack_slot(const mspring_network *network, const mspringi_sell *irregular,
                                       float *gathered, uint32_t slot) {
     const mspringi_state *s = &network->state;

@@ -1,5 +1,5 @@
 /// @file properties.h
-/// What particles and springs have one float of each, by mspring_property.
+/// Properties (mspring_property): one float for each particle or spring.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_PROPERTIES_H
@@ -14,7 +14,7 @@
 #define MSPRINGI_LARGEST_MASS 1e30f
 #define MSPRINGI_SMALLEST_SCALE 1e-6f
 
-/// Whether these are values that a particle may have. (Inline and without branches, for loops over all of them.)
+/// True if a particle may have this mass or scale. (Inline and without branches, for loops over all.)
 static inline bool mspringi_is_mass(float mass) {
     return (mass >= MSPRINGI_SMALLEST_MASS) & (mass <= MSPRINGI_LARGEST_MASS);
 }
@@ -28,8 +28,8 @@ static inline bool mspringi_is_spring_value(mspringi_part part, float value) {
     return part == MSPRINGI_REST_LENGTH ? (value > 0.0f) & (value <= 8e12f) : (value >= 0.0f) & (value <= 1e30f);
 }
 
-/// A threshold as networks keep it, and as the host reads it. Times a rest length, INFINITY alone is above all
-/// stretches. No other property may have such values, so these two may be used for all.
+/// Value as networks store it, and as the host reads it. They store INFINITY for thresholds from MSPRING_NEVER on,
+/// as times a rest length only that exceeds all stretches. Other properties have no such values.
 static inline float mspringi_broken_value(float given) {
     return given >= MSPRING_NEVER ? INFINITY : given;
 }
@@ -46,10 +46,10 @@ typedef struct mspringi_property {
 /// NULL: there is no such property.
 const mspringi_property *mspringi_property_of(mspring_property property);
 
-/// Whether a property may have so many values, stride floats apart. stride 0: it is one value.
+/// True if a property may have all of these values, stride floats apart. stride 0: one value for all.
 bool mspringi_are_allowed(mspring_property property, const float *values, uint32_t count, size_t stride);
 
-/// What a particle or spring that exists has of a property that can be written.
+/// Value of a writable property of an existing particle or spring.
 float mspringi_particle_property(const mspring_network *network, mspring_property property, mspring_id particle);
 float mspringi_spring_property(const mspring_network *network, mspring_property property, mspring_id spring);
 

@@ -1,4 +1,4 @@
-/// Finding lattice blocks whose springs are alike.
+/// Search for lattice blocks with equal records.
 #include "store/record_sharing.h"
 
 #include <string.h>
@@ -15,7 +15,7 @@ void mspringi_shared_records_clear(mspringi_shared_records *shared, uint32_t blo
         shared->of_block[b] = shared->home[b] = b;
 }
 
-/// What blocks are compared by: so many floats of each, in every one of these arrays.
+/// Data by which blocks are compared: `values` floats of each block, in each of these arrays.
 #define MOST_ARRAYS 5
 typedef struct records {
     const float *arrays[MOST_ARRAYS];

@@ -1,8 +1,8 @@
 /// @file record_sharing.h
-/// Lattice blocks whose springs are alike: most lattices are of few materials, so most blocks have the same
-/// stiffness and damping, lane by lane, as many others. Each keeps a record of its own, which is what is set and
-/// asked for; the explicit solver reads that of one for all of them, which stays in the cache. (A million springs
-/// take 12 % less time at AVX2 for that, 146,000 take 2 %.)
+/// Lattice blocks with equal records: most lattices have few materials, so most blocks have the same stiffness and
+/// damping, lane by lane, as many others. Each keeps a record of its own, which calls of the host write and read.
+/// The explicit solver reads one record for all equal blocks, so it stays in the cache. (That saves 12 % of the
+/// time of a million springs at AVX2, 2 % of that of 146,000.)
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_RECORD_SHARING_H
@@ -10,10 +10,10 @@
 
 #include "store/network.h"
 
-/// For each block its own record is read at first.
+/// Have each block read its own record.
 void mspringi_shared_records_clear(mspringi_shared_records *shared, uint32_t blocks);
 
-/// If this place is a lattice's, its spring is about to be set: have its block's record read for no other.
+/// Before a spring is set: if it lies in a lattice, have the record of its block read for no other block.
 static inline void mspringi_shared_records_unshare_in(mspring_network *network, mspringi_shared_records *shared,
                                                       mspringi_spring_slot spring_slot) {
     const uint32_t block = (uint32_t)(spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH));
@@ -29,19 +29,18 @@ static inline void mspringi_shared_records_unshare(mspring_network *network, msp
     mspringi_shared_records_unshare_in(network, &network->shared_records, spring_slot);
 }
 
-/// The same of its rest length or its bounds, if springs yield.
+/// Before its rest length or its bounds are set, if springs yield: likewise.
 static inline void mspringi_shared_records_unshare_yielding(mspring_network *network,
                                                             mspringi_spring_slot spring_slot) {
     if (network->tested.nominal)
         mspringi_shared_records_unshare_in(network, &network->tested.shared_records, spring_slot);
 }
 
-/// Look for blocks that are alike: those whose springs were set may be again what they were, and if a quarter of
-/// all springs has been set, all are looked at.
+/// Find equal blocks again: among those whose springs were set since; among all if a quarter of all springs was.
 void mspringi_shared_records_find(mspring_network *network);
 
-/// The same of rest lengths and bounds of springs that yield: where nothing has flowed, all of a lattice reads
-/// those of a few blocks.
+/// Find blocks with equal rest lengths and bounds of yielding springs. Where nothing has flowed, a whole lattice
+/// reads those of a few blocks.
 void mspringi_shared_records_find_yielding(mspring_network *network);
 
 #endif

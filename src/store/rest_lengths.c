@@ -1,11 +1,11 @@
-/// Keeping rest lengths that many springs have in common.
+/// Storage of rest lengths that many springs share.
 #include "store/rest_lengths.h"
 #include "store/changed.h"
 
 #include <string.h>
 
-/// Values of a block: one for each place.
-#define BLOCK_PLACES (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH)
+/// Values of a block: one for each spring slot.
+#define BLOCK_SPRING_SLOTS (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH)
 
 /// Most patterns, that is, sets of rest lengths by direction that blocks have in common.
 #define MOST_PATTERNS 16
@@ -13,14 +13,14 @@
 typedef mspringi_rest_pattern pattern;
 
 void mspringi_rest_lengths_note(pattern *of_block, mspringi_spring_slot spring_slot, float rest_length) {
-    pattern *block = &of_block[spring_slot / BLOCK_PLACES];
+    pattern *block = &of_block[spring_slot / BLOCK_SPRING_SLOTS];
     float *length = &block->length[spring_slot / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS];
     if (*length == 0.0f)
         *length = rest_length;
     block->is_mixed = block->is_mixed || *length != rest_length;
 }
 
-// What the springs of each block have in common.
+// Find the rest length of each direction of each block, and if it is mixed.
 static void find_patterns(pattern *of_block, const mspringi_topology *t, const mspring_builder *builder) {
     for (uint32_t s = 0; s < t->spring_count; ++s) {
         const mspringi_spring_slot spring_slot = t->slot_of_spring[s];
@@ -76,11 +76,11 @@ mspring_result mspringi_rest_lengths_reserve(mspringi_rest_lengths *rests, const
     if (!rests->of_block)
         return no_memory(blocks, message);
     number_blocks(rests, of_block, blocks, shared);
-    rests->lengths = mspringi_alloc(memory, (size_t)rests->count * BLOCK_PLACES, sizeof *rests->lengths);
+    rests->lengths = mspringi_alloc(memory, (size_t)rests->count * BLOCK_SPRING_SLOTS, sizeof *rests->lengths);
     if (!rests->lengths)
         return no_memory(blocks, message);
-    for (uint32_t i = 0; i < rests->shared_count * BLOCK_PLACES; ++i)
-        rests->lengths[i] = shared[i / BLOCK_PLACES].length[i / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS];
+    for (uint32_t i = 0; i < rests->shared_count * BLOCK_SPRING_SLOTS; ++i)
+        rests->lengths[i] = shared[i / BLOCK_SPRING_SLOTS].length[i / MSPRINGI_WIDTH % MSPRINGI_DIRECTIONS];
     return MSPRING_OK;
 }
 
@@ -104,14 +104,15 @@ mspring_result mspringi_rest_lengths_unshare(mspring_network *network) {
     const uint32_t blocks = network->topology.lattice_blocks;
     if (rests->shared_count == 0)
         return MSPRING_OK;
-    float *lengths = mspringi_alloc(&network->memory, (size_t)blocks * BLOCK_PLACES, sizeof *lengths);
+    float *lengths = mspringi_alloc(&network->memory, (size_t)blocks * BLOCK_SPRING_SLOTS, sizeof *lengths);
     if (!lengths)
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for a rest length of its own for each of %zu lattice places",
-                             (size_t)blocks * BLOCK_PLACES);
+                             (size_t)blocks * BLOCK_SPRING_SLOTS);
     for (uint32_t b = 0; b < blocks; ++b) {
-        memcpy(lengths + (size_t)b * BLOCK_PLACES, rests->lengths + (size_t)rests->of_block[b] * BLOCK_PLACES,
-               BLOCK_PLACES * sizeof *lengths);
+        memcpy(lengths + (size_t)b * BLOCK_SPRING_SLOTS,
+               rests->lengths + (size_t)rests->of_block[b] * BLOCK_SPRING_SLOTS,
+               BLOCK_SPRING_SLOTS * sizeof *lengths);
         rests->of_block[b] = b;
     }
     mspringi_free(&network->memory, rests->lengths);

@@ -1,6 +1,6 @@
 /// @file rest_lengths.h
-/// Rest lengths of lattice springs: of most lattices all that lie in one direction have the same, and those are
-/// kept once instead of by spring. (10 million springs take 16 of 112 bytes per particle less through memory.)
+/// Rest lengths of lattice springs. In most lattices all springs of one direction have the same, which is stored
+/// once. (That saves 10 million springs 16 of 112 bytes of memory traffic per particle.)
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_REST_LENGTHS_H
@@ -13,11 +13,11 @@ mspring_result mspringi_rest_lengths_create(mspringi_rest_lengths *rests, const 
                                             const mspring_builder *builder, mspringi_memory *memory,
                                             mspringi_message *message);
 
-/// The same spring by spring: note the rest length of each, in one pattern for each block of the lattice; then
-/// reserve, and set each at its place.
+/// Lay them out from single springs: note the rest length of each in the pattern of its lattice block, reserve, and
+/// then set each by mspringi_rest_lengths_at().
 typedef struct mspringi_rest_pattern {
-    float length[MSPRINGI_DIRECTIONS]; ///< 0 where no spring has told yet
-    bool is_mixed;                     ///< some direction has several
+    float length[MSPRINGI_DIRECTIONS]; ///< 0 without a spring so far
+    bool is_mixed;                     ///< springs of some direction differ
 } mspringi_rest_pattern;
 void mspringi_rest_lengths_note(mspringi_rest_pattern *of_block, mspringi_spring_slot spring_slot,
                                 float rest_length);
@@ -34,12 +34,13 @@ static inline bool mspringi_rest_lengths_are_shared(const mspringi_rest_lengths 
     return rests->of_block[spring_slot / (MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH)] < rests->shared_count;
 }
 
-/// The rest length at a lattice place.
+/// The rest length of a lattice spring slot.
 static inline float *mspringi_rest_lengths_at(const mspringi_rest_lengths *rests,
                                               mspringi_spring_slot spring_slot) {
-    const size_t block_places = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a place of a lattice has a block
-    return rests->lengths + rests->of_block[spring_slot / block_places] * block_places + spring_slot % block_places;
+    const size_t block_spring_slots = (size_t)MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a spring slot of a lattice has a block
+    return rests->lengths + rests->of_block[spring_slot / block_spring_slots] * block_spring_slots +
+           spring_slot % block_spring_slots;
 }
 
 #endif

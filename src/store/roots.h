@@ -7,12 +7,12 @@
 
 #include "store/network.h"
 
-/// Give every slot the lowest slot that it hangs together with by live springs.
+/// Find the lowest slot of the component of each slot.
 void mspringi_find_roots(const mspring_network *network, uint32_t *root);
 
-/// Whether all springs that were broken or restored since edits.links was seen have, for all one sees near them,
-/// left the components as they were then. A particle's is number[index[particle]], or number[particle] if index is
-/// NULL. The network's incidence must be there.
+/// True if a search near the springs that broke or were restored since edits.links was `seen` shows that all
+/// components are unchanged. False proves nothing. A particle's component is number[index[particle]], or
+/// number[particle] if index is NULL. Needs the network's incidence.
 bool mspringi_links_change_nothing(const mspring_network *network, uint64_t seen, const uint32_t *number,
                                    const uint32_t *index);
 

@@ -1,5 +1,5 @@
 /// @file safe_box.h
-/// A box that no surface is near.
+/// Safe box: a box around particles, with no surface near.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SAFE_BOX_H
@@ -11,9 +11,9 @@
 
 typedef struct mspringi_safe_box {
     mspringi_bounds box;
-    float coordinate;          ///< coordinates of less than this size are in the box
-    double reach;              ///< half as far from the box there is no surface; 0: there is no such box
-    double origin_x, origin_y; ///< that it is relative to
+    float coordinate;          ///< particles whose coordinates are below this in size are in the box, m
+    double reach;              ///< m; no surface is nearer to the box than half of it; 0: there is no such box
+    double origin_x, origin_y; ///< local origin of the box, m
 } mspringi_safe_box;
 
 #endif

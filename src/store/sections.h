@@ -1,8 +1,8 @@
 /// @file sections.h
-/// What snapshots hold: a section for each thing that the next step depends on.
+/// Sections of snapshots: one for each part of a network's state and parameters.
 ///
-/// Whoever adds something of that kind, a solver with a history for instance, adds a section for it to
-/// features.def. What follows from other things (springs' values in N/m from relative ones, say) needs none.
+/// Data on which the next step depends, as the history of a solver, need a section, listed in features.def. Derived
+/// data, as the stiffness of relative springs, need none.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SNAPSHOT_SECTIONS_H
@@ -21,28 +21,28 @@ static inline mspringi_io mspringi_io_from(const uint8_t *from, size_t size) {
 /// Particles and springs of a snapshot, for sections that refer to them.
 typedef struct mspringi_saved {
     const mspring_network *network;
-    const uint8_t *growth; ///< its section, NULL: all is there
+    const uint8_t *growth; ///< section of added and removed ids, NULL: all exist
     const uint8_t *live;   ///< section of broken springs, NULL: none is broken
     const void *in;        ///< for mspringi_saved_section()
 } mspringi_saved;
 
 typedef struct mspringi_section {
     char tag[5];      ///< 4 letters
-    const char *name; ///< what is in it, for messages
-    bool parameters;  ///< only edits change it: left out of MSPRING_SNAPSHOT_FRAME
+    const char *name; ///< name of its contents, for messages
+    bool parameters;  ///< changed by edits only: MSPRING_SNAPSHOT_FRAME leaves it out
 
-    /// Writes nothing if the network has none of it: then there is no such section. size: what that comes to, for
-    /// those that would take long only to be counted; NULL: they are saved to a writer that counts.
+    /// save: write the section; nothing if the network has no such data: then the snapshot has no such section.
+    /// size: its bytes, if saving only to count them would take long; NULL: count by a save without output.
     size_t (*size)(const mspring_network *network);
     void (*save)(const mspring_network *network, mspringi_writer *to);
 
-    /// Refuse what a network must not hold, and allocate what load() needs. A section that is not in the snapshot
-    /// has size 0. Must not change what a step does.
+    /// Refuse invalid data, and allocate what load() needs. A section that is not in the snapshot has size 0.
+    /// Change nothing that a step depends on.
     mspring_result (*check)(mspring_network *network, const uint8_t *from, size_t size);
-    /// Put it into force; after check(). Size 0: the network is to have none of it.
+    /// Load the section after check(), without errors. Size 0: clear the network's data.
     void (*load)(mspring_network *network, const uint8_t *from, size_t size);
 
-    /// Refuse what contradicts other sections; after all checks. NULL: nothing can.
+    /// Refuse contradictions with other sections, after all checks. NULL: there can be none.
     mspring_result (*check_against)(mspring_network *network, const mspringi_saved *saved, const uint8_t *from,
                                     size_t size);
 } mspringi_section;
@@ -52,11 +52,11 @@ typedef struct mspringi_section {
 bool mspringi_saved_has_particle(const mspringi_saved *saved, mspring_id particle);
 bool mspringi_saved_has_spring(const mspringi_saved *saved, mspring_id spring);
 bool mspringi_saved_is_whole(const mspringi_saved *saved, mspring_id spring);
-/// Bytes of another section, whose check has passed; of size 0 if the network is to have none of it. False: it
-/// stays as it is, as in a frame.
+/// Find the bytes of another section, whose check has passed; size 0 if it clears the data. False: the snapshot, a
+/// frame, leaves them as they are.
 bool mspringi_saved_section(const mspringi_saved *saved, const struct mspringi_section *section,
                             const uint8_t **from, size_t *size);
-/// Place of a spring in the snapshot.
+/// Spring slot of a spring in the snapshot.
 mspringi_spring_slot mspringi_saved_place(const mspringi_saved *saved, mspring_id spring);
 
 #define SECTION(name) extern const mspringi_section mspringi_section_##name;
@@ -69,11 +69,11 @@ mspring_result mspringi_section_fail(mspring_network *network, const mspringi_se
 /// Refuse another size than the expected one.
 mspring_result mspringi_section_check_size(mspring_network *network, const mspringi_section *section, size_t size,
                                            size_t expected);
-/// Refuse a section of which too little was there, or something is left.
+/// Refuse a section that was too short or too long.
 mspring_result mspringi_section_end(mspring_network *network, const mspringi_section *section,
                                     const mspringi_io *io);
 
-/// Value number index of a section's array.
+/// Element `index` of a section's array of floats.
 static inline float mspringi_float_at(const uint8_t *from, size_t index) {
     float value;
     mspringi_get(from + index * sizeof value, &value, 1, sizeof value);

@@ -1,5 +1,5 @@
 /// @file selection.h
-/// The particles or springs that an edit is about: a range of ids, or a list of them.
+/// Particles or springs of an edit: a range of ids, or a list of them.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SELECTION_H
@@ -8,7 +8,7 @@
 #include "base/cpu.h"
 #include "store/network.h"
 
-/// What ids are of.
+/// Kind of ids.
 typedef enum mspringi_kind { MSPRINGI_PARTICLES, MSPRINGI_SPRINGS } mspringi_kind;
 
 typedef struct mspringi_selection {
@@ -21,11 +21,11 @@ static inline mspring_id mspringi_selected(const mspringi_selection *selection, 
     return selection->list ? selection->list[i] : selection->first + i;
 }
 
-/// Particles whose state is fetched before it is read: neighbours by id may lie anywhere in the rows, and a step
-/// leaves little of the state in the near caches.
+/// Distance of prefetching in a selection: neighbours by id may lie anywhere in the rows, and a step leaves little
+/// of the state in the near caches.
 #define MSPRINGI_AHEAD 32u
 
-/// The slot of the particle that a loop over a selection comes to so many later, or of its last.
+/// Slot of the particle that a loop over a selection reaches MSPRINGI_AHEAD later, or of its last.
 static inline uint32_t mspringi_slot_ahead(const mspring_network *network, const mspringi_selection *selection,
                                            uint32_t i) {
     const uint32_t left = selection->count - 1 - i;
@@ -33,18 +33,18 @@ static inline uint32_t mspringi_slot_ahead(const mspring_network *network, const
         .slot_of_particle[mspringi_selected(selection, i + (left < MSPRINGI_AHEAD ? left : MSPRINGI_AHEAD))];
 }
 
-/// Check that an edit may be made now, that all it names exists, and that its values (two arrays of them, or one
-/// twice) are there. A range may have removed ids in it, which the edit is to leave out.
+/// Select the ids of an edit. Check that it may be made now, that its ids exist, and that its values (two arrays,
+/// or one twice) are not NULL. A range may contain removed ids: the edit skips them.
 mspring_result mspringi_select_range(mspring_network *network, mspringi_kind kind, mspring_id first, uint32_t count,
                                      const void *values, const void *more, mspringi_selection *selection);
-/// Of one particle or spring; *id must live as long as the selection.
+/// Select one particle or spring. *id must live as long as the selection.
 mspring_result mspringi_select_one(mspring_network *network, mspringi_kind kind, const mspring_id *id,
                                    mspringi_selection *selection);
 mspring_result mspringi_select_list(mspring_network *network, mspringi_kind kind, const mspring_id *list,
                                     uint32_t count, const void *values, const void *more,
                                     mspringi_selection *selection);
 
-/// The same for a call that only reads: any number of them may run at once. Its values have a stride of at least 1.
+/// Select the ids of a read-only call; several may run at once. Its values have a stride of at least 1.
 mspring_result mspringi_look_up_range(const mspring_network *network, mspringi_kind kind, mspring_id first,
                                       uint32_t count, const void *values, const void *more, uint32_t stride,
                                       mspringi_selection *selection);

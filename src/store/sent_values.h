@@ -7,14 +7,14 @@
 
 #include <massspring/massspring.h>
 
-/// Values of a property by id, as the host gave them last. To set the same bits again changes nothing, so a
-/// comparison of two arrays is enough: records lie by place, and one value in each cache line of them costs as much
-/// as all.
+/// Values of a property by id, as the host gave them last. Setting the same bits again changes nothing, so
+/// comparing two arrays is enough. Comparing with records costs more: they lie by spring slot, and each cache line
+/// holds one value of the property among others.
 typedef struct mspringi_sent {
-    float *values;         ///< [springs] NULL before the second call for a range
+    float *values;         ///< [springs] NULL before the second call that sets a range
     uint64_t fingerprint;  ///< parameter_fingerprint at which they hold
     mspring_id first, end; ///< ids whose values are known
-    uint32_t calls;        ///< for ranges: 0 or 1
+    uint32_t calls;        ///< that set a range: 0 or 1, then `values` exists
     uint32_t reserved;
 } mspringi_sent;
 

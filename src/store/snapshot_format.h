@@ -1,7 +1,7 @@
 /// @file snapshot_format.h
 /// How a snapshot lies in memory: little-endian on every machine.
 ///
-///   header    56 bytes: magic, version, number of sections, size, contents, prints, counts
+///   header    56 bytes: magic, version, number of sections, size, contents, fingerprints, counts
 ///   sections  each: tag (4 bytes), 0 (4), size (8), that many bytes, and 0 up to a multiple of 8
 ///   0 up to a multiple of MSPRINGI_CHECKSUM_UNIT
 ///   checksum  8 bytes, of all before
@@ -17,13 +17,13 @@
 
 #include "kernels/kernels.h"
 
-/// Counted up with any change of what is saved, so that no library takes what another means otherwise.
+/// Grows with each change of the format, so that no library misreads a snapshot of another.
 #define MSPRINGI_SNAPSHOT_VERSION 11u
 #define MSPRINGI_SNAPSHOT_CHECKSUM_BYTES 8
 
 typedef struct mspringi_snapshot_header {
     uint32_t version, section_count;
-    uint64_t size; ///< of all, with the checksum
+    uint64_t size; ///< bytes of all, with the checksum
     uint32_t contents;
     uint32_t particle_count, spring_count;
     uint64_t topology_fingerprint, parameter_fingerprint;
@@ -38,11 +38,11 @@ static inline size_t mspringi_round_up(size_t size, size_t unit) {
 
 uint64_t mspringi_checksum_value(const mspringi_checksum *checksum);
 
-/// Where the next byte goes. The checksum is taken on the way. One of zeros only counts.
+/// Writer of a snapshot, with its checksum so far. One of zeros only counts bytes.
 typedef struct mspringi_writer {
     size_t counted;
     uint8_t *at;
-    const uint8_t *unsummed; ///< the unit that is begun
+    const uint8_t *unsummed; ///< start of the unit whose bytes are not in the checksum yet
     mspringi_checksum_fn sum;
     mspringi_checksum checksum;
 } mspringi_writer;
@@ -55,11 +55,11 @@ void mspringi_put(mspringi_writer *to, const void *values, size_t count, size_t 
 /// Write zeros.
 void mspringi_put_zeros(mspringi_writer *to, size_t count);
 
-/// Copy values and turn the bytes of each around.
+/// Copy values, and reverse the bytes of each.
 void mspringi_copy_reversed(uint8_t *to, const uint8_t *from, size_t size, size_t width);
 
 /// Read values. (Inline, as many are read one by one: called, it took half of loading a frame.)
-/// @return what follows
+/// @return the address behind them
 static inline const uint8_t *mspringi_get(const uint8_t *from, void *values, size_t count, size_t width) {
     if (MSPRINGI_BIG_ENDIAN_HOST)
         mspringi_copy_reversed(values, from, count * width, width);
@@ -68,13 +68,13 @@ static inline const uint8_t *mspringi_get(const uint8_t *from, void *values, siz
     return from + count * width;
 }
 
-/// Values on their way into a snapshot or out of it. A function that hands them on says once what a record consists
-/// of: saving, loading and counting are three ways to call it.
+/// Values on their way into a snapshot or out of it. One function describes a record by mspringi_hand() for saving,
+/// loading and counting.
 typedef struct mspringi_io {
     mspringi_writer *to; ///< NULL: they are read
     const uint8_t *from;
-    size_t size, left; ///< bytes there are, and of these to be read
-    bool is_short;     ///< there were too few: the rest is 0
+    size_t size, left; ///< bytes in all; bytes not read yet
+    bool is_short;     ///< too few bytes: the rest was read as 0
 } mspringi_io;
 
 void mspringi_hand(mspringi_io *io, void *values, size_t count, size_t width);

@@ -1,5 +1,5 @@
 /// @file solver.h
-/// What a solver is to the rest of the library: a table of operations, some properties, and an object of its own.
+/// Interface of a solver: a table of properties and operations, and an object of its own.
 ///
 /// A network has the solver that the host chose, and perhaps a fallback for steps which that one cannot take; a
 /// step chooses between them (step/ladder.c). To add one: its table in its own folder, and a line in solvers.def.
@@ -29,11 +29,12 @@ typedef struct mspringi_solver {
 
 typedef struct mspringi_attempt mspringi_attempt; ///< store/attempt.h
 
-/// What an object was made for: masses, rest lengths and springs of that time, which edits do not change.
+/// Values that a solver's object derived from masses, rest lengths and springs when it was made. Edits do not
+/// change them.
 typedef struct mspringi_solver_basis {
-    double scale;
-    float turn_inertia;
-    uint32_t tile_size;
+    double scale;       ///< power of two that brings masses near 1
+    float turn_inertia; ///< m^2, see mspringi_tiles (solvers/implicit/tiles.h)
+    uint32_t tile_size; ///< size of its cells (solvers/implicit/cells.h)
 } mspringi_solver_basis;
 
 /// Operations that a solver does not need are NULL, unless it says otherwise.
@@ -50,12 +51,11 @@ struct mspringi_solver_ops {
     bool has_implicit_areas;   ///< its substeps have areas in them that springs are all around
     bool has_implicit_contact; ///< its substeps have contact between bodies in them
 
-    // Life. create: for a network that is otherwise complete, or of which there are the layout and what springs and
-    // masses are, which may be on another thread; tile_size is for one whose tiles go by plan, 0: by that of the
-    // layout; on failure there is nothing to free. build: the next of the short functions that make it, until it is
-    // done; on failure it can only be destroyed. fits: whether it can go on with this definition; then adjust is
-    // all there is to do. relocate: lead pointers of a copy into the copy of the network. reserve: what the workers
-    // need that there are now.
+    // Life. create: begin an object for a complete network, or, perhaps on another thread, for one that has its
+    // layout, springs and masses only; tile_size: that of tiles if they are automatic, 0: by the layout; on failure
+    // nothing is left to free. build: call the next of the short functions that make it, until it is done; on
+    // failure it can only be destroyed. fits: true if adjust() to this definition is enough. relocate: redirect the
+    // pointers of a copy into the copy of the network. reserve: make room for the present workers.
     mspring_result (*create)(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
                              void **object);
     mspring_result (*build)(void *object, bool *is_done);
@@ -66,40 +66,40 @@ struct mspringi_solver_ops {
                      const mspringi_memory *to);
     mspring_result (*reserve)(void *object, mspring_network *network);
 
-    // Another layout of the same network. get_def: as it was asked for, which one that has create also needs.
-    // take_over: what it knows of the motion.
+    // Another layout of the same network. get_def: the definition as given; a solver with create has it, too.
+    // take_over: copy the history of the motion. get_basis, set_basis: see mspringi_solver_basis.
     void (*get_def)(const void *object, mspring_solver_def *def);
     void (*take_over)(const mspring_network *to, void *object, const mspring_network *from, const void *had);
     mspringi_solver_basis (*get_basis)(const void *object);
     void (*set_basis)(void *object, const mspring_network *network, const mspringi_solver_basis *basis);
 
     // A step. begin: before forces are known. run_step: take all substeps at once, copy the old state into the
-    // backup, and find the extrema of the new one; false: it cannot, and has done nothing. substeps (never NULL):
-    // take `count` of them with the same forces from outside (x NULL: none), and with the floor. end: after the
-    // last one.
+    // backup, and find the extrema of the new one; false: it declines, and has changed nothing. substeps (never
+    // NULL): take `count` of them with the same forces from outside (x NULL: none), and with the floor. end: after
+    // the last.
     void (*begin)(mspring_network *network);
     bool (*run_step)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field base,
                      mspringi_extrema *extrema);
     void (*substeps)(mspring_network *network, void *object, float h, mspringi_field base, uint32_t count);
     void (*end)(mspring_network *network);
 
-    // Work, in explicit substeps or what counts as one. calm_work: of a substep in which nothing is repeated;
-    // NULL: 1. allow_work: that a second of the substeps after keep() is allowed; beyond it they repeat nothing.
-    // count_work: of the substeps since keep(), and whether they would have repeated more; NULL: each was calm.
+    // Work, in explicit substeps. calm_work: of a calm substep, in which nothing is repeated; NULL: 1. allow_work:
+    // limit for each second of the substeps after keep(); beyond it they repeat nothing. count_work: of the
+    // substeps since keep(); *is_spent: they would have repeated more; NULL: each was calm.
     double (*calm_work)(const void *object);
     void (*allow_work)(void *object, double rate);
     double (*count_work)(const void *object, bool *is_spent);
 
-    // Undo. keep: before a step. restore: to what was kept. forget: a new motion begins. is_finite: all numbers are
-    // finite that it carries to the next step.
+    // Undo. keep: save the history before a step. restore: restore it. forget: drop it, as a new motion begins.
+    // is_finite: true if all numbers that it keeps for the next step are finite.
     void (*keep)(void *object);
     void (*restore)(mspring_network *network, void *object);
     void (*forget)(void *object);
     bool (*is_finite)(const void *object);
 
     // Edits. clear_slot: the particle falls freely. rest_slot: it has come to rest. clear_spring: no spring lies in
-    // the place any more. new_floor: it is another one, or none. is_isolated (never NULL): whether no spring pulls
-    // at a particle; it may say so of those of the loose row alone, unless has_isolated.
+    // the spring slot any more. new_floor: it is another one, or none. is_isolated (never NULL): true if no spring
+    // acts on a particle; without has_isolated, true for loose particles only.
     void (*clear_slot)(const mspring_network *network, void *object, uint32_t slot);
     void (*rest_slot)(const mspring_network *network, void *object, size_t slot);
     void (*clear_spring)(const mspring_network *network, void *object, mspringi_spring_slot spring_slot);
@@ -107,14 +107,14 @@ struct mspringi_solver_ops {
     bool (*is_isolated)(const mspring_network *network, const void *object, size_t slot);
     bool (*has_isolated)(const void *object);
 
-    // describe: what a plan says of it. The others are those of a snapshot's section (store/sections.h).
+    // describe: fill in its part of a plan. The others: its snapshot section (store/sections.h).
     void (*describe)(const void *object, mspring_plan *plan);
     void (*save)(const mspring_network *network, const void *object, struct mspringi_writer *to);
     mspring_result (*check)(mspring_network *network, const void *object, const uint8_t *from, size_t size);
     void (*load)(mspring_network *network, void *object, const uint8_t *from, size_t size);
 };
 
-/// Work of a substep in which nothing is repeated.
+/// Work of a calm substep, in explicit substeps.
 static inline double mspringi_solver_calm_work(const mspringi_solver *solver) {
     return solver->ops->calm_work ? solver->ops->calm_work(solver->object) : 1.0;
 }
@@ -123,7 +123,7 @@ static inline double mspringi_solver_calm_work(const mspringi_solver *solver) {
 #include "store/solvers.def"
 #undef SOLVER
 
-/// The table of the solver that the host names, or NULL: it is none, or this build leaves it out.
+/// Table of the solver of this name; NULL if it is none, or this build leaves it out.
 const mspringi_solver_ops *mspringi_solver_ops_of(mspring_solver name);
 
 /// @return MSPRING_OK; MSPRING_ERROR_ARGUMENT if there is no such table
@@ -132,8 +132,8 @@ mspring_result mspringi_solver_check_name(mspring_solver name, mspringi_message 
 /// Strain rates clamped (solvers/clamped/clamp.c). It can only be a fallback.
 extern const mspringi_solver mspringi_clamped;
 
-/// Make the solver that takes steps for the explicit one, if it is not there, with tiles of that size (0: by plan).
-/// It keeps nothing from step to step.
+/// Make the fallback of the explicit solver, unless it exists, with tiles of that size (0: automatic). It keeps no
+/// history.
 mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size);
 
 /// Make the object of a solver whose table is set, in one go. On failure there is none.
@@ -143,11 +143,11 @@ void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory);
 void mspringi_solver_forget(const mspringi_solver *solver);
 mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver);
 
-/// Let a solver take over what another one knows, which has the same settings and another layout.
+/// Let a solver take over the history of another one with the same settings and another layout.
 void mspringi_solver_take_over(const mspring_network *to, const mspringi_solver *made, const mspring_network *from,
                                const mspringi_solver *had);
 
-/// What both solvers of a network are told, the chosen one and the fallback.
+/// Call these operations of both solvers of a network, the chosen one and the fallback.
 void mspringi_solvers_clear_slot(const mspring_network *network, uint32_t slot);
 void mspringi_solvers_clear_spring(const mspring_network *network, mspringi_spring_slot spring_slot);
 mspring_result mspringi_solvers_reserve(mspring_network *network);

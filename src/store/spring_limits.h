@@ -1,5 +1,6 @@
 /// @file spring_limits.h
-/// Limits of springs, at which something happens to them: each belongs to a feature, which keeps it by place.
+/// Limits of springs, at which they break, yield and so on. Each belongs to a feature, which stores it by spring
+/// slot.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SPRING_LIMITS_H
@@ -11,8 +12,9 @@
 /// The limits of one feature.
 typedef struct mspringi_limit_ops {
     uint32_t properties; ///< that the feature keeps, a bit 1 << mspring_property for each
-    mspring_result (*reserve)(mspring_network *network, mspring_property property);   ///< make room for a property
-    mspring_result (*match_layout)(mspring_network *to, const mspring_network *from); ///< and all that `from` has
+    mspring_result (*reserve)(mspring_network *network, mspring_property property); ///< make room for a property
+    mspring_result (*match_layout)(mspring_network *to,
+                                   const mspring_network *from); ///< make room for all that `from` has
     void (*store)(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
                   float value);
     void (*put)(mspring_network *network, mspring_id spring, mspringi_limits limits); ///< of a new spring
@@ -26,7 +28,7 @@ typedef struct mspringi_limit_ops {
 /// Make room for a property, or for all that limits need. Fails if no feature has the property.
 mspring_result mspringi_limit_reserve(mspring_network *network, mspring_property property);
 mspring_result mspringi_limits_reserve(mspring_network *network, mspringi_limits limits);
-/// Make room for what another network has by place, which is copied by mspringi_store_copy_spring().
+/// Make room for what another network has by spring slot; mspringi_store_copy_spring() copies it.
 mspring_result mspringi_limits_match_layout(mspring_network *to, const mspring_network *from);
 
 /// Set a property of a spring; after mspringi_limit_reserve().
@@ -39,7 +41,7 @@ void mspringi_limits_forget(mspring_network *network, mspring_id spring);
 /// Bring what follows from a spring's rest length, given or in force, up to date.
 void mspringi_limits_renew(mspring_network *network, mspringi_spring_slot spring_slot);
 
-/// Values of a property by place, or NULL as long as all springs have the default.
+/// Values of a property by spring slot, or NULL as long as all springs have the default.
 float *mspringi_limits_of(const mspring_network *network, mspring_property property);
 
 #endif

@@ -1,4 +1,4 @@
-/// Where springs lie and what they are like.
+/// Spring slots of springs, and their values.
 #include "store/springs.h"
 
 #include "features/ramps/ramps.h"
@@ -78,7 +78,7 @@ float mspringi_spring_slot_given_length(const mspring_network *network, mspringi
                                    : mspringi_spring_slot_own_length(network, spring_slot);
 }
 
-// Whether a spring was given with the higher id first.
+// True if a spring was given with the higher id first.
 static bool is_turned(const mspring_network *network, mspring_id spring) {
     const uint32_t first_spare = network->topology.reserve.first_spring;
     if (spring < first_spare)

@@ -1,5 +1,5 @@
 /// @file springs.h
-/// What springs are like, wherever they lie.
+/// Values of springs, wherever they lie: in lattices, chains, the irregular part, or added.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SPRINGS_H
@@ -9,7 +9,7 @@
 
 #include "store/fractions.h"
 
-/// What a spring is like, and the slots that it joins.
+/// Values of a spring in force, m, N/m and N s/m, and the slots that it joins.
 typedef struct mspringi_spring_values {
     float rest_length, stiffness, damping;
     uint32_t base, tip;
@@ -20,7 +20,7 @@ mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspri
 void mspringi_spring_slot_set(mspring_network *network, mspringi_spring_slot spring_slot, float stiffness,
                               float damping);
 
-/// Give the spring in a place of another network what the one in a place of this one has.
+/// Copy the values of a spring slot into one of another network.
 void mspringi_spring_slot_copy(const mspring_network *from, mspringi_spring_slot had, mspring_network *to,
                                mspringi_spring_slot spring_slot);
 
@@ -30,7 +30,7 @@ typedef struct mspringi_ends {
 } mspringi_ends;
 mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring);
 
-/// The ramp of the spring in a place, or NULL; and its rest length once that has come to its end.
+/// The ramp of the spring in a spring slot, or NULL; and its rest length at the end of its ramp.
 const struct mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network,
                                                       mspringi_spring_slot spring_slot);
 float mspringi_spring_slot_own_length(const mspring_network *network, mspringi_spring_slot spring_slot);
@@ -42,14 +42,14 @@ static inline int mspringi_side_of(const mspring_network *network, mspring_id sp
     return network->side && spring < network->topology.reserve.first_spring ? network->side[spring] : 0;
 }
 
-/// True if such a spring exerts no force at a length that is so much above its rest length.
+/// True if a spring of this side exerts no force. stretch: length minus rest length, m.
 static inline bool mspringi_is_slack(int side, double stretch) {
     return (double)side * stretch < 0.0;
 }
 
 /// MSPRING_SPRING_PULL_ONLY or _PUSH_ONLY, or 0.
 uint32_t mspringi_side_flags(const mspring_network *network, mspring_id spring);
-/// These, MSPRING_SPRING_RELATIVE, _BROKEN, _STRESSED.
+/// These with MSPRING_SPRING_RELATIVE, _BROKEN and _STRESSED.
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring);
 
 /// Let mspring_network_get_extents() know which end of a spring is the first, if it has been called before.
@@ -81,8 +81,8 @@ static inline const float *mspringi_spring_masses(const mspring_network *network
     return network->spring_mass ? network->spring_mass : network->mass;
 }
 
-/// What follows from the fractions of a relative spring whose ends have these masses, for the substep of which rate
-/// is the inverse.
+/// Mass, kg, and rate, 1/s, from which stiffness and damping of relative springs follow: the reduced mass of the
+/// ends, and the inverse of the substep.
 static inline double mspringi_reduced_mass(double a, double b) {
     return 1.0 / (1.0 / a + 1.0 / b);
 }
@@ -99,26 +99,26 @@ static inline float mspringi_derived_damping(float fraction, double reduced_mass
     return damping < (double)FLT_MAX ? (float)damping : FLT_MAX;
 }
 
-/// Stiffness and damping that a spring, which lies in this place, has while it is not broken; fractions if it is
-/// relative.
+/// Stiffness and damping of the spring in this spring slot as if it were not broken; fractions if it is relative.
 mspringi_relative mspringi_spring_get_nominal(const mspring_network *network, mspring_id spring,
                                               mspringi_spring_slot spring_slot);
-/// Set these, of a relative spring after mspringi_fractions_separate() only, unless it is what it has. What a
-/// broken spring exerts stays 0.
+/// Set these. Values of a relative spring that change need mspringi_fractions_separate() before. A broken spring
+/// still exerts nothing.
 void mspringi_spring_set_nominal(mspring_network *network, mspring_id spring, mspringi_spring_slot spring_slot,
                                  mspringi_relative nominal);
 
-/// Note a rest length that is written somewhere.
+/// Note each rest length that is written, for network->shortest_set and has_welds.
 void mspringi_note_rest_length(mspring_network *network, float rest_length);
 
-/// Set the rest length in force: a ramp of the spring goes on from its own. After mspringi_rest_lengths_unshare()
-/// only, unless it is what the spring has.
+/// Set the rest length in force; a ramp of the spring continues from its own. A value that changes needs
+/// mspringi_rest_lengths_unshare() before.
 void mspringi_spring_slot_set_rest_length(mspring_network *network, mspringi_spring_slot spring_slot,
                                           float rest_length);
 /// Set the rest length that the host gives. In force is that times 1 + the plastic strain, which stays.
 void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_slot spring_slot, float length);
 
-/// Derive stiffness and damping of the relative springs for a substep; 0: as before the first one, both 0.
+/// Derive stiffness and damping of the relative springs for a substep of h. h = 0 makes both 0, as before the first
+/// step.
 void mspringi_derive_relative(mspring_network *network, float h);
 /// Derive them again, with other masses.
 void mspringi_renew_relative(mspring_network *network);

@@ -10,8 +10,7 @@
 ///   max_parts        before each interval of a substep that is taken alone: the most parts it may have
 ///   after_substep    after each substep, or each free group of them
 ///   must_repeat      after the substeps: true if an assumption failed, so that they are undone and repeated
-///   without
-///                    it. True at most once a step
+///                    without it. True at most once an attempt
 ///   verify           after the substeps: an error if the stage failed. Called only if some stage can be quiet or
 ///                    must_repeat
 ///   after_step       once the step is accepted, and will not be undone
@@ -30,19 +29,19 @@
 /// Places where a stage does nothing are NULL.
 typedef struct mspringi_stage {
     bool (*is_used)(const mspring_network *network); ///< NULL: always
-    bool (*moves)(
-        const mspring_network *network); ///< something of it moves though all may sleep; NULL: nothing does
-    bool is_inner;                       ///< what before_substep adds are forces within bodies, which wake nothing
+    bool (*moves)(const mspring_network *network);   ///< something moves, as a collider, even if all islands sleep;
+                                                     ///< NULL: nothing does
+    bool is_inner;     ///< what before_substep adds are forces within bodies, which wake nothing
     bool writes_state; ///< before or between substeps: the backup is made before its forces are asked for
-    bool is_swept;     ///< acts in the sweeps of substeps: rolled back, too, if a solver takes these back itself
+    bool is_swept;     ///< acts in the solver's sweeps: rolled back, too, if run_step declines after some of them
 
     void (*before_step)(mspring_network *network, const mspringi_attempt *attempt);
     bool (*is_quiet)(const mspring_network *network, const mspringi_attempt *attempt); ///< NULL: never
-    bool (*is_needed)(const mspring_network *network); ///< it is not quiet in any step, even if all sleep; NULL: no
+    bool (*is_needed)(const mspring_network *network); ///< it cannot be quiet in this step; NULL: it can
     void (*forces)(mspring_network *network, const mspringi_attempt *attempt, mspringi_field field);
     void (*forces_known)(mspring_network *network, mspringi_field force);
     uint32_t (*free_substeps)(const mspring_network *network, const mspringi_attempt *attempt,
-                              uint32_t substep); ///< that it lets follow each other; NULL: one
+                              uint32_t substep); ///< substeps that may be taken together; NULL: one
     mspringi_field (*before_substep)(mspring_network *network, const mspringi_attempt *attempt, uint32_t substep,
                                      mspringi_field base);
     uint32_t (*max_parts)(
@@ -70,8 +69,8 @@ enum {
 typedef struct mspringi_stages {
     const mspringi_stage *used[MSPRINGI_STAGES];
     size_t count;
-    bool give_forces;     ///< some stage does
-    bool move;            ///< something of some stage does
+    bool give_forces;     ///< some stage gives forces in any case
+    bool move;            ///< moves() of some stage is true
     bool cut_substeps;    ///< substeps are never taken all at once
     bool follow_substeps; ///< some stage acts after substeps
     bool can_be_quiet;    ///< some stage has is_quiet or must_repeat
@@ -82,13 +81,13 @@ bool mspringi_stage_exists(int place);
 
 mspringi_stages mspringi_stages_of(const mspring_network *network);
 
-/// Whether the substeps of this step cannot be taken all at once.
-bool mspringi_stages_split_step(const mspring_network *network, const mspringi_attempt *attempt);
+/// True if stages cut this step, so that its substeps are not taken all at once.
+bool mspringi_stages_must_cut_step(const mspring_network *network, const mspringi_attempt *attempt);
 
 /// The forces that all substeps have in common: what the host holds, with what stages add; x NULL: none.
 mspringi_field mspringi_stages_forces(mspring_network *network, const mspringi_attempt *attempt);
 
-/// Each place in turn.
+/// Call the functions of one place, of all stages in turn.
 void mspringi_stages_before_step(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_forces_known(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force);
 uint32_t mspringi_stages_free_substeps(const mspring_network *network, const mspringi_attempt *attempt,
@@ -102,7 +101,7 @@ bool mspringi_stages_must_repeat(mspring_network *network, const mspringi_attemp
 mspring_result mspringi_stages_verify(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_after_step(mspring_network *network, const mspringi_stages *stages, double dt);
 void mspringi_stages_roll_back(mspring_network *network, const mspringi_attempt *attempt);
-/// Only those that act in sweeps: the solver has met the floor, and undone what it swept.
+/// Roll back the stages that act in sweeps: the solver met the floor, and undid what it had swept.
 void mspringi_stages_roll_back_sweeps(mspring_network *network, const mspringi_attempt *attempt);
 void mspringi_stages_undo(mspring_network *network, const mspringi_attempt *attempt);
 

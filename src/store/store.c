@@ -1,4 +1,4 @@
-/// What is done to all arrays of a network alike.
+/// Operations on all arrays of a network.
 #include "store/store.h"
 
 #include <string.h>
@@ -20,7 +20,7 @@
     VIEW(member.low_y, 5 * slots)                                                                                  \
     VIEW(member.low_vx, n->is_precise ? 6 * slots : UNKNOWN)                                                       \
     VIEW(member.low_vy, n->is_precise ? 7 * slots : UNKNOWN)
-#define PLACES(member) ARRAY(member, spring_slots)
+#define FLOATS(member) ARRAY(member, spring_slots)
 #define BITS(member) ARRAY(member, words)
 #define END(name)
 
@@ -234,13 +234,13 @@ static void copy_bit(uint16_t *to, mspringi_spring_slot spring_slot, const uint1
     *to = (uint16_t)(from[before / MSPRINGI_WIDTH] >> before % MSPRINGI_WIDTH & 1 ? *to | bit : *to & ~bit);
 }
 
-#undef PLACES
+#undef FLOATS
 #undef BITS
 #define GROUP(name)
 #define ARRAY(member, elements)
 #define LANES(member, planes)
 #define VIEW(member, elements)
-#define PLACES(member) copy_value(to->member, spring_slot, from->member, before);
+#define FLOATS(member) copy_value(to->member, spring_slot, from->member, before);
 #define BITS(member) copy_bit(to->member, spring_slot, from->member, before);
 void mspringi_store_copy_spring(mspring_network *to, mspringi_spring_slot spring_slot, const mspring_network *from,
                                 mspringi_spring_slot before) {

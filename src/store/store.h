@@ -1,5 +1,5 @@
 /// @file store.h
-/// The arrays that a network holds, and what is done to all of them alike. The table of them is network.def.
+/// Operations on all arrays of a network. network.def lists the arrays.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_STORE_H
@@ -7,14 +7,14 @@
 
 #include "store/network.h"
 
-/// Arrays that are reserved together. Those below MSPRINGI_LAYOUT_END lie by slot or place.
+/// Arrays that are reserved together. Those below MSPRINGI_LAYOUT_END lie by slot or spring slot.
 typedef enum mspringi_group {
 #define GROUP(name) MSPRINGI_STORE_##name,
 #define END(name) MSPRINGI_##name##_END, MSPRINGI_##name##_LAST = MSPRINGI_##name##_END - 1,
 #define ARRAY(member, elements)
 #define VIEW(member, elements)
 #define LANES(member, planes)
-#define PLACES(member)
+#define FLOATS(member)
 #define BITS(member)
 #define STATE(member)
 #include "store/network.def"
@@ -25,7 +25,7 @@ typedef enum mspringi_group {
 #undef ARRAY
 #undef VIEW
 #undef LANES
-#undef PLACES
+#undef FLOATS
 #undef BITS
 #undef STATE
 
@@ -42,16 +42,16 @@ bool mspringi_store_duplicate(mspring_network *to, const mspring_network *from, 
 /// Forget all arrays.
 void mspringi_store_forget(mspring_network *network);
 
-/// Free what lies by slot or place from this memory, or forget it.
+/// Free the arrays by slot or spring slot from this memory, or forget them.
 void mspringi_store_free_layout(mspring_network *network, mspringi_memory *memory);
 void mspringi_store_forget_layout(mspring_network *network);
 
-/// Take over the arrays that another network of the same particles and springs has by slot or place.
+/// Take over the arrays by slot or spring slot of another network with the same particles and springs.
 void mspringi_store_take_layout(mspring_network *to, const mspring_network *from);
-/// Reserve the groups by slot or place that another one has and this one lacks, and free those that it has not.
+/// Reserve the groups by slot or spring slot that another network has, and free those that it lacks.
 bool mspringi_store_match_layout(mspring_network *to, const mspring_network *from);
 
-/// Move what lies by slot, or what lies by place of one spring but for its record, between layouts.
+/// Copy the arrays by slot to another layout, or one spring's elements of those by spring slot except its record.
 void mspringi_store_move_slots(mspring_network *to, const mspring_network *from);
 void mspringi_store_copy_spring(mspring_network *to, mspringi_spring_slot spring_slot, const mspring_network *from,
                                 mspringi_spring_slot before);

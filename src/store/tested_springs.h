@@ -8,8 +8,8 @@
 #include "kernels/kernels.h"
 #include "kernels/shared_records.h"
 
-/// Springs that the sweeps of rows test, by place; NULL as long as none yields. See features/yield/yielding.c,
-/// which alone makes and fills these.
+/// Springs that the sweeps of rows test, by spring slot; NULL as long as none yields. See
+/// features/yield/yielding.c, which alone makes and fills these.
 typedef struct mspringi_tested {
     float *yield_strain, *hardening, *plastic_limit;
     float *nominal;              ///< rest length before any flow, m; the one in force is among the spring's values
@@ -20,8 +20,8 @@ typedef struct mspringi_tested {
     float *heat;                 ///< what flow has dissipated in the step, J
     mspringi_shared_records shared_records; ///< lattice blocks with the same rest lengths and bounds
     uint16_t
-        *has_flowed; ///< [places / MSPRINGI_WIDTH] a bit for each place: its rest length has changed in the step
-    mspringi_strain_hit *hits; ///< [places / MSPRINGI_WIDTH] springs that were warm at the last look
+        *has_flowed; ///< [spring slots / MSPRINGI_WIDTH] a bit for each: its rest length has changed in the step
+    mspringi_strain_hit *hits; ///< [spring slots / MSPRINGI_WIDTH] springs that were warm at the last look
     float *ahead;              ///< [2 slots] x and y where particles would be at the end of a substep
     uint8_t *warmth;           ///< [strips] MSPRINGI_WARM, ...
     uint32_t substep;          ///< of the step, the first of those that are being taken
