@@ -7,7 +7,7 @@
 
 #include "store/network.h"
 
-/// Return whether all numbers that a network carries to its next step are finite, low words included.
+/// True if all numbers that a network keeps for its next step are finite, low words included.
 bool mspringi_is_finite(const mspring_network *network);
 
 #endif

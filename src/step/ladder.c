@@ -12,7 +12,7 @@
 
 /* ------------------------------------------------------------------------------------------------- one attempt */
 
-// Choose solver and substeps. Each substep must be a number.
+// Set the solver and the substeps of an attempt. Refuse substeps that are no normal floats.
 static bool prepare(mspring_network *network, mspringi_attempt *attempt, mspringi_attempt_kind kind,
                     const mspringi_solver *solver, uint32_t substeps) {
     const double calm = (double)substeps * mspringi_solver_calm_work(solver);
@@ -34,8 +34,8 @@ static bool prepare(mspring_network *network, mspringi_attempt *attempt, mspring
     return attempt->result == MSPRING_OK;
 }
 
-// Substeps of the next attempt with the host's solver: as set, or chosen for this step. If they are too many, a
-// calm step has as many as there may be.
+// Set the substeps of the host's solver for this step, if they are left to the library. *calm: those of calm
+// motion; max_substeps if more would be needed, which is an error.
 static mspring_result choose_substeps(mspring_network *network, double dt, bool may_raise, uint32_t *calm) {
     *calm = network->substeps;
     if (!mspringi_can_choose_substeps(network))
@@ -56,8 +56,8 @@ static const mspringi_solver *fallback_of(const mspring_network *network) {
                : NULL;
 }
 
-// It takes the substeps of calm motion. Where even these are more than max_substeps, it takes as many as cost that
-// many of the explicit solver: no frame is late for it. It has no history.
+// Prepare an attempt with the fallback, which has no history. It takes the substeps of calm motion. If even these
+// are more than max_substeps, it takes as many as cost that work, so that no frame is late.
 static bool fall_back(mspring_network *network, mspringi_attempt *attempt, const mspringi_solver *fallback) {
     uint32_t calm, substeps;
     const bool is_chosen = choose_substeps(network, attempt->given_dt, false, &calm) == MSPRING_OK;
@@ -69,7 +69,7 @@ static bool fall_back(mspring_network *network, mspringi_attempt *attempt, const
     return prepare(network, attempt, MSPRINGI_BY_FALLBACK, fallback, substeps);
 }
 
-// A new motion begins for the chosen solver, and the guard looks before it is asked again.
+// Begin a new motion for the chosen solver, and have the guard check the limit before its next step.
 static void accept_fallback(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_guard *guard = &network->guard;
     const bool takes_one = attempt->solver->ops->takes_one_substep,
@@ -89,7 +89,7 @@ static void accept_fallback(mspring_network *network, const mspringi_attempt *at
 
 /* ----------------------------------------------------------------------------------------------- more substeps */
 
-// Work of a calm step for MSPRING_GUARD_RETRY: of what was set or, if they are more, of the substeps that are
+// Work of a calm step for MSPRING_GUARD_RETRY: with the substeps set or, if they are more, with those that are
 // stable in any shape.
 static double asked_work(mspring_network *network, const mspringi_attempt *attempt) {
     mspring_id spring;
@@ -100,7 +100,8 @@ static double asked_work(mspring_network *network, const mspringi_attempt *attem
     return fmax(attempt->calm_work, (double)(asked < network->max_substeps ? asked : network->max_substeps));
 }
 
-// Where the work ends first, the next step begins with the substeps that this one cannot take any more.
+// Prepare an attempt with twice the substeps. If no work is left for them, the step fails, and the next one begins
+// with these substeps.
 static bool take_more(mspring_network *network, mspringi_attempt *attempt) {
     const uint32_t most = network->max_substeps, twice = 2 * network->substeps, more = twice < most ? twice : most;
     if (network->settings.guard != MSPRING_GUARD_RETRY || network->substeps >= most)
@@ -124,8 +125,8 @@ static bool take_more(mspring_network *network, mspringi_attempt *attempt) {
 
 /* ------------------------------------------------------------------------------------------------------ groups */
 
-// Hold all groups that went wrong. Then release, one by one, those that may have done so because of others. Each
-// attempt holds or clears one group at least, and a group is held once: so these attempts have no other bound.
+// Hold all groups that failed. Then release, one by one, those that may have failed because of others. Each attempt
+// holds or clears at least one group, and no group is held twice, so these attempts need no other bound.
 static bool try_groups(mspring_network *network, mspringi_attempt *attempt) {
     const bool is_taken = attempt->result == MSPRING_OK, is_trial = attempt->kind == MSPRINGI_WITH_DOUBTFUL;
     if (!is_taken && !is_trial)
@@ -147,7 +148,7 @@ static bool try_groups(mspring_network *network, mspringi_attempt *attempt) {
 
 /* -------------------------------------------------------------------------------------------------------- room */
 
-// Give features the room that the attempt lacked, and make it again. It does not count.
+// Give features the room that the attempt lacked, and prepare it again. Its work does not count.
 static bool grow(mspring_network *network, mspringi_attempt *attempt) {
     mspring_result result = MSPRING_ERROR_LIMIT;
 #define GROWS(function) result = result == MSPRING_ERROR_LIMIT ? function(network) : result;

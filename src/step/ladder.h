@@ -1,10 +1,11 @@
 /// @file ladder.h
 /// The attempts at a step, from the one that the host's settings ask for to the last resort of the guard.
 ///
-///   - a stage counted on what did not hold: the same without that, at most once for each stage, and not counted;
-///   - groups went wrong: with these held, then with doubtful ones released;
+///   - an assumption of a stage failed: the same without it, at most once for each stage; its work does not count;
+///   - it lacked room (LIMIT): the same with more, if the host allows it; its work does not count;
+///   - groups failed: with these held, then with doubtful ones released;
 ///   - unstable, with MSPRING_GUARD_CLAMP or _IMPLICIT; overflowed, with _CLAMP_BOUNDS: one of the fallback;
-///   - unstable, with MSPRING_GUARD_RETRY: twice the substeps, while max_substeps and most_work last;
+///   - unstable, with MSPRING_GUARD_RETRY: twice the substeps, within max_substeps and most_work;
 ///   - anything else: none.
 ///
 /// Work is counted from what was computed, never from time: an explicit substep 1, a clamped one 3, an implicit or
@@ -18,14 +19,15 @@
 #include "store/attempt.h"
 #include "store/stages.h"
 
-/// First attempt at a step of dt. Its result says if it can be made.
+/// Prepare the first attempt at a step of dt. If it cannot be made, its result is an error.
 void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_stages *stages,
                             mspringi_attempt *first);
 
-/// Make an attempt whose result is MSPRING_OK so far. Unless it succeeds, the state is that of before.
+/// Make a prepared attempt; one with an error stays as it is. Unless it succeeds, the state is that before the
+/// step.
 void mspringi_attempt_make(mspring_network *network, mspringi_attempt *attempt);
 
-/// Turn an attempt that was made into the one that follows. False: none does, and its result is that of the step.
+/// Prepare the attempt that follows one that was made. False: none follows, and its result is that of the step.
 bool mspringi_attempt_next(mspring_network *network, mspringi_attempt *attempt);
 
 /// Undo an attempt that succeeded.

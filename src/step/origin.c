@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/// Smallest distance from the origin at which it is worth to move it, m.
+/// Smallest distance from the origin at which a move is worth its cost, m.
 #define SMALLEST_RECENTRE_DISTANCE 64.0f
 
 /// Farthest place that an origin moves to, m: that of the farthest particle of a network that did not move.
@@ -61,11 +61,11 @@ static float exact_shift(double origin, double low, double high) {
 void mspringi_origin_follow(mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     mspringi_state *state = &network->state;
-    // The first particle that there is stands for all of them until it is far away.
-    mspring_id stands = 0;
-    while (stands + 1 < t->particle_count && !mspringi_particle_exists(network, stands))
-        ++stands;
-    const uint32_t first = t->slot_of_particle[stands];
+    // Look at the first existing particle alone until it is far away.
+    mspring_id witness = 0;
+    while (witness + 1 < t->particle_count && !mspringi_particle_exists(network, witness))
+        ++witness;
+    const uint32_t first = t->slot_of_particle[witness];
     if (fabsf(state->x[first]) < network->recentre_distance && fabsf(state->y[first]) < network->recentre_distance)
         return;
     mspringi_box box = mspringi_box_empty();

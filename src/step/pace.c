@@ -1,5 +1,5 @@
-/// Substeps where they are left to the library. Each length of a substep keeps an energy of its own, and near the
-/// limit of stability those of two lengths differ most: lengths that change make energy.
+/// Substeps where they are left to the library. Leapfrog conserves an energy that depends on the length of
+/// substeps, most of all near the stability limit. So substeps whose length varies gain energy.
 #include "step/pace.h"
 
 #include <math.h>
@@ -8,20 +8,20 @@
 
 /* -------------------------------------------------------------------------------------------- violent motion */
 
-/// Way of the ends of a spring against each other in a substep, in its length, up to which leapfrog keeps the
-/// energy. A free lattice of 4 x 4 gains up to 1.3 times its energy at a quarter, 5,000 times at 0.4.
+/// Relative way of a spring's ends in a substep, in its rest lengths, up to which leapfrog keeps the energy. A free
+/// lattice of 4 x 4 gains up to 1.3 times its energy at 0.25, 5,000 times at 0.4.
 #define VIOLENT_SHARE 0.25
 
-// A choice of substeps.
+// Arguments and results of a choice of substeps.
 typedef struct choice {
-    double dt, limit;
-    bool may_raise; ///< for violent motion
-    uint32_t calm;  ///< substeps without that
-    double need;    ///< substeps that motion needs; 0: not looked at
+    double dt, limit; ///< of the step; longest substep that is stable in any shape, s
+    bool may_raise;   ///< more substeps for violent motion
+    uint32_t calm;    ///< result: substeps for calm motion
+    double need;      ///< result: substeps that the motion needs; 0: not computed
 } choice;
 
-// More substeps where violent motion needs them, as many as it may have. Relative springs would become firmer with
-// them.
+// Raise the substeps if violent motion needs more, within most_work and max_substeps. With relative springs, more
+// would make these stiffer.
 static uint32_t raised(const mspring_network *network, choice *made, uint32_t calm) {
     const double dt = made->dt;
     const double work = network->most_work > 0 ? (double)network->most_work * (double)calm : INFINITY,
@@ -43,15 +43,15 @@ static uint32_t flagged(mspring_network *network, uint32_t substeps, double need
 
 /* ------------------------------------------------------------------------------------- MSPRING_SUBSTEPS_AUTO */
 
-// True if dt is another one than before, but for its rounding.
+// True if dt differs from that of the last step by more than rounding.
 static bool changes_dt(const mspring_network *network, double dt) {
     const double before = network->steps.dt;
     return before > 0.0 && !(fabs(dt - before) <= 1e-6 * before);
 }
 
-// For a dt that varies: the length stays as close to the last one as it can, at 0.4 to 0.8 of the limit. An
-// undamped rope of 20 springs gains 2.9 times its energy in a minute in which dt lies between 0.9 and 1 of 1/64 s,
-// and over a millionfold with the fewest substeps.
+// Choose the substeps for a dt that varies: of a length as near as possible to the last one, 0.4 to 0.8 of the
+// limit. An undamped rope of 20 springs gains 2.9 times its energy in a minute in which dt lies between 0.9 and 1
+// of 1/64 s, and over a millionfold with the fewest substeps.
 static uint32_t uneven_substeps(const mspring_network *network, double dt, double limit) {
     const uint32_t most = network->max_substeps, least = mspringi_substeps_within(dt, 0.8 * limit, most);
     if (least > most)
@@ -64,18 +64,19 @@ static uint32_t uneven_substeps(const mspring_network *network, double dt, doubl
 
 /* ------------------------------------------------------------------------------------- MSPRING_SUBSTEPS_EVEN */
 
-/// Steps of one dt, or with FEW times the substeps that dt needs, after which substeps get another length; with
-/// MANY times as many they get it at once.
+/// Consecutive steps after which substeps get another length: steps of one dt, or with more than FEW times the
+/// substeps that dt needs. With more than MANY times as many they get it at once.
 #define EVEN_STEPS 30u
 #define FEW 2.0
 #define MANY 16.0
 
-/// Substeps by which the state may be ahead of the time that was asked for.
+/// Substeps by which the state may be ahead of the host's time.
 #define MOST_AHEAD 1.5
 
-// Keep the length of substeps, and carry the rest of dt to the next step: the nearest whole number of them, at
-// least one. Where one is too many, as the state is ahead, the length is chosen anew; a dt far below the limit is
-// taken as it is, and the length stays. (Lengths near the limit that come and go make energy.)
+// Keep the length of substeps: take the whole number of them nearest to dt, at least one, and carry the rest of dt
+// to the next step. If the state would get too far ahead, choose a new length. But a dt far below the limit is
+// taken as it is, and the length stays for later steps. (Lengths near the limit that change to and fro gain
+// energy.)
 static uint32_t even_substeps(mspring_network *network, choice *made) {
     const double dt = made->dt, limit = made->limit;
     const mspringi_pace *had = &network->steps.pace;

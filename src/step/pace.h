@@ -7,8 +7,9 @@
 
 #include "store/network.h"
 
-/// Choose the substeps of a step, more for violent motion if they may be raised, and with MSPRING_SUBSTEPS_EVEN its
-/// time. calm: those that they are in calm motion. UNSTABLE if they are over max_substeps.
+/// Choose the substeps of a step; if may_raise, more for violent motion. With MSPRING_SUBSTEPS_EVEN, choose its
+/// length (network->step_time), too. *calm: the substeps for calm motion. UNSTABLE if they are more than
+/// max_substeps.
 mspring_result mspringi_pace_choose(mspring_network *network, double dt, bool may_raise, uint32_t *calm);
 
 /// Note that a step of dt has succeeded.

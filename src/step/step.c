@@ -10,13 +10,13 @@
 #include "store/group_ops.h"
 #include "store/sleepers.h"
 
-/// Global damping times dt from which on a speed that is no speed any more (MSPRING_MAX_SPEED) could be one again
-/// by the end of the step: exp(-20) is 2e-9, and at 1e24 m/s nothing overflows yet.
+/// Global damping times dt above which a speed beyond MSPRING_MAX_SPEED could be below it again by the end of the
+/// step: exp(-20) is 2e-9, and at 1e24 m/s nothing overflows yet.
 #define STRONG_DAMPING 20.0
 
-// Refuse speeds that somebody outside has written to the state, which the end of the step would not show any more.
-// In the step they overflow where rates of strain are computed, for springs that are not there too, of which wide
-// vectors have more: not all levels would take it.
+// Refuse excessive speeds that a hook or a view has written, and that strong damping would hide at the end of the
+// step. Within it, rates of strain overflow, also of springs that do not exist, of which wide vectors have more:
+// levels would differ.
 static mspring_result check_given_speeds(mspring_network *network, double dt) {
     if (!network->is_open || !((double)network->settings.global_damping * dt > STRONG_DAMPING))
         return MSPRING_OK;
@@ -39,7 +39,7 @@ static mspring_result check_given_speeds(mspring_network *network, double dt) {
     return MSPRING_OK;
 }
 
-// Let the stages and the sleepers follow a step that stands.
+// Accept a step: let stages and sleepers follow it.
 static void accept(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_attempt_accept(network, attempt);
     network->is_open = network->was_in_hook;
@@ -56,7 +56,7 @@ static void accept(mspring_network *network, const mspringi_attempt *attempt) {
     network->forces.held_any = false;
 }
 
-// Forget what attempts have changed beside the state.
+// Undo what attempts have changed besides the state.
 static void give_up(mspring_network *network, const mspringi_attempt *last, uint32_t substeps,
                     const mspringi_any_shape *any_shape) {
     network->substeps = last->keeps_substeps ? network->substeps : substeps;
@@ -95,7 +95,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     return attempt.result;
 }
 
-// Note what came of a step, rounding to nearest.
+// Record the outcome of a step. (Not inlined, so that it rounds as mspringi_fp_enter() sets.)
 static MSPRINGI_NOINLINE void note(mspring_network *network, double dt, mspring_result result) {
     mspringi_steps *steps = &network->steps;
     const uint32_t flags = network->outcome.flags;
@@ -103,7 +103,7 @@ static MSPRINGI_NOINLINE void note(mspring_network *network, double dt, mspring_
     steps->outcome = network->outcome;
     if (result != MSPRING_OK) {
         steps->outcome.flags = 0;
-        mspringi_shared_clear(network->shared); // of hooks: this one says why the step failed
+        mspringi_shared_clear(network->shared); // a message of a hook would hide why the step failed
         return;
     }
     steps->substeps = (flags & MSPRING_STEP_FALLBACK ? 1 : network->substeps) + network->added_substeps;
@@ -112,7 +112,7 @@ static MSPRINGI_NOINLINE void note(mspring_network *network, double dt, mspring_
     steps->count++;
     steps->fallback_count += (flags & (MSPRING_STEP_FALLBACK | MSPRING_STEP_CLAMPED)) != 0;
     steps->time += network->step_time;
-    mspringi_message_clear(&network->message); // of what was tried first
+    mspringi_message_clear(&network->message); // of a failed attempt
 }
 
 mspring_result mspring_network_step(mspring_network *network, double dt) {
