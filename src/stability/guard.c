@@ -87,7 +87,7 @@ static bool is_finite_in(const mspringi_state *s, uint32_t slot) {
     return isfinite(s->x[slot]) && isfinite(s->y[slot]) && isfinite(s->vx[slot]) && isfinite(s->vy[slot]);
 }
 
-// Move a coordinate within the bounds. A low word that belongs to another coordinate, or is no number, becomes 0.
+// Move a coordinate within the bounds. A low word that belongs to another coordinate, or is NaN, becomes 0.
 static void clamp_coordinate(float *coordinate, float *low, float grid) {
     const float bounded = between(*coordinate, (float)MSPRING_MAX_COORDINATE);
     *low = bounded == *coordinate ? mspringi_low_of(bounded, *low, grid) : 0.0f;
@@ -115,7 +115,7 @@ void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *
     mspringi_clear_empty_slots(network);
     mspringi_clear_unused_slots(network);
     mspringi_solver_forget(&network->solver);
-    if (network->solver.ops->new_floor) // a coarse matrix of positions that were none
+    if (network->solver.ops->new_floor) // its coarse matrix may be of positions that were NaN
         network->solver.ops->new_floor(network->solver.object);
     network->outcome.flags |= MSPRING_STEP_PUT_BACK;
 }
@@ -214,18 +214,18 @@ static mspring_result check_elements(mspring_network *network, const mspringi_at
 mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_attempt *attempt) {
     const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
-    const bool same = guard->h == h && guard->global_damping == network->settings.global_damping;
+    const bool is_checked = guard->h == h && guard->global_damping == network->settings.global_damping;
     guard->watches = false;
-    const bool is_same = guard->state == network->edits.state && !network->is_open;
-    guard->knows_speed = is_same && guard->speed <= network->settings.max_speed;
+    const bool is_unedited = guard->state == network->edits.state && !network->is_open;
+    guard->knows_speed = is_unedited && guard->speed <= network->settings.max_speed;
     guard->knows_coordinate =
-        is_same && guard->coordinate <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
+        is_unedited && guard->coordinate <= (float)MSPRING_MAX_COORDINATE && attempt->substeps == 1;
     if (!attempt->solver->ops->has_stability_limit)
         return check_elements(network, attempt);
     if (!mspringi_guard_checks_limit(network->settings.guard))
         return MSPRING_OK;
     const mspringi_any_shape *any_shape = &network->any_shape;
-    if (same && (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
+    if (is_checked && (any_shape->masses != network->edits.masses || any_shape->values != network->edits.values)) {
         guard->watches = true; // too early to see the effect of edits; velocities will show it
         return MSPRING_OK;
     }
@@ -233,7 +233,7 @@ mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_att
     guard->watches = (double)h > mspringi_stable_in_any_shape(network, &spring);
     guard->h = h;
     guard->global_damping = network->settings.global_damping;
-    return guard->watches && !same ? check_limit(network, attempt, false) : MSPRING_OK;
+    return guard->watches && !is_checked ? check_limit(network, attempt, false) : MSPRING_OK;
 }
 
 // Larger value; NaN counts as the largest, as in the kernels.

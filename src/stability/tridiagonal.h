@@ -11,7 +11,7 @@
 typedef struct mspringi_tridiagonal {
     int size;
     double diagonal[MSPRINGI_LANCZOS_MAX];
-    double off_diagonal[MSPRINGI_LANCZOS_MAX]; ///< beside[i] couples i and i + 1; the last is not read
+    double off_diagonal[MSPRINGI_LANCZOS_MAX]; ///< element i couples i and i + 1; the last is not read
 } mspringi_tridiagonal;
 
 /// Largest eigenvalue, from above, and its eigenvector, of length 1.
