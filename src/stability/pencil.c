@@ -45,7 +45,8 @@ mspringi_linear_spring mspringi_linearise_spring(const mspring_network *network,
     return seen;
 }
 
-void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_linear_spring *s, double dx, double dy) {
+// Add a spring's part for a displacement (dx, dy) of b relative to a.
+static void add_to_quotient(mspringi_quotient *quotient, const mspringi_linear_spring *s, double dx, double dy) {
     const double along = s->nx * dx + s->ny * dy, across = s->ny * dx - s->nx * dy;
     const double stretch = along * along + s->across * across * across, speed = along * along;
     quotient->stiffness += s->strength.stiffness * stretch;
@@ -120,7 +121,7 @@ mspringi_quotient mspringi_pencil_quotient(const mspringi_pencil *pencil, msprin
             s.nx = length > 0.0 ? dx / length : 0.0;
             s.ny = length > 0.0 ? dy / length : 0.0;
         }
-        mspringi_quotient_add(&sum, &s, dx, dy);
+        add_to_quotient(&sum, &s, dx, dy);
     }
     mspringi_stability_elements_quotient(pencil->network, vector, &sum);
     return sum;

@@ -48,9 +48,6 @@ typedef struct mspringi_linear_spring {
 mspringi_linear_spring mspringi_linearise_spring(const mspring_network *network, mspring_id spring,
                                                  mspringi_spring_slot spring_slot);
 
-/// Add a spring's part for a displacement of b relative to a.
-void mspringi_quotient_add(mspringi_quotient *quotient, const mspringi_linear_spring *seen, double dx, double dy);
-
 /// The matrices at some h.
 typedef struct mspringi_pencil {
     const mspring_network *network;
