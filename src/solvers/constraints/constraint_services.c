@@ -48,14 +48,13 @@ static inline double gather(const constraint *c, const entry *e, mspringi_field 
     return sum;
 }
 
-// to += J' f. The first entry of a closed constraint gets minus the rounded sum of the others. Clamp if forces may
-// exceed single precision, as those of an angle with short arms; forces that iterations find do not.
-static inline void scatter(const constraint *c, const entry *e, double force, mspringi_field to, bool is_clamped) {
+// to += J' f. The first entry of a closed constraint gets minus the rounded sum of the others. Clamped, as forces
+// may exceed single precision: those of an angle with short arms.
+static inline void scatter(const constraint *c, const entry *e, double force, mspringi_field to) {
     const uint32_t count = c->count;
     double x = 0.0, y = 0.0;
     for (uint32_t i = c->is_closed; i < count; ++i) {
-        const float fx = is_clamped ? clamped(force * e[i].x) : (float)(force * e[i].x);
-        const float fy = is_clamped ? clamped(force * e[i].y) : (float)(force * e[i].y);
+        const float fx = clamped(force * e[i].x), fy = clamped(force * e[i].y);
         to.x[e[i].slot] += fx;
         to.y[e[i].slot] += fy;
         x += (double)fx;
@@ -63,8 +62,8 @@ static inline void scatter(const constraint *c, const entry *e, double force, ms
     }
     if (!c->is_closed)
         return;
-    to.x[e->slot] -= is_clamped ? clamped(x) : (float)x;
-    to.y[e->slot] -= is_clamped ? clamped(y) : (float)y;
+    to.x[e->slot] -= clamped(x);
+    to.y[e->slot] -= clamped(y);
 }
 
 void mspringi_constraints_activate(mspringi_constraints *all) {
@@ -78,68 +77,88 @@ void mspringi_constraints_activate(mspringi_constraints *all) {
 }
 
 // One particle: the floor, grips, colliders.
-static inline double multiply_one(const entry *e, double stiffness, mspringi_field from, mspringi_field to) {
-    const double way = e->x * (double)from.x[e->slot] + e->y * (double)from.y[e->slot], force = stiffness * way;
-    to.x[e->slot] += (float)(force * e->x);
-    to.y[e->slot] += (float)(force * e->y);
-    return way * force;
+static inline void multiply_one(const entry *e, double stiffness, const mspringi_product *p) {
+    if (!mspringi_product_has(p, e->slot))
+        return;
+    const double way = e->x * (double)p->from.x[e->slot] + e->y * (double)p->from.y[e->slot];
+    const double force = stiffness * way;
+    mspringi_product_add(p, e->slot, (float)(force * e->x), (float)(force * e->y));
+    mspringi_product_count(p, e->slot, way * force);
+}
+
+static inline bool has_any_of_three(const mspringi_product *p, const entry *e) {
+    return mspringi_product_has(p, e[0].slot) || mspringi_product_has(p, e[1].slot) ||
+           mspringi_product_has(p, e[2].slot);
 }
 
 // A point and the ends of an edge.
-static inline double multiply_three(const entry *e, double stiffness, mspringi_field from, mspringi_field to) {
+static inline void multiply_three(const entry *e, double stiffness, const mspringi_product *p) {
     const uint32_t a = e[0].slot, b = e[1].slot, c = e[2].slot;
+    const mspringi_field from = p->from;
+    if (!has_any_of_three(p, e))
+        return;
     const double way = e[0].x * (double)from.x[a] + e[0].y * (double)from.y[a] + e[1].x * (double)from.x[b] +
                        e[1].y * (double)from.y[b] + e[2].x * (double)from.x[c] + e[2].y * (double)from.y[c];
     const double force = stiffness * way;
-    to.x[a] += (float)(force * e[0].x);
-    to.y[a] += (float)(force * e[0].y);
-    to.x[b] += (float)(force * e[1].x);
-    to.y[b] += (float)(force * e[1].y);
-    to.x[c] += (float)(force * e[2].x);
-    to.y[c] += (float)(force * e[2].y);
-    return way * force;
+    for (int i = 0; i < 3; ++i)
+        mspringi_product_add(p, e[i].slot, (float)(force * e[i].x), (float)(force * e[i].y));
+    mspringi_product_count(p, a, way * force);
 }
 
 // An angle.
-static inline double multiply_closed_three(const entry *e, double stiffness, mspringi_field from,
-                                           mspringi_field to) {
+static inline void multiply_closed_three(const entry *e, double stiffness, const mspringi_product *p) {
     const uint32_t a = e[0].slot, b = e[1].slot, c = e[2].slot;
+    const mspringi_field from = p->from;
+    if (!has_any_of_three(p, e))
+        return;
     const double x = (double)from.x[a], y = (double)from.y[a];
     const double way = e[1].x * ((double)from.x[b] - x) + e[1].y * ((double)from.y[b] - y) +
                        e[2].x * ((double)from.x[c] - x) + e[2].y * ((double)from.y[c] - y);
     const double force = stiffness * way;
     const float bx = (float)(force * e[1].x), by = (float)(force * e[1].y);
     const float cx = (float)(force * e[2].x), cy = (float)(force * e[2].y);
-    to.x[b] += bx;
-    to.y[b] += by;
-    to.x[c] += cx;
-    to.y[c] += cy;
-    to.x[a] -= (float)((double)bx + (double)cx);
-    to.y[a] -= (float)((double)by + (double)cy);
-    return way * force;
+    mspringi_product_add(p, b, bx, by);
+    mspringi_product_add(p, c, cx, cy);
+    mspringi_product_add(p, a, -(float)((double)bx + (double)cx), -(float)((double)by + (double)cy));
+    mspringi_product_count(p, a, way * force);
+}
+
+// Any number of particles.
+static void multiply_any(const mspringi_active_constraint *a, const entry *e, const mspringi_product *p) {
+    const constraint c = {.count = (uint8_t)(a->shape >> 1), .is_closed = a->shape & 1};
+    bool has_any = false;
+    for (uint32_t i = 0; i < c.count; ++i)
+        has_any = has_any || mspringi_product_has(p, e[i].slot);
+    if (!has_any)
+        return;
+    const double way = gather(&c, e, p->from), force = a->stiffness * way;
+    double x = 0.0, y = 0.0;
+    for (uint32_t i = c.is_closed; i < c.count; ++i) {
+        const float fx = (float)(force * e[i].x), fy = (float)(force * e[i].y);
+        mspringi_product_add(p, e[i].slot, fx, fy);
+        x += (double)fx;
+        y += (double)fy;
+    }
+    if (c.is_closed)
+        mspringi_product_add(p, e->slot, -(float)x, -(float)y);
+    mspringi_product_count(p, e->slot, way * force);
 }
 
 // With the active ones only, and loops for one and for three particles, contact takes 0.80 to 0.90 of the time;
 // with that for angles, a beam 0.92.
-double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to) {
-    double sum = 0.0;
+void mspringi_constraints_multiply(const mspringi_constraints *all, const mspringi_product *product) {
     for (uint32_t i = 0; i < all->active_count; ++i) {
         const mspringi_active_constraint *a = &all->active[i];
         const entry *e = all->entries + a->first;
-        if (a->shape == 2 * 1) {
-            sum += multiply_one(e, a->stiffness, from, to);
-        } else if (a->shape == 2 * 3) {
-            sum += multiply_three(e, a->stiffness, from, to);
-        } else if (a->shape == 2 * 3 + 1) {
-            sum += multiply_closed_three(e, a->stiffness, from, to);
-        } else {
-            const constraint c = {.count = (uint8_t)(a->shape >> 1), .is_closed = a->shape & 1};
-            const double way = gather(&c, e, from), force = a->stiffness * way;
-            scatter(&c, e, force, to, false);
-            sum += way * force;
-        }
+        if (a->shape == 2 * 1)
+            multiply_one(e, a->stiffness, product);
+        else if (a->shape == 2 * 3)
+            multiply_three(e, a->stiffness, product);
+        else if (a->shape == 2 * 3 + 1)
+            multiply_closed_three(e, a->stiffness, product);
+        else
+            multiply_any(a, e, product);
     }
-    return sum;
 }
 
 /* ---------------------------------------------------------------------------------------------------- assembly */
@@ -152,8 +171,7 @@ void mspringi_constraints_assemble(const mspringi_constraints *all, uint32_t fir
         if (!mspringi_constraint_is_active(c) || (is_factored && mspringi_constraint_is_unknown(c)))
             continue;
         const bool is_stiff = mspringi_constraint_is_stiff(c);
-        scatter(c, entries, is_stiff ? c->effort : c->bound_force, (mspringi_field){to->force_x, to->force_y},
-                true);
+        scatter(c, entries, is_stiff ? c->effort : c->bound_force, (mspringi_field){to->force_x, to->force_y});
         for (const entry *e = entries; e < entries + c->count && is_stiff; ++e) {
             to->xx[e->slot] += clamped(c->stiffness * e->x * e->x);
             to->xy[e->slot] += clamped(c->stiffness * e->x * e->y);

@@ -26,14 +26,46 @@
 #include "kernels/system.h"
 #include "store/network.h"
 
+/// Range of slots.
+typedef struct mspringi_slots {
+    size_t first, end;
+} mspringi_slots;
+
+static inline bool mspringi_slots_have(mspringi_slots slots, size_t slot) {
+    return slot - slots.first < slots.end - slots.first;
+}
+
+/// A worker's share of a product besides the panels. It computes the terms that have a slot of its own, and adds to
+/// these slots only. A term of two workers is computed by both; each slot is summed in one order for any number of
+/// them.
+typedef struct mspringi_product {
+    mspringi_field from, to;
+    mspringi_slots own; ///< whole chunks
+    double *sums;       ///< [chunks] from . to of the terms, each in the chunk of its first slot
+} mspringi_product;
+
+static inline bool mspringi_product_has(const mspringi_product *p, size_t slot) {
+    return mspringi_slots_have(p->own, slot);
+}
+static inline void mspringi_product_add(const mspringi_product *p, size_t slot, float x, float y) {
+    if (!mspringi_product_has(p, slot))
+        return;
+    p->to.x[slot] += x;
+    p->to.y[slot] += y;
+}
+static inline void mspringi_product_count(const mspringi_product *p, size_t slot, double term) {
+    if (mspringi_product_has(p, slot))
+        p->sums[slot / MSPRINGI_CHUNK] += term;
+}
+
 /// Add constraints first to end - 1 to the right-hand side and the diagonal blocks. is_factored: leave out those
 /// whose forces are unknowns of the direct solver.
 void mspringi_constraints_assemble(const mspringi_constraints *all, uint32_t first, uint32_t end,
                                    const mspringi_system *to, bool is_factored);
 /// List the stiff constraints for products. Call it after each change of the list or of the active set.
 void mspringi_constraints_activate(mspringi_constraints *all);
-/// Multiply: to += J' stiffness J from, over stiff constraints. Return from . J' stiffness J from.
-double mspringi_constraints_multiply(const mspringi_constraints *all, mspringi_field from, mspringi_field to);
+/// Multiply: to += J' stiffness J from, over stiff constraints.
+void mspringi_constraints_multiply(const mspringi_constraints *all, const mspringi_product *product);
 /// Add stiff constraints to the coarse matrix of the network's implicit solver.
 void mspringi_constraints_stiffen(const mspring_network *network);
 /// Add stiff constraints of one particle each to the diagonal blocks of a factored matrix, in double precision.

@@ -149,67 +149,68 @@ static bool sleeps(const mspring_network *network, uint32_t i) {
            mspringi_slot_is_asleep(network, t->irregular_b[i]);
 }
 
-static void assemble_irregular(const mspring_network *network) {
+// A team member adds to its own slots. It computes springs to those of others, too.
+static void assemble_irregular(const mspring_network *network, mspringi_slots own) {
     const mspringi_topology *t = &network->topology;
     const mspringi_system *s = &mspringi_implicit_of(network)->system;
     for (uint32_t i = 0; i < t->irregular_count; ++i) {
-        if (sleeps(network, i))
+        const uint32_t base = t->irregular_a[i], tip = t->irregular_b[i];
+        const bool has_base = mspringi_slots_have(own, base), has_tip = mspringi_slots_have(own, tip);
+        if ((!has_base && !has_tip) || sleeps(network, i))
             continue;
         const mspringi_spring_values values = mspringi_spring_slot_get(network, t->chain_spring_slots + i);
-        const irregular_spring l = compute_irregular(s, values.base, values.tip, &values);
-        float *factors = irregular_factors(mspringi_implicit_of(network), i);
-        factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH] = l.pull_x;
-        factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH] = l.pull_y;
-        factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH] = l.geometric;
-        s->force_x[values.base] += (float)l.force_x;
-        s->force_y[values.base] += (float)l.force_y;
-        s->force_x[values.tip] -= (float)l.force_x;
-        s->force_y[values.tip] -= (float)l.force_y;
-        add_to_diagonal(s, values.base, &l);
-        add_to_diagonal(s, values.tip, &l);
+        const irregular_spring l = compute_irregular(s, base, tip, &values);
+        if (has_base) {
+            float *factors = irregular_factors(mspringi_implicit_of(network), i);
+            factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH] = l.pull_x;
+            factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH] = l.pull_y;
+            factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH] = l.geometric;
+            s->force_x[base] += (float)l.force_x;
+            s->force_y[base] += (float)l.force_y;
+            add_to_diagonal(s, base, &l);
+        }
+        if (has_tip) {
+            s->force_x[tip] -= (float)l.force_x;
+            s->force_y[tip] -= (float)l.force_y;
+            add_to_diagonal(s, tip, &l);
+        }
     }
 }
 
-// Multiply the irregular part's own particles by their masses, and add the irregular springs. Returns direction .
-// product of all that.
-static double multiply_irregular(const mspring_network *network, mspringi_field from, mspringi_field to) {
+static void multiply_masses(const mspringi_implicit *n, const mspringi_product *p, size_t first, size_t end) {
+    end = end < p->own.end ? end : p->own.end;
+    for (size_t i = first > p->own.first ? first : p->own.first; i < end; ++i) {
+        p->to.x[i] = n->mass[i] * p->from.x[i];
+        p->to.y[i] = n->mass[i] * p->from.y[i];
+        p->sums[i / MSPRINGI_CHUNK] += (double)(p->from.x[i] * p->to.x[i] + p->from.y[i] * p->to.y[i]);
+    }
+}
+
+// Multiply the irregular part's own particles by their masses, and add the irregular springs.
+static void multiply_irregular(const mspring_network *network, const mspringi_product *p) {
     const mspringi_topology *t = &network->topology;
     const mspringi_implicit *n = mspringi_implicit_of(network);
-    const size_t irregular = (size_t)t->irregular_first * MSPRINGI_WIDTH,
-                 irregular_end = irregular + (size_t)t->irregular_blocks * MSPRINGI_WIDTH;
+    const size_t irregular = (size_t)t->irregular_first * MSPRINGI_WIDTH;
     // Loose particles that nothing has been added to are not in the iteration.
     const size_t added = (size_t)t->loose_first * MSPRINGI_WIDTH;
-    const size_t added_end =
-        t->irregular_count > t->laid_out_count ? (size_t)(t->block_count - 1) * MSPRINGI_WIDTH : added;
-    double sum = 0.0;
-    for (size_t i = irregular; i < irregular_end; ++i) {
-        to.x[i] = n->mass[i] * from.x[i];
-        to.y[i] = n->mass[i] * from.y[i];
-        sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);
-    }
-    for (size_t i = added; i < added_end; ++i) {
-        to.x[i] = n->mass[i] * from.x[i];
-        to.y[i] = n->mass[i] * from.y[i];
-        sum += (double)(from.x[i] * to.x[i] + from.y[i] * to.y[i]);
-    }
+    multiply_masses(n, p, irregular, irregular + (size_t)t->irregular_blocks * MSPRINGI_WIDTH);
+    if (t->irregular_count > t->laid_out_count)
+        multiply_masses(n, p, added, (size_t)(t->block_count - 1) * MSPRINGI_WIDTH);
     for (uint32_t i = 0; i < t->irregular_count; ++i) {
         const uint32_t a = t->irregular_a[i], b = t->irregular_b[i];
-        if (sleeps(network, i))
+        if ((!mspringi_product_has(p, a) && !mspringi_product_has(p, b)) || sleeps(network, i))
             continue;
         const float *factors = irregular_factors(n, i);
         const float pull_x = factors[MSPRINGI_PULL_X * MSPRINGI_WIDTH];
         const float pull_y = factors[MSPRINGI_PULL_Y * MSPRINGI_WIDTH];
         const float geometric = factors[MSPRINGI_GEOMETRIC * MSPRINGI_WIDTH];
-        const float dx = from.x[b] - from.x[a], dy = from.y[b] - from.y[a];
+        const float dx = p->from.x[b] - p->from.x[a], dy = p->from.y[b] - p->from.y[a];
         const float along = pull_x * dx + pull_y * dy;
         const float x = geometric * dx + pull_x * along, y = geometric * dy + pull_y * along;
-        to.x[a] -= x;
-        to.y[a] -= y;
-        to.x[b] += x;
-        to.y[b] += y;
-        sum += (double)(dx * x + dy * y);
+        mspringi_product_add(p, a, -x, -y);
+        mspringi_product_add(p, b, x, y);
+        mspringi_product_count(p, a, (double)(dx * x + dy * y));
     }
-    return sum;
 }
 
 /* --------------------------------------------------------------------------------------------------- the whole */
@@ -233,9 +234,12 @@ void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_m
     assemble_panels(network, member);
     clear_others(network, slots);
     mspringi_team_barrier(member);
-    if (network->topology.irregular_count > 0 || mspringi_elements_have_terms(network)) {
+    if (network->topology.irregular_count > 0) {
+        assemble_irregular(network, mspringi_all_slots_of(network, member));
+        mspringi_team_barrier(member);
+    }
+    if (mspringi_elements_have_terms(network)) {
         if (member->index == 0) {
-            assemble_irregular(network);
             mspringi_elements_stiffen(network);
             mspringi_elements_add_terms(substep->network);
         }
@@ -247,6 +251,18 @@ void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_m
     }
 }
 
+// Multiply by what the panels do not have.
+static void multiply_others(const mspring_network *network, const mspringi_team_member *member) {
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    const mspringi_slots own = mspringi_all_slots_of(network, member);
+    const mspringi_product product = {n->direction, n->product, own, n->other_sums};
+    for (size_t slot = own.first; slot < own.end; slot += MSPRINGI_CHUNK)
+        n->other_sums[slot / MSPRINGI_CHUNK] = 0.0;
+    multiply_irregular(network, &product);
+    mspringi_constraints_multiply(&network->constraints, &product);
+    mspringi_condense_multiply(network, &product);
+}
+
 double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team_member *member) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
@@ -254,14 +270,13 @@ double mspringi_multiply(const mspringi_implicit_substep *substep, mspringi_team
     mspringi_team_barrier(member);
     const bool has_others = network->topology.irregular_blocks > 0 || network->topology.irregular_count > 0 ||
                             network->constraints.active_count > 0 || n->paths.count > 0;
+    double sum = 0.0;
     if (has_others) {
-        if (member->index == 0)
-            n->irregular_product = multiply_irregular(network, n->direction, n->product) +
-                                   mspringi_constraints_multiply(&network->constraints, n->direction, n->product) +
-                                   mspringi_condense_multiply(network, n->direction, n->product);
+        multiply_others(network, member);
         mspringi_team_barrier(member);
+        for (size_t chunk = 0; chunk < mspringi_slot_count(network) / MSPRINGI_CHUNK + 1; ++chunk)
+            sum += n->other_sums[chunk];
     }
-    double sum = has_others ? n->irregular_product : 0.0;
     for (uint32_t p = 0; p < n->panels.count; ++p)
         sum += (double)n->panels.sums[p];
     return sum;

@@ -301,25 +301,23 @@ static void gather_ends(const mspringi_path_segment *s, mspringi_field from, dou
     }
 }
 
-double mspringi_condense_multiply(const mspring_network *network, mspringi_field from, mspringi_field to) {
+void mspringi_condense_multiply(const mspring_network *network, const mspringi_product *product) {
     const mspringi_paths *p = &mspringi_implicit_of(network)->paths;
-    double sum = 0.0;
     EACH_SEGMENT(p, s) {
-        double d[4], q[4];
-        gather_ends(s, from, d);
+        const uint32_t first = s->ends[s->ends[0] == MSPRING_NONE];
+        double d[4], q[4], sum = 0.0;
+        if (!mspringi_product_has(product, s->ends[0]) && !mspringi_product_has(product, s->ends[1]))
+            continue;
+        gather_ends(s, product->from, d);
         for (int i = 0; i < 4; ++i) {
             const double *row = s->block[i];
             q[i] = (row[0] * d[0] + row[1] * d[1]) + (row[2] * d[2] + row[3] * d[3]);
             sum += d[i] * q[i];
         }
-        for (int end = 0; end < 2; ++end) {
-            if (s->ends[end] == MSPRING_NONE)
-                continue;
-            to.x[s->ends[end]] += (float)q[2 * end];
-            to.y[s->ends[end]] += (float)q[2 * end + 1];
-        }
+        for (int end = 0; end < 2; ++end)
+            mspringi_product_add(product, s->ends[end], (float)q[2 * end], (float)q[2 * end + 1]);
+        mspringi_product_count(product, first, sum);
     }
-    return sum;
 }
 
 static void finish_segment(const mspringi_implicit *n, const mspringi_paths *p, const mspringi_path_segment *s,

@@ -92,7 +92,8 @@ static mspring_result allocate(making *m) {
     n->mass = mspringi_alloc(memory, slots, sizeof *n->mass);
     n->diagonal = mspringi_alloc(memory, 3 * slots, sizeof *n->diagonal);
     n->sums = mspringi_alloc(memory, slots / MSPRINGI_CHUNK + 1, sizeof *n->sums);
-    return n->x && n->mass && n->diagonal && n->sums ? MSPRING_OK : no_memory(network);
+    n->other_sums = mspringi_alloc(memory, slots / MSPRINGI_CHUNK + 1, sizeof *n->other_sums);
+    return n->x && n->mass && n->diagonal && n->sums && n->other_sums ? MSPRING_OK : no_memory(network);
 }
 
 static mspring_result allocate_history(making *m) {
@@ -413,10 +414,10 @@ void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *de
 #define FIELD(member) ARRAY(member.x), VIEW(member.y)
 #define HISTORY(member) FIELD(member.first), VIEW(member.second.x), VIEW(member.second.y)
 static const mspringi_array_entry list[] = {
-    HISTORY(history), HISTORY(backup),     HISTORY(previous),   ARRAY(x),        FIELD(velocity),
-    FIELD(residual),  FIELD(displacement), FIELD(direction),    FIELD(product),  FIELD(scaled),
-    FIELD(arm),       ARRAY(mass),         ARRAY(diagonal),     ARRAY(factors),  ARRAY(force_carry),
-    ARRAY(carry),     ARRAY(sums),         ARRAY(tile_motions), ARRAY(unknowns), ARRAY(is_coupled),
+    HISTORY(history),    HISTORY(backup),  HISTORY(previous),  ARRAY(x),      FIELD(velocity), FIELD(residual),
+    FIELD(displacement), FIELD(direction), FIELD(product),     FIELD(scaled), FIELD(arm),      ARRAY(mass),
+    ARRAY(diagonal),     ARRAY(factors),   ARRAY(force_carry), ARRAY(carry),  ARRAY(sums),     ARRAY(other_sums),
+    ARRAY(tile_motions), ARRAY(unknowns),  ARRAY(is_coupled),
 };
 static const mspringi_array_table columns = MSPRINGI_ARRAY_TABLE(list);
 

@@ -29,6 +29,7 @@
 #include "store/network.h"
 #include "tasks/team.h"
 
+#include "solvers/constraints/constraint_services.h"
 #include "solvers/direct/direct.h"
 #include "solvers/implicit/coarse.h"
 #include "solvers/implicit/energy_budget.h"
@@ -97,9 +98,9 @@ typedef struct mspringi_implicit {
     uint32_t solo_substeps;             ///< coming substeps of one worker, because others had no core
     uint32_t solo_backoff;              ///< length of the present run of them
     float *sums;                        ///< [chunks]
+    double *other_sums;                 ///< [chunks] p . A p of what panels do not have
     mspringi_tile_motion *tile_motions; ///< [tiles]
     uint8_t *is_coupled;      ///< [loose and spare slots] 1 with added springs: not diagonal in A; NULL: none
-    double irregular_product; ///< share of irregular springs and contacts in p . A p
     bool uses_euler;          ///< the present substep is of implicit Euler: an impact, or a history of no use
     bool restarts_with_euler; ///< repeat it as one of implicit Euler
     bool must_solve_again;    ///< solve again: the active set has changed
@@ -180,15 +181,20 @@ typedef struct mspringi_implicit_substep {
     mspringi_history_kind history;
 } mspringi_implicit_substep;
 
-/// Range of slots: a team member's share of the chunks.
-typedef struct mspringi_slots {
-    size_t first, end;
-} mspringi_slots;
+/// A team member's share of the chunks in use.
 static inline mspringi_slots mspringi_slots_of(const mspring_network *network, const mspringi_team_member *member) {
     const size_t slots = mspringi_implicit_of(network)->used_slot_end;
     const size_t chunks = (slots + MSPRINGI_CHUNK - 1) / MSPRINGI_CHUNK;
     const size_t end = mspringi_range_end(member, chunks) * MSPRINGI_CHUNK;
     return (mspringi_slots){mspringi_range_begin(member, chunks) * MSPRINGI_CHUNK, end < slots ? end : slots};
+}
+
+/// The same of all chunks: the last member has those that are not in use, too.
+static inline mspringi_slots mspringi_all_slots_of(const mspring_network *network,
+                                                   const mspringi_team_member *member) {
+    const mspringi_slots slots = mspringi_slots_of(network, member);
+    return (mspringi_slots){slots.first,
+                            member->index + 1 == member->count ? mspringi_slot_count(network) : slots.end};
 }
 
 /// True if a team member owns a tile or cell whose middle slot this is: it moves most of its particles. (With equal

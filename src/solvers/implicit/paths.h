@@ -18,6 +18,7 @@
 #define MSPRINGI_PATHS_H
 
 #include "kernels/system.h"
+#include "solvers/constraints/constraint_services.h"
 #include "store/network.h"
 #include "tasks/team.h"
 
@@ -88,8 +89,8 @@ void mspringi_condense_straighten(const mspring_network *network, const mspringi
 void mspringi_condense(const mspring_network *network, mspringi_team_member *member);
 /// Find the displacements along them, and take their directions for 0, before a barrier.
 void mspringi_condense_finish(const mspring_network *network, mspringi_team_member *member, float alpha);
-/// Multiply: to += S from. Return from . S from.
-double mspringi_condense_multiply(const mspring_network *network, mspringi_field from, mspringi_field to);
+/// Multiply: to += S from.
+void mspringi_condense_multiply(const mspring_network *network, const mspringi_product *product);
 /// Add S to the coarse matrix.
 void mspringi_condense_stiffen(const mspring_network *network);
 
