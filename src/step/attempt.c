@@ -134,6 +134,7 @@ static mspringi_extrema run(mspring_network *network, const mspringi_attempt *at
     mspringi_field base = {NULL, NULL};
     network->added_substeps = 0;
     network->first_substep = 0;
+    network->forces.known = base;
     network->dithered = has_dither(network) ? attempt->substeps / 4 * 4 : 0;
     begin_lag(network, attempt);
     tidy(network);

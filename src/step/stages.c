@@ -72,6 +72,7 @@ void mspringi_stages_before_step(mspring_network *network, const mspringi_attemp
 
 void mspringi_stages_forces_known(mspring_network *network, const mspringi_attempt *attempt, mspringi_field force) {
     const mspringi_stages *stages = attempt->stages;
+    network->forces.known = force;
     for (size_t i = 0; i < stages->count; ++i)
         if (stages->used[i]->forces_known)
             stages->used[i]->forces_known(network, force);

@@ -91,6 +91,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
         accept(network, &attempt);
     else
         give_up(network, &attempt, substeps, &any_shape);
+    network->forces.known = (mspringi_field){NULL, NULL};
     network->outcome.work = attempt.work / attempt.calm_work;
     return attempt.result;
 }

@@ -32,6 +32,7 @@ typedef struct mspringi_forces {
     mspringi_field base;   ///< held, with the forces of hooks before the step: the same in all substeps
     mspringi_field driven; ///< base, with the forces of hooks before the substep
     mspringi_field inner;  ///< base or driven, with forces within bodies, as of areas
+    mspringi_field known;  ///< from outside in the first substep of the present attempt; NULL: none, or no step
     bool held_any;         ///< held is not all zero
     uint32_t held_calls;   ///< if held_any: calls that added forces up to MSPRINGI_MODEST to it
 } mspringi_forces;

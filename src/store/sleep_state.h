@@ -34,7 +34,6 @@ typedef struct mspringi_sleep {
     float *inverse_mass;        ///< [slots] then, 1/kg
     float *held;                ///< [4][slots] positions and low words of sleepers during substeps
     mspringi_field force;       ///< from outside when islands fell asleep, N
-    mspringi_field in_force;    ///< of the present step; NULL outside one, and in networks without sleep
     uint64_t masses, links, moved; ///< counters of edits at the last update; moved: edits.state
     uint64_t piled;                ///< edits.sleep_changes for which piles were found
 } mspringi_sleep;

@@ -129,7 +129,7 @@ static mspringi_clearance find_clearance(const mspringi_floor *floor, const box 
 
 // Largest acceleration by forces from outside, along x or y, m/s^2.
 static double hardest_push(const mspring_network *network) {
-    const mspringi_field *force = &network->sleep.in_force;
+    const mspringi_field *force = &network->forces.known;
     const float *inverse_mass = mspringi_active_inverse_mass(network);
     const size_t slots = (size_t)network->topology.block_count * MSPRINGI_WIDTH;
     float hardest[MSPRINGI_WIDTH] = {0.0f}, all = 0.0f;

@@ -198,7 +198,6 @@ static uint32_t find_forced_lanes(const mspring_network *network, mspringi_field
 // Wake particles if their external force has changed since they fell asleep.
 static void wake_by_forces(mspring_network *network, mspringi_field force) {
     mspringi_sleep *s = &network->sleep;
-    s->in_force = force;
     if (s->sleeping == 0 || (!force.x && !s->has_force))
         return;
     for (size_t block = 0; block < network->topology.block_count; ++block) {
@@ -390,9 +389,6 @@ static void follow_origin(mspring_network *network) {
 }
 
 static void fall_asleep(mspring_network *network, double dt) {
-    mspringi_sleep *s = &network->sleep;
-    const mspringi_field force = s->in_force;
-    s->in_force = (mspringi_field){NULL, NULL};
     if (!(network->settings.sleep_speed > 0.0f))
         return;
     follow_origin(network);
@@ -402,25 +398,17 @@ static void fall_asleep(mspring_network *network, double dt) {
     mark_moving(network);
     if (!mark_sleepy(network, dt))
         return;
-    mspringi_sleep_fall(network, force);
+    mspringi_sleep_fall(network, network->forces.known);
     if (mspringi_sleep_is_whole(network))
         mspringi_notify_change(network, MSPRINGI_CHANGED_MOTION, 0);
-}
-
-static void drop_force(mspring_network *network, const mspringi_attempt *attempt) {
-    (void)attempt;
-    network->sleep.in_force = (mspringi_field){NULL, NULL};
 }
 
 static bool is_used(const mspring_network *network) {
     return network->sleep.state != NULL;
 }
 
-const mspringi_stage mspringi_stage_waking = {.is_used = is_used,
-                                              .forces_known = wake_by_forces,
-                                              .after_step = update_sleep,
-                                              .roll_back = restore,
-                                              .undo = drop_force};
+const mspringi_stage mspringi_stage_waking = {
+    .is_used = is_used, .forces_known = wake_by_forces, .after_step = update_sleep, .roll_back = restore};
 
 // After all stages that change the state.
 const mspringi_stage mspringi_stage_falling_asleep = {.is_used = is_used, .after_step = fall_asleep};

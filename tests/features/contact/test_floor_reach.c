@@ -347,12 +347,53 @@ static void what_dips_within_a_step_is_met(void **state) {
     }
 }
 
+static void count_call(const mspring_hook_args *args, void *user) {
+    (void)args;
+    ++*(uint32_t *)user;
+}
+
+/// The survey knows the forces of the step, with and without sleep: nothing that they move is met by surprise.
+static void forces_of_the_host_are_surveyed(void **state) {
+    (void)state;
+    for (int sleeps = 0; sleeps < 2; sleeps++) {
+        enum { SIDE = 24, SUBSTEPS = 16 };
+        static float push[SIDE * SIDE], none[SIDE * SIDE];
+        const double plane[4] = {0, 0, 0, 1};
+        const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1e5, 1e5}, .damping = {10, 10}};
+        uint32_t calls = 0, hook;
+        uint64_t seed = 1;
+        recipe made = {0};
+        recipe_lattice(&made, SIDE, SIDE, 0, 1, 1, &stuff, &seed);
+        mspring_network_def def = support_def(0, SUBSTEPS);
+        def.sleep_speed = sleeps ? 1e-12f : 0.0f;
+        mspring_network *network = recipe_network(&made, &def);
+        recipe_free(&made);
+        mspring_floor_def floor;
+        check_ok(mspring_floor_def_init(&floor, sizeof floor));
+        floor.planes = plane;
+        floor.plane_count = 1;
+        check_ok(mspring_network_set_floor(network, &floor));
+        check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_SUBSTEP, count_call, &calls, &hook));
+        for (int step = 0; step < 20; step++) { // up and down again
+            for (int i = 0; i < SIDE * SIDE; i++) {
+                push[i] = step % 4 == 0 || step % 4 == 3 ? 300.0f : -300.0f;
+            }
+            calls = 0;
+            check_ok(mspring_network_apply_forces(network, 0, SIDE * SIDE, none, push, 1));
+            check_ok(mspring_network_step(network, 1.0 / 60));
+            assert_int_equal(calls, SUBSTEPS);
+        }
+        mspring_network_destroy(network);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_step_begun_anew_takes_flow_back),
         cmocka_unit_test(falls_the_same_way),
         cmocka_unit_test(is_taken_again_if_it_was_not_out_of_reach),
         cmocka_unit_test(is_met_after_a_long_fall),
+        cmocka_unit_test(forces_of_the_host_are_surveyed),
         cmocka_unit_test(what_is_loaded_flies_the_same_way),
         cmocka_unit_test(what_dips_within_a_step_is_met),
         cmocka_unit_test(a_ridge_is_met_beside_any_other_body),
