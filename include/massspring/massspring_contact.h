@@ -42,9 +42,9 @@ typedef struct mspring_contact_def {
     uint32_t sweeps;       ///< over all contacts in a substep, 1 to 64; default 4. With more, stacks lie stiller.
     uint32_t capacity;     ///< pairs of a point and a spring that there is room for at first, at most 2^26; default 0:
                            ///< 4096 + 2 for each particle + 16 for each particle of the outline
-    uint32_t max_capacity; ///< pairs that there may be room for, at most 2^26; default 0: four times the default of
-                           ///< capacity. A step with more near pairs than there is room for makes more. Equal to
-                           ///< capacity: no step allocates
+    uint32_t max_capacity; ///< pairs that there may be room for, at most 2^26; default 0: 16 times the default of
+                           ///< capacity, of which a quarter may touch. A step with more near pairs than there is room
+                           ///< for makes more. Equal to capacity: no step allocates
 } mspring_contact_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().

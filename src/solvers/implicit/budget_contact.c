@@ -115,7 +115,7 @@ bool mspringi_implicit_contact_gained_energy(const mspring_network *network, dou
                             c.mass * (gx * (c.x - a->x + a->shift_x) + gy * (c.y - a->y + a->shift_y));
         gain += left_with(a, &c) + a->elastic - had - work;
         most += DRIVEN_SHARE * had * (h / (double)network->contacts->h) + DRIVEN_FALL * c.mass * fall +
-                mspringi_energy_rounding(a, a->internal);
+                c.mass * (a->push_speed * a->push_speed) + mspringi_energy_rounding(a, a->internal);
     }
     if (!any)
         return false;

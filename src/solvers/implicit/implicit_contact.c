@@ -498,6 +498,8 @@ static void account(const mspringi_budget_sums *all, const mspringi_contact_cons
     a->sums[MSPRINGI_EFFECT_WORK] += fx * x + fy * y;
     a->pushed += fx * x + fy * y;
     a->is_touched = true;
+    if (!t->is_bounce && t->normal_impulse > 0.0 && t->target_speed > a->push_speed)
+        a->push_speed = t->target_speed;
 }
 
 void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all) {
@@ -505,7 +507,7 @@ void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all) {
     const uint32_t count = count_of(all->network);
     mspringi_budget *budget = &mspringi_implicit_of(all->network)->budget;
     for (uint32_t i = 0; i < budget->count; ++i)
-        budget->components[i].pushed = 0.0;
+        budget->components[i].pushed = budget->components[i].push_speed = 0.0;
     for (uint32_t i = 0; i < count; ++i)
         for (int k = 0; k < 3 && (contacts->constraints[i].normal_impulse != 0.0 ||
                                   contacts->constraints[i].tangent_impulse != 0.0);
