@@ -15,10 +15,6 @@
 #define JOINED 1u
 #define CONDENSED 2u
 
-/// Share of its stiffness that a pivot has besides its mass: rounding in double precision must not take all of
-/// that.
-#define LEAST_SHARE 1e-15
-
 static mspringi_path_segment *segments_of(const mspringi_paths *p, const mspringi_path *path) {
     return p->segments + path->first / MSPRINGI_LEAST_PATH;
 }
@@ -127,9 +123,8 @@ static void add_columns(path_block block, const mspringi_path_response *from, ms
 static path_block pivot_of(const mspringi_paths *p, uint32_t node, double mass, path_block before,
                            path_block behind, const double *up) {
     const double *held = p->held[node];
-    const double own = mass + LEAST_SHARE * (before.xx + before.yy + behind.xx + behind.yy);
-    path_block pivot = {own + before.xx + behind.xx + held[0], before.xy + behind.xy + held[1],
-                        own + before.yy + behind.yy + held[2]};
+    path_block pivot = {mass + before.xx + behind.xx + held[0], before.xy + behind.xy + held[1],
+                        mass + before.yy + behind.yy + held[2]};
     if (!up)
         return pivot;
     pivot.xx -= before.xx * up[0] + before.xy * up[2];
@@ -138,9 +133,37 @@ static path_block pivot_of(const mspringi_paths *p, uint32_t node, double mass, 
     return pivot;
 }
 
-static path_block inverse_of(path_block block) {
-    const double inverse = 1.0 / (block.xx * block.yy - block.xy * block.xy);
-    return (path_block){block.yy * inverse, -block.xy * inverse, block.xx * inverse};
+/// Factor L D L^T of a pivot, which begins with its larger diagonal entry: of y if it is turned.
+typedef struct path_factor {
+    double ratio, first, second; ///< L, and the reciprocals of D
+    bool is_turned;
+} path_factor;
+
+// What is left of the second diagonal entry is at least the mass, whatever rounding says.
+static path_factor factor_of(path_block pivot, double mass) {
+    const bool is_turned = pivot.yy > pivot.xx;
+    const double larger = is_turned ? pivot.yy : pivot.xx, smaller = is_turned ? pivot.xx : pivot.yy;
+    const double ratio = pivot.xy / larger, left = smaller - ratio * pivot.xy;
+    return (path_factor){ratio, 1.0 / larger, 1.0 / (left > mass ? left : mass), is_turned};
+}
+
+// Divide a vector by a pivot. Its inverse would be as wrong across a spring as along it, where an error counts
+// k / m times as much: at 1e12 N/m a rope with masses of 1 g to 1 t was 1.2 mm off after 4 steps, now less than 1
+// um.
+static void divide(const path_factor *f, double *x, double *y) {
+    double *const first = f->is_turned ? y : x, *const second = f->is_turned ? x : y;
+    *second = (*second - f->ratio * *first) * f->second;
+    *first = *first * f->first - f->ratio * *second;
+}
+
+// P^-1 times the block of the spring behind.
+static void find_up(const path_factor *pivot, path_block behind, double *up) {
+    double columns[2][2] = {{behind.xx, behind.xy}, {behind.xy, behind.yy}};
+    for (int i = 0; i < 2; ++i) {
+        divide(pivot, &columns[i][0], &columns[i][1]);
+        up[i] = columns[i][0];
+        up[2 + i] = columns[i][1];
+    }
 }
 
 // Forward: pivots, and the responses but for what comes back. The system loses the segment.
@@ -152,9 +175,9 @@ static void eliminate_segment(const mspringi_implicit *n, const mspringi_paths *
         const bool is_first = i == segment->first, is_last = i + 1 == segment->end;
         const uint32_t slot = p->slots[i];
         const path_block behind = block_of_spring(n, factors[i + 1]);
-        const path_block pivot =
-            pivot_of(p, i, (double)n->mass[slot], before, behind, is_first ? NULL : p->ups[i - 1]);
-        const path_block inverse = inverse_of(pivot);
+        const double mass = (double)n->mass[slot];
+        const path_factor pivot =
+            factor_of(pivot_of(p, i, mass, before, behind, is_first ? NULL : p->ups[i - 1]), mass);
         mspringi_path_response sum = {{0.0}, {0.0}};
         sum.x[4] = (double)n->residual.x[slot];
         sum.y[4] = (double)n->residual.y[slot];
@@ -166,12 +189,10 @@ static void eliminate_segment(const mspringi_implicit *n, const mspringi_paths *
         if (is_last) {
             sum.x[2] = last.xx, sum.x[3] = sum.y[2] = last.xy, sum.y[3] = last.yy;
         }
-        memset(&p->responses[i], 0, sizeof p->responses[i]);
-        add_columns(inverse, &sum, &p->responses[i]);
-        p->ups[i][0] = inverse.xx * behind.xx + inverse.xy * behind.xy;
-        p->ups[i][1] = inverse.xx * behind.xy + inverse.xy * behind.yy;
-        p->ups[i][2] = inverse.xy * behind.xx + inverse.yy * behind.xy;
-        p->ups[i][3] = inverse.xy * behind.xy + inverse.yy * behind.yy;
+        for (int k = 0; k < 5; ++k)
+            divide(&pivot, &sum.x[k], &sum.y[k]);
+        p->responses[i] = sum;
+        find_up(&pivot, behind, p->ups[i]);
         p->mass[i] = n->mass[slot];
         p->marks[i] |= CONDENSED;
         n->mass[slot] = n->residual.x[slot] = n->residual.y[slot] = 0.0f;
