@@ -20,6 +20,7 @@
 typedef enum scene {
     TANGLE,  ///< a thrown chain with angles that touches itself
     HEAP,    ///< beams of 12x3 dropped one by one into a box
+    ACROSS,  ///< stiff ones, across each other from the start: each step spends its work
     RODS,    ///< rods that lie across each other from the start
     CLIQUE,  ///< particles that are all joined, thrown at themselves
     PRESS,   ///< two stiff beams, thrown at each other
@@ -27,7 +28,7 @@ typedef enum scene {
     SCENES
 } scene;
 
-static const char *const names[SCENES] = {"tangle", "heap", "rods", "clique", "press", "in a wall"};
+static const char *const names[SCENES] = {"tangle", "heap", "across", "rods", "clique", "press", "in a wall"};
 
 static void beam(recipe *made, double x, double y, double angle, float vx, float vy, double stiffness,
                  uint64_t *seed) {
@@ -66,6 +67,10 @@ static void draw(recipe *made, scene kind, uint64_t *seed) {
         beam(made, support_random_between(seed, -6, 6), 8 + 13 * i, support_random_between(seed, 0, 6.28), 0,
              (float)support_random_between(seed, -20, 0), 1e6, seed);
     }
+    for (int i = 0; i < (kind == ACROSS ? 6 : 0); i++) {
+        beam(made, support_random_between(seed, -6, 6), support_random_between(seed, 6, 20),
+             support_random_between(seed, 0, 6.28), 0, -23, 5e9, seed);
+    }
     for (int i = 0; i < (kind == PRESS ? 2 : 0); i++) {
         beam(made, i, 4.0 * i, 0.2 * i, 0, i ? -100.0f : 100.0f, 1e12, seed);
     }
@@ -103,7 +108,7 @@ static mspring_network *network_of(scene kind, mspring_solver solver, uint32_t s
     floor.planes = box;
     floor.plane_count = 3;
     floor.friction = 0.5f;
-    if (kind == HEAP || kind == RODS || kind == IN_WALL) {
+    if (kind == HEAP || kind == ACROSS || kind == RODS || kind == IN_WALL) {
         check_ok(mspring_network_set_floor(network, &floor));
     }
     mspring_contact_def contact;
@@ -176,8 +181,8 @@ static void work_is_bounded(void **state) {
                     "%s, solver %d, most_work %u: %.1f calm steps at most, %u spent, %.3g J gained of %.3g\n",
                     names[kind], (int)solver, (unsigned)most, s.work, (unsigned)s.spent, s.gain, s.had);
                 assert_true(s.work <= TIMES * most + last_pass(kind, solver) + LAST_INTERVAL);
-                // The budget's millionth a substep, rounding of k l^2 = 1e12 J in as many springs, and m push_speed^2
-                // of 60 kg that overlap from the start.
+                // The budget's millionth a substep, rounding of k l^2 = 1e12 J in as many springs, and m
+                // push_speed^2 of 60 kg that overlap from the start.
                 const double pushed = 60 * 0.15 * 0.15, rest = kind == PRESS ? 0.1 : kind == RODS ? pushed : 0;
                 assert_true(s.gain <= 1e-5 * s.had + rest);
             }
