@@ -208,14 +208,16 @@ static grid_range range_of(const mspringi_grid_level *level, const search *s, do
 uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
     const mspringi_edge_grid *cells = &contacts->cells;
     const mspringi_outline *o = &contacts->outline;
-    const uint32_t own = o->at[o->first[p]];
+    const uint32_t own = o->first[p];
     const double radius = mspringi_is_collider_point(contacts, p) ? mspringi_collider_of(contacts, p)->radius : 0.0;
     uint64_t passed = 0;
     // Two particles without springs are one pair, and such a particle pairs with a corner by the corner's edges.
-    search s = {.x = contacts->x[p],
-                .y = contacts->y[p],
+    // Inner particles have no edge.
+    const bool has_point_edge = own == o->first[p + 1] || o->a[o->at[own]] == o->b[o->at[own]];
+    search s = {.x = contacts->x[p] - contacts->way_x,
+                .y = contacts->y[p] - contacts->way_y,
                 .reach = (contacts->thickness + contacts->margin[p] + radius) * (1.0 + ROUNDING),
-                .point = o->a[own] == o->b[own] ? p : ANY_POINT,
+                .point = has_point_edge ? p : ANY_POINT,
                 .passed = &passed};
     uint32_t count = 0;
     for (uint32_t l = 0; l < MSPRINGI_GRID_LEVELS && !s.is_wide; ++l) {

@@ -43,7 +43,7 @@ static bool are_in_one_group(const mspring_network *network, mspring_id p, mspri
     return !group || p >= particles || q >= particles || group[p] == group[q];
 }
 
-static bool may_touch(const mspring_network *network, mspring_id p, mspring_id q) {
+bool mspringi_may_touch(const mspring_network *network, mspring_id p, mspring_id q) {
     const mspringi_contacts *contacts = network->contacts;
     return contacts->groups[p] & contacts->masks[q] && contacts->groups[q] & contacts->masks[p] &&
            are_in_one_group(network, p, q);
@@ -74,7 +74,7 @@ static bool are_near(const mspring_network *network, mspringi_contacts *contacts
     return p != a && p != b &&
            distance_of(contacts, p, edge) <
                contacts->thickness + contacts->margin[p] + mspringi_margin_of_edge(contacts, edge) &&
-           may_touch(network, p, a) && may_touch(network, p, b) && !is_excluded(network, contacts, p, edge);
+           mspringi_may_touch(network, p, a) && mspringi_may_touch(network, p, b) && !is_excluded(network, contacts, p, edge);
 }
 
 // Move a number down a heap to where none below it is larger.
@@ -198,6 +198,7 @@ static void activate_all(mspringi_contacts *contacts) {
 static bool make_list(const mspring_network *network, mspringi_contacts *contacts) {
     const mspringi_outline *o = &contacts->outline;
     contacts->count = 0;
+    contacts->way_x = contacts->way_y = 0.0;
     contacts->stamp_of = MSPRING_NONE;
     contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count;
     if (o->edge_count > 0) {
@@ -397,17 +398,20 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
             measure_pairs(contacts);
         }
     }
-    if (contacts->is_pair_list_full || contacts->is_out_of_room) {
-        // The step will be rejected. Its other substeps have no candidates: these were of another list.
-        contacts->candidate_count = 0;
-        activate_all(contacts);
-        return false;
+    bool has_failed = contacts->is_pair_list_full || contacts->is_out_of_room;
+    if (!has_failed) {
+        if (contacts->is_uniform)
+            collect_uniform(contacts);
+        else
+            collect_by_speed(contacts);
+        mspringi_inner_points_add(network, contacts);
+        has_failed = contacts->is_pair_list_full || contacts->is_out_of_room;
     }
-    if (contacts->is_uniform)
-        collect_uniform(contacts);
-    else
-        collect_by_speed(contacts);
+    if (has_failed) // The step will be rejected. Its other substeps have no candidates: these were of another list.
+        contacts->candidate_count = 0;
     activate_all(contacts);
+    if (has_failed)
+        return false;
     contacts->valid = (uint32_t)contacts->candidate_substeps;
     return true;
 }

@@ -1,0 +1,154 @@
+/// Inner particles against colliders. Where a soft body is pressed flat against a wall, an inner particle would pass
+/// between two points of the outline, and then the wall. So the particles behind the outline keep the thickness from
+/// colliders, too.
+///
+/// A search goes inward from outline points that may touch a collider, from spring to spring, as long as it meets
+/// particles that may touch one before the next scan. It costs little: behind an outline point that touches, the
+/// next particle is far from the wall unless the body is flat. The pairs it finds follow from positions and
+/// velocities of the scan alone. They lie at the end of the list of pairs, and are candidates all.
+#include <math.h>
+#include <string.h>
+
+#include "features/contact/contacts.h"
+#include "store/id_pool.h"
+#include "store/springs.h"
+
+/// Sides of other colliders than the one that led to a particle are sought if it is nearer than this to that one,
+/// beside the reach of a candidate, as a share of the thickness.
+#define BESIDE 1.0
+
+// Way of a node until the next scan, m.
+static double way_of(const mspringi_contacts *contacts, double speed) {
+    return mspringi_bound_at(&contacts->candidate_margin, speed);
+}
+
+static double speed_of_edge(const mspringi_contacts *contacts, uint32_t edge) {
+    return contacts->is_uniform ? contacts->max_speed
+                                : mspringi_max_of_ends(contacts, contacts->assumed_speed, edge);
+}
+
+// Distance of a particle from a collider's side beyond the reach of a candidate, m; negative: it is one.
+static double beyond_reach(const mspringi_contacts *contacts, mspring_id p, uint32_t edge, double *distance) {
+    const mspring_id a = contacts->outline.a[edge], b = contacts->outline.b[edge];
+    const mspringi_closest_point at = mspringi_closest_point_on_edge(
+        contacts->x[p], contacts->y[p], contacts->x[a], contacts->y[a], contacts->x[b], contacts->y[b]);
+    *distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_collider_of(contacts, a)->radius;
+    return *distance - contacts->thickness - way_of(contacts, contacts->assumed_speed[p]) -
+           way_of(contacts, speed_of_edge(contacts, edge));
+}
+
+// Find position and speed of an inner particle.
+static void load(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+    const mspringi_state *s = &network->state;
+    const uint32_t slot = network->topology.slot_of_particle[p];
+    const double ux = (double)s->vx[slot] - contacts->mean_vx, uy = (double)s->vy[slot] - contacts->mean_vy,
+                 speed = sqrt(ux * ux + uy * uy);
+    contacts->x[p] = mspringi_x_of(s, slot);
+    contacts->y[p] = mspringi_y_of(s, slot);
+    contacts->assumed_speed[p] = speed <= contacts->min_speed ? contacts->min_speed : speed;
+}
+
+// A pair in the order in which they are found: from the end of the list.
+static mspringi_pair *pair_at(const mspringi_contacts *contacts, uint32_t i) {
+    return &contacts->list[contacts->capacity - 1 - i];
+}
+
+// No pair of the particle can touch within the quiet substeps.
+static void shorten_quiet(mspringi_contacts *contacts, mspring_id p, uint32_t edge, double distance) {
+    const double way = 2.0 * contacts->travel.at_rest +
+                       contacts->travel.per_speed * (contacts->assumed_speed[p] + speed_of_edge(contacts, edge)),
+                 room = distance - contacts->thickness;
+    if (!(room >= (double)contacts->calm_substeps * way))
+        contacts->calm_substeps = room >= 2.0 * way ? (uint32_t)(room / way) : 0;
+}
+
+// Add the pairs of a particle with colliders.
+static void add_pairs(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+    contacts->margin[p] = way_of(contacts, contacts->assumed_speed[p]);
+    const uint32_t found = mspringi_edge_grid_search(network, contacts, p);
+    contacts->work += found;
+    for (uint32_t k = 0; k < found; ++k) {
+        const uint32_t edge = contacts->cells.found[k];
+        const mspring_id a = contacts->outline.a[edge];
+        double distance;
+        if (!mspringi_is_collider_point(contacts, a) || beyond_reach(contacts, p, edge, &distance) > 0.0 ||
+            !mspringi_may_touch(network, p, a))
+            continue;
+        if (contacts->count + contacts->inner_count == contacts->capacity) {
+            contacts->is_pair_list_full = contacts->lacks_room = true;
+            return;
+        }
+        *pair_at(contacts, contacts->inner_count++) = (mspringi_pair){.point = p, .edge = edge};
+        shorten_quiet(contacts, p, edge, distance);
+    }
+}
+
+// Visit the inner particles next to one that is near a collider's side.
+static void go_inward(const mspring_network *network, mspringi_contacts *contacts, mspring_id p, uint32_t edge) {
+    const mspringi_outline *o = &contacts->outline;
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
+    mspring_id spring, ends[2];
+    uint32_t visits = 0;
+    for (; (spring = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE; ++visits) {
+        mspringi_outline_ends(network, spring, ends);
+        const mspring_id q = ends[0] == p ? ends[1] : ends[0];
+        double distance;
+        if (o->first[q] != o->first[q + 1] || contacts->visited[q] == contacts->visit ||
+            !mspringi_spring_is_live(network, spring))
+            continue;
+        load(network, contacts, q);
+        if (beyond_reach(contacts, q, edge, &distance) > BESIDE * contacts->thickness)
+            continue;
+        contacts->visited[q] = contacts->visit;
+        add_pairs(network, contacts, q);
+    }
+    mspringi_contact_count_visits(contacts, visits);
+}
+
+// Begin at a candidate.
+static void begin_at(const mspring_network *network, mspringi_contacts *contacts, const mspringi_pair *pair) {
+    const mspringi_outline *o = &contacts->outline;
+    const mspring_id p = pair->point, ends[2] = {o->a[pair->edge], o->b[pair->edge]};
+    if (mspringi_is_collider_point(contacts, ends[0]))
+        go_inward(network, contacts, p, pair->edge);
+    for (uint32_t j = o->first[p]; mspringi_is_collider_point(contacts, p) && j < o->first[p + 1]; ++j)
+        for (int i = 0; i < 2; ++i)
+            go_inward(network, contacts, ends[i], o->at[j]);
+}
+
+static bool is_before(const mspringi_pair *one, const mspringi_pair *other) {
+    return one->point != other->point ? one->point < other->point : one->edge < other->edge;
+}
+
+// Sort the pairs by point and edge (Shell sort): the order of springs at a particle depends on its past.
+static void sort_pairs(const mspringi_contacts *contacts) {
+    mspringi_pair *pairs = contacts->list + (contacts->capacity - contacts->inner_count);
+    uint32_t gap = 1;
+    while (gap < contacts->inner_count / 3)
+        gap = 3 * gap + 1;
+    for (; gap > 0; gap /= 3)
+        for (uint32_t i = gap; i < contacts->inner_count; ++i) {
+            const mspringi_pair moved = pairs[i];
+            uint32_t at = i;
+            for (; at >= gap && is_before(&moved, &pairs[at - gap]); at -= gap)
+                pairs[at] = pairs[at - gap];
+            pairs[at] = moved;
+        }
+}
+
+void mspringi_inner_points_add(const mspring_network *network, mspringi_contacts *contacts) {
+    contacts->inner_count = 0;
+    if (contacts->colliders.count == 0)
+        return;
+    if (++contacts->visit == 0) { // no stamp of 2^32 scans ago may look new
+        memset(contacts->visited, 0, contacts->particles * sizeof *contacts->visited);
+        contacts->visit = 1;
+    }
+    for (uint32_t i = 0; i < contacts->candidate_count && !contacts->is_pair_list_full; ++i)
+        begin_at(network, contacts, &contacts->list[contacts->candidates[i].pair]);
+    for (uint32_t i = 0; i < contacts->inner_count && !contacts->is_pair_list_full; ++i)
+        go_inward(network, contacts, pair_at(contacts, i)->point, pair_at(contacts, i)->edge);
+    sort_pairs(contacts);
+    for (uint32_t i = 0; i < contacts->inner_count && !contacts->is_pair_list_full; ++i)
+        contacts->candidates[contacts->candidate_count++].pair = contacts->capacity - contacts->inner_count + i;
+}
