@@ -114,6 +114,7 @@ static const mspringi_array_entry members[] = {
     VIEW(extra_speed),
     ARRAY(stamp),
     VIEW(visited),
+    VIEW(watched),
     ARRAY(excluded_edges),
     ARRAY(nodes.particles),
     VIEW(nodes.number),
@@ -177,7 +178,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     double **const motion[] = {&k->x,       &k->y,        &k->inverse_mass, &k->shift_x,
                                &k->shift_y, &k->extra_vx, &k->extra_vy};
     made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
-    made->stamp = mspringi_alloc(memory, 2 * particles, sizeof *made->stamp);
+    made->stamp = mspringi_alloc(memory, 3 * particles, sizeof *made->stamp);
     made->excluded_edges =
         mspringi_alloc(memory, MSPRINGI_EXCLUDED_EDGES * particles, sizeof *made->excluded_edges);
     o->is_known = mspringi_alloc(memory, particles, sizeof *o->is_known);
@@ -192,6 +193,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     k->v_start = k->v + nodes;
     k->v_before = k->v_start + nodes;
     made->visited = made->stamp + particles;
+    made->watched = made->visited + particles;
     made->masks = made->groups + nodes;
     k->number = k->particles + nodes;
     return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 9) &&

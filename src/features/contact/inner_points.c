@@ -16,6 +16,11 @@
 /// Sides of other colliders than the one that led to a particle are sought if it is nearer than this to that one,
 /// beside the reach of a candidate, as a share of the thickness.
 #define BESIDE 1.0
+#ifndef SHARE
+#define SHARE .1
+#endif
+#define SHORT ((1-SHARE)*(1-SHARE))
+#define LONG ((1+SHARE)*(1+SHARE))
 
 // Way of a node until the next scan, m.
 static double way_of(const mspringi_contacts *contacts, double speed) {
@@ -116,6 +121,73 @@ static void begin_at(const mspring_network *network, mspringi_contacts *contacts
             go_inward(network, contacts, ends[i], o->at[j]);
 }
 
+/* ------------------------------------------------------------------------------------------------ crushed bodies */
+
+static bool is_strained(const mspringi_contacts *contacts, mspring_id a, mspring_id b) {
+    const mspringi_outline *o = &contacts->outline;
+    const double x = contacts->x[b] - contacts->x[a], y = contacts->y[b] - contacts->y[a];
+    const double u = o->shape_x[b] - o->shape_x[a], v = o->shape_y[b] - o->shape_y[a];
+    const double now = x * x + y * y, was = u * u + v * v;
+    return now < SHORT * was || now > LONG * was;
+}
+
+static void take_up(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+    const mspringi_outline *o = &contacts->outline;
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
+    mspring_id spring, ends[2];
+    uint32_t visits = 0;
+    for (; (spring = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE; ++visits) {
+        mspringi_outline_ends(network, spring, ends);
+        const mspring_id q = ends[0] == p ? ends[1] : ends[0];
+        if (o->first[q] != o->first[q + 1] || contacts->visited[q] == contacts->visit ||
+            !mspringi_spring_is_live(network, spring))
+            continue;
+        load(network, contacts, q);
+        if (!is_strained(contacts, p, q))
+            continue;
+        contacts->visited[q] = contacts->visit;
+        contacts->watched[contacts->watched_count++] = q;
+    }
+    mspringi_contact_count_visits(contacts, visits);
+}
+
+static bool is_near_collider(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+    const double way = MSPRINGI_DRIFT_FRACTION * contacts->thickness +
+                       MSPRINGI_SPEED_MARGIN * contacts->dt * (contacts->assumed_speed[p] + contacts->max_speed);
+    contacts->margin[p] = way;
+    const uint32_t found = mspringi_edge_grid_search(network, contacts, p);
+    contacts->work += found;
+    for (uint32_t k = 0; k < found; ++k)
+        if (mspringi_is_collider_point(contacts, contacts->outline.a[contacts->cells.found[k]]))
+            return true;
+    return false;
+}
+
+static void keep_near(const mspring_network *network, mspringi_contacts *contacts) {
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < contacts->watched_count; ++i) {
+        const mspring_id p = contacts->watched[i];
+        contacts->watched[count] = p;
+        count += is_near_collider(network, contacts, p);
+    }
+    contacts->watched_count = count;
+}
+
+static void find_watched(const mspring_network *network, mspringi_contacts *contacts) {
+    const mspringi_outline *o = &contacts->outline;
+    const uint32_t own = o->edge_count - contacts->colliders.listed_sides;
+    contacts->watched_count = 0;
+    for (uint32_t e = 0; e < own; ++e) {
+        if (!is_strained(contacts, o->a[e], o->b[e]))
+            continue;
+        take_up(network, contacts, o->a[e]);
+        take_up(network, contacts, o->b[e]);
+    }
+    for (uint32_t i = 0; i < contacts->watched_count; ++i)
+        take_up(network, contacts, contacts->watched[i]);
+    keep_near(network, contacts);
+}
+
 static bool is_before(const mspringi_pair *one, const mspringi_pair *other) {
     return one->point != other->point ? one->point < other->point : one->edge < other->edge;
 }
@@ -136,14 +208,30 @@ static void sort_pairs(const mspringi_contacts *contacts) {
         }
 }
 
+static void begin_visit(mspringi_contacts *contacts) {
+    if (++contacts->visit > 0)
+        return;
+    memset(contacts->visited, 0, contacts->particles * sizeof *contacts->visited);
+    contacts->visit = 1; // no stamp of 2^32 visits ago may look new
+}
+
 void mspringi_inner_points_add(const mspring_network *network, mspringi_contacts *contacts) {
     contacts->inner_count = 0;
     if (contacts->colliders.count == 0)
         return;
-    if (++contacts->visit == 0) { // no stamp of 2^32 scans ago may look new
-        memset(contacts->visited, 0, contacts->particles * sizeof *contacts->visited);
-        contacts->visit = 1;
+    begin_visit(contacts);
+    if (contacts->substeps_done == 0 || contacts->substeps_done >= contacts->colliders.substeps) {
+        find_watched(network, contacts);
+        begin_visit(contacts);
     }
+    for (uint32_t i = 0; i < contacts->watched_count; ++i) {
+        const mspring_id q = contacts->watched[i];
+        load(network, contacts, q);
+        contacts->visited[q] = contacts->visit;
+        add_pairs(network, contacts, q);
+    }
+    if (contacts->watched_count > 0 && contacts->calm_substeps > contacts->candidate_substeps)
+        contacts->calm_substeps = (uint32_t)contacts->candidate_substeps;
     for (uint32_t i = 0; i < contacts->candidate_count && !contacts->is_pair_list_full; ++i)
         begin_at(network, contacts, &contacts->list[contacts->candidates[i].pair]);
     for (uint32_t i = 0; i < contacts->inner_count && !contacts->is_pair_list_full; ++i)
