@@ -285,9 +285,9 @@ struct mspringi_contacts {
     mspringi_candidate *candidates; ///< [capacity] pairs that may touch before the next scan
     uint32_t candidate_count;
     bool is_listed, is_pair_list_full;
-    uint32_t inner_count;           ///< pairs of inner particles with colliders, at the end of the list (inner_points.c)
-    uint32_t *visited, visit;       ///< [particles] visit in which it was visited last; number of the visit
-    mspring_id *watched;            ///< [particles] inner particles of bodies that are crushed
+    uint32_t inner_count;     ///< pairs of inner particles with colliders, at the end of the list (inner_points.c)
+    uint32_t *visited, visit; ///< [particles] visit in which it was visited last; number of the visit
+    mspring_id *watched;      ///< [particles] inner particles of bodies that are crushed
     uint32_t watched_count;
     uint64_t work, most_work; ///< comparisons of points with edges in this step, or what takes as long; their limit
     double *margin;          ///< [nodes] the list held all pairs nearer than thickness and both margins when it was
