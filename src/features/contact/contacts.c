@@ -113,8 +113,8 @@ static const mspringi_array_entry members[] = {
     VIEW(square_moved),
     VIEW(extra_speed),
     ARRAY(stamp),
-    VIEW(visited),
-    VIEW(watched),
+    VIEW(inner.visited),
+    VIEW(inner.watched),
     ARRAY(excluded_edges),
     ARRAY(nodes.particles),
     VIEW(nodes.number),
@@ -192,8 +192,8 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
         return false;
     k->v_start = k->v + nodes;
     k->v_before = k->v_start + nodes;
-    made->visited = made->stamp + particles;
-    made->watched = made->visited + particles;
+    made->inner.visited = made->stamp + particles;
+    made->inner.watched = made->inner.visited + particles;
     made->masks = made->groups + nodes;
     k->number = k->particles + nodes;
     return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 9) &&

@@ -37,6 +37,7 @@
 
 #include <massspring/massspring_contact.h>
 
+#include "features/contact/inner_points.h"
 #include "store/network.h"
 
 /// Outline: springs with a free side, their ends, and particles without springs, as edges of length 0. Edges are
@@ -285,10 +286,7 @@ struct mspringi_contacts {
     mspringi_candidate *candidates; ///< [capacity] pairs that may touch before the next scan
     uint32_t candidate_count;
     bool is_listed, is_pair_list_full;
-    uint32_t inner_count;     ///< pairs of inner particles with colliders, at the end of the list (inner_points.c)
-    uint32_t *visited, visit; ///< [particles] visit in which it was visited last; number of the visit
-    mspring_id *watched;      ///< [particles] inner particles of bodies that are crushed
-    uint32_t watched_count;
+    mspringi_inner_points inner;
     uint64_t work, most_work; ///< comparisons of points with edges in this step, or what takes as long; their limit
     double *margin;          ///< [nodes] the list held all pairs nearer than thickness and both margins when it was
                              ///< made, m
@@ -302,7 +300,6 @@ struct mspringi_contacts {
     // The last scan.
     double *x, *y; ///< [nodes] positions, m
     double mean_vx, mean_vy;
-    double way_x, way_y;   ///< mean displacement since the list was made, m
     double *speed;         ///< [nodes] relative to the mean, or min_speed, m/s
     double *assumed_speed; ///< [nodes] the same, or that of a faster point that may hit this one, m/s
     double *square_moved;  ///< [nodes] square of the displacement relative to the mean since the list was made, m^2
@@ -450,14 +447,6 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
 /// Replace the list by all pairs nearer than `reach`, m, for piles. The next scan makes its own list.
 void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
-
-/// True if groups and masks let two nodes touch.
-bool mspringi_may_touch(const mspring_network *network, mspring_id p, mspring_id q);
-
-/* inner_points.c */
-
-/// Add candidates of inner particles that may touch a collider. is_pair_list_full: there is no room for them.
-void mspringi_inner_points_add(const mspring_network *network, mspringi_contacts *contacts);
 
 /* constraints.c */
 

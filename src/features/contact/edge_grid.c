@@ -214,8 +214,8 @@ uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_cont
     // Two particles without springs are one pair, and such a particle pairs with a corner by the corner's edges.
     // Inner particles have no edge.
     const bool has_point_edge = own == o->first[p + 1] || o->a[o->at[own]] == o->b[o->at[own]];
-    search s = {.x = contacts->x[p] - contacts->way_x,
-                .y = contacts->y[p] - contacts->way_y,
+    search s = {.x = contacts->x[p] - contacts->inner.way_x,
+                .y = contacts->y[p] - contacts->inner.way_y,
                 .reach = (contacts->thickness + contacts->margin[p] + radius) * (1.0 + ROUNDING),
                 .point = has_point_edge ? p : ANY_POINT,
                 .passed = &passed};

@@ -88,30 +88,31 @@ static void add_pairs(const mspring_network *network, mspringi_contacts *contact
         if (!mspringi_is_collider_point(contacts, a) || beyond_reach(contacts, p, edge, &distance) > 0.0 ||
             !mspringi_may_touch(network, p, a))
             continue;
-        if (contacts->count + contacts->inner_count == contacts->capacity) {
+        if (contacts->count + contacts->inner.pair_count == contacts->capacity) {
             contacts->is_pair_list_full = contacts->lacks_room = true;
             return;
         }
-        *pair_at(contacts, contacts->inner_count++) = (mspringi_pair){.point = p, .edge = edge};
+        *pair_at(contacts, contacts->inner.pair_count++) = (mspringi_pair){.point = p, .edge = edge};
         shorten_quiet(contacts, p, edge, distance);
     }
 }
 
 // Begin a visit to all particles, none of which is marked.
 static void begin_visit(mspringi_contacts *contacts) {
-    if (++contacts->visit > 0)
+    if (++contacts->inner.visit > 0)
         return;
-    memset(contacts->visited, 0, contacts->particles * sizeof *contacts->visited); // marks of 2^32 visits ago
-    contacts->visit = 1;
+    memset(contacts->inner.visited, 0,
+           contacts->particles * sizeof *contacts->inner.visited); // marks of 2^32 visits ago
+    contacts->inner.visit = 1;
 }
 
 static bool is_visited(const mspringi_contacts *contacts, mspring_id p) {
-    return contacts->visited[p] == contacts->visit;
+    return contacts->inner.visited[p] == contacts->inner.visit;
 }
 
 static void watch(mspringi_contacts *contacts, mspring_id p) {
-    contacts->visited[p] = contacts->visit;
-    contacts->watched[contacts->watched_count++] = p;
+    contacts->inner.visited[p] = contacts->inner.visit;
+    contacts->inner.watched[contacts->inner.watched_count++] = p;
 }
 
 // Return the next inner particle at a spring of p that is not marked, and load it; MSPRING_NONE at the end.
@@ -160,7 +161,7 @@ static void begin_at(const mspring_network *network, mspringi_contacts *contacts
 static void find_behind(const mspring_network *network, mspringi_contacts *contacts) {
     for (uint32_t i = 0; i < contacts->candidate_count && !contacts->is_pair_list_full; ++i)
         begin_at(network, contacts, &contacts->list[contacts->candidates[i].pair]);
-    for (uint32_t i = 0; i < contacts->inner_count && !contacts->is_pair_list_full; ++i)
+    for (uint32_t i = 0; i < contacts->inner.pair_count && !contacts->is_pair_list_full; ++i)
         go_inward(network, contacts, pair_at(contacts, i)->point, pair_at(contacts, i)->edge);
 }
 
@@ -202,20 +203,20 @@ static void find_strained(const mspring_network *network, mspringi_contacts *con
     const uint32_t edges = o->edge_count - contacts->colliders.listed_sides;
     uint32_t count = 0;
     begin_visit(contacts);
-    contacts->watched_count = 0;
+    contacts->inner.watched_count = 0;
     for (uint32_t e = 0; e < edges; ++e) {
         if (!is_strained(contacts, o->a[e], o->b[e]))
             continue;
         follow_strained(network, contacts, o->a[e]);
         follow_strained(network, contacts, o->b[e]);
     }
-    for (uint32_t i = 0; i < contacts->watched_count; ++i)
-        follow_strained(network, contacts, contacts->watched[i]);
-    for (uint32_t i = 0; i < contacts->watched_count; ++i) {
-        contacts->watched[count] = contacts->watched[i];
-        count += may_reach_collider(network, contacts, contacts->watched[i]);
+    for (uint32_t i = 0; i < contacts->inner.watched_count; ++i)
+        follow_strained(network, contacts, contacts->inner.watched[i]);
+    for (uint32_t i = 0; i < contacts->inner.watched_count; ++i) {
+        contacts->inner.watched[count] = contacts->inner.watched[i];
+        count += may_reach_collider(network, contacts, contacts->inner.watched[i]);
     }
-    contacts->watched_count = count;
+    contacts->inner.watched_count = count;
 }
 
 /* -------------------------------------------------------------------------------------------------------- pairs */
@@ -226,12 +227,12 @@ static bool is_before(const mspringi_pair *one, const mspringi_pair *other) {
 
 // Sort the pairs by point and edge (Shell sort): the order of springs at a particle depends on its past.
 static void sort_pairs(const mspringi_contacts *contacts) {
-    mspringi_pair *pairs = contacts->list + (contacts->capacity - contacts->inner_count);
+    mspringi_pair *pairs = contacts->list + (contacts->capacity - contacts->inner.pair_count);
     uint32_t gap = 1;
-    while (gap < contacts->inner_count / 3)
+    while (gap < contacts->inner.pair_count / 3)
         gap = 3 * gap + 1;
     for (; gap > 0; gap /= 3)
-        for (uint32_t i = gap; i < contacts->inner_count; ++i) {
+        for (uint32_t i = gap; i < contacts->inner.pair_count; ++i) {
             const mspringi_pair moved = pairs[i];
             uint32_t at = i;
             for (; at >= gap && is_before(&moved, &pairs[at - gap]); at -= gap)
@@ -243,19 +244,19 @@ static void sort_pairs(const mspringi_contacts *contacts) {
 // Add the pairs of particles that are watched.
 static void add_watched(const mspring_network *network, mspringi_contacts *contacts) {
     begin_visit(contacts);
-    for (uint32_t i = 0; i < contacts->watched_count && !contacts->is_pair_list_full; ++i) {
-        const mspring_id p = contacts->watched[i];
-        contacts->visited[p] = contacts->visit;
+    for (uint32_t i = 0; i < contacts->inner.watched_count && !contacts->is_pair_list_full; ++i) {
+        const mspring_id p = contacts->inner.watched[i];
+        contacts->inner.visited[p] = contacts->inner.visit;
         load(network, contacts, p);
         add_pairs(network, contacts, p);
     }
     // Pairs that are no candidates may touch after the next scan.
-    if (contacts->watched_count > 0 && (double)contacts->calm_substeps > contacts->candidate_substeps)
+    if (contacts->inner.watched_count > 0 && (double)contacts->calm_substeps > contacts->candidate_substeps)
         contacts->calm_substeps = (uint32_t)contacts->candidate_substeps;
 }
 
 void mspringi_inner_points_add(const mspring_network *network, mspringi_contacts *contacts) {
-    contacts->inner_count = 0;
+    contacts->inner.pair_count = 0;
     if (contacts->colliders.count == 0)
         return;
     const bool begins = contacts->substeps_done == 0 || contacts->substeps_done >= contacts->colliders.substeps,
@@ -267,6 +268,7 @@ void mspringi_inner_points_add(const mspring_network *network, mspringi_contacts
     if (begins || is_fast)
         find_behind(network, contacts);
     sort_pairs(contacts);
-    for (uint32_t i = 0; i < contacts->inner_count && !contacts->is_pair_list_full; ++i)
-        contacts->candidates[contacts->candidate_count++].pair = contacts->capacity - contacts->inner_count + i;
+    for (uint32_t i = 0; i < contacts->inner.pair_count && !contacts->is_pair_list_full; ++i)
+        contacts->candidates[contacts->candidate_count++].pair =
+            contacts->capacity - contacts->inner.pair_count + i;
 }

@@ -74,7 +74,8 @@ static bool are_near(const mspring_network *network, mspringi_contacts *contacts
     return p != a && p != b &&
            distance_of(contacts, p, edge) <
                contacts->thickness + contacts->margin[p] + mspringi_margin_of_edge(contacts, edge) &&
-           mspringi_may_touch(network, p, a) && mspringi_may_touch(network, p, b) && !is_excluded(network, contacts, p, edge);
+           mspringi_may_touch(network, p, a) && mspringi_may_touch(network, p, b) &&
+           !is_excluded(network, contacts, p, edge);
 }
 
 // Move a number down a heap to where none below it is larger.
@@ -198,7 +199,7 @@ static void activate_all(mspringi_contacts *contacts) {
 static bool make_list(const mspring_network *network, mspringi_contacts *contacts) {
     const mspringi_outline *o = &contacts->outline;
     contacts->count = 0;
-    contacts->way_x = contacts->way_y = 0.0;
+    contacts->inner.way_x = contacts->inner.way_y = 0.0;
     contacts->stamp_of = MSPRING_NONE;
     contacts->most_work += WORK_OF_POINT * (uint64_t)o->point_count;
     if (o->edge_count > 0) {

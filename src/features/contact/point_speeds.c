@@ -119,8 +119,8 @@ static void compare_points(mspringi_contacts *contacts, const mean_motion *mean,
     }
     contacts->mean_vx = mean->vx;
     contacts->mean_vy = mean->vy;
-    contacts->way_x = mean->wx;
-    contacts->way_y = mean->wy;
+    contacts->inner.way_x = mean->wx;
+    contacts->inner.way_y = mean->wy;
     contacts->max_speed = max;
     contacts->mean_speed = count > 0 ? sum / (double)count : 0.0;
 }
