@@ -9,6 +9,7 @@
 
 #define SCENE_PARTICLES 2000
 #define SCENE_SPRINGS 8000
+#define SCENE_ELEMENTS 8
 
 typedef struct scene_particle {
     double x, y;

@@ -204,6 +204,7 @@ static spec_vector add_others(const spec_network *network, uint32_t p) {
 /// Constants of a step.
 typedef struct step {
     uint32_t count;        ///< substeps
+    uint32_t first, end;   ///< those that are taken together
     float h;               ///< of one, s
     float spring_lag, lag; ///< substep before the step, s, for springs and for gravity
 } step;
@@ -285,7 +286,7 @@ static void move_particle(const spec_network *network, const substep *now, uint3
     spec_motion *m = &network->motions[p];
     if (inverse_mass > 0.0f) {
         const spec_vector springs = sums->is_in_rows ? add_rows(network, p) : add_others(network, p);
-        const spec_vector force = add(springs, network->forces[p]);
+        const spec_vector force = add(springs, network->fields[p]);
         kick(network, now, &m->velocity.x, &m->low_velocity.x, force.x * per_force, now->gravity_x);
         kick(network, now, &m->velocity.y, &m->low_velocity.y, force.y * per_force, now->gravity_y);
     } else {
@@ -304,7 +305,7 @@ static void move_particle(const spec_network *network, const substep *now, uint3
     move(network, &m->place.y, &m->low_place.y, push_y * now->h);
 }
 
-/// Motion of particles without springs in all substeps of a step: v' = keep v + (gain a + gravity), x' = x + (reach
+/// Motion of particles without springs in all substeps that are taken together: v' = keep v + (gain a + gravity), x' = x + (reach
 /// v + (fall a + gravity_way)). loss: 1 - keep.
 typedef struct glide {
     float keep, loss, gain, reach, fall, drift;
@@ -314,7 +315,7 @@ typedef struct glide {
 static glide glide_of(const spec_network *network, const step *all) {
     double keep = 1.0, gain = 0.0, reach = 0.0, fall = 0.0, gravity_gain = 0.0, gravity_fall = 0.0;
     const double h = (double)all->h, ax = (double)network->gravity_x, ay = (double)network->gravity_y;
-    for (uint32_t i = 0; i < all->count; i++) {
+    for (uint32_t i = all->first; i < all->end; i++) {
         const substep now = substep_of(network, all, i);
         keep -= (double)now.damping * keep;
         gain += (double)now.kick - (double)now.damping * gain;
@@ -328,7 +329,7 @@ static glide glide_of(const spec_network *network, const step *all) {
                    (float)gain,
                    (float)reach,
                    (float)fall,
-                   (float)(h * (double)all->count),
+                   (float)(h * (double)(all->end - all->first)),
                    {(float)(gravity_gain * ax), (float)(gravity_gain * ay)},
                    {(float)(gravity_fall * ax), (float)(gravity_fall * ay)}};
 }
@@ -351,7 +352,7 @@ static void glide_along(const spec_network *network, const glide *g, uint32_t p,
 
 static void glide_particle(const spec_network *network, const glide *g, uint32_t p) {
     spec_motion *m = &network->motions[p];
-    const spec_vector force = network->forces[p];
+    const spec_vector force = network->fields[p];
     glide_along(network, g, p, &m->place.x, &m->low_place.x, &m->velocity.x, &m->low_velocity.x, force.x,
                 g->gravity.x, g->gravity_way.x);
     glide_along(network, g, p, &m->place.y, &m->low_place.y, &m->velocity.y, &m->low_velocity.y, force.y,
@@ -412,6 +413,16 @@ void spec_hit(spec_network *network, uint32_t particle, float x, float y) {
     v->y = (float)((double)v->y + (double)y * per_impulse);
 }
 
+double spec_x_of(const spec_network *network, uint32_t particle) {
+    const spec_motion *m = &network->motions[particle];
+    return (double)m->place.x + (double)low_of(m->place.x, m->low_place.x, network->grid);
+}
+
+double spec_y_of(const spec_network *network, uint32_t particle) {
+    const spec_motion *m = &network->motions[particle];
+    return (double)m->place.y + (double)low_of(m->place.y, m->low_place.y, network->grid);
+}
+
 // The middle of one coordinate, if all particles lie to one side of the origin and the shift is exact.
 static double shift_of(double origin, double low, double high) {
     const double nearest = low > 0.0 ? low : -high, half = 0.501 * (high - low) + 1.0;
@@ -438,10 +449,7 @@ static void follow(spec_network *network) {
         return;
     }
     for (uint32_t p = 0; p < network->particle_count; p++) {
-        place_locally(
-            network, p,
-            ((double)m[p].place.x + (double)low_of(m[p].place.x, m[p].low_place.x, network->grid)) - shift_x,
-            ((double)m[p].place.y + (double)low_of(m[p].place.y, m[p].low_place.y, network->grid)) - shift_y);
+        place_locally(network, p, spec_x_of(network, p) - shift_x, spec_y_of(network, p) - shift_y);
     }
     network->origin_x += shift_x;
     network->origin_y += shift_y;
@@ -480,6 +488,22 @@ static void take_substep(spec_network *network, const substep *now) {
     }
 }
 
+// Take substeps between which nothing else acts. Particles without springs take all of them at once.
+static void take_together(spec_network *network, const step *all) {
+    memcpy(network->fields, network->forces, network->particle_count * sizeof *network->fields);
+    spec_add_fields(network);
+    for (uint32_t i = all->first; i < all->end; i++) {
+        const substep now = substep_of(network, all, i);
+        take_substep(network, &now);
+    }
+    const glide g = glide_of(network, all);
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        if (!has_springs(&network->sums[p])) {
+            glide_particle(network, &g, p);
+        }
+    }
+}
+
 // After a step of a damped network: tiny speeds become 0, but -0 stays.
 static void stop_creeping(const spec_network *network) {
     for (uint32_t p = 0; p < network->particle_count; p++) {
@@ -507,19 +531,13 @@ uint32_t spec_step(spec_network *network, double dt) {
     }
     // After an edit the last substep may have been too long a time for springs to act; gravity gets all of it.
     const float h = (float)(time / (double)count), any_shape = (float)fmin(network->any_shape, (double)FLT_MAX);
-    const step all = {count, h, fminf(network->lag, fmaxf(any_shape, h)), network->lag};
+    step all = {count, 0, 0, h, fminf(network->lag, fmaxf(any_shape, h)), network->lag};
     begin_floor(network);
-    for (uint32_t i = 0; i < count; i++) {
-        const substep now = substep_of(network, &all, i);
-        take_substep(network, &now);
+    for (; all.first < count; all.first = all.end) {
+        all.end = all.first + spec_free_substeps(network, count - all.first);
+        take_together(network, &all);
     }
-    const glide g = glide_of(network, &all);
-    for (uint32_t p = 0; p < network->particle_count; p++) {
-        if (!has_springs(&network->sums[p])) {
-            glide_particle(network, &g, p);
-        }
-        network->forces[p] = (spec_vector){0.0f, 0.0f};
-    }
+    memset(network->forces, 0, network->particle_count * sizeof *network->forces);
     if (network->is_damped || network->global_damping > 0.0f) {
         stop_creeping(network);
     }

@@ -73,6 +73,23 @@ typedef struct spec_heights {
     const float *frictions, *restitutions; ///< [count - 1] of each part instead; or NULL
 } spec_heights;
 
+/// Most corners of an element.
+#define SPEC_CORNERS 8
+
+/// An area or an angle spring.
+typedef enum spec_element_kind { SPEC_ELASTIC, SPEC_GAS, SPEC_ANGLE } spec_element_kind;
+
+typedef struct spec_element {
+    spec_element_kind kind;
+    uint32_t count;                           ///< corners; 3 of an angle
+    uint32_t corners[SPEC_CORNERS];           ///< particles; counterclockwise when it was added
+    uint32_t sides[SPEC_CORNERS];             ///< springs along the outline or the arms, or SPEC_NONE
+    float reach[SPEC_CORNERS];                ///< growth where a corner moves outwards, when it was added
+    float stiffness, damping, pressure, fill; ///< damping: of angles; fill: 1 of angles
+    double rest_area;                         ///< m^2; 1 of angles
+    double cosine, sine;                      ///< of an angle's rest
+} spec_element;
+
 /// Pace of SPEC_EVEN.
 typedef struct spec_pace {
     double dt;      ///< from which h was chosen, s; 0: none was
@@ -81,17 +98,23 @@ typedef struct spec_pace {
     uint32_t steps; ///< in a row that ask for another h
 } spec_pace;
 
-typedef struct spec_network {
+typedef struct spec_network spec_network;
+
+struct spec_network {
     uint32_t particle_count, spring_count, plane_count;
     spec_motion *motions;        ///< [particle_count]
     spec_motion *before;         ///< [particle_count] scratch: before the substep
     spec_vector *forces;         ///< [particle_count] of the host in the next step, N
+    spec_vector *fields;         ///< [particle_count] scratch: forces from outside in the substep, N
     const float *inverse_masses; ///< [particle_count] 1/kg, 0 if pinned
     const spec_sums *sums;       ///< [particle_count]
     const uint32_t *others;
     const spec_spring *springs; ///< [spring_count]
     spec_plane planes[8];
     spec_heights heights;
+    uint32_t element_count;
+    spec_element *elements; ///< in the order in which they were added
+    void (*hook)(const spec_network *network, spec_vector *fields); ///< adds forces before each substep; or NULL
     float gravity_x, gravity_y, global_damping; ///< m/s^2, 1/s
     bool is_precise;
     uint32_t substeps;                ///< of a step, or SPEC_AUTO or SPEC_EVEN
@@ -108,7 +131,7 @@ typedef struct spec_network {
     double dt;           ///< of the last step, s; 0: none
     uint32_t uneven;     ///< steps for which dt counts as uneven
     spec_pace pace;
-} spec_network;
+};
 
 /// Begin: set what follows from the springs, before spec_place() of all particles.
 void spec_begin(spec_network *network);
@@ -133,6 +156,19 @@ uint32_t spec_step(spec_network *network, double dt);
 /// Choose the substeps of a step and its time: dt, but for SPEC_EVEN. 0: more than max_substeps. spec_pace.c
 uint32_t spec_choose_substeps(spec_network *network, double dt, double *time);
 bool spec_changes_dt(const spec_network *network, double dt);
+
+/// Set the springs along an element and its reach, after it was added. spec_laws.c
+void spec_begin_element(const spec_network *network, spec_element *element);
+
+/// What acts beside springs. spec_laws.c
+uint32_t spec_free_substeps(const spec_network *network, uint32_t left); ///< that may be taken together
+void spec_add_fields(const spec_network *network); ///< to spec_network.fields
+void spec_add_strengths(const spec_network *network, spec_motion *sums);
+double spec_largest_quotient(const spec_network *network, const spec_motion *sums, bool of_damping);
+
+/// A coordinate in local coordinates, both words. spec.c
+double spec_x_of(const spec_network *network, uint32_t particle);
+double spec_y_of(const spec_network *network, uint32_t particle);
 
 /// Outcome of a substep's floor for a particle.
 typedef struct spec_bounce {

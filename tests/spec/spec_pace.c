@@ -7,9 +7,16 @@
 #include <math.h>
 #include <string.h>
 
+// The h above 0 with h^2 K + 2 h C = 4.
+static double limit_of(double k, double c) {
+    const double divisor = c + sqrt(c * c + k * 4.0);
+    return divisor > 0.0 ? 4.0 / divisor : INFINITY;
+}
+
 // Longest substep that is stable in any shape: the smallest h over all springs with h^2 K + 2 h C = 4. K is the sum
 // of S / m over both ends, with S the sum of stiffness over all springs of that end, by rising number. C is the
-// same of damping. Broken springs count as whole.
+// same of damping. Broken springs count as whole. Areas and angles add to S after all springs, and their corners are
+// a row of their own.
 void spec_renew(spec_network *network) {
     double least = INFINITY;
     memset(network->before, 0, network->particle_count * sizeof *network->before); // sums: stiffness x, damping y
@@ -22,14 +29,17 @@ void spec_renew(spec_network *network) {
             sum->y += s->damping;
         }
     }
+    spec_add_strengths(network, network->before);
     for (uint32_t i = 0; i < network->spring_count; i++) {
         const uint32_t a = network->springs[i].a, b = network->springs[i].b;
         const spec_vector at_a = network->before[a].place, at_b = network->before[b].place;
         const double per_a = (double)network->inverse_masses[a], per_b = (double)network->inverse_masses[b];
         const double k = (double)at_a.x * per_a + (double)at_b.x * per_b;
-        const double c = (double)at_a.y * per_a + (double)at_b.y * per_b, divisor = c + sqrt(c * c + k * 4.0);
-        least = divisor > 0.0 && 4.0 / divisor < least ? 4.0 / divisor : least;
+        const double c = (double)at_a.y * per_a + (double)at_b.y * per_b;
+        least = fmin(least, limit_of(k, c));
     }
+    least = fmin(least, limit_of(spec_largest_quotient(network, network->before, false),
+                                 spec_largest_quotient(network, network->before, true)));
     network->any_shape = least * (1.0 - 1e-5);
 }
 

@@ -87,7 +87,8 @@ static mspring_network *make_library(const scene *s, uint32_t substeps) {
 typedef struct specification {
     spec_network network;
     spec_motion motions[SCENE_PARTICLES], before[SCENE_PARTICLES];
-    spec_vector forces[SCENE_PARTICLES];
+    spec_vector forces[SCENE_PARTICLES], fields[SCENE_PARTICLES];
+    spec_element elements[SCENE_ELEMENTS];
     float inverse_masses[SCENE_PARTICLES];
     spec_sums sums[SCENE_PARTICLES];
     uint32_t others[2 * SCENE_SPRINGS];
@@ -110,6 +111,99 @@ static void place_all(specification *s) {
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------ elements */
+
+static bool is_twice(const spec_element *e, uint32_t particle) {
+    bool is_there = false;
+    for (uint32_t i = 0; i < e->count; i++) {
+        is_there |= e->corners[i] == particle;
+    }
+    return is_there;
+}
+
+/// Corners of an element: the ends of a spring, and others nearby by number. False: there are too few.
+static bool draw_corners(scene *s, spec_element *e, uint32_t count) {
+    const spec_spring *spring = &s->springs[scene_below(s, s->spring_count)];
+    e->corners[0] = spring->a;
+    e->corners[1] = spring->b;
+    e->count = 2;
+    for (uint32_t i = 0; i < 50 && e->count < count; i++) {
+        const uint32_t particle = scene_below(s, s->particle_count);
+        const double dx = s->particles[particle].x - s->particles[spring->b].x,
+                     dy = s->particles[particle].y - s->particles[spring->b].y;
+        if (!is_twice(e, particle) && (i > 30 || dx * dx + dy * dy < 4)) {
+            e->corners[e->count++] = particle;
+        }
+    }
+    return e->count == count;
+}
+
+static bool add_area(const scene *s, mspring_network *library, spec_network *n, spec_element *e) {
+    mspring_area_def def;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    def.kind = e->kind == SPEC_GAS ? MSPRING_AREA_GAS : MSPRING_AREA_ELASTIC;
+    def.stiffness = e->stiffness;
+    def.pressure = e->pressure;
+    def.fill = e->fill;
+    double twice = 0;
+    for (uint32_t i = 0; i < e->count; i++) {
+        const scene_particle *here = &s->particles[e->corners[i]],
+                             *next = &s->particles[e->corners[(i + 1) % e->count]];
+        twice += (here->x - s->particles[e->corners[0]].x) * (next->y - s->particles[e->corners[0]].y) -
+                 (here->y - s->particles[e->corners[0]].y) * (next->x - s->particles[e->corners[0]].x);
+    }
+    mspring_id id;
+    if (mspring_network_add_area(library, &def, e->corners, e->count, &id) != MSPRING_OK) {
+        return false; // too flat
+    }
+    mspring_area_def made = {.struct_size = sizeof made};
+    check_ok(mspring_network_get_area(library, id, &made));
+    e->rest_area = made.rest_area;
+    for (uint32_t i = 0; twice < 0 && i < e->count / 2; i++) {
+        const uint32_t kept = e->corners[i];
+        e->corners[i] = e->corners[e->count - 1 - i];
+        e->corners[e->count - 1 - i] = kept;
+    }
+    spec_begin_element(n, e);
+    return true;
+}
+
+static bool add_angle(mspring_network *library, spec_network *n, spec_element *e) {
+    mspring_angle_def def;
+    check_ok(mspring_angle_def_init(&def, sizeof def));
+    def.stiffness = e->stiffness;
+    def.damping = e->damping;
+    def.flags = MSPRING_ANGLE_REST_GIVEN; // straight
+    e->fill = 1;
+    e->rest_area = e->cosine = 1;
+    e->pressure = 0;
+    if (mspring_network_add_angles(library, &def, e->corners, 1, NULL) != MSPRING_OK) {
+        return false;
+    }
+    spec_begin_element(n, e);
+    return true;
+}
+
+/// Add areas and angle springs to both sides.
+static void add_elements(scene *s, mspring_network *library, specification *to) {
+    spec_network *n = &to->network;
+    const uint32_t count = s->is_calm || s->spring_count == 0 || scene_chance(s, 0.7) ? 0 : 1 + scene_below(s, 6);
+    for (uint32_t i = 0; i < count; i++) {
+        spec_element e = {.kind = (spec_element_kind)scene_below(s, 3)};
+        if (!draw_corners(s, &e, e.kind == SPEC_ANGLE ? 3 : 3 + 2 * scene_below(s, 2))) {
+            continue;
+        }
+        e.stiffness = e.kind == SPEC_GAS ? 0 : 0.1f * s->stiffness * (float)scene_between(s, 0, 1);
+        e.damping = e.kind == SPEC_ANGLE ? s->damping * (float)scene_between(s, 0, 1) : 0;
+        e.pressure = e.kind == SPEC_GAS ? 0.01f * s->stiffness : scene_chance(s, 0.5) ? 0 : (float)scene_between(s, -1, 1);
+        e.fill = scene_chance(s, 0.5) ? 1 : (float)scene_between(s, 0.8, 1.2);
+        if (e.kind == SPEC_ANGLE ? add_angle(library, n, &e) : add_area(s, library, n, &e)) {
+            n->elements[n->element_count++] = e;
+        }
+    }
+    spec_renew(n);
+}
+
 static void make_specification(specification *to, const scene *s, uint32_t substeps) {
     memset(to, 0, sizeof *to);
     spec_network *n = &to->network;
@@ -119,6 +213,8 @@ static void make_specification(specification *to, const scene *s, uint32_t subst
                         .motions = to->motions,
                         .before = to->before,
                         .forces = to->forces,
+                        .fields = to->fields,
+                        .elements = to->elements,
                         .inverse_masses = to->inverse_masses,
                         .sums = to->sums,
                         .others = to->others,
@@ -361,6 +457,7 @@ static bool is_equal(uint64_t seed, uint32_t *refused) {
     substeps = mode < 2 ? MSPRING_SUBSTEPS_AUTO : mode < 4 ? MSPRING_SUBSTEPS_EVEN : substeps;
     make_specification(&to, &made, substeps);
     mspring_network *library = make_library(&made, substeps);
+    add_elements(&made, library, &to);
     const spec_plan plan = spec_arrange(&to.network, to.x, to.y, to.sums, to.others, made.has_bundles);
     bool equal = is_plan_equal(library, &plan);
     const int steps = substeps == MSPRING_SUBSTEPS_EVEN && made.spring_count < 200 ? LONG_STEPS : STEPS;
