@@ -10,6 +10,8 @@
 #define SCENE_PARTICLES 2000
 #define SCENE_SPRINGS 8000
 #define SCENE_ELEMENTS 8
+#define SCENE_GRIPS 4
+#define SCENE_ACTUATORS 40
 
 typedef struct scene_particle {
     double x, y;
@@ -33,6 +35,7 @@ typedef struct scene {
     bool is_calm;     ///< one particle moves, and time is short
     bool has_bundles; ///< for spec_arrange()
     double welds;     ///< share of welds among springs
+    double one_way;   ///< of those that only pull or push
     double left;      ///< where the next part begins, m
 } scene;
 

@@ -141,7 +141,8 @@ static float precise_stretch(spec_vector high, spec_vector low, spec_vector d, f
 // That on the other is the opposite, bit for bit.
 static spec_vector pull(const spec_network *network, uint32_t spring, uint32_t particle) {
     const spec_spring *s = &network->springs[spring];
-    const float stiffness = s->is_broken ? 0.0f : s->stiffness, damping = s->is_broken ? 0.0f : s->damping;
+    const bool acts = !s->is_broken && !s->is_slack;
+    const float stiffness = acts ? s->stiffness : 0.0f, damping = acts ? s->damping : 0.0f;
     const float rest_length = s->rest_length > 0.0f ? s->rest_length : SPEC_WELD;
     const spec_motion *here = &network->before[particle], *there = &network->before[s->a == particle ? s->b : s->a];
     spec_vector d = {there->place.x - here->place.x, there->place.y - here->place.y};
@@ -391,14 +392,14 @@ void spec_set_origin(spec_network *network, double min_x, double min_y, double m
     network->look_distance = NEAREST_LOOK;
 }
 
-static void place_locally(const spec_network *network, uint32_t p, double x, double y) {
+void spec_put(const spec_network *network, uint32_t p, double x, double y) {
     spec_motion *m = &network->motions[p];
     put_coordinate(x, network->grid, &m->place.x, &m->low_place.x);
     put_coordinate(y, network->grid, &m->place.y, &m->low_place.y);
 }
 
 void spec_place(spec_network *network, uint32_t particle, double x, double y) {
-    place_locally(network, particle, x - network->origin_x, y - network->origin_y);
+    spec_put(network, particle, x - network->origin_x, y - network->origin_y);
 }
 
 void spec_set_velocity(spec_network *network, uint32_t particle, float vx, float vy) {
@@ -449,7 +450,7 @@ static void follow(spec_network *network) {
         return;
     }
     for (uint32_t p = 0; p < network->particle_count; p++) {
-        place_locally(network, p, spec_x_of(network, p) - shift_x, spec_y_of(network, p) - shift_y);
+        spec_put(network, p, spec_x_of(network, p) - shift_x, spec_y_of(network, p) - shift_y);
     }
     network->origin_x += shift_x;
     network->origin_y += shift_y;
@@ -513,6 +514,17 @@ static void stop_creeping(const spec_network *network) {
     }
 }
 
+// After a step of a network whose hook may have written to the state.
+static void drop_stale_lows(const spec_network *network) {
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        spec_motion *m = &network->motions[p];
+        m->low_place = (spec_vector){low_of(m->place.x, m->low_place.x, network->grid),
+                                     low_of(m->place.y, m->low_place.y, network->grid)};
+        m->low_velocity = (spec_vector){low_of(m->velocity.x, m->low_velocity.x, 0.0f),
+                                        low_of(m->velocity.y, m->low_velocity.y, 0.0f)};
+    }
+}
+
 // Move surfaces to local coordinates.
 static void begin_floor(spec_network *network) {
     for (uint32_t i = 0; i < network->plane_count; i++) {
@@ -534,9 +546,12 @@ uint32_t spec_step(spec_network *network, double dt) {
     step all = {count, 0, 0, h, fminf(network->lag, fmaxf(any_shape, h)), network->lag};
     begin_floor(network);
     for (; all.first < count; all.first = all.end) {
-        all.end = all.first + spec_free_substeps(network, count - all.first);
+        all.end = all.first + spec_free_substeps(network, all.first, count);
+        spec_begin_substeps(network, all.first, count);
         take_together(network, &all);
+        spec_pull_grips(network, all.first, count, h);
     }
+    spec_end_step(network);
     memset(network->forces, 0, network->particle_count * sizeof *network->forces);
     if (network->is_damped || network->global_damping > 0.0f) {
         stop_creeping(network);
@@ -544,6 +559,9 @@ uint32_t spec_step(spec_network *network, double dt) {
     network->lag = h;
     network->uneven = spec_changes_dt(network, dt) ? 600 : network->uneven > 0 ? network->uneven - 1 : 0;
     network->dt = dt;
+    if (network->hook != NULL) {
+        drop_stale_lows(network);
+    }
     follow(network);
     return count;
 }

@@ -45,6 +45,8 @@ typedef struct spec_spring {
     uint32_t a, b;
     float stiffness, damping, rest_length; ///< N/m, N s/m, m; 0: a weld
     bool is_broken;
+    int side;      ///< 1: it only pulls, -1: it only pushes, 0: both
+    bool is_slack; ///< of one that has a side: it does nothing in this substep
 } spec_spring;
 
 /// Place of a particle's springs in the sum of its forces. It is part of the input, as it decides the bits.
@@ -90,6 +92,19 @@ typedef struct spec_element {
     double cosine, sine;                      ///< of an angle's rest
 } spec_element;
 
+/// A soft constraint of one particle to a place. Each particle has one at most.
+typedef struct spec_grip {
+    uint32_t particle;
+    float stiffness, damping, max_force;
+    double from_x, from_y, x, y; ///< where the target is at the start of a step and at its end, world coordinates, m
+} spec_grip;
+
+/// A spring whose rest length changes in a step.
+typedef struct spec_actuator {
+    uint32_t spring;
+    float from, to; ///< m
+} spec_actuator;
+
 /// Pace of SPEC_EVEN.
 typedef struct spec_pace {
     double dt;      ///< from which h was chosen, s; 0: none was
@@ -109,10 +124,13 @@ struct spec_network {
     const float *inverse_masses; ///< [particle_count] 1/kg, 0 if pinned
     const spec_sums *sums;       ///< [particle_count]
     const uint32_t *others;
-    const spec_spring *springs; ///< [spring_count]
+    spec_spring *springs; ///< [spring_count]
     spec_plane planes[8];
     spec_heights heights;
-    uint32_t element_count;
+    uint32_t element_count, grip_count, actuator_count;
+    spec_grip *grips;         ///< in the order in which they were added
+    spec_actuator *actuators; ///< set in the next step
+    uint32_t changes;         ///< most of an actuator's length in a step
     spec_element *elements; ///< in the order in which they were added
     void (*hook)(const spec_network *network, spec_vector *fields); ///< adds forces before each substep; or NULL
     float gravity_x, gravity_y, global_damping; ///< m/s^2, 1/s
@@ -123,7 +141,7 @@ struct spec_network {
     // Set by spec_begin().
     bool is_damped;   ///< a spring has damping
     float grid;       ///< m, of the first words of places in precise networks, else 0
-    double shortest;  ///< rest length, m
+    double shortest;  ///< rest length at the beginning, m
     double any_shape; ///< longest substep that is stable in any shape, s
     double origin_x, origin_y;
     float look_distance; ///< m, distance of the first particle at which the origin is looked at
@@ -161,14 +179,18 @@ bool spec_changes_dt(const spec_network *network, double dt);
 void spec_begin_element(const spec_network *network, spec_element *element);
 
 /// What acts beside springs. spec_laws.c
-uint32_t spec_free_substeps(const spec_network *network, uint32_t left); ///< that may be taken together
-void spec_add_fields(const spec_network *network); ///< to spec_network.fields
+uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count); ///< taken together
+void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count); ///< actuators, one-way springs
+void spec_add_fields(const spec_network *network);                               ///< to spec_network.fields
+void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h);
+void spec_end_step(spec_network *network);
 void spec_add_strengths(const spec_network *network, spec_motion *sums);
 double spec_largest_quotient(const spec_network *network, const spec_motion *sums, bool of_damping);
 
 /// A coordinate in local coordinates, both words. spec.c
 double spec_x_of(const spec_network *network, uint32_t particle);
 double spec_y_of(const spec_network *network, uint32_t particle);
+void spec_put(const spec_network *network, uint32_t particle, double x, double y);
 
 /// Outcome of a substep's floor for a particle.
 typedef struct spec_bounce {

@@ -1,9 +1,11 @@
 /// @file spec_laws.c
-/// Specification of what acts beside springs: areas and angle springs. Their forces are computed in double precision
-/// from the state before a substep, and added to those of the host and of hooks, as floats, in the order in which the
-/// elements were added.
+/// Specification of what acts beside plain springs, in the order of a substep: actuators, hooks, areas and angle
+/// springs, one-way springs, and after it grips. All of it is computed in double precision from the state before the
+/// substep (grips: after it). Forces are added to those of the host as floats, in the order in which the elements were
+/// added.
 ///
-/// Not covered: elastic areas around cells of lattices, which rows have in their sums.
+/// Not covered: elastic areas around cells of lattices, which rows have in their sums; several grips on one particle;
+/// grips where there is a floor.
 ///
 /// SPDX-License-Identifier: MIT
 #include "spec.h"
@@ -186,15 +188,113 @@ double spec_largest_quotient(const spec_network *network, const spec_motion *sum
     return largest;
 }
 
+/* ------------------------------------------------------------------------------------------------------- springs */
+
+// Changes of actuators that are due by a substep, that before it included.
+static uint32_t changes_by(const spec_network *network, uint32_t substep, uint32_t count) {
+    if (network->actuator_count == 0 || network->changes <= 1) {
+        return 1;
+    }
+    return network->changes >= count ? substep + 1 : (uint32_t)((uint64_t)substep * network->changes / count) + 1;
+}
+
+// Actuators go to their new length in equal parts; the last change sets it exactly.
+static void set_lengths(spec_network *network, uint32_t substep, uint32_t count) {
+    const uint32_t all = network->changes < count ? network->changes : count;
+    const uint32_t by = changes_by(network, substep, count);
+    for (uint32_t i = 0; i < network->actuator_count; i++) {
+        const spec_actuator *a = &network->actuators[i];
+        const float part = a->from + (a->to - a->from) * ((float)by / (float)all);
+        network->springs[a->spring].rest_length = by == all ? a->to : part;
+    }
+}
+
+// A spring that only pulls acts in a substep if it is longer than its rest length and the sum of its forces pulls.
+static bool is_slack(const spec_network *network, const spec_spring *s) {
+    const wide_vector along = between(network, s->a, s->b);
+    const spec_vector a = network->motions[s->a].velocity, b = network->motions[s->b].velocity;
+    const double length = sqrt(square_of(along)), side = (double)s->side, dvx = (double)b.x - (double)a.x,
+                 dvy = (double)b.y - (double)a.y;
+    const double stretch = length - (double)s->rest_length;
+    const double rate = length > 0.0 ? (dvx * along.x + dvy * along.y) / length : 0.0;
+    const double force = (double)s->stiffness * stretch + (double)s->damping * rate;
+    return !(side * stretch > 0.0 && side * force > 0.0);
+}
+
+void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count) {
+    set_lengths(network, first, count);
+    for (uint32_t i = 0; i < network->spring_count; i++) {
+        spec_spring *s = &network->springs[i];
+        s->is_slack = s->side != 0 && is_slack(network, s);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- grips */
+
+// After a substep: a grip's force at its end, F = (k (t - p) + c (u - v)) / (1 + (h c + h^2 k) / m), within its
+// bound. t and u are place and velocity of the target, which goes evenly through the step.
+static void pull_grip(const spec_network *network, const spec_grip *g, uint32_t substep, uint32_t count, double h) {
+    const double inverse_mass = (double)network->inverse_masses[g->particle], k = (double)g->stiffness,
+                 c = (double)g->damping;
+    const double part = 1.0 / (double)count, share = (double)substep * part + part, seconds = h / part;
+    const double way_x = g->x - g->from_x, way_y = g->y - g->from_y;
+    spec_motion *m = &network->motions[g->particle];
+    const double x = spec_x_of(network, g->particle), y = spec_y_of(network, g->particle);
+    const double vx = (double)m->velocity.x, vy = (double)m->velocity.y;
+    const double to_x = (g->from_x + share * way_x) - network->origin_x - x;
+    const double to_y = (g->from_y + share * way_y) - network->origin_y - y;
+    const double over = 1.0 / (1.0 + h * (c + h * k) * inverse_mass);
+    double fx = over * (k * to_x + c * (way_x / seconds - vx)), fy = over * (k * to_y + c * (way_y / seconds - vy));
+    const double size = sqrt(fx * fx + fy * fy), most = (double)g->max_force;
+    if (size > most) {
+        fx *= most / size;
+        fy *= most / size;
+    }
+    const double change_x = h * inverse_mass * fx, change_y = h * inverse_mass * fy;
+    m->velocity.x = (float)(vx + change_x);
+    m->velocity.y = (float)(vy + change_y);
+    spec_put(network, g->particle, x + h * change_x, y + h * change_y);
+}
+
+void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h) {
+    for (uint32_t i = 0; i < network->grip_count; i++) {
+        if (network->inverse_masses[network->grips[i].particle] > 0.0f) {
+            pull_grip(network, &network->grips[i], substep, count, (double)h);
+        }
+    }
+}
+
 /* --------------------------------------------------------------------------------------------------- in a step */
 
-// Between two substeps of a step: where anything acts there, each is taken alone.
-uint32_t spec_free_substeps(const spec_network *network, uint32_t left) {
+void spec_end_step(spec_network *network) {
+    for (uint32_t i = 0; i < network->grip_count; i++) {
+        network->grips[i].from_x = network->grips[i].x;
+        network->grips[i].from_y = network->grips[i].y;
+    }
+    for (uint32_t i = 0; i < network->spring_count; i++) {
+        network->springs[i].is_slack = false;
+    }
+    network->actuator_count = 0;
+}
+
+// Substeps from first on that are taken together. Where anything acts between two, each is taken alone; actuators
+// that change several times in a step cut it there.
+uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count) {
     bool is_cut = network->hook != NULL;
     for (uint32_t k = 0; k < network->element_count; k++) {
         is_cut |= !is_open(network, &network->elements[k]);
     }
-    return is_cut ? 1 : left;
+    for (uint32_t i = 0; i < network->grip_count; i++) {
+        is_cut |= network->inverse_masses[network->grips[i].particle] > 0.0f;
+    }
+    for (uint32_t s = 0; s < network->spring_count; s++) {
+        is_cut |= network->springs[s].side != 0;
+    }
+    uint32_t end = first + 1;
+    while (!is_cut && end < count && changes_by(network, end, count) == changes_by(network, first, count)) {
+        end++;
+    }
+    return end - first;
 }
 
 // The hook comes first, then elements.

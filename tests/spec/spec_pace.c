@@ -15,7 +15,7 @@ static double limit_of(double k, double c) {
 
 // Longest substep that is stable in any shape: the smallest h over all springs with h^2 K + 2 h C = 4. K is the sum
 // of S / m over both ends, with S the sum of stiffness over all springs of that end, by rising number. C is the
-// same of damping. Broken springs count as whole. Areas and angles add to S after all springs, and their corners are
+// same of damping. One-way springs count as four times as stiff. Broken springs count as whole. Areas and angles add to S after all springs, and their corners are
 // a row of their own.
 void spec_renew(spec_network *network) {
     double least = INFINITY;
@@ -25,7 +25,7 @@ void spec_renew(spec_network *network) {
         const uint32_t ends[2] = {s->a, s->b};
         for (int end = 0; end < 2; end++) {
             spec_vector *sum = &network->before[ends[end]].place;
-            sum->x += s->stiffness;
+            sum->x += s->side == 0 ? s->stiffness : 4.0f * s->stiffness;
             sum->y += s->damping;
         }
     }
