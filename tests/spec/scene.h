@@ -35,6 +35,7 @@ typedef struct scene {
     bool is_calm;     ///< one particle moves, and time is short
     bool has_bundles; ///< for spec_arrange()
     double welds;     ///< share of welds among springs
+    double relative;  ///< of those that are relative
     double one_way;   ///< of those that only pull or push
     double left;      ///< where the next part begins, m
 } scene;

@@ -2,17 +2,19 @@
 /// Specification of the explicit solver: a plain program that gives the library's bits at every level of
 /// instructions and for any number of workers. test_spec.c compares both.
 ///
-/// **Files.** spec.h: state and input. spec.c: a step. spec_floor.c: the floor. spec_pace.c: automatic substeps.
+/// **Files.** spec.h: state and input. spec.c: a step. spec_laws.c: what acts beside plain springs. spec_floor.c: the
+/// floor. spec_pace.c: automatic substeps.
 /// arrange.c and lattices.c: which springs are summed by rows, which is input to spec.c.
 ///
-/// **Covered.** Springs, dampers and welds in lattices, chains and irregular parts; particles without springs where
-/// there is no floor; pins; gravity; forces of the host; global damping; floors;
-/// MSPRING_NETWORK_PRECISE; the first kick and uneven dt; MSPRING_SUBSTEPS_AUTO and _EVEN; the local origin;
-/// between steps edits of places, velocities, masses and springs, impulses and broken springs.
+/// **Covered.** Springs, dampers and welds in lattices, chains and irregular parts; relative and one-way springs;
+/// areas, angle springs, actuators, grips; particles without springs where there is no floor; pins; gravity; forces of
+/// the host and of hooks; global damping; floors; MSPRING_NETWORK_PRECISE; the first kick and uneven dt;
+/// MSPRING_SUBSTEPS_AUTO and _EVEN; the local origin; between steps edits of places, velocities, masses and springs,
+/// impulses and broken springs.
 ///
-/// **Not covered.** Silt, particles without springs at a floor, hooks, areas, angles, springs
-/// that yield, break in a step, act one way or are relative, ramps, actuators, added particles and springs, new
-/// layouts, scales of inverse masses, grips, contact, sleep, groups, the guard, other solvers.
+/// **Not covered.** Silt, particles without springs and grips at a floor, several grips on one particle, areas around
+/// cells of lattices, hooks with a period, springs that yield or break in a step, ramps, added particles and springs,
+/// new layouts, scales of inverse masses, contact, sleep, groups, the guard, other solvers.
 ///
 /// **Arithmetic.** IEEE 754, rounded to nearest even, subnormal numbers included. An operation of floats gives a
 /// float, one of doubles a double. Nothing is fused; parentheses say which operation comes first, else the left one
@@ -514,9 +516,10 @@ static void stop_creeping(const spec_network *network) {
     }
 }
 
-// After a step of a network whose hook may have written to the state.
-static void drop_stale_lows(const spec_network *network) {
-    for (uint32_t p = 0; p < network->particle_count; p++) {
+// Drop low words that cannot be the rest of a value: before and after a step of a network whose hook may have written
+// to the state.
+static void tidy(const spec_network *network) {
+    for (uint32_t p = 0; network->hook != NULL && p < network->particle_count; p++) {
         spec_motion *m = &network->motions[p];
         m->low_place = (spec_vector){low_of(m->place.x, m->low_place.x, network->grid),
                                      low_of(m->place.y, m->low_place.y, network->grid)};
@@ -544,6 +547,11 @@ uint32_t spec_step(spec_network *network, double dt) {
     // After an edit the last substep may have been too long a time for springs to act; gravity gets all of it.
     const float h = (float)(time / (double)count), any_shape = (float)fmin(network->any_shape, (double)FLT_MAX);
     step all = {count, 0, 0, h, fminf(network->lag, fmaxf(any_shape, h)), network->lag};
+    if (network->has_relative && network->lag > 0.0f) {
+        all.spring_lag = all.lag = h;
+    }
+    spec_derive_relative(network, h);
+    tidy(network);
     begin_floor(network);
     for (; all.first < count; all.first = all.end) {
         all.end = all.first + spec_free_substeps(network, all.first, count);
@@ -559,9 +567,7 @@ uint32_t spec_step(spec_network *network, double dt) {
     network->lag = h;
     network->uneven = spec_changes_dt(network, dt) ? 600 : network->uneven > 0 ? network->uneven - 1 : 0;
     network->dt = dt;
-    if (network->hook != NULL) {
-        drop_stale_lows(network);
-    }
+    tidy(network);
     follow(network);
     return count;
 }

@@ -44,6 +44,8 @@ typedef struct spec_motion {
 typedef struct spec_spring {
     uint32_t a, b;
     float stiffness, damping, rest_length; ///< N/m, N s/m, m; 0: a weld
+    bool is_relative; ///< stiffness and damping follow from these shares, masses and the substep
+    float stiffness_share, damping_share;
     bool is_broken;
     int side;      ///< 1: it only pulls, -1: it only pushes, 0: both
     bool is_slack; ///< of one that has a side: it does nothing in this substep
@@ -122,6 +124,8 @@ struct spec_network {
     spec_vector *forces;         ///< [particle_count] of the host in the next step, N
     spec_vector *fields;         ///< [particle_count] scratch: forces from outside in the substep, N
     const float *inverse_masses; ///< [particle_count] 1/kg, 0 if pinned
+    const float *masses;         ///< [particle_count] kg, when relative springs were made
+    bool has_relative;           ///< springs
     const spec_sums *sums;       ///< [particle_count]
     const uint32_t *others;
     spec_spring *springs; ///< [spring_count]
@@ -184,6 +188,8 @@ void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count);
 void spec_add_fields(const spec_network *network);                               ///< to spec_network.fields
 void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h);
 void spec_end_step(spec_network *network);
+void spec_derive_relative(const spec_network *network, float h);
+double spec_reduced_mass(const spec_network *network, const spec_spring *spring);
 void spec_add_strengths(const spec_network *network, spec_motion *sums);
 double spec_largest_quotient(const spec_network *network, const spec_motion *sums, bool of_damping);
 

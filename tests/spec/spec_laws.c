@@ -190,6 +190,23 @@ double spec_largest_quotient(const spec_network *network, const spec_motion *sum
 
 /* ------------------------------------------------------------------------------------------------------- springs */
 
+double spec_reduced_mass(const spec_network *network, const spec_spring *spring) {
+    return 1.0 / (1.0 / (double)network->masses[spring->a] + 1.0 / (double)network->masses[spring->b]);
+}
+
+// Relative springs have the stiffness and damping that a substep of h can take.
+void spec_derive_relative(const spec_network *network, float h) {
+    const double rate = 1.0 / (double)h;
+    for (uint32_t i = 0; i < network->spring_count; i++) {
+        spec_spring *s = &network->springs[i];
+        if (s->is_relative) {
+            const double mass = spec_reduced_mass(network, s);
+            s->stiffness = (float)((double)s->stiffness_share * mass * rate * rate);
+            s->damping = (float)((double)s->damping_share * mass * rate);
+        }
+    }
+}
+
 // Changes of actuators that are due by a substep, that before it included.
 static uint32_t changes_by(const spec_network *network, uint32_t substep, uint32_t count) {
     if (network->actuator_count == 0 || network->changes <= 1) {

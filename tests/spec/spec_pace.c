@@ -7,15 +7,16 @@
 #include <math.h>
 #include <string.h>
 
-// The h above 0 with h^2 K + 2 h C = 4.
-static double limit_of(double k, double c) {
-    const double divisor = c + sqrt(c * c + k * 4.0);
-    return divisor > 0.0 ? 4.0 / divisor : INFINITY;
+// The h above 0 with h^2 K + 2 h C = room.
+static double limit_of(double k, double c, double room) {
+    const double divisor = c + sqrt(c * c + k * room);
+    return !(room > 0.0) ? 0.0 : divisor > 0.0 ? room / divisor : INFINITY;
 }
 
 // Longest substep that is stable in any shape: the smallest h over all springs with h^2 K + 2 h C = 4. K is the sum
 // of S / m over both ends, with S the sum of stiffness over all springs of that end, by rising number. C is the
-// same of damping. One-way springs count as four times as stiff. Broken springs count as whole. Areas and angles add to S after all springs, and their corners are
+// same of damping. One-way springs count as four times as stiff. Relative ones take room off the 4, as they
+// have the same strength in any substep. Broken springs count as whole. Areas and angles add to S after all springs, and their corners are
 // a row of their own.
 void spec_renew(spec_network *network) {
     double least = INFINITY;
@@ -25,6 +26,13 @@ void spec_renew(spec_network *network) {
         const uint32_t ends[2] = {s->a, s->b};
         for (int end = 0; end < 2; end++) {
             spec_vector *sum = &network->before[ends[end]].place;
+            if (s->is_relative) {
+                const double mass = spec_reduced_mass(network, s), share = (double)s->stiffness_share * mass;
+                const double strength = (s->side == 0 ? share : 4.0 * (double)s->stiffness_share * mass) +
+                                        2.0 * ((double)s->damping_share * mass);
+                network->before[ends[end]].velocity.x += (float)(strength * (double)network->inverse_masses[ends[end]]);
+                continue;
+            }
             sum->x += s->side == 0 ? s->stiffness : 4.0f * s->stiffness;
             sum->y += s->damping;
         }
@@ -36,10 +44,11 @@ void spec_renew(spec_network *network) {
         const double per_a = (double)network->inverse_masses[a], per_b = (double)network->inverse_masses[b];
         const double k = (double)at_a.x * per_a + (double)at_b.x * per_b;
         const double c = (double)at_a.y * per_a + (double)at_b.y * per_b;
-        least = fmin(least, limit_of(k, c));
+        const double relative = (double)network->before[a].velocity.x + (double)network->before[b].velocity.x;
+        least = fmin(least, limit_of(k, c, 4.0 - relative * (1.0 - 1e-5)));
     }
     least = fmin(least, limit_of(spec_largest_quotient(network, network->before, false),
-                                 spec_largest_quotient(network, network->before, true)));
+                                 spec_largest_quotient(network, network->before, true), 4.0));
     network->any_shape = least * (1.0 - 1e-5);
 }
 

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "actors.h"
 #include "arrange.h"
 #include "level.h"
 #include "scene.h"
@@ -54,6 +55,11 @@ static mspring_network *make_library(const scene *s, uint32_t substeps) {
         def.flags = s->springs[i].side > 0   ? MSPRING_SPRING_PULL_ONLY
                     : s->springs[i].side < 0 ? MSPRING_SPRING_PUSH_ONLY
                                              : 0;
+        if (s->springs[i].is_relative) {
+            def.flags |= MSPRING_SPRING_RELATIVE;
+            def.stiffness = s->springs[i].stiffness_share;
+            def.damping = s->springs[i].damping_share;
+        }
         check_ok(mspring_builder_add_spring(builder, &def, NULL));
     }
     mspring_network_def def = support_def(s->gravity_y, substeps);
@@ -62,6 +68,7 @@ static mspring_network *make_library(const scene *s, uint32_t substeps) {
     def.flags = s->flags;
     def.max_substeps = s->max_substeps;
     def.simd_level = level;
+    def.worker_count = mspring_features() & MSPRING_FEATURE_THREADS ? 1 + 2 * (s->spring_count % 4 == 0) : 1;
     mspring_network *network = support_network(builder, &def);
     level_check(network, level);
     mspring_solver_def solver = support_solver(network);
@@ -86,24 +93,6 @@ static mspring_network *make_library(const scene *s, uint32_t substeps) {
     return network;
 }
 
-/// Memory of a network's specification.
-typedef struct specification {
-    spec_network network;
-    spec_motion motions[SCENE_PARTICLES], before[SCENE_PARTICLES];
-    spec_vector forces[SCENE_PARTICLES], fields[SCENE_PARTICLES];
-    spec_element elements[SCENE_ELEMENTS];
-    spec_grip grips[SCENE_GRIPS];
-    mspring_id grip_ids[SCENE_GRIPS];
-    spec_actuator actuators[SCENE_ACTUATORS];
-    mspring_id actuated[SCENE_ACTUATORS];
-    float nominal[SCENE_ACTUATORS];
-    uint32_t actuated_count;
-    float inverse_masses[SCENE_PARTICLES];
-    spec_sums sums[SCENE_PARTICLES];
-    uint32_t others[2 * SCENE_SPRINGS];
-    double x[SCENE_PARTICLES], y[SCENE_PARTICLES];
-} specification;
-
 /// Set all positions: the origin moves along.
 static void place_all(specification *s) {
     spec_network *n = &s->network;
@@ -117,189 +106,6 @@ static void place_all(specification *s) {
     spec_set_origin(n, low[0], low[1], high[0], high[1]);
     for (uint32_t p = 0; p < n->particle_count; p++) {
         spec_place(n, p, s->x[p], s->y[p]);
-    }
-}
-
-/* ------------------------------------------------------------------------------------------------------ elements */
-
-static bool is_twice(const spec_element *e, uint32_t particle) {
-    bool is_there = false;
-    for (uint32_t i = 0; i < e->count; i++) {
-        is_there |= e->corners[i] == particle;
-    }
-    return is_there;
-}
-
-/// Corners of an element: the ends of a spring, and others nearby by number. False: there are too few.
-static bool draw_corners(scene *s, spec_element *e, uint32_t count) {
-    const spec_spring *spring = &s->springs[scene_below(s, s->spring_count)];
-    e->corners[0] = spring->a;
-    e->corners[1] = spring->b;
-    e->count = 2;
-    for (uint32_t i = 0; i < 50 && e->count < count; i++) {
-        const uint32_t particle = scene_below(s, s->particle_count);
-        const double dx = s->particles[particle].x - s->particles[spring->b].x,
-                     dy = s->particles[particle].y - s->particles[spring->b].y;
-        if (!is_twice(e, particle) && (i > 30 || dx * dx + dy * dy < 4)) {
-            e->corners[e->count++] = particle;
-        }
-    }
-    return e->count == count;
-}
-
-static bool add_area(const scene *s, mspring_network *library, spec_network *n, spec_element *e) {
-    mspring_area_def def;
-    check_ok(mspring_area_def_init(&def, sizeof def));
-    def.kind = e->kind == SPEC_GAS ? MSPRING_AREA_GAS : MSPRING_AREA_ELASTIC;
-    def.stiffness = e->stiffness;
-    def.pressure = e->pressure;
-    def.fill = e->fill;
-    double twice = 0;
-    for (uint32_t i = 0; i < e->count; i++) {
-        const scene_particle *here = &s->particles[e->corners[i]],
-                             *next = &s->particles[e->corners[(i + 1) % e->count]];
-        twice += (here->x - s->particles[e->corners[0]].x) * (next->y - s->particles[e->corners[0]].y) -
-                 (here->y - s->particles[e->corners[0]].y) * (next->x - s->particles[e->corners[0]].x);
-    }
-    mspring_id id;
-    if (mspring_network_add_area(library, &def, e->corners, e->count, &id) != MSPRING_OK) {
-        return false; // too flat
-    }
-    mspring_area_def made = {.struct_size = sizeof made};
-    check_ok(mspring_network_get_area(library, id, &made));
-    e->rest_area = made.rest_area;
-    for (uint32_t i = 0; twice < 0 && i < e->count / 2; i++) {
-        const uint32_t kept = e->corners[i];
-        e->corners[i] = e->corners[e->count - 1 - i];
-        e->corners[e->count - 1 - i] = kept;
-    }
-    spec_begin_element(n, e);
-    return true;
-}
-
-static bool add_angle(mspring_network *library, spec_network *n, spec_element *e) {
-    mspring_angle_def def;
-    check_ok(mspring_angle_def_init(&def, sizeof def));
-    def.stiffness = e->stiffness;
-    def.damping = e->damping;
-    def.flags = MSPRING_ANGLE_REST_GIVEN; // straight
-    e->fill = 1;
-    e->rest_area = e->cosine = 1;
-    e->pressure = 0;
-    if (mspring_network_add_angles(library, &def, e->corners, 1, NULL) != MSPRING_OK) {
-        return false;
-    }
-    spec_begin_element(n, e);
-    return true;
-}
-
-/// Add areas and angle springs to both sides.
-static void add_elements(scene *s, mspring_network *library, specification *to) {
-    spec_network *n = &to->network;
-    const uint32_t count = s->is_calm || s->spring_count == 0 || scene_chance(s, 0.7) ? 0 : 1 + scene_below(s, 6);
-    for (uint32_t i = 0; i < count; i++) {
-        spec_element e = {.kind = (spec_element_kind)scene_below(s, 3)};
-        if (!draw_corners(s, &e, e.kind == SPEC_ANGLE ? 3 : 3 + 2 * scene_below(s, 2))) {
-            continue;
-        }
-        e.stiffness = e.kind == SPEC_GAS ? 0 : 0.1f * s->stiffness * (float)scene_between(s, 0, 1);
-        e.damping = e.kind == SPEC_ANGLE ? s->damping * (float)scene_between(s, 0, 1) : 0;
-        e.pressure = e.kind == SPEC_GAS ? 0.01f * s->stiffness : scene_chance(s, 0.5) ? 0 : (float)scene_between(s, -1, 1);
-        e.fill = scene_chance(s, 0.5) ? 1 : (float)scene_between(s, 0.8, 1.2);
-        if (e.kind == SPEC_ANGLE ? add_angle(library, n, &e) : add_area(s, library, n, &e)) {
-            n->elements[n->element_count++] = e;
-        }
-    }
-    spec_renew(n);
-}
-
-/* ------------------------------------------------------------------------------------- grips, actuators, hooks */
-
-/// Force of the hook on a particle: a wind that grows with height.
-static spec_vector wind_on(float y, spec_vector v) {
-    return (spec_vector){0.1f * y - 0.2f * v.x, -0.2f * v.y};
-}
-
-static void MSPRING_CALL blow(const mspring_hook_args *args, void *user) {
-    (void)user;
-    for (size_t slot = args->first_slot; slot < (size_t)args->first_slot + args->slot_count; slot++) {
-        const spec_vector force = wind_on(args->y[slot], (spec_vector){args->vx[slot], args->vy[slot]});
-        args->force_x[slot] += force.x;
-        args->force_y[slot] += force.y;
-    }
-}
-
-static void blow_specified(const spec_network *n, spec_vector *fields) {
-    for (uint32_t p = 0; p < n->particle_count; p++) {
-        const spec_vector force = wind_on(n->motions[p].place.y, n->motions[p].velocity);
-        fields[p] = (spec_vector){fields[p].x + force.x, fields[p].y + force.y};
-    }
-}
-
-static void add_hook(mspring_network *library, spec_network *n) {
-    mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
-    def.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
-    def.fn = blow;
-    check_ok(mspring_network_add_hook(library, &def, NULL));
-    n->hook = blow_specified;
-}
-
-static void add_grips(scene *s, mspring_network *library, specification *to) {
-    spec_network *n = &to->network;
-    for (uint32_t i = 0, first = scene_below(s, n->particle_count); i < SCENE_GRIPS && i < n->particle_count; i++) {
-        mspring_grip_def def;
-        check_ok(mspring_grip_def_init(&def, sizeof def));
-        def.particle = (first + i) % n->particle_count;
-        def.stiffness = s->stiffness * (float)scene_between(s, 0, 10);
-        def.damping = scene_chance(s, 0.5) ? 0 : (float)scene_between(s, 0, 100);
-        def.max_force = scene_chance(s, 0.5) ? MSPRING_NEVER : s->stiffness;
-        def.x = s->particles[def.particle].x + scene_between(s, -0.1, 0.1);
-        def.y = s->particles[def.particle].y;
-        check_ok(mspring_network_add_grip(library, &def, &to->grip_ids[i]));
-        n->grips[n->grip_count++] =
-            (spec_grip){def.particle, def.stiffness, def.damping, def.max_force, def.x, def.y, def.x, def.y};
-    }
-}
-
-static void add_actuators(scene *s, mspring_network *library, specification *to) {
-    for (uint32_t i = 0; i < s->spring_count && to->actuated_count < SCENE_ACTUATORS; i++) {
-        if (s->springs[i].rest_length > 0 && scene_chance(s, 0.3)) {
-            to->nominal[to->actuated_count] = s->springs[i].rest_length;
-            to->actuated[to->actuated_count++] = i;
-        }
-    }
-    to->network.changes = 1 + scene_below(s, 6);
-    check_ok(mspring_network_set_actuators(library, to->actuated, to->actuated_count, to->network.changes));
-}
-
-/// Add what acts from outside to both sides.
-static void add_actors(scene *s, mspring_network *library, specification *to) {
-    if (!s->is_calm && scene_chance(s, 0.15)) {
-        add_hook(library, &to->network);
-    }
-    if (!s->is_calm && s->plane_count + s->height_count == 0 && scene_chance(s, 0.3)) {
-        add_grips(s, library, to);
-    }
-    if (!s->is_calm && s->spring_count > 0 && scene_chance(s, 0.2)) {
-        add_actuators(s, library, to);
-    }
-}
-
-/// Move grips and signal actuators on both sides.
-static void act(scene *s, mspring_network *library, specification *to) {
-    spec_network *n = &to->network;
-    for (uint32_t i = 0; i < n->grip_count && scene_chance(s, 0.7); i++) {
-        n->grips[i].x += scene_between(s, -0.1, 0.1);
-        n->grips[i].y += scene_between(s, -0.1, 0.1);
-        check_ok(mspring_network_move_grip(library, to->grip_ids[i], n->grips[i].x, n->grips[i].y));
-    }
-    const float signal = (float)scene_between(s, 0.97, 1.03);
-    n->actuator_count = 0;
-    for (uint32_t i = 0; i < to->actuated_count; i++) {
-        check_ok(mspring_network_set_signals(library, i, 1, &signal, 1));
-        n->actuators[n->actuator_count++] =
-            (spec_actuator){to->actuated[i], s->springs[to->actuated[i]].rest_length, to->nominal[i] * signal};
     }
 }
 
@@ -317,6 +123,7 @@ static void make_specification(specification *to, scene *s, uint32_t substeps) {
                         .grips = to->grips,
                         .actuators = to->actuators,
                         .inverse_masses = to->inverse_masses,
+                        .masses = to->masses,
                         .sums = to->sums,
                         .others = to->others,
                         .springs = s->springs,
@@ -347,8 +154,12 @@ static void make_specification(specification *to, scene *s, uint32_t substeps) {
                                 .restitution = (double)s->restitution,
                                 .frictions = s->has_frictions ? s->frictions : NULL,
                                 .restitutions = s->has_frictions ? s->restitutions : NULL};
+    for (uint32_t i = 0; i < s->spring_count; i++) {
+        n->has_relative |= s->springs[i].is_relative;
+    }
     for (uint32_t p = 0; p < s->particle_count; p++) {
         to->inverse_masses[p] = s->particles[p].is_pinned ? 0 : 1.0f / s->particles[p].mass;
+        to->masses[p] = s->particles[p].mass;
         to->x[p] = s->particles[p].x;
         to->y[p] = s->particles[p].y;
     }
@@ -406,7 +217,9 @@ static void report(const scene *s, const mspring_network *library, const spec_ne
                 (unsigned)s->height_count);
     print_error("  %u elements, %u grips, %u actuators, %s%s\n", (unsigned)n->element_count, (unsigned)n->grip_count,
                 (unsigned)n->changes, n->hook != NULL ? "a hook" : "no hook",
-                s->one_way > 0 ? ", one-way springs" : "");
+                s->one_way > 0    ? ", one-way springs"
+                : s->relative > 0 ? ", relative springs"
+                                  : "");
     for (uint32_t p = 0; p < n->particle_count; p++) {
         const support_point at = support_position(library, p), v = support_velocity(library, p);
         const spec_motion *m = &n->motions[p];
@@ -476,6 +289,9 @@ static void edit_values(scene *s, mspring_network *library, specification *to, u
             const float mass = s->particles[p].mass * factor;
             check_ok(mspring_network_set(library, MSPRING_MASS, p, 1, &mass, 1));
             to->inverse_masses[p] = s->particles[p].is_pinned ? 0 : 1.0f / mass;
+        } else if (kind == 5 && s->springs[k].is_relative) {
+            s->springs[k].stiffness_share *= factor < 2 ? factor : 0.9f;
+            check_ok(mspring_network_set(library, MSPRING_STIFFNESS, k, 1, &s->springs[k].stiffness_share, 1));
         } else if (kind == 5) {
             s->springs[k].stiffness *= factor;
             s->springs[k].rest_length *= 1 + 0.01f * factor;
@@ -559,11 +375,11 @@ static bool is_equal(uint64_t seed, uint32_t *refused) {
     uint32_t substeps = 1 + scene_below(&made, scene_chance(&made, 0.5) ? 4 : 40);
     const double length = substeps; // of a step, in substeps
     const uint32_t mode = scene_below(&made, 10), pattern = scene_below(&made, 4);
-    substeps = mode < 2 ? MSPRING_SUBSTEPS_AUTO : mode < 4 ? MSPRING_SUBSTEPS_EVEN : substeps;
+    substeps = made.relative > 0 ? substeps : mode < 2 ? MSPRING_SUBSTEPS_AUTO : mode < 4 ? MSPRING_SUBSTEPS_EVEN : substeps;
     make_specification(&to, &made, substeps);
     mspring_network *library = make_library(&made, substeps);
-    add_elements(&made, library, &to);
-    add_actors(&made, library, &to);
+    actors_add_elements(&made, library, &to);
+    actors_add(&made, library, &to);
     const spec_plan plan = spec_arrange(&to.network, to.x, to.y, to.sums, to.others, made.has_bundles);
     bool equal = is_plan_equal(library, &plan);
     const int steps = substeps == MSPRING_SUBSTEPS_EVEN && made.spring_count < 200 ? LONG_STEPS : STEPS;
@@ -572,7 +388,7 @@ static bool is_equal(uint64_t seed, uint32_t *refused) {
         check_ok(mspring_network_stable_dt(library, NULL, &any_shape));
         assert_true(any_shape == to.network.any_shape);
         const double dt = choose_dt(&made, pattern, any_shape, step) * (made.is_calm ? 0.1 : 1) * length;
-        act(&made, library, &to);
+        actors_act(&made, library, &to);
         const mspring_result result = mspring_network_step(library, dt);
         const uint32_t taken = spec_step(&to.network, dt);
         equal = is_step_equal(library, &to.network, result, taken);
