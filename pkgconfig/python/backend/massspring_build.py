@@ -14,10 +14,13 @@ import shlex
 import shutil
 import subprocess
 import sys
-import sysconfig
+import tarfile
 import tempfile
 import zipfile
+from io import BytesIO
 from pathlib import Path
+
+from platform_tag import platform_tag
 
 PACKAGE = Path(__file__).resolve().parent.parent
 SOURCE = PACKAGE.parent.parent
@@ -25,6 +28,7 @@ LIBRARY_NAMES = {"win32": "massspring.dll", "darwin": "libmassspring.dylib"}
 LIBRARY = LIBRARY_NAMES.get(sys.platform, "libmassspring.so")
 CMAKE_OPTIONS = ["-DCMAKE_BUILD_TYPE=Release", "-DMASSSPRING_TESTS=OFF", "-DMASSSPRING_EXAMPLES=OFF",
                  "-DMASSSPRING_BENCH=OFF", "-DMASSSPRING_INSTALL=OFF"]
+SOURCES = ("CMakeLists.txt", "LICENSE", "include", "src", "pkgconfig/python")
 METADATA = """Metadata-Version: 2.1
 Name: massspring
 Version: {version}
@@ -66,23 +70,23 @@ def get_requires_for_build_wheel(config_settings=None):
     return missing
 
 
-def write_metadata(folder):
+def metadata():
+    readme = (PACKAGE / "README.md").read_text(encoding="utf-8")
+    return METADATA.format(version=version(), readme=readme)
+
+
+def write_metadata(folder, platform="any"):
     info = Path(folder) / f"massspring-{version()}.dist-info"
     info.mkdir(parents=True)
-    readme = (PACKAGE / "README.md").read_text(encoding="utf-8")
-    (info / "METADATA").write_text(METADATA.format(version=version(), readme=readme), encoding="utf-8")
+    (info / "METADATA").write_text(metadata(), encoding="utf-8")
     (info / "WHEEL").write_text("Wheel-Version: 1.0\nGenerator: massspring_build\nRoot-Is-Purelib: false\n"
-                                f"Tag: {tag()}\n", encoding="utf-8")
+                                f"Tag: py3-none-{platform}\n", encoding="utf-8")
     shutil.copy(SOURCE / "LICENSE", info / "LICENSE")
     return info.name
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
     return write_metadata(metadata_directory)
-
-
-def tag():
-    return "py3-none-" + re.sub(r"[.-]", "_", sysconfig.get_platform())
 
 
 def build_library(folder):
@@ -125,7 +129,6 @@ def write_wheel(path, root):
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     if not (SOURCE / "CMakeLists.txt").is_file():
         raise FileNotFoundError(f"{SOURCE} is no checkout of libmassspring: pip 21.3 or newer builds in place")
-    name = f"massspring-{version()}-{tag()}.whl"
     with tempfile.TemporaryDirectory() as scratch:
         root = Path(scratch) / "wheel"
         shutil.copytree(PACKAGE / "massspring", root / "massspring", ignore=shutil.ignore_patterns("__pycache__"))
@@ -133,10 +136,31 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         shutil.copyfile(library, root / "massspring" / LIBRARY)
         subprocess.run(isolated(str(PACKAGE / "backend" / "modules.py"), str(SOURCE / "include/massspring"),
                                 str(root / "massspring")), check=True)
-        write_metadata(root)
+        platform = platform_tag(library)
+        name = f"massspring-{version()}-py3-none-{platform}.whl"
+        write_metadata(root, platform)
         write_wheel(Path(wheel_directory) / name, root)
     return name
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    raise NotImplementedError("the package is built from a checkout of libmassspring: pip install ./pkgconfig/python")
+    """The sources of library and package where they lie in the repository, and beside them what pip looks for."""
+    name = f"massspring-{version()}"
+    project = (PACKAGE / "pyproject.toml").read_text(encoding="utf-8")
+    made = {"PKG-INFO": metadata(),
+            "pyproject.toml": project.replace('["backend"]', '["pkgconfig/python/backend"]')}
+    with tarfile.open(Path(sdist_directory) / f"{name}.tar.gz", "w:gz", format=tarfile.PAX_FORMAT) as archive:
+        def anonymous(entry):
+            if entry.name.endswith("__pycache__"):
+                return None
+            entry.uid = entry.gid = entry.mtime = 0
+            entry.uname = entry.gname = ""
+            return entry
+
+        for path in SOURCES:
+            archive.add(SOURCE / path, f"{name}/{path}", filter=anonymous)
+        for path, text in made.items():
+            entry, data = tarfile.TarInfo(f"{name}/{path}"), text.encode()
+            entry.size = len(data)
+            archive.addfile(entry, BytesIO(data))
+    return f"{name}.tar.gz"
