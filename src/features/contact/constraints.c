@@ -430,7 +430,7 @@ double mspringi_contact_prepare_implicit(const mspring_network *network, mspring
 /* ------------------------------------------------------------------------------------- added after the sweeps */
 
 bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
-                                      bool any_fast) {
+                                      bool any_fast, double kept) {
     const uint32_t before = contacts->constraint_count, near_miss_count = contacts->near_miss_count;
     double fastest = 0.0;
     memset(contacts->is_seen, 0, contacts->candidate_count);
@@ -446,7 +446,7 @@ bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_c
     flush_or_end(contacts, h);
     for (uint32_t i = before; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
-        if (t->gap + h * mspringi_normal_speed(t, contacts->nodes.v) < 0.0)
+        if (t->gap + h * mspringi_normal_speed(t, contacts->nodes.v) < (t->collider == MSPRING_NONE ? -kept : 0.0))
             return true;
     }
     return false;

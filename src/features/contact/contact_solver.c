@@ -46,18 +46,28 @@ static bool mark_fast(const mspringi_contacts *contacts, double h) {
     return any;
 }
 
-// Solve an interval, and add constraints for nodes that it made fast. False: constraints end too deep, or moves are
-// too long.
+// Solve an interval, and add constraints for nodes that it made fast. Penetration is resolved when there are no
+// more of them, as that takes most sweeps. False: constraints end too deep, or moves are too long.
 static bool solve_interval(const mspring_network *network, mspringi_contacts *contacts, double h) {
+    bool is_resolved = false, holds = true;
     mspringi_floor_support_begin(contacts, h);
+    mspringi_contact_sweep(contacts, contacts->def.sweeps);
     for (uint32_t round = 0;; ++round) {
-        const bool holds = mspringi_contact_sweep(contacts, h, round == 0 ? contacts->def.sweeps : 1);
-        const bool any_fast = mark_fast(contacts, h);
-        if (!any_fast && contacts->near_miss_count == 0)
-            return holds;
-        if (round == MAX_ROUNDS)
-            return false;
-        if (!mspringi_contact_add_constraints(network, contacts, h, any_fast))
+        const bool any_fast = mark_fast(contacts, h), is_last = round >= MAX_ROUNDS;
+        if ((any_fast || contacts->near_miss_count > 0) &&
+            mspringi_contact_add_constraints(network, contacts, h, any_fast,
+                                             is_last ? MSPRINGI_KEPT_DEPTH * contacts->thickness : 0.0)) {
+            if (is_last)
+                return false;
+            mspringi_contact_sweep(contacts, 1);
+            is_resolved = false;
+            continue;
+        }
+        bool any = false;
+        if (!is_resolved)
+            holds = mspringi_contact_resolve_penetration(contacts, h, &any);
+        is_resolved = true;
+        if (!any)
             return holds && (!any_fast || mspringi_contact_moves_are_short(contacts, h));
     }
 }

@@ -465,9 +465,10 @@ double mspringi_contact_prepare_implicit(const mspring_network *network, mspring
 /// most `pending` are ordered together. Return the largest speed, m/s.
 double mspringi_contact_make_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
                                          double given, uint32_t pending);
-/// Add constraints of pairs that may touch after the sweeps. Return true if one closes.
+/// Add constraints of pairs that may touch after the sweeps. Return true if one would overlap by more than `kept`,
+/// m.
 bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
-                                      bool any_fast);
+                                      bool any_fast, double kept);
 /// True if no fast node of a constraint would move too far in the interval.
 bool mspringi_contact_moves_are_short(const mspringi_contacts *contacts, double h);
 
@@ -493,22 +494,22 @@ void mspringi_floor_support_sweep(const mspringi_contacts *contacts);
 void mspringi_floor_support_end(const mspring_network *network, const mspringi_contacts *contacts);
 
 /* gauss_seidel.c */
+/// Overlap up to which bodies may get deeper, as a share of the thickness.
+#define MSPRINGI_KEPT_DEPTH 0.05
 
 /// Relative normal speed of the point and the closest point of the edge, m/s; > 0 opens the gap.
 static inline double mspringi_normal_speed(const mspringi_contact_constraint *t, const mspringi_velocity *v) {
     return t->nx * (v[t->p].x - t->bary_a * v[t->a].x - t->bary_b * v[t->b].x) +
            t->ny * (v[t->p].y - t->bary_a * v[t->a].y - t->bary_b * v[t->b].y);
 }
-/// Find the impulses of an interval of h seconds, and count the work. False: some constraints would still get much
-/// deeper.
-bool mspringi_contact_sweep(mspringi_contacts *contacts, double h, uint32_t sweeps);
-
-/// Sweep the constraints that push overlaps apart. Return true if that changed a normal speed by more than `least`,
-/// m/s.
-bool mspringi_contact_sweep_pushed(mspringi_contacts *contacts, double least);
+/// Sweep all constraints so many times, or once those that push overlaps apart, and count the work.
+void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps);
+void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
+/// Sweep the constraints that would penetrate in an interval of h seconds. *any becomes true if there are any.
+/// False: some would still get much deeper.
+bool mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any);
 
 /* piles.c */
-
 /// Find the piles: islands that sleep on each other.
 void mspringi_piles_find(mspring_network *network);
 
@@ -537,7 +538,6 @@ void mspringi_contact_events_finish_step(const mspring_network *network, mspring
 void mspringi_contact_events_reset(mspringi_contacts *contacts);
 
 /* contact_materials.c */
-
 /// Material of a pair, if particles have their own. collider: that of the pair, or NULL.
 mspringi_contact_material mspringi_contact_material_mix(const mspringi_contacts *contacts,
                                                         const mspringi_pair *pair,

@@ -4,37 +4,40 @@
 /// Accumulated impulses are clamped, so a later sweep may take back impulses of an earlier one (Catto 2005).
 /// Friction acts on the surface, at a distance from the edge. Its couple on the edge conserves angular momentum.
 ///
-/// mspringi_contact_sweep has three parts:
+/// In an interval:
 ///
 /// 1. sweep_all() visits all constraints, and floor supports, a given number of times.
 /// 2. Several bounces together may add energy, because one throws a point at another edge. Then all of them bounce
 ///    less, and are swept again.
-/// 3. A heavy body that presses a light one against another needs more sweeps. So resolve_penetration() sweeps
-///    constraints that would get deeper until none does. Bodies at rest on each other have none.
+/// 3. A heavy body that presses a light one against another needs more sweeps. So
+///    mspringi_contact_resolve_penetration sweeps constraints that would get deeper until none does. Bodies at rest
+///    on each other have none.
+#include <math.h>
+
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
 
-/// Overlap up to which bodies may get deeper, as a share of the thickness; colliders: none. Beyond it, a constraint
-/// may close at this speed at most, in thicknesses per substep. (With 1e-3, light fragments under many heavy ones,
-/// which are not pushed out, sank by 0.6 thicknesses in a second.)
-#define KEPT_DEPTH_SHARE 0.05
+/// Speed at which a constraint beyond the kept depth may close, in thicknesses per substep; colliders: any overlap.
+/// (With 1e-3, light fragments under many heavy ones, which are not pushed out, sank by 0.6 thicknesses in a
+/// second.)
 #define CLOSING_SPEED 1e-6
 
+/// Overlap that more sweeps are spent on, as a share of the thickness. If one gets that deep within an interval,
+/// the interval is too long.
+#define DEEPEST_SHARE 0.1
+
 /// Sweeps of penetrating constraints: most and least of them; between these, visits of constraints. Then most
-/// sweeps of colliders alone.
+/// of those that are deepest, and of colliders alone.
 #define MOST_DEPTH_SWEEPS 256
 #define LEAST_DEPTH_SWEEPS 16
 #define DEPTH_VISITS 16384
-#define MOST_COLLIDER_SWEEPS 64
+#define MORE_SWEEPS 64
 
 /// Factor on bounces that add energy, and most rounds of it; the last one removes bounces. Work below this share is
 /// rounding.
 #define BOUNCE_SHARE 0.5
 #define MOST_BOUNCES 3
 #define ROUNDING_SHARE 1e-9
-
-/// Depth at the end of a constraint that makes the interval too long, as a share of the thickness.
-#define DEEPEST_SHARE 0.1
 
 /// Visits of constraints that take as long as a comparison of a point with an edge.
 #define VISITS_OF_WORK 3u
@@ -128,36 +131,20 @@ MSPRINGI_ALWAYS_INLINE bool is_penetrating(const mspringi_contacts *contacts, co
     return end < (t->gap < 0.0 ? t->gap : 0.0) && end < -most->deepest;
 }
 
-// Return true if any constraint penetrated.
-static bool sweep_penetrating(mspringi_contacts *contacts, double h, bool of_colliders) {
-    const penetration of_bodies = penetration_limit(contacts, h, KEPT_DEPTH_SHARE),
-                      of_others = penetration_limit(contacts, h, 0.0);
+// Sweep constraints that penetrate, between bodies by more than a share of the thickness. Return true if any did.
+static bool sweep_penetrating(mspringi_contacts *contacts, double h, double share) {
+    const penetration of_bodies = penetration_limit(contacts, h, share),
+                      of_colliders = penetration_limit(contacts, h, 0.0);
     bool any = false;
     contacts->work += contacts->constraint_count / VISITS_OF_WORK;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         mspringi_contact_constraint *t = &contacts->constraints[i];
-        const bool is_of_collider = t->collider != MSPRING_NONE;
-        if ((of_colliders && !is_of_collider) ||
-            !is_penetrating(contacts, t, is_of_collider ? &of_others : &of_bodies))
+        if (!is_penetrating(contacts, t, t->collider == MSPRING_NONE ? &of_bodies : &of_colliders))
             continue;
         push_apart(&contacts->nodes, t);
         any = true;
     }
     return any;
-}
-
-// Sweep penetrating constraints until there are none. False: too many sweeps.
-static bool resolve_penetration(mspringi_contacts *contacts, double h) {
-    const uint32_t by_visits = LEAST_DEPTH_SWEEPS + DEPTH_VISITS / (contacts->constraint_count + 1);
-    const uint32_t most = by_visits < MOST_DEPTH_SWEEPS ? by_visits : MOST_DEPTH_SWEEPS;
-    for (uint32_t n = 0; n < most; ++n) {
-        if (!sweep_penetrating(contacts, h, false))
-            return true;
-        mspringi_floor_support_sweep(contacts);
-    }
-    for (uint32_t n = 0; n < MOST_COLLIDER_SWEEPS && sweep_penetrating(contacts, h, true); ++n)
-        mspringi_floor_support_sweep(contacts);
-    return false;
 }
 
 static void sweep_all(mspringi_contacts *contacts, uint32_t sweeps) {
@@ -194,32 +181,44 @@ static void reduce_restitution(const mspringi_contacts *contacts, double share) 
         contacts->constraints[i].target_speed *= contacts->constraints[i].is_bounce ? share : 1.0;
 }
 
-bool mspringi_contact_sweep(mspringi_contacts *contacts, double h, uint32_t sweeps) {
+void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps) {
     sweep_all(contacts, sweeps);
     for (uint32_t n = 1; n <= MOST_BOUNCES && gained_energy(contacts); ++n) {
         reduce_restitution(contacts, n < MOST_BOUNCES ? BOUNCE_SHARE : 0.0);
         sweep_all(contacts, sweeps);
     }
-    if (resolve_penetration(contacts, h))
-        return true;
-    const penetration most = penetration_limit(contacts, h, DEEPEST_SHARE);
-    for (uint32_t i = 0; i < contacts->constraint_count; ++i)
-        if (is_penetrating(contacts, &contacts->constraints[i], &most))
+}
+
+bool mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any) {
+    const uint32_t by_visits = LEAST_DEPTH_SWEEPS + DEPTH_VISITS / (contacts->constraint_count + 1);
+    const uint32_t most = by_visits < MOST_DEPTH_SWEEPS ? by_visits : MOST_DEPTH_SWEEPS;
+    static const double shares[] = {DEEPEST_SHARE, HUGE_VAL}; // the last are colliders alone
+    for (uint32_t n = 0; n < most; ++n) {
+        if (!sweep_penetrating(contacts, h, MSPRINGI_KEPT_DEPTH))
+            return true;
+        *any = true;
+        mspringi_floor_support_sweep(contacts);
+    }
+    for (int i = 0; i < 2; ++i)
+        for (uint32_t n = 0; n < MORE_SWEEPS && sweep_penetrating(contacts, h, shares[i]); ++n)
+            mspringi_floor_support_sweep(contacts);
+    const penetration deepest = penetration_limit(contacts, h, DEEPEST_SHARE);
+    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
+        const mspringi_contact_constraint *t = &contacts->constraints[i];
+        if ((t->gap > -deepest.deepest || t->collider != MSPRING_NONE) && is_penetrating(contacts, t, &deepest))
             return false;
+    }
     return true;
 }
 
-bool mspringi_contact_sweep_pushed(mspringi_contacts *contacts, double least) {
+void mspringi_contact_sweep_pushed(mspringi_contacts *contacts) {
     const mspringi_contact_nodes k = contacts->nodes;
-    bool any = false;
     contacts->work += contacts->constraint_count / VISITS_OF_WORK;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         mspringi_contact_constraint *t = &contacts->constraints[i];
         if (!t->is_pushed)
             continue;
-        const double speed = mspringi_normal_speed(t, k.v), by = add_normal_impulse(t, speed);
+        const double by = add_normal_impulse(t, mspringi_normal_speed(t, k.v));
         apply_impulse(&k, t, by * t->nx, by * t->ny, 0.0, 0.0);
-        any |= (by < 0.0 ? -by : by) > least * t->normal_mass;
     }
-    return any;
 }

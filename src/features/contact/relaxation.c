@@ -6,6 +6,8 @@
 /// each other changed theirs by 7e-2 of the sum of its parts; so by 1e-5, which is rounding.)
 ///
 /// Only constraints that pushed are relaxed, and without friction. With all of them, heaps did not come to rest.
+/// They are swept as often as to push. (32 sweeps take back little more, and 37 % of a step where 10,000 particles
+/// settle.)
 ///
 /// Push-out against springs would store energy in them: without limit where a crack leaves an overlap within a
 /// body, and in crashes in proportion to the speed. So what forces press together is pushed apart less, or held as
@@ -24,10 +26,6 @@
 /// besides. (With a loss of 1, bars that overlap and slide gain half as much again.)
 #define LOSS 2.0
 #define WEIGHTS 64.0
-
-/// Most sweeps, and change of speed that ends them, as a share of the largest push speed.
-#define MAX_RELAXING_SWEEPS 32
-#define RELAXED_SHARE 0.01
 
 void mspringi_relaxation_set_limits(const mspring_network *network, mspringi_contacts *contacts) {
     const double of_move = KEPT_MOVE * contacts->thickness / contacts->dt, of_push = KEPT_SHARE * contacts->push;
@@ -72,9 +70,10 @@ bool mspringi_relaxation_begin(const mspringi_contacts *contacts, double h) {
 }
 
 void mspringi_relaxation_finish(mspringi_contacts *contacts) {
-    const double least = RELAXED_SHARE * contacts->push;
-    for (uint32_t n = 0; n < MAX_RELAXING_SWEEPS && mspringi_contact_sweep_pushed(contacts, least); ++n)
+    for (uint32_t n = 0; n < contacts->def.sweeps; ++n) {
+        mspringi_contact_sweep_pushed(contacts);
         mspringi_floor_support_sweep(contacts);
+    }
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
         const double taken = t->pushed_impulse - t->normal_impulse;

@@ -299,6 +299,33 @@ static void crowds_end_at_the_first_pair_too_many(void **state) {
     mspring_network_destroy(network);
 }
 
+/// 24 columns of 100 particles collapse between two walls. Overlaps that no sweeps could resolve were taken in 64
+/// intervals each, which was too much work for a step.
+static void tall_pits_are_not_refused(void **state) {
+    (void)state;
+    enum { COLUMNS = 24 };
+    mspring_builder *builder = support_builder();
+    for (uint32_t i = 0; i < COLUMNS * 100; i++)
+        (void)support_particle(builder, -0.3 * COLUMNS + 0.6 * (i % COLUMNS) + 0.01 * (i % 7),
+                               0.3 + 0.6 * (i / COLUMNS), 800);
+    const mspring_network_def def = support_def(-9.8f, 4);
+    mspring_network *network = support_network(builder, &def);
+    const double planes[3][4] = {{0, 0, 0, 1}, {-9, 0, 1, 0}, {9, 0, -1, 0}};
+    mspring_floor_def floor;
+    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    floor.planes = planes[0];
+    floor.plane_count = 3;
+    check_ok(mspring_network_set_floor(network, &floor));
+    check_ok(touch(network, 0.5));
+    for (int step = 0; step < 200; step++) {
+        mspring_contact_info info = {.struct_size = sizeof info};
+        support_steps(network, 1, 1.0 / 64);
+        check_ok(mspring_network_get_contact_info(network, &info));
+        assert_true(info.deepest <= 0.15 * 0.5);
+    }
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cliques_take_few_tries),
@@ -312,6 +339,7 @@ int main(void) {
         cmocka_unit_test(hubs_are_counted),
         cmocka_unit_test(heaps_of_rods_are_not_refused),
         cmocka_unit_test(hubs_at_rest_are_no_burden),
+        cmocka_unit_test(tall_pits_are_not_refused),
     };
     return cmocka_run_group_tests_name("contact_limits", tests, NULL, NULL);
 }
