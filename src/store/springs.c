@@ -173,6 +173,7 @@ void mspringi_spring_slot_copy(const mspring_network *from, mspringi_spring_slot
     for (int i = 0; i < records.count; ++i) {
         const spring_record *record = &records.ends[i];
         *record->rest_length = *had.rest_length;
+        mspringi_note_rest_length(to, *had.rest_length);
         *record->stiffness = *had.stiffness;
         if (record->damping)
             // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): both networks have it, or neither

@@ -177,7 +177,7 @@ void actors_act(scene *s, mspring_network *library, specification *to) {
         n->grips[i].y += scene_between(s, -0.1, 0.1);
         check_ok(mspring_network_move_grip(library, to->grip_ids[i], n->grips[i].x, n->grips[i].y));
     }
-    const float signal = (float)scene_between(s, 0.97, 1.03);
+    const float signal = (float)scene_between(s, 0.4, 1.4);
     n->actuator_count = 0;
     for (uint32_t i = 0; i < to->actuated_count; i++) {
         check_ok(mspring_network_set_signals(library, i, 1, &signal, 1));

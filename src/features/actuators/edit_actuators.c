@@ -165,8 +165,10 @@ mspring_result mspring_network_set_signals(mspring_network *network, uint32_t fi
     const float *nominal = a->nominal + first;
     float *to = a->to + first;
     const mspringi_fp_state before = mspringi_fp_enter();
-    for (size_t i = 0; i < count; ++i)
+    for (size_t i = 0; i < count; ++i) {
         to[i] = nominal[i] * signals[i * stride];
+        mspringi_note_rest_length(network, to[i]);
+    }
     mspringi_fp_leave(before);
     a->are_pending = a->have_moved = true;
     if (network->sleep.sleeping > 0)

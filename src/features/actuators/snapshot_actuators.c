@@ -63,6 +63,7 @@ static void actuators_load(mspring_network *network, const uint8_t *from, size_t
         float values[VALUES];
         from = mspringi_get(from, values, VALUES, sizeof values[0]);
         a->to[i] = values[1];
+        mspringi_note_rest_length(network, values[1]);
         mspringi_spring_slot_set_rest_length(network, spring_slot, values[0]);
         if (!network->tested.nominal)
             continue;
