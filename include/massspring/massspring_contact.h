@@ -234,9 +234,9 @@ MSPRING_API mspring_result MSPRING_CALL mspring_collider_def_init(mspring_collid
 
 /// Add a collider.
 /// Bodies keep the contact's thickness from it. No outline passes it, from either side: boxes and closed chains are
-/// walls around a space, and what lies inside stays inside. Inner particles of very soft bodies may leave their
-/// outline, and so pass. Sides may cross. Colliders do not touch each other. Their mass is infinite. The contact's sweeps and
-/// push_speed are theirs, too. The guide examples/guides/contact.md has the guarantees.
+/// walls around a space, and what lies inside stays inside. Inner particles keep out, too; those of very soft bodies may
+/// still pass other bodies. Sides may cross. Colliders do not touch each other. Their mass is infinite. The contact's
+/// sweeps and push_speed are theirs, too. The guide examples/guides/contact.md has the guarantees.
 ///
 /// Colliders need contact. If only colliders are to touch particles, set groups and masks by which particles do not
 /// touch each other.

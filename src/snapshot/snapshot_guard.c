@@ -129,4 +129,4 @@ static mspring_result guard_check_against(mspring_network *network, const msprin
 }
 
 const mspringi_section mspringi_section_guard = {
-    "guar", "guard of the stability border", false, NULL, guard_save, guard_check, guard_load, guard_check_against};
+    "guar", "guard of the stability limit", false, NULL, guard_save, guard_check, guard_load, guard_check_against};

@@ -339,8 +339,8 @@ static void queue_constraint(const mspring_network *network, mspringi_contacts *
     *fastest = speed > *fastest ? speed : *fastest;
 }
 
-// True if two particles are too far is_neighbour for a constraint. No root: a way w is at most (L + w^2 / L) / 2
-// for any length L.
+// True if two particles are too far apart for a constraint. No root: a way w is at most (L + w^2 / L) / 2 for any
+// length L.
 MSPRINGI_ALWAYS_INLINE bool are_far(const mspringi_contact_nodes *k, const mspringi_candidate *c, double still,
                                     double per_square) {
     const double dx = k->x[c->p] - k->x[c->a], dy = k->y[c->p] - k->y[c->a];

@@ -7,7 +7,8 @@
 /// velocities alone, not from when the list was made, nor from how far it reaches.
 ///
 /// mspringi_pair_list_scan calls mspringi_pair_list_refresh. That measures the points (point_speeds.c), makes a new
-/// list if the old one may lack pairs (make_list()), and collects the candidates (collect_candidates()).
+/// list if the old one may lack pairs (make_list()), and collects the candidates (collect_uniform() or
+/// collect_by_speed()).
 #include <math.h>
 #include <string.h>
 

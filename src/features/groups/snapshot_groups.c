@@ -18,7 +18,7 @@ static mspring_result held_check(mspring_network *network, const uint8_t *from, 
     return result;
 }
 
-// The next step reads only the flags: see mspringi_groups_begin().
+// The next step reads only the flags: see begin() in mspringi_ops_of_groups.
 static void held_load(mspring_network *network, const uint8_t *from, size_t size) {
     mspringi_groups *g = &network->groups;
     g->held = 0;

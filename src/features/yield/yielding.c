@@ -5,11 +5,11 @@
 /// before each substep until the next look, and those that are over their yield strain are mapped. So what a step
 /// does follows from the state that it begins with, and nothing has to be remembered from step to step.
 ///
-/// In the explicit solver the sweeps of lattice and chain rows look and test, strip by strip: see test_lattice() in
-/// kernels/sweep.h. With several workers they first take a step in which they only look. If any spring was warm,
-/// that step is taken once more with one worker, who maps as well. The next step begins with that, as it is likely
-/// to be warm, too: both have the same bits where nothing is. Springs of the irregular part, and those of all other
-/// solvers, are looked at and mapped here, between substeps.
+/// In the explicit solver the sweeps of lattice and chain rows look and test, strip by strip: see yield_springs()
+/// in kernels/yield_sweep.h. With several workers they first take a step in which they only look. If any spring was
+/// warm, that step is taken once more with one worker, who maps as well. The next step begins with that, as it is
+/// likely to be warm, too: both have the same bits where nothing is. Springs of the irregular part, and those of
+/// all other solvers, are looked at and mapped here, between substeps.
 ///
 /// Longer periods than 4 lose yields: with 20, a blow of 8 ms left a dent 13 % too small. Without a stability
 /// limit substeps are long, and each of them begins with a look. Implicit ones are cut into pieces where they

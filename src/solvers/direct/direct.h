@@ -63,7 +63,8 @@ void mspringi_direct_relocate(mspringi_direct *direct, const mspringi_memory *fr
 
 /// Solve the system that mspringi_assemble() has left in the network's implicit solver.
 void mspringi_direct_solve(mspring_network *network);
-/// Add to a solution the response to constraints whose forces are unknowns (constraints/direct_constraints.c).
+/// Add to a solution the response to constraints whose forces are unknowns
+/// (solvers/constraints/direct_constraints.c).
 void mspringi_direct_solve_constraints(mspring_network *network, mspringi_solve_fn solve, double *x, double *y);
 #else // no table of solvers leads here
 static inline void mspringi_direct_begin(mspringi_direct_builder *making, mspringi_direct *direct,

@@ -112,7 +112,7 @@ typedef struct mspringi_implicit {
     mspringi_edits seen;                      ///< edits up to the last update
     struct mspringi_implicit_builder *making; ///< NULL: it is complete
     size_t used_slot_end;                     ///< no slot behind has had a particle: arrays by slot are 0 there
-    uint64_t rested; ///< edits.naps up to which arrays by slot are at rest for sleeping particles
+    uint64_t rested; ///< edits.sleep_changes up to which arrays by slot are at rest for sleeping particles
 
     mspringi_budget budget;
     mspringi_panels panels;
@@ -153,9 +153,9 @@ void mspringi_implicit_update(const mspring_network *network, mspringi_implicit 
 
 /// Save the history before a step, and restore it after a failed one.
 void mspringi_implicit_keep(mspringi_implicit *implicit);
-/// Clear what is 0 between steps, unless numbers overflowed.
-void mspringi_implicit_clear_overflow(const mspring_network *network, mspringi_implicit *n);
 void mspringi_implicit_restore(const mspring_network *network, mspringi_implicit *implicit);
+/// After an overflow, clear the arrays that are 0 between steps.
+void mspringi_implicit_clear_overflow(const mspring_network *network, mspringi_implicit *n);
 
 /* implicit_snapshot.c: a snapshot's section */
 

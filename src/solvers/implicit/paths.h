@@ -53,7 +53,7 @@ typedef struct mspringi_paths {
     uint32_t *node_of_slot;            ///< [slots] MSPRING_NONE: none; NULL without paths
     uint32_t *slots;                   ///< [node_count] along the path
     uint32_t *factors;                 ///< [node_count + count] of the springs; MSPRING_NONE: there is none
-    uint8_t *marks;                    ///< [node_count] bits below
+    uint8_t *marks;                    ///< [node_count] bits: condensed, joined (condense.c)
     double (*held)[3];                 ///< [node_count] xx, xy, yy of constraints on a node alone
     float *mass;                       ///< [node_count] while it is 0 in the system
     double (*ups)[4];                  ///< [node_count] P^-1 times the block of the spring behind
