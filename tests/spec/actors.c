@@ -1,5 +1,5 @@
 /// @file actors.c
-/// What acts beside springs in the random networks of test_spec.c.
+/// Actors beside springs in the random networks of test_spec.c.
 ///
 /// SPDX-License-Identifier: MIT
 #include "actors.h"

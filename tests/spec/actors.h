@@ -1,5 +1,5 @@
 /// @file actors.h
-/// What acts beside springs in the random networks of test_spec.c: areas, angle springs, hooks, grips, actuators.
+/// Actors beside springs in the random networks of test_spec.c: areas, angle springs, hooks, grips, actuators.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef SPEC_ACTORS_H

@@ -182,7 +182,7 @@ bool spec_changes_dt(const spec_network *network, double dt);
 /// Set the springs along an element and its reach, after it was added. spec_laws.c
 void spec_begin_element(const spec_network *network, spec_element *element);
 
-/// What acts beside springs. spec_laws.c
+/// Actors beside springs. spec_laws.c
 uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count); ///< taken together
 void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count); ///< actuators, one-way springs
 void spec_add_fields(const spec_network *network);                               ///< to spec_network.fields

@@ -139,7 +139,7 @@ typedef struct path_factor {
     bool is_turned;
 } path_factor;
 
-// What is left of the second diagonal entry is at least the mass, whatever rounding says.
+// The rest of the second diagonal entry is at least the mass, whatever rounding says.
 static path_factor factor_of(path_block pivot, double mass) {
     const bool is_turned = pivot.yy > pivot.xx;
     const double larger = is_turned ? pivot.yy : pivot.xx, smaller = is_turned ? pivot.xx : pivot.yy;

@@ -189,7 +189,7 @@ static inline mspringi_slots mspringi_slots_of(const mspring_network *network, c
     return (mspringi_slots){mspringi_range_begin(member, chunks) * MSPRINGI_CHUNK, end < slots ? end : slots};
 }
 
-/// The same of all chunks: the last member has those that are not in use, too.
+/// A share of all chunks: the last member has those that are not in use, too.
 static inline mspringi_slots mspringi_all_slots_of(const mspring_network *network,
                                                    const mspringi_team_member *member) {
     const mspringi_slots slots = mspringi_slots_of(network, member);
