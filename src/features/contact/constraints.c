@@ -367,7 +367,7 @@ static uint32_t filter_candidates(const mspringi_contacts *contacts, uint32_t fi
     return count;
 }
 
-static bool any_fast(const mspringi_contacts *contacts, uint32_t p, uint32_t a, uint32_t b) {
+static bool is_any_fast(const mspringi_contacts *contacts, uint32_t p, uint32_t a, uint32_t b) {
     const uint8_t *is_fast = contacts->nodes.is_fast;
     return is_fast[p] | is_fast[a] | is_fast[b];
 }
@@ -378,7 +378,7 @@ static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, u
     for (uint32_t i = first, end = filter_end(contacts, first); i < end; ++i) {
         const mspringi_candidate *c = &contacts->candidates[i];
         kept[count] = i;
-        count += any_fast(contacts, c->p, c->a, c->b) & !contacts->is_seen[i];
+        count += is_any_fast(contacts, c->p, c->a, c->b) & !contacts->is_seen[i];
     }
     return count;
 }
@@ -421,6 +421,7 @@ double mspringi_contact_prepare_implicit(const mspring_network *network, mspring
     contacts->fall_x = h * (double)network->settings.gravity_x;
     contacts->fall_y = h * (double)network->settings.gravity_y;
     memcpy(k->v, k->v_start, k->particle_count * sizeof *k->v);
+    // The first pass finds the largest speed, the second takes all pairs that may touch at it, or a little faster.
     const double fastest = mspringi_contact_make_constraints(network, contacts, h, 0.0, 1);
     (void)mspringi_contact_make_constraints(network, contacts, h,
                                             fastest + EXTRA_APPROACH * contacts->thickness / h, 1);
@@ -430,7 +431,7 @@ double mspringi_contact_prepare_implicit(const mspring_network *network, mspring
 /* ------------------------------------------------------------------------------------- added after the sweeps */
 
 bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
-                                      bool any_fast, double kept) {
+                                      bool has_fast, double kept) {
     const uint32_t before = contacts->constraint_count, near_miss_count = contacts->near_miss_count;
     double fastest = 0.0;
     memset(contacts->is_seen, 0, contacts->candidate_count);
@@ -441,7 +442,7 @@ bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_c
         contacts->is_seen[contacts->near_misses[i]] = 1;
         queue_constraint(network, contacts, contacts->near_misses[i], h, 0.0, &fastest);
     }
-    if (any_fast)
+    if (has_fast)
         queue_constraints(network, contacts, h, 0.0, true, &fastest);
     flush_or_end(contacts, h);
     for (uint32_t i = before; i < contacts->constraint_count; ++i) {
@@ -456,7 +457,7 @@ bool mspringi_contact_moves_are_short(const mspringi_contacts *contacts, double 
     const double most = MAX_MOVE * contacts->thickness / h;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
-        if (any_fast(contacts, t->p, t->a, t->b) &&
+        if (is_any_fast(contacts, t->p, t->a, t->b) &&
             max_square_speed(&contacts->nodes, t->p, t->a, t->b) > most * most)
             return false;
     }

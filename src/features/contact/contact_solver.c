@@ -53,9 +53,9 @@ static bool solve_interval(const mspring_network *network, mspringi_contacts *co
     mspringi_floor_support_begin(contacts, h);
     mspringi_contact_sweep(contacts, contacts->def.sweeps);
     for (uint32_t round = 0;; ++round) {
-        const bool any_fast = mark_fast(contacts, h), is_last = round >= MAX_ROUNDS;
-        if ((any_fast || contacts->near_miss_count > 0) &&
-            mspringi_contact_add_constraints(network, contacts, h, any_fast,
+        const bool has_fast = mark_fast(contacts, h), is_last = round >= MAX_ROUNDS;
+        if ((has_fast || contacts->near_miss_count > 0) &&
+            mspringi_contact_add_constraints(network, contacts, h, has_fast,
                                              is_last ? MSPRINGI_KEPT_DEPTH * contacts->thickness : 0.0)) {
             if (is_last)
                 return false;
@@ -68,7 +68,7 @@ static bool solve_interval(const mspring_network *network, mspringi_contacts *co
             holds = mspringi_contact_resolve_penetration(contacts, h, &any);
         is_resolved = true;
         if (!any)
-            return holds && (!any_fast || mspringi_contact_moves_are_short(contacts, h));
+            return holds && (!has_fast || mspringi_contact_moves_are_short(contacts, h));
     }
 }
 
@@ -133,7 +133,7 @@ static void check_speed(mspringi_contacts *contacts, mspring_id p, double square
     }
 }
 
-// Speed that no scan has to expect, m/s.
+// Speed below which check_speed() has nothing to do, whatever the last scan assumed of a node, m/s.
 static double unchecked_speed(const mspringi_contacts *contacts) {
     return MSPRINGI_SPEED_MARGIN * contacts->min_speed +
            MSPRINGI_DRIFT_FRACTION * contacts->thickness / contacts->dt;
@@ -177,7 +177,7 @@ static void move_nodes(const mspring_network *network, mspringi_contacts *contac
 static void solve_in_intervals(const mspring_network *network, mspringi_contacts *contacts, double h,
                                uint32_t intervals) {
     const mspringi_contact_nodes *k = &contacts->nodes;
-    bool is_made = intervals == 1; // by the caller
+    bool is_made = intervals == 1; // the caller has made the constraints of a single interval
     for (uint32_t left = intervals, cuts = 0; left > 0;) {
         const double interval = h / left;
         if (!is_made)

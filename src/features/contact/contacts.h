@@ -159,7 +159,7 @@ typedef struct mspringi_closest_point {
     double fraction; ///< position between a (0) and b (1)
 } mspringi_closest_point;
 
-/// Most pending constraints that are ordered together.
+/// Most pending constraints that are coloured together (constraints.c).
 #define MSPRINGI_MAX_PENDING 64u
 
 /// Pending constraint: its place in the order is not known yet.
@@ -347,8 +347,8 @@ struct mspringi_contacts {
     double fall_x, fall_y; ///< change of velocity by gravity in an implicit interval, m/s; 0 after forces
     double share;          ///< length of an implicit interval as a share of its substep; else 1
     double kept_push;      ///< faster push-out of overlaps is relaxed, m/s; DBL_MAX: none is
-    double max_push;       ///< largest speed of such push-out, m/s; weights are in it
-    bool has_push;         ///< constraints of this interval may have such push-out
+    double max_push; ///< limit of such push-out where nothing approaches, m/s, raised for weights (relaxation.c)
+    bool has_push;   ///< constraints of this interval may have such push-out
     mspringi_floor_support *supports; ///< [MSPRINGI_MAX_SUPPORTS * nodes]
     uint32_t support_count;
     uint32_t touching; ///< largest number of pushing constraints in an interval
@@ -441,9 +441,9 @@ static inline double mspringi_margin_of_edge(const mspringi_contacts *contacts, 
 /* pair_list.c */
 
 /// Make a new list if pairs may be missing, and collect the candidates. is_missed becomes true if a pair could have
-/// touched in the last `quiet` substeps, which had no constraints. False: the capacity is too small.
+/// touched in the last `quiet` substeps, which had no constraints. False: no room, or too much work.
 bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
-/// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. False: likewise.
+/// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. False: as above.
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
 /// Replace the list by all pairs nearer than `reach`, m, for piles. The next scan makes its own list.
 void mspringi_near_list(const mspring_network *network, mspringi_contacts *contacts, double reach);
@@ -462,13 +462,13 @@ void mspringi_contact_load_nodes(const mspring_network *network, mspringi_contac
 /// may push in it. Return the largest speed, m/s.
 double mspringi_contact_prepare_implicit(const mspring_network *network, mspringi_contacts *contacts, double h);
 /// Make the constraints of an interval of h seconds: of pairs that may touch at their own speed or at `given`. At
-/// most `pending` are ordered together. Return the largest speed, m/s.
+/// most `pending` are coloured together. Return the largest speed, m/s.
 double mspringi_contact_make_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
                                          double given, uint32_t pending);
 /// Add constraints of pairs that may touch after the sweeps. Return true if one would overlap by more than `kept`,
 /// m.
 bool mspringi_contact_add_constraints(const mspring_network *network, mspringi_contacts *contacts, double h,
-                                      bool any_fast, double kept);
+                                      bool has_fast, double kept);
 /// True if no fast node of a constraint would move too far in the interval.
 bool mspringi_contact_moves_are_short(const mspringi_contacts *contacts, double h);
 

@@ -26,7 +26,8 @@
 /// Cells in each direction from the origin; the last one has everything beyond.
 #define MOST_CELLS 1e8
 
-/// A point that has springs, or is a corner of a collider, is below all limits but that of edges with a length.
+/// Number that a search gives to a point whose own edges have a length: below the `below` of all edges with a
+/// length (MSPRING_NONE), and of no edge of length 0.
 #define ANY_POINT (MSPRING_NONE - 1)
 
 static int32_t cell_of(double coordinate, double size) {

@@ -137,13 +137,14 @@ bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi
 /// for each strip, too.
 bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds);
 
-/// True if no particle did reach it in that step of substeps of h, by bounds from the outcome. A particle is missed
-/// that forces drive in and out of it in between, if all are as slow before and after the step as the survey
-/// assumed.
+/// True if no particle did reach it in that step of substeps of h, by bounds from the outcome. This misses a
+/// particle that forces drive into the surface and out again within the step, if all are as slow at both ends of it
+/// as assumed.
 bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen);
 
-/// The same test for other surfaces in local coordinates, with their own safe box. way: longest way at the largest
-/// speed, m.
+/// The same for any surfaces in local coordinates, as those of hooks: true if no particle can reach them in a step
+/// of `seconds`; true if none did. A safe box that is too small for the step is found anew. way: that of a particle
+/// at the largest speed in the step, m.
 bool mspringi_safe_box_suffices(const mspring_network *network, const mspringi_floor *surfaces,
                                 mspringi_safe_box *room, double seconds);
 bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_safe_box *room, double way,

@@ -146,7 +146,8 @@ void mspringi_floor_save_positions(mspring_network *network, float h) {
     const size_t size = mspringi_used_slots(network) * sizeof *floor->start.x;
     memcpy(floor->start.x, network->state.x, size);
     memcpy(floor->start.y, network->state.y, size);
-    // The box that is clear of all strips' surfaces is clear around the network.
+    // A clear box of the network: in y the intersection of the strips' clear boxes, over the whole range of these
+    // in x.
     mspringi_floor_update_clearances(network, (double)h);
     floor->clear = (mspringi_bounds){INFINITY, -INFINITY, -INFINITY, INFINITY};
     for (uint32_t i = 0; i < network->topology.strip_count; ++i) {

@@ -108,8 +108,8 @@ typedef struct star {
     uint32_t count;
 } star;
 
-/// Edges that are being judged: all, or those at particles whose springs have changed. Lists are made in arrays
-/// that the cells and the lists of edges are written to afterwards.
+/// Edges that are being judged: all, or those at particles whose springs have changed. Lists lie in the edges of
+/// the grid, and in the outline's `first` and `points`, all of which are filled afterwards.
 typedef struct judging {
     const mspring_network *network;
     mspringi_contacts *contacts;
@@ -165,8 +165,8 @@ static uint32_t stride_through(uint32_t count) {
     }
 }
 
-// True if triangles lie on both sides of a spring from a to b. Those that one of them is joined to are stamped by
-// it, the star is the other's.
+// True if triangles lie on both sides of the spring from a to b. `stamped` is the end whose neighbours carry
+// stamps, `others` the star of the other end.
 static bool is_inside(const judging *j, mspring_id a, mspring_id b, mspring_id stamped, const star *others) {
     mspringi_outline *o = &j->contacts->outline;
     const double ex = o->shape_x[b] - o->shape_x[a], ey = o->shape_y[b] - o->shape_y[a];
@@ -196,8 +196,8 @@ static bool lies_beside(const star *of, mspring_id end, mspring_id spring) {
     return false;
 }
 
-// Judge the springs at a particle whose other end has as few springs or fewer; after edits, those at
-// changed particles only.
+// Judge the springs at p whose other end has fewer springs, or as many and the lower id. After edits, only those
+// with a changed end.
 static void judge_at(const judging *j, mspring_id p) {
     mspringi_outline *o = &j->contacts->outline;
     const star own = star_of(j, p, 0);

@@ -217,7 +217,7 @@ static bool make_list(const mspring_network *network, mspringi_contacts *contact
     return true;
 }
 
-// List all pairs within `ratio` times the margins that points of such speeds need. False: likewise.
+// List all pairs within `ratio` times the margins that points of such speeds need. False: as make_list().
 static bool make_list_for(const mspring_network *network, mspringi_contacts *contacts, const double *speed,
                           double ratio) {
     const mspringi_outline *o = &contacts->outline;

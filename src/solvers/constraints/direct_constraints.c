@@ -25,7 +25,7 @@
 /// is small because masses alone give way 10^10 times as much as they do with elements.
 #define MOST_ITERATIONS 1000u
 #define LEAST_PRODUCT 1e-24
-/// These bounds of the other constraints.
+/// The same limits for the other constraints.
 #define MOST_ITERATIONS_OF_OTHERS 64u
 #define LEAST_PRODUCT_OF_OTHERS 1e-12
 
@@ -40,8 +40,8 @@ static const mspringi_constraint *constraint_of(const mspringi_constraints *all,
     return &all->list[m->constraint];
 }
 
-// Response of one constraint to a unit force of another, if only masses resist.
-static double shared(const mspring_network *network, const multiplier *one, const multiplier *other) {
+// Entry of G M^-1 G': response of one constraint to a unit force of another, if only masses resist.
+static double mass_coupling(const mspring_network *network, const multiplier *one, const multiplier *other) {
     const mspringi_constraints *all = &network->constraints;
     const float *mass = mspringi_implicit_of(network)->mass;
     const mspringi_constraint *c = constraint_of(all, one), *o = constraint_of(all, other);
@@ -67,14 +67,14 @@ static void factor(const mspring_network *network, multiplier *list, uint32_t co
         m->pivot = 1.0;
         if (!is_in_band(network, m))
             continue;
-        double pivot = 1.0 + shared(network, m, m);
+        double pivot = 1.0 + mass_coupling(network, m, m);
         if (i > 1 && is_in_band(network, &list[i - 2])) {
-            const double product = shared(network, m, &list[i - 2]);
+            const double product = mass_coupling(network, m, &list[i - 2]);
             m->beside[1] = product / list[i - 2].pivot;
             pivot -= product * m->beside[1];
         }
         if (i > 0 && is_in_band(network, &list[i - 1])) {
-            const double product = shared(network, m, &list[i - 1]) -
+            const double product = mass_coupling(network, m, &list[i - 1]) -
                                    (i > 1 ? m->beside[1] * list[i - 2].pivot * list[i - 1].beside[0] : 0.0);
             m->beside[0] = product / list[i - 1].pivot;
             pivot -= product * m->beside[0];

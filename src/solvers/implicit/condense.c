@@ -270,7 +270,8 @@ static void add_segment(const mspringi_implicit *n, const mspringi_path_segment 
     n->residual.y[slot] += (float)s->load[2 * end + 1];
 }
 
-// Change the rows of the ends, and drop the constraints of condensed particles, whose pivots have them.
+// Change the rows of the ends. Constraints of condensed particles, whose pivots have them, lose their stiffness
+// until the next mspringi_constraints_activate().
 static void change_ends(const mspring_network *network, const mspringi_paths *p) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_system *system = &n->system;

@@ -85,6 +85,8 @@ typedef struct mspringi_implicit {
 
     double *x, *y;           ///< [slots] predicted positions, in one block
     mspringi_field velocity; ///< velocity after the substep for d = 0
+    /// Vectors of the iteration: residual, N s^2; displacement d and search direction, m; product: A direction, N
+    /// s^2; scaled: D^-1 residual, m (conjugate_gradients.c). Forces in them have the factor `scale`.
     mspringi_field residual, displacement, direction, product, scaled;
     mspringi_field arm;                 ///< from the tile's mass centre to each particle, m
     float *mass;                        ///< [slots] scaled; 0 if pinned or empty
@@ -92,7 +94,7 @@ typedef struct mspringi_implicit {
     float *factors;                     ///< factors of lattice, chain and irregular springs, end to end
     float *irregular_factors;           ///< first factors of irregular springs: [block][factor][lane]
     double *force_carry;                ///< carry rows, one for each worker (mspringi_system)
-    float *carry;                       ///< likewise
+    float *carry;                       ///< likewise for blocks of A, and for products
     double (*unknowns)[MSPRINGI_RIGID]; ///< [workers][tiles] of the coarse matrix; each worker solves for them
     uint32_t team;                      ///< workers with carry rows and unknowns
     uint32_t solo_substeps;             ///< coming substeps of one worker, because others had no core
@@ -121,7 +123,7 @@ typedef struct mspringi_implicit {
     mspringi_direct direct; ///< zero unless is_direct
     mspringi_tiles tiles;   ///< tiles and coarse are empty if is_direct
     mspringi_coarse coarse;
-    mspringi_paths paths; ///< likewise
+    mspringi_paths paths; ///< empty if is_direct
 } mspringi_implicit;
 
 /// The running solver's implicit object.
@@ -171,8 +173,8 @@ typedef struct mspringi_implicit_substep {
     mspring_network *network;
     mspringi_field base;
     float h;
-    float mass_scale;
-    bool watches; ///< with an energy budget
+    float mass_scale; ///< mspringi_implicit.scale, and what global damping adds to masses
+    bool watches;     ///< with an energy budget
     uint32_t workers;
     mspringi_progress *progress;
     mspringi_prediction prediction;

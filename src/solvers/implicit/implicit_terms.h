@@ -7,8 +7,8 @@
 ///   features/grips/implicit_grips.c, features/angles/implicit_angles.c
 ///   features/one_way/implicit_one_way.c  energy of one-way springs
 ///
-/// A contact is a stiff spring in the system while it pushes: an active-set method. Functions of the floor with a
-/// const network do nothing without a floor, those of features nothing where these are not used.
+/// A contact is a stiff spring in the system while it pushes: an active-set method. Functions of features
+/// do nothing where these are not used.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_IMPLICIT_TERMS_H
@@ -20,14 +20,15 @@
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
 
-/// Intervals that an implicit substep of h should have. Call mspringi_floor_save_positions() first.
+/// Intervals that an implicit substep of h should have for the floor, which there must be. Call
+/// mspringi_floor_save_positions() first.
 uint32_t mspringi_floor_count_intervals(const mspring_network *network, float h);
 
 /// List the floor's constraints as predicted. Return false if particles hit the floor and the substep should be one
 /// of implicit Euler.
 bool mspringi_floor_list_constraints(mspring_network *network, float h);
 
-/// Add the contact forces of a substep of h to the floor's impulses.
+/// Add the contact forces of a substep of h to the impulses of the floor, which there must be.
 void mspringi_floor_record_impulses(const mspring_network *network, float h);
 
 // Of a feature with constraints (features.def), in this order: true if it has any; list them, as predicted; accept
@@ -52,11 +53,11 @@ bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t 
 static inline bool mspringi_implicit_contact_is_near(const mspring_network *network) {
     return network->contacts && network->contacts->quiet_substeps == 0;
 }
-/// Allow a substep the comparisons that one of its size takes.
+/// Raise the limit on comparisons by those that a substep of this network may take.
 void mspringi_implicit_contact_allow_work(const mspring_network *network);
-/// Make the constraints of an interval of h. Return true if one is active. The second one: intervals that the
-/// substep should have.
+/// Make the constraints of an interval of h. Return true if one is active.
 bool mspringi_implicit_contact_begin(mspring_network *network, float h);
+/// Return the intervals that a substep of h should have.
 uint32_t mspringi_implicit_contact_count_intervals(mspring_network *network, float h);
 /// List their constraints as predicted.
 void mspringi_implicit_contact_list_constraints(mspring_network *network, float h);
@@ -68,8 +69,9 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
 bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float h);
 /// True if springs moved a pair without a constraint into contact.
 bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, float h);
-/// Record the impulses of an accepted interval, and push isolated particles, which moved past the floor since.
+/// Record the impulses of an accepted interval of h.
 void mspringi_implicit_contact_count_impulses(mspring_network *network, float h);
+/// Push isolated particles by the impulses of all intervals, after they have moved past the floor.
 void mspringi_implicit_contact_push_free_particles(const mspring_network *network);
 /// Add contact impulses to the components' sums after a substep.
 void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all);

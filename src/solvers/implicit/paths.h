@@ -6,8 +6,8 @@
 ///     S = A_EE - A_EC A_CC^-1 A_CE,    b_E += -A_EC A_CC^-1 b_C,    d_C = A_CC^-1 (b_C - A_CE d_E).
 ///
 /// (Static condensation: block elimination along the path, exact but for rounding.) Iterations have S, a 4 x 4
-/// block between the ends, instead of the path. They would need as many as it has particles, and lose it in single
-/// precision.
+/// block between the ends, instead of the path. Else they would be as many as it has particles, and the masses of a
+/// stiff path would be lost to rounding in single precision.
 ///
 /// Paths are those of the layout, whatever is broken: a broken spring has no factors. In each solution they are cut
 /// at particles that do not move, or that a constraint or an added spring joins to others. What lies between is a
@@ -25,7 +25,8 @@
 /// Fewest particles of a path, and of a segment.
 #define MSPRINGI_LEAST_PATH 3u
 
-/// Particles of a path: nodes `first` to `end` - 1. Its springs are those from first + its number on, one more.
+/// Particles of a path: nodes `first` to `end` - 1. Path number c has end - first + 1 springs: factors[i + c] are
+/// those of the spring before node i, for i up to end.
 typedef struct mspringi_path {
     uint32_t first, end;
     uint32_t ends[2];       ///< slots beyond; MSPRING_NONE: the path ends there
@@ -56,7 +57,7 @@ typedef struct mspringi_paths {
     uint8_t *marks;                    ///< [node_count] bits: condensed, joined (condense.c)
     double (*held)[3];                 ///< [node_count] xx, xy, yy of constraints on a node alone
     float *mass;                       ///< [node_count] while it is 0 in the system
-    double (*ups)[4];                  ///< [node_count] P^-1 times the block of the spring behind
+    double (*ups)[4];                  ///< [node_count] P^-1 times the block of the spring behind; P: the pivot
     mspringi_path_response *responses; ///< [node_count]
     bool has_marks;                    ///< marks and held are not all 0
 } mspringi_paths;
@@ -80,8 +81,8 @@ extern const mspringi_array_table mspringi_paths_columns;
 
 /* condense.c: of a solution, on all members of a team; nothing without paths */
 
-/// Take back the rotation of particles of paths in a range of slots: what is solved exactly needs no help, and is
-/// linearised where the direct solver has it.
+/// Undo the predicted rotation of path particles in a range of slots. Paths are solved exactly, so they are
+/// linearised at the positions without it, as in the direct solver.
 void mspringi_condense_straighten(const mspring_network *network, const mspringi_prediction *prediction,
                                   size_t first, size_t end);
 
