@@ -23,7 +23,7 @@ typedef struct mspringi_element_ops {
 #include "store/features.def"
 
 bool mspringi_elements_have_terms(const mspring_network *network);
-void mspringi_elements_stiffen(const mspring_network *network);
+void mspringi_elements_assemble(const mspring_network *network);
 void mspringi_elements_list_constraints(mspring_network *network);
 void mspringi_elements_add_energy(const mspring_network *network);
 bool mspringi_elements_forget_energy(const mspring_network *network);

@@ -125,7 +125,7 @@ static void check_speed(mspringi_contacts *contacts, mspring_id p, double square
     const double expected = MSPRINGI_SPEED_MARGIN * assumed + spare,
                  most = 3.0 * assumed + 0.25 * contacts->thickness / (double)contacts->h;
     if (square > expected * expected)
-        contacts->valid = 1;
+        contacts->substeps_to_refresh = 1;
     if (square > most * most) {
         const double speed = sqrt(square);
         contacts->is_missed = contacts->has_extra_speed = true;

@@ -227,7 +227,8 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     if (network->running->ops->has_implicit_contact || !mspringi_contact_solve_substep(network, contacts) ||
         contacts->is_second_try)
         rescan(network, contacts);
-    else if (--contacts->valid == 0 && contacts->substeps_done < attempt->substeps) // a step begins with a scan
+    else if (--contacts->substeps_to_refresh == 0 &&
+             contacts->substeps_done < attempt->substeps) // a step begins with a scan
         (void)mspringi_pair_list_refresh(network, contacts, 0);
 }
 

@@ -98,10 +98,10 @@ static const mspringi_array_entry members[] = {
     VIEW(outline.first),
     VIEW(outline.at),
     VIEW(outline.body),
-    ARRAY(cells.first),
-    ARRAY(cells.level_of),
-    ARRAY(cells.found),
-    ARRAY(cells.edges),
+    ARRAY(grid.first),
+    ARRAY(grid.level_of),
+    ARRAY(grid.found),
+    ARRAY(grid.edges),
     ARRAY(list),
     ARRAY(seen_x),
     VIEW(seen_y),
@@ -202,7 +202,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
 
 static bool reserve_edges(mspringi_contacts *made, mspringi_memory *memory, size_t nodes, size_t springs) {
     mspringi_outline *o = &made->outline;
-    mspringi_edge_grid *c = &made->cells;
+    mspringi_edge_grid *c = &made->grid;
     const size_t edges = nodes + springs;
     made->edge_capacity = edges;
     c->bucket_capacity = 1;

@@ -173,7 +173,7 @@ typedef struct mspringi_pending_constraint {
 typedef struct mspringi_floor_support {
     uint32_t p, slot; ///< dense number and slot of the particle
     double nx, ny, friction;
-    double room;          ///< distance to the surface at the end of the substep, without contact, m
+    double gap;           ///< distance to the surface at the end of the substep, without contact, m
     double free_speed;    ///< speed away from the surface without contact, m/s
     double min_speed;     ///< lower bound of that speed with contact, m/s
     double across, along; ///< accumulated changes of normal and tangential speed, m/s
@@ -276,7 +276,7 @@ struct mspringi_contacts {
     uint32_t *groups, *masks;             ///< [nodes]
     mspringi_contact_material *materials; ///< [particles]; NULL without values of single particles
     mspringi_outline outline;
-    mspringi_edge_grid cells;
+    mspringi_edge_grid grid;
     mspringi_colliders colliders;
     mspringi_contact_events events;
 
@@ -310,7 +310,7 @@ struct mspringi_contacts {
     double candidate_substeps;               ///< substeps until the next scan
     double nearest;                          ///< distance of the nearest pair in the list, m
     bool has_distances;                      ///< pairs have their distances
-    uint32_t calm_substeps;                  ///< substeps in which no pair can touch
+    uint32_t quiet_at_scan;                  ///< quiet substeps found by the last scan
     bool is_fresh;                           ///< nothing moved since
     uint64_t state, sleep_changes;           ///< counters of network->edits at the scan
     float scan_h;
@@ -320,12 +320,12 @@ struct mspringi_contacts {
     float h;                      ///< length of a substep, s
     double dt;                    ///< length of the step, s
     uint32_t quiet_substeps;      ///< next substeps in which nothing can touch
-    uint32_t valid;               ///< substeps until the next refresh of the list
+    uint32_t substeps_to_refresh; ///< substeps until the next refresh of the list
     uint32_t first_substep;       ///< first of the substeps now taken together
     uint32_t substeps_done;       ///< substeps finished
     bool has_sleepers;            ///< islands slept when the step began; bodies that reach them wake them
     uint32_t substeps_since_scan; ///< quiet substeps since the last scan
-    double room;                  ///< gap of the nearest pair at the last scan, m
+    double least_gap;             ///< gap of the nearest pair at the last scan, m
     double *extra_speed;          ///< [nodes] speed from contact beyond the scan's assumption, m/s; else 0
     bool has_extra_speed;         ///< some are not 0
     bool is_missed;               ///< pairs could touch in a quiet substep: repeat the step

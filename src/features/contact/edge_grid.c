@@ -43,10 +43,10 @@ static int32_t row_of(const mspringi_grid_level *level, uint32_t number, double 
 }
 
 // Bucket of a cell.
-static uint32_t bucket_of(const mspringi_edge_grid *cells, int32_t row, uint32_t column) {
+static uint32_t bucket_of(const mspringi_edge_grid *grid, int32_t row, uint32_t column) {
     uint32_t hash = (uint32_t)row * 0x9E3779B1u;
     hash ^= hash >> 15;
-    return (hash + column) & (cells->bucket_count - 1);
+    return (hash + column) & (grid->bucket_count - 1);
 }
 
 // Column of a node. Groups in the same place get different columns, unless there are colliders, which they share.
@@ -83,30 +83,30 @@ static void add_to_level(mspringi_grid_level *level, double reach, double x, dou
 
 // Choose the level of each edge by its reach, and the sizes of cells.
 static void make_levels(mspringi_contacts *contacts) {
-    mspringi_edge_grid *cells = &contacts->cells;
+    mspringi_edge_grid *grid = &contacts->grid;
     const mspringi_outline *o = &contacts->outline;
     double inverse_sum = 0.0, margin_sum = 0.0;
     for (uint32_t e = 0; e < o->edge_count; ++e) {
         const double margin = mspringi_margin_of_edge(contacts, e);
-        cells->edges[e].length = 0.5 * length_of(contacts, e) + margin; // its reach, until the edge gets its place
-        inverse_sum += 1.0 / cells->edges[e].length;
+        grid->edges[e].length = 0.5 * length_of(contacts, e) + margin; // its reach, until the edge gets its place
+        inverse_sum += 1.0 / grid->edges[e].length;
         margin_sum += margin;
     }
     const double finest = FINEST_REACH * (double)o->edge_count / inverse_sum,
                  margin = margin_sum / (double)o->edge_count;
     for (uint32_t l = 0; l < MSPRINGI_GRID_LEVELS; ++l)
-        cells->levels[l] =
+        grid->levels[l] =
             (mspringi_grid_level){.min_x = INFINITY, .max_x = -INFINITY, .min_y = INFINITY, .max_y = -INFINITY};
     for (uint32_t e = 0; e < o->edge_count; ++e) {
-        const double reach = cells->edges[e].length;
+        const double reach = grid->edges[e].length;
         uint32_t l = 0;
         for (double most = finest; l + 1 < MSPRINGI_GRID_LEVELS && reach > most; most *= LEVEL_RATIO)
             ++l;
-        cells->level_of[e] = (uint8_t)l;
-        add_to_level(&cells->levels[l], reach, middle_of(contacts->x, o, e), middle_of(contacts->y, o, e));
+        grid->level_of[e] = (uint8_t)l;
+        add_to_level(&grid->levels[l], reach, middle_of(contacts->x, o, e), middle_of(contacts->y, o, e));
     }
     for (uint32_t l = 0; l < MSPRINGI_GRID_LEVELS; ++l) {
-        mspringi_grid_level *level = &cells->levels[l];
+        mspringi_grid_level *level = &grid->levels[l];
         const double of_point = margin < level->reach ? margin : level->reach;
         level->size = (level->reach + contacts->thickness + of_point) / CELLS_IN_REACH;
     }
@@ -114,15 +114,15 @@ static void make_levels(mspringi_contacts *contacts) {
 
 // Write what a search reads of an edge.
 static void place(mspringi_contacts *contacts, uint32_t edge, uint32_t at) {
-    mspringi_edge_grid *cells = &contacts->cells;
+    mspringi_edge_grid *grid = &contacts->grid;
     const mspringi_outline *o = &contacts->outline;
     const mspring_id a = o->a[edge], b = o->b[edge];
-    const uint32_t level = cells->level_of[edge];
+    const uint32_t level = grid->level_of[edge];
     const double ex = contacts->x[b] - contacts->x[a], ey = contacts->y[b] - contacts->y[a],
                  length = sqrt(ex * ex + ey * ey), part = length > 0.0 ? 1.0 / length : 0.0;
     const double margin = mspringi_margin_of_edge(contacts, edge),
                  radius = mspringi_is_collider_point(contacts, a) ? mspringi_collider_of(contacts, a)->radius : 0.0;
-    cells->edges[at] =
+    grid->edges[at] =
         (mspringi_sought_edge){.x = contacts->x[a],
                                .y = contacts->y[a],
                                .along_x = part * ex,
@@ -131,28 +131,28 @@ static void place(mspringi_contacts *contacts, uint32_t edge, uint32_t at) {
                                .slack = (margin + radius) * (1.0 + ROUNDING) + ROUNDING_ALONG * length,
                                .edge = edge,
                                .below = a == b ? a : MSPRING_NONE,
-                               .row = row_of(&cells->levels[level], level, middle_of(contacts->y, o, edge))};
+                               .row = row_of(&grid->levels[level], level, middle_of(contacts->y, o, edge))};
 }
 
 void mspringi_edge_grid_fill(const mspring_network *network, mspringi_contacts *contacts) {
-    mspringi_edge_grid *cells = &contacts->cells;
+    mspringi_edge_grid *grid = &contacts->grid;
     const mspringi_outline *o = &contacts->outline;
     make_levels(contacts);
-    cells->bucket_count = 1;
-    while (cells->bucket_count < 2 * o->edge_count && cells->bucket_count < cells->bucket_capacity)
-        cells->bucket_count *= 2;
-    memset(cells->first, 0, ((size_t)cells->bucket_count + 1) * sizeof *cells->first);
+    grid->bucket_count = 1;
+    while (grid->bucket_count < 2 * o->edge_count && grid->bucket_count < grid->bucket_capacity)
+        grid->bucket_count *= 2;
+    memset(grid->first, 0, ((size_t)grid->bucket_count + 1) * sizeof *grid->first);
     for (uint32_t e = 0; e < o->edge_count; ++e) {
-        const mspringi_grid_level *level = &cells->levels[cells->level_of[e]];
+        const mspringi_grid_level *level = &grid->levels[grid->level_of[e]];
         const uint32_t column = column_of(network, contacts, o->a[e], middle_of(contacts->x, o, e), level->size);
-        const int32_t row = row_of(level, cells->level_of[e], middle_of(contacts->y, o, e));
-        cells->found[e] = bucket_of(cells, row, column);
-        cells->first[cells->found[e]]++;
+        const int32_t row = row_of(level, grid->level_of[e], middle_of(contacts->y, o, e));
+        grid->found[e] = bucket_of(grid, row, column);
+        grid->first[grid->found[e]]++;
     }
-    for (uint32_t i = 0; i < cells->bucket_count; ++i)
-        cells->first[i + 1] += cells->first[i];
+    for (uint32_t i = 0; i < grid->bucket_count; ++i)
+        grid->first[i + 1] += grid->first[i];
     for (uint32_t e = o->edge_count; e-- > 0;)
-        place(contacts, e, --cells->first[cells->found[e]]);
+        place(contacts, e, --grid->first[grid->found[e]]);
 }
 
 /* --------------------------------------------------------------------------------------------------- searching */
@@ -166,26 +166,26 @@ typedef struct search {
 } search;
 
 // Collect the near edges of a run. Branch-free, in a few nanoseconds each, since many are not near.
-static uint32_t sieve(const mspringi_edge_grid *cells, const search *s, int32_t row, uint32_t from, uint32_t to,
+static uint32_t sieve(const mspringi_edge_grid *grid, const search *s, int32_t row, uint32_t from, uint32_t to,
                       uint32_t count) {
     *s->passed += to - from;
     for (uint32_t k = from; k < to; ++k) {
-        const mspringi_sought_edge *e = &cells->edges[k];
+        const mspringi_sought_edge *e = &grid->edges[k];
         const double dx = s->x - e->x, dy = s->y - e->y, along = dx * e->along_x + dy * e->along_y;
         const double ahead = 0.5 * (along + fabs(along)), nearest = ahead < e->length ? ahead : e->length;
         const double rx = dx - nearest * e->along_x, ry = dy - nearest * e->along_y, reach = s->reach + e->slack;
-        cells->found[count] = e->edge;
+        grid->found[count] = e->edge;
         count += (rx * rx + ry * ry <= reach * reach) & (s->point < e->below) & ((e->row == row) | s->is_wide);
     }
     return count;
 }
 
-static uint32_t sieve_row(const mspringi_edge_grid *cells, const search *s, int32_t row, uint32_t column,
+static uint32_t sieve_row(const mspringi_edge_grid *grid, const search *s, int32_t row, uint32_t column,
                           uint32_t columns, uint32_t count) {
     for (uint32_t done = 0, part; done < columns; done += part) {
-        const uint32_t bucket = bucket_of(cells, row, column + done), until_end = cells->bucket_count - bucket;
+        const uint32_t bucket = bucket_of(grid, row, column + done), until_end = grid->bucket_count - bucket;
         part = columns - done < until_end ? columns - done : until_end;
-        count = sieve(cells, s, row, cells->first[bucket], cells->first[bucket + part], count);
+        count = sieve(grid, s, row, grid->first[bucket], grid->first[bucket + part], count);
     }
     return count;
 }
@@ -207,7 +207,7 @@ static grid_range range_of(const mspringi_grid_level *level, const search *s, do
 }
 
 uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
-    const mspringi_edge_grid *cells = &contacts->cells;
+    const mspringi_edge_grid *grid = &contacts->grid;
     const mspringi_outline *o = &contacts->outline;
     const uint32_t own = o->first[p];
     const double radius = mspringi_is_collider_point(contacts, p) ? mspringi_collider_of(contacts, p)->radius : 0.0;
@@ -222,7 +222,7 @@ uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_cont
                 .passed = &passed};
     uint32_t count = 0;
     for (uint32_t l = 0; l < MSPRINGI_GRID_LEVELS && !s.is_wide; ++l) {
-        const mspringi_grid_level *level = &cells->levels[l];
+        const mspringi_grid_level *level = &grid->levels[l];
         const double reach = s.reach + level->reach * (1.0 + ROUNDING);
         const grid_range range = range_of(level, &s, reach);
         if (range.is_empty)
@@ -230,10 +230,10 @@ uint32_t mspringi_edge_grid_search(const mspring_network *network, mspringi_cont
         s.is_wide = !(((double)range.last_row - range.row + 1.0) * range.columns < (double)o->edge_count);
         const uint32_t column = column_of(network, contacts, p, s.x - reach, level->size);
         for (int32_t j = range.row; j <= range.last_row && !s.is_wide; ++j)
-            count = sieve_row(cells, &s, j * MSPRINGI_GRID_LEVELS + (int32_t)l, column, range.columns, count);
+            count = sieve_row(grid, &s, j * MSPRINGI_GRID_LEVELS + (int32_t)l, column, range.columns, count);
     }
     if (s.is_wide) // more cells than edges: look at all edges instead
-        count = sieve(cells, &s, 0, 0, o->edge_count, 0);
+        count = sieve(grid, &s, 0, 0, o->edge_count, 0);
     contacts->work += passed / PASSED_OF_WORK;
     return count;
 }

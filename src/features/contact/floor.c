@@ -262,7 +262,7 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
     }
     floor->had_impulse = false;
     floor->is_near = true;
-    floor->room.reach = 0.0;
+    floor->safe.reach = 0.0;
     return floor->clearances && floor->before.x && reserve_field(&floor->impulse, floor->slot_count, memory) &&
            reserve_field(&floor->previous_impulse, floor->slot_count, memory) &&
            reserve_field(&floor->start, floor->slot_count, memory);

@@ -76,7 +76,7 @@ typedef struct mspringi_floor {
     bool is_near;           ///< a strip may reach the surface in them, or there was no survey yet
     bool is_missed;         ///< forces moved a strip farther than the survey assumed: repeat the step
     bool is_second_try;     ///< repeated step: no strip is left out
-    mspringi_safe_box room; ///< safe box of the whole network
+    mspringi_safe_box safe; ///< safe box of the whole network
     mspringi_bounds clear;  ///< box without surface around the network before an implicit substep
     bool has_impulse;       ///< impulse is not all zero
     bool had_impulse;       ///< previous_impulse is not all zero
@@ -113,7 +113,7 @@ double mspringi_floor_slop(double x, double y);
 mspringi_line mspringi_heights_line(const mspringi_heights *heights, int64_t part);
 
 /// Part below x.
-int64_t mspringi_heights_segment_below(const mspringi_heights *heights, double x);
+int64_t mspringi_heights_find_part(const mspringi_heights *heights, double x);
 
 /// First part that a particle meets from (start_x, start_y) to (x, y); if it meets none, the part below the end.
 int64_t mspringi_heights_first_hit(const mspringi_heights *heights, double start_x, double start_y, double x,
@@ -146,8 +146,8 @@ bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, ms
 /// of `seconds`; true if none did. A safe box that is too small for the step is found anew. way: that of a particle
 /// at the largest speed in the step, m.
 bool mspringi_safe_box_suffices(const mspring_network *network, const mspringi_floor *surfaces,
-                                mspringi_safe_box *room, double seconds);
-bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_safe_box *room, double way,
+                                mspringi_safe_box *safe, double seconds);
+bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_safe_box *safe, double way,
                                 mspringi_extrema seen);
 
 /* floor_bounce.c */

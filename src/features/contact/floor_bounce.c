@@ -17,7 +17,7 @@ static void put_onto(const mspringi_line *line, double *x, double *y) {
 }
 
 static mspringi_line line_below(const mspringi_heights *heights, double x) {
-    return mspringi_heights_line(heights, mspringi_heights_segment_below(heights, x));
+    return mspringi_heights_line(heights, mspringi_heights_find_part(heights, x));
 }
 
 // Lift a point out of a narrow corner in which surfaces push it to and fro.
@@ -185,14 +185,14 @@ static double kept_of(const mspringi_free_particle *start, const mspringi_free_p
 
 // Remove the normal velocity of a particle that lay on a part of the heights: that of half a substep, w = h a / 2.
 // Else the next part would throw it back. (3 % of a particle's energy in each, at restitution 1 and 0.25 s.)
-static bool leave_segment(const mspringi_floor *floor, const mspringi_bounce_params *how, double slop,
-                          mspringi_free_particle *p) {
+static bool leave_part(const mspringi_floor *floor, const mspringi_bounce_params *how, double slop,
+                       mspringi_free_particle *p) {
     if (floor->heights.count == 0 || !(how->skew > 0.0))
         return false;
     double x, y;
     find_end(p, &x, &y);
-    const int64_t part = mspringi_heights_segment_below(&floor->heights, p->x);
-    if (mspringi_heights_segment_below(&floor->heights, x) == part)
+    const int64_t part = mspringi_heights_find_part(&floor->heights, p->x);
+    if (mspringi_heights_find_part(&floor->heights, x) == part)
         return false;
     const mspringi_line line = mspringi_heights_line(&floor->heights, part);
     const double across = line.nx * p->wx + line.ny * p->wy, along = line.nx * p->wy - line.ny * p->wx;
@@ -223,7 +223,7 @@ bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const msprin
     double x, y;
     find_end(p, &x, &y);
     bool acts = mspringi_floor_distance(floor, x, y) < 0.0 && push_out_free_particle(floor, p);
-    acts |= leave_segment(floor, how, slop, p);
+    acts |= leave_part(floor, how, slop, p);
     const mspringi_free_particle start = *p;
     double restitution = floor->restitution; // of the last surface that it met
     bool has_slid = false;

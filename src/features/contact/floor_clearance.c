@@ -226,10 +226,10 @@ static mspringi_safe_box find_box(const mspring_network *network, const mspringi
 }
 
 // True if all particles are in the box. coordinate: bound on theirs.
-static bool is_in_box(const mspring_network *network, const mspringi_safe_box *room, float coordinate) {
+static bool is_in_box(const mspring_network *network, const mspringi_safe_box *safe, float coordinate) {
     const mspringi_state *s = &network->state;
     const size_t slots = mspringi_used_slots(network);
-    return coordinate < room->coordinate || network->kernels->beyond(s->x, s->y, 0, slots, &room->box) == slots;
+    return coordinate < safe->coordinate || network->kernels->beyond(s->x, s->y, 0, slots, &safe->box) == slots;
 }
 
 // Upper bound of all velocity components, m/s; NaN if one is NaN.
@@ -245,18 +245,18 @@ static float fastest_of(const mspring_network *network) {
 }
 
 bool mspringi_safe_box_suffices(const mspring_network *network, const mspringi_floor *surfaces,
-                                mspringi_safe_box *room, double seconds) {
+                                mspringi_safe_box *safe, double seconds) {
     const double reach = reach_of(network, fastest_of(network), seconds);
     const bool is_known =
-        room->reach >= reach && room->origin_x == network->origin_x && room->origin_y == network->origin_y;
-    if (!is_known || !is_in_box(network, room, network->guard.knows_speed ? network->guard.coordinate : INFINITY))
-        *room = find_box(network, surfaces, reach);
-    return room->reach >= reach;
+        safe->reach >= reach && safe->origin_x == network->origin_x && safe->origin_y == network->origin_y;
+    if (!is_known || !is_in_box(network, safe, network->guard.knows_speed ? network->guard.coordinate : INFINITY))
+        *safe = find_box(network, surfaces, reach);
+    return safe->reach >= reach;
 }
 
-bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_safe_box *room, double way,
+bool mspringi_safe_box_sufficed(const mspring_network *network, const mspringi_safe_box *safe, double way,
                                 mspringi_extrema seen) {
-    return way <= 0.5 * room->reach && is_in_box(network, room, seen.coordinate);
+    return way <= 0.5 * safe->reach && is_in_box(network, safe, seen.coordinate);
 }
 
 bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds) {
@@ -265,11 +265,11 @@ bool mspringi_floor_is_out_of_reach(mspring_network *network, double seconds) {
         return false;
     floor->seconds = seconds;
     mspringi_floor_set_origin(floor, network->origin_x, network->origin_y);
-    return mspringi_safe_box_suffices(network, floor, &floor->room, seconds);
+    return mspringi_safe_box_suffices(network, floor, &floor->safe, seconds);
 }
 
 bool mspringi_floor_was_out_of_reach(const mspring_network *network, float h, mspringi_extrema seen) {
     const mspringi_floor *floor = network->floor;
     const double way = fmax((double)h, floor->seconds) * (double)seen.speed;
-    return mspringi_safe_box_sufficed(network, &floor->room, way, seen);
+    return mspringi_safe_box_sufficed(network, &floor->safe, way, seen);
 }

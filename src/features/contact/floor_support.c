@@ -3,7 +3,7 @@
 /// All particles lie outside the floor when contact begins, but impulses of contact may press them into it. Floor
 /// and contact in turn would undo each other, and squeeze a particle between the floor and a heavy body. So the
 /// sweeps visit a constraint for each particle near the surface. It bounds the velocity into the surface by the
-/// room left. Its impulse counts as the floor's.
+/// gap left. Its impulse counts as the floor's.
 #include <math.h>
 
 #include "features/contact/contacts.h"
@@ -12,15 +12,15 @@
 // Add the support of a particle by a surface, if it is within the thickness.
 static void add_support(mspringi_contacts *contacts, const mspringi_line *line, uint32_t p, uint32_t slot, double x,
                         double y, double vx, double vy) {
-    const double room = line->nx * x + line->ny * y + line->offset;
-    if (!(room < contacts->thickness))
+    const double gap = line->nx * x + line->ny * y + line->offset;
+    if (!(gap < contacts->thickness))
         return;
     contacts->supports[contacts->support_count++] =
         (mspringi_floor_support){.p = p,
                                  .slot = slot,
                                  .nx = line->nx,
                                  .ny = line->ny,
-                                 .room = room > 0.0 ? room : 0.0,
+                                 .gap = gap > 0.0 ? gap : 0.0,
                                  .free_speed = vx * line->nx + vy * line->ny,
                                  .friction = line->friction};
 }
@@ -42,7 +42,7 @@ void mspringi_floor_support_find(const mspring_network *network, mspringi_contac
             add_support(contacts, &floor->lines[l], i, slot, x, y, k->v[i].x, k->v[i].y);
         if (floor->heights.count > 0 && contacts->support_count < before + MSPRINGI_MAX_SUPPORTS) {
             const mspringi_line line =
-                mspringi_heights_line(&floor->heights, mspringi_heights_segment_below(&floor->heights, x));
+                mspringi_heights_line(&floor->heights, mspringi_heights_find_part(&floor->heights, x));
             add_support(contacts, &line, i, slot, x, y, k->v[i].x, k->v[i].y);
         }
     }
@@ -52,8 +52,8 @@ void mspringi_floor_support_begin(const mspringi_contacts *contacts, double h) {
     const mspringi_contact_nodes *k = &contacts->nodes;
     for (uint32_t i = 0; i < contacts->support_count; ++i) {
         mspringi_floor_support *g = &contacts->supports[i];
-        const double room = g->room + k->shift_x[g->p] * g->nx + k->shift_y[g->p] * g->ny;
-        g->min_speed = g->free_speed - (room > 0.0 ? room / h : 0.0);
+        const double gap = g->gap + k->shift_x[g->p] * g->nx + k->shift_y[g->p] * g->ny;
+        g->min_speed = g->free_speed - (gap > 0.0 ? gap / h : 0.0);
         g->across = g->along = 0.0;
     }
 }

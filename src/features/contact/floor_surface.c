@@ -36,7 +36,7 @@ static double distance_from(const mspringi_line *line, double x, double y) {
 
 /* ----------------------------------------------------------------------------------------------------- heights */
 
-int64_t mspringi_heights_segment_below(const mspringi_heights *h, double x) {
+int64_t mspringi_heights_find_part(const mspringi_heights *h, double x) {
     const double place = (x - h->local_x) / h->spacing;
     if (!(place >= 0.0))
         return -1;
@@ -109,7 +109,7 @@ static int64_t knot_met(const passage *w, int64_t edge, int64_t stop) {
 }
 
 int64_t mspringi_heights_first_hit(const mspringi_heights *h, double start_x, double start_y, double x, double y) {
-    const int64_t first = mspringi_heights_segment_below(h, start_x), last = mspringi_heights_segment_below(h, x);
+    const int64_t first = mspringi_heights_find_part(h, start_x), last = mspringi_heights_find_part(h, x);
     if (first == last)
         return last;
     const passage w = {h, start_x, start_y, x - start_x, y - start_y, mspringi_floor_slop(x, y)};
@@ -133,7 +133,7 @@ static float highest_among(const mspringi_heights *h, uint32_t first, uint32_t e
 }
 
 double mspringi_heights_highest(const mspringi_heights *h, double low, double high) {
-    const int64_t first = mspringi_heights_segment_below(h, low), last = mspringi_heights_segment_below(h, high);
+    const int64_t first = mspringi_heights_find_part(h, low), last = mspringi_heights_find_part(h, high);
     const uint32_t begin = first < 0 ? 0 : (uint32_t)first;
     const uint32_t end = last + 1 < (int64_t)h->count ? (uint32_t)(last + 2) : h->count;
     return h->local_y + (double)highest_among(h, begin, end);
@@ -145,7 +145,7 @@ double mspringi_floor_distance(const mspringi_floor *floor, double x, double y) 
         least = fmin(least, distance_from(&floor->lines[i], x, y));
     if (floor->heights.count > 0) {
         const mspringi_heights *h = &floor->heights;
-        const mspringi_line line = mspringi_heights_line(h, mspringi_heights_segment_below(h, x));
+        const mspringi_line line = mspringi_heights_line(h, mspringi_heights_find_part(h, x));
         least = fmin(least, distance_from(&line, x, y));
     }
     return least;

@@ -71,9 +71,9 @@ static mspringi_pair *pair_at(const mspringi_contacts *contacts, uint32_t i) {
 static void shorten_quiet(mspringi_contacts *contacts, mspring_id p, uint32_t edge, double distance) {
     const double way = 2.0 * contacts->travel.at_rest +
                        contacts->travel.per_speed * (contacts->assumed_speed[p] + speed_of_edge(contacts, edge)),
-                 room = distance - contacts->thickness;
-    if (!(room >= (double)contacts->calm_substeps * way))
-        contacts->calm_substeps = room >= 2.0 * way ? (uint32_t)(room / way) : 0;
+                 gap = distance - contacts->thickness;
+    if (!(gap >= (double)contacts->quiet_at_scan * way))
+        contacts->quiet_at_scan = gap >= 2.0 * way ? (uint32_t)(gap / way) : 0;
 }
 
 // Add the pairs of a watched particle with colliders.
@@ -82,7 +82,7 @@ static void add_pairs(const mspring_network *network, mspringi_contacts *contact
     const uint32_t found = mspringi_edge_grid_search(network, contacts, p);
     contacts->work += found;
     for (uint32_t k = 0; k < found; ++k) {
-        const uint32_t edge = contacts->cells.found[k];
+        const uint32_t edge = contacts->grid.found[k];
         const mspring_id a = contacts->outline.a[edge];
         double distance;
         if (!mspringi_is_collider_point(contacts, a) || beyond_reach(contacts, p, edge, &distance) > 0.0 ||
@@ -192,7 +192,7 @@ static bool may_reach_collider(const mspring_network *network, mspringi_contacts
     const uint32_t found = mspringi_edge_grid_search(network, contacts, p);
     contacts->work += found;
     for (uint32_t k = 0; k < found; ++k)
-        if (mspringi_is_collider_point(contacts, contacts->outline.a[contacts->cells.found[k]]))
+        if (mspringi_is_collider_point(contacts, contacts->outline.a[contacts->grid.found[k]]))
             return true;
     return false;
 }
@@ -251,8 +251,8 @@ static void add_watched(const mspring_network *network, mspringi_contacts *conta
         add_pairs(network, contacts, p);
     }
     // Pairs that are no candidates may touch after the next scan.
-    if (contacts->inner.watched_count > 0 && (double)contacts->calm_substeps > contacts->candidate_substeps)
-        contacts->calm_substeps = (uint32_t)contacts->candidate_substeps;
+    if (contacts->inner.watched_count > 0 && (double)contacts->quiet_at_scan > contacts->candidate_substeps)
+        contacts->quiet_at_scan = (uint32_t)contacts->candidate_substeps;
 }
 
 void mspringi_inner_points_add(const mspring_network *network, mspringi_contacts *contacts) {

@@ -219,7 +219,7 @@ static void judge_at(const judging *j, mspring_id p) {
 
 static judging begin_judging(const mspring_network *network, mspringi_contacts *contacts, bool is_whole) {
     const size_t edges = contacts->edge_capacity;
-    mspring_id *lists = (void *)contacts->cells.edges;
+    mspring_id *lists = (void *)contacts->grid.edges;
     return (judging){.network = network,
                      .contacts = contacts,
                      .first = contacts->outline.first,

@@ -118,20 +118,20 @@ static void sort(uint32_t *numbers, uint32_t count) {
 
 // Add the pairs of a point, by rising edges. False: there is no room for them, or they take too long to find.
 static bool list_pairs_of_point(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
-    mspringi_edge_grid *cells = &contacts->cells;
+    mspringi_edge_grid *grid = &contacts->grid;
     const uint32_t found = mspringi_edge_grid_search(network, contacts, p),
                    room = contacts->capacity - contacts->count;
     uint32_t close_count = 0;
     for (uint32_t k = 0; k < found && close_count <= room; ++k) {
-        cells->found[close_count] = cells->found[k];
-        close_count += are_near(network, contacts, p, cells->found[k]);
+        grid->found[close_count] = grid->found[k];
+        close_count += are_near(network, contacts, p, grid->found[k]);
     }
     contacts->work += found - close_count;
     const bool has_room = close_count <= room, is_done = contacts->work <= contacts->most_work;
     close_count = has_room ? close_count : room;
-    sort(cells->found, close_count);
+    sort(grid->found, close_count);
     for (uint32_t k = 0; k < close_count; ++k)
-        contacts->list[contacts->count++] = (mspringi_pair){.point = p, .edge = cells->found[k]};
+        contacts->list[contacts->count++] = (mspringi_pair){.point = p, .edge = grid->found[k]};
     contacts->lacks_room = !has_room;
     return has_room && is_done;
 }
@@ -289,9 +289,9 @@ static void collect_uniform(mspringi_contacts *contacts) {
     least = sqrt(least);
     contacts->candidate_count = count;
     contacts->nearest = least >= nearest ? nearest : least;
-    contacts->room = contacts->nearest - contacts->thickness;
-    contacts->calm_substeps =
-        substeps_of(contacts->room / (2.0 * mspringi_bound_at(&contacts->travel, contacts->max_speed)));
+    contacts->least_gap = contacts->nearest - contacts->thickness;
+    contacts->quiet_at_scan =
+        substeps_of(contacts->least_gap / (2.0 * mspringi_bound_at(&contacts->travel, contacts->max_speed)));
     contacts->has_distances = false;
 }
 
@@ -346,23 +346,23 @@ static void collect_by_speed(mspringi_contacts *contacts) {
         const mspringi_pair *pair = &contacts->list[i];
         const double speeds = contacts->assumed_speed[pair->point] +
                               mspringi_max_of_ends(contacts, contacts->assumed_speed, pair->edge);
-        const double distance = (double)pair->distance, room = distance - contacts->thickness,
+        const double distance = (double)pair->distance, gap = distance - contacts->thickness,
                      way = 2.0 * travel->at_rest + travel->per_speed * speeds;
         contacts->candidates[count].pair = i;
-        count += !(room > 2.0 * margin->at_rest + margin->per_speed * speeds);
-        if (!(room >= quiet * way))
-            quiet = room / way;
+        count += !(gap > 2.0 * margin->at_rest + margin->per_speed * speeds);
+        if (!(gap >= quiet * way))
+            quiet = gap / way;
         nearest = distance >= nearest ? nearest : distance;
     }
     for (uint32_t i = 0; i < o->point_count && quiet >= 2.0; ++i) { // pairs outside the list
-        const double speed = contacts->assumed_speed[o->points[i]], room = mspringi_point_margin(contacts, speed),
+        const double speed = contacts->assumed_speed[o->points[i]], gap = mspringi_point_margin(contacts, speed),
                      way = mspringi_bound_at(travel, speed);
-        quiet = room >= quiet * way ? quiet : room / way;
+        quiet = gap >= quiet * way ? quiet : gap / way;
     }
     contacts->candidate_count = count;
     contacts->nearest = nearest;
-    contacts->room = nearest - contacts->thickness;
-    contacts->calm_substeps = substeps_of(quiet);
+    contacts->least_gap = nearest - contacts->thickness;
+    contacts->quiet_at_scan = substeps_of(quiet);
 }
 
 // True if a pair could have touched in the last `quiet` substeps at the speeds of now, by the distances and margins
@@ -371,7 +371,7 @@ static bool could_have_touched(const mspringi_contacts *contacts, uint32_t quiet
     const mspringi_outline *o = &contacts->outline;
     const double seconds = (double)contacts->h * (double)quiet;
     if (!contacts->has_distances)
-        return !(2.0 * seconds * contacts->max_speed <= contacts->room);
+        return !(2.0 * seconds * contacts->max_speed <= contacts->least_gap);
     for (uint32_t i = 0; i < contacts->count; ++i) {
         const mspringi_pair *pair = &contacts->list[i];
         const double speeds =
@@ -414,7 +414,7 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
     activate_all(contacts);
     if (has_failed)
         return false;
-    contacts->valid = (uint32_t)contacts->candidate_substeps;
+    contacts->substeps_to_refresh = (uint32_t)contacts->candidate_substeps;
     return true;
 }
 
@@ -433,7 +433,7 @@ bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *
         contacts->state = network->edits.state;
         contacts->sleep_changes = network->edits.sleep_changes;
     }
-    contacts->quiet_substeps = contacts->is_second_try ? 0 : contacts->calm_substeps;
+    contacts->quiet_substeps = contacts->is_second_try ? 0 : contacts->quiet_at_scan;
     return true;
 }
 

@@ -16,7 +16,7 @@ typedef struct mspringi_hook {
     uint32_t number;
     mspringi_field held; ///< forces of a hook that is not called before every substep; else none
     mspringi_distance distance;
-    mspringi_safe_box room; ///< above its height, that all of the network was in
+    mspringi_safe_box safe; ///< above its height, that all of the network was in
 } mspringi_hook;
 
 typedef struct mspringi_hooks {

@@ -34,7 +34,7 @@ bool mspringi_hook_is_away(const mspring_network *network, mspringi_hook *hook, 
     if (hook->distance == MSPRINGI_UNKNOWN) {
         const mspringi_floor height = {.lines = {{.ny = 1.0, .offset = -local_height(network, &hook->def)}},
                                        .plane_count = 1};
-        const bool is_away = mspringi_safe_box_suffices(network, &height, &hook->room, seconds);
+        const bool is_away = mspringi_safe_box_suffices(network, &height, &hook->safe, seconds);
         hook->distance = is_away ? MSPRINGI_AWAY : MSPRINGI_CLOSE;
     }
     return hook->distance == MSPRINGI_AWAY;
@@ -42,5 +42,5 @@ bool mspringi_hook_is_away(const mspring_network *network, mspringi_hook *hook, 
 
 bool mspringi_hook_must_repeat(const mspring_network *network, const mspringi_hook *hook, double seconds) {
     return hook->distance == MSPRINGI_AWAY &&
-           !mspringi_safe_box_sufficed(network, &hook->room, seconds * (double)network->seen.speed, network->seen);
+           !mspringi_safe_box_sufficed(network, &hook->safe, seconds * (double)network->seen.speed, network->seen);
 }

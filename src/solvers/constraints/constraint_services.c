@@ -312,7 +312,7 @@ bool mspringi_contact_constraint_is_active(const mspringi_constraints *all) {
 
 /* ------------------------------------------------------------------------------------------- terms of a substep */
 
-void mspringi_elements_add_terms(mspring_network *network) {
+void mspringi_elements_list_and_assemble(mspring_network *network) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     mspringi_constraints *all = &network->constraints;
     if (!all->has_elements) {

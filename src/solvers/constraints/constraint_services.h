@@ -9,7 +9,7 @@
 /// In the order of a substep (solvers/implicit/implicit_substeps.c):
 ///
 ///   mspringi_constraints_begin               clear the list
-///   mspringi_elements_add_terms              list elements once; add them to each assembled system
+///   mspringi_elements_list_and_assemble      list elements once; add them to each assembled system
 ///   mspringi_constraints_add_terms           list the others once; add the active ones to each assembled system
 ///   mspringi_constraints_stiffen, _multiply  in conjugate gradients, or
 ///   mspringi_direct_solve_constraints        in the direct solver

@@ -240,8 +240,8 @@ void mspringi_assemble(const mspringi_implicit_substep *substep, mspringi_team_m
     }
     if (mspringi_elements_have_terms(network)) {
         if (member->index == 0) {
-            mspringi_elements_stiffen(network);
-            mspringi_elements_add_terms(substep->network);
+            mspringi_elements_assemble(network);
+            mspringi_elements_list_and_assemble(substep->network);
         }
         mspringi_team_barrier(member);
     }

@@ -118,8 +118,9 @@ static void add_columns(path_block block, const mspringi_path_response *from, ms
     }
 }
 
-// Pivot of a node between the springs before and behind it: P_j = D_j - S_j P_(j-1)^-1 S_j. D_j is summed in double
-// precision from mass and factors, since the diagonal in single precision has lost the mass of a stiff one.
+// Pivot of a node between the springs before and behind it: P_j = D_j - K_j P_(j-1)^-1 K_j, K_j being the block of
+// the spring before. D_j is summed in double precision from mass and factors, since the diagonal in single
+// precision has lost the mass of a stiff one.
 static path_block pivot_of(const mspringi_paths *p, uint32_t node, double mass, path_block before,
                            path_block behind, const double *up) {
     const double *held = p->held[node];

@@ -12,7 +12,7 @@ bool mspringi_elements_have_terms(const mspring_network *network) {
     return any;
 }
 
-void mspringi_elements_stiffen(const mspring_network *network) {
+void mspringi_elements_assemble(const mspring_network *network) {
     for (const mspringi_element_ops *const *ops = all; *ops; ++ops)
         if ((*ops)->add_terms && (*ops)->is_used(network))
             (*ops)->add_terms(network);

@@ -46,7 +46,7 @@ void mspringi_floor_record_impulses(const mspring_network *network, float h);
 
 /// Add the constraints of elements to an assembled system, those of others in the pass-th solution of a substep of
 /// h. The first calls in a substep list them.
-void mspringi_elements_add_terms(mspring_network *network);
+void mspringi_elements_list_and_assemble(mspring_network *network);
 bool mspringi_constraints_add_terms(mspring_network *network, float h, uint32_t pass);
 
 /// True if bodies may touch in this substep.

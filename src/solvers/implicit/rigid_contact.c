@@ -104,7 +104,7 @@ static uint32_t find_near_surfaces(const mspringi_floor *floor, double x, double
         const mspringi_line line =
             i < floor->plane_count
                 ? floor->lines[i]
-                : mspringi_heights_line(&floor->heights, mspringi_heights_segment_below(&floor->heights, x));
+                : mspringi_heights_line(&floor->heights, mspringi_heights_find_part(&floor->heights, x));
         const double distance = distance_of_line(&line, x, y);
         const int to = distance < distances[0] ? 0 : 1;
         if (!(distance < distances[to]))

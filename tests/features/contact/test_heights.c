@@ -58,8 +58,8 @@ static bool passes_below(const mspringi_heights *h, int64_t knot, const double f
 
 /// One knot after the other.
 static int64_t walk(const mspringi_heights *h, const double from[2], const double to[2]) {
-    const int64_t last = mspringi_heights_segment_below(h, to[0]);
-    int64_t part = mspringi_heights_segment_below(h, from[0]);
+    const int64_t last = mspringi_heights_find_part(h, to[0]);
+    int64_t part = mspringi_heights_find_part(h, from[0]);
     const int64_t onward = part < last ? 1 : -1;
     while (part != last && !passes_below(h, onward > 0 ? part + 1 : part, from, to)) {
         part += onward;
@@ -91,7 +91,7 @@ static void a_way_meets_what_a_walk_from_knot_to_knot_meets(void **state) {
                 take_way(h, from, to);
                 const int64_t part = mspringi_heights_first_hit(h, from[0], from[1], to[0], to[1]);
                 assert_int_equal(part, walk(h, from, to));
-                met += part != mspringi_heights_segment_below(h, to[0]);
+                met += part != mspringi_heights_find_part(h, to[0]);
             }
             mspring_network_destroy(network);
         }
