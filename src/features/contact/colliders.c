@@ -6,19 +6,16 @@
 
 #include "base/cpu.h"
 #include "base/rotation.h"
+#include "builder/builder.h"
+#include "features/contact/floor.h"
 #include "store/changed.h"
 
-#define MOST_FRICTION 1e6
 #define MOST_POINTS 0x1000000u
 
 /* ----------------------------------------------------------------------------------------------------- checking */
 
-static bool is_coordinate(double value) {
-    return fabs(value) <= MSPRING_MAX_COORDINATE;
-}
-
 static mspring_result check_pose(double x, double y, double angle, mspringi_message *message) {
-    if (!is_coordinate(x) || !is_coordinate(y))
+    if (!mspringi_is_coordinate(x) || !mspringi_is_coordinate(y))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the collider's position is (%g, %g) m, it must be at most %g m in size", x, y,
                              MSPRING_MAX_COORDINATE);
@@ -30,7 +27,7 @@ static mspring_result check_pose(double x, double y, double angle, mspringi_mess
 }
 
 static mspring_result check_size(const char *name, double value, bool may_be_0, mspringi_message *message) {
-    if ((value > 0.0 || (may_be_0 && value == 0.0)) && is_coordinate(value))
+    if ((value > 0.0 || (may_be_0 && value == 0.0)) && mspringi_is_coordinate(value))
         return MSPRING_OK;
     return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                          "the collider's %s is %g m, it must be %s 0 and at most %g m", name, value,
@@ -54,7 +51,7 @@ static mspring_result check_points(const mspring_collider_def *def, mspringi_mes
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the collider's points are NULL");
     for (uint32_t i = 0; i < def->point_count; ++i) {
         const double *point = def->points + 2 * (size_t)i;
-        if (!is_coordinate(point[0]) || !is_coordinate(point[1]))
+        if (!mspringi_is_coordinate(point[0]) || !mspringi_is_coordinate(point[1]))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                  "the collider's point %u is (%g, %g) m, it must be at most %g m in size",
                                  (unsigned)i, point[0], point[1], MSPRING_MAX_COORDINATE);
@@ -93,9 +90,9 @@ static mspring_result check_def(const mspring_collider_def *def, mspringi_messag
     if (def->flags & ~(uint32_t)MSPRING_COLLIDER_CLOSED)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "collider flags %#x are unknown",
                              (unsigned)def->flags);
-    if (!(def->friction >= 0.0f && (double)def->friction <= MOST_FRICTION))
+    if (!(def->friction >= 0.0f && (double)def->friction <= MSPRINGI_MOST_FRICTION))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the collider's friction is %g, it must be 0 to %g",
-                             (double)def->friction, MOST_FRICTION);
+                             (double)def->friction, MSPRINGI_MOST_FRICTION);
     if (!(def->restitution >= 0.0f && def->restitution <= 1.0f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the collider's restitution is %g, it must be 0 to 1",
                              (double)def->restitution);

@@ -2,9 +2,8 @@
 #include <math.h>
 
 #include "features/contact/contacts.h"
+#include "features/contact/floor.h"
 #include "store/changed.h"
-
-#define MOST_FRICTION 1e6f
 
 /* --------------------------------------------------------------------------------------------------------- rule */
 
@@ -68,7 +67,7 @@ mspring_result mspring_network_set_contact_surface(mspring_network *network, msp
     if (result == MSPRING_OK)
         result = mspringi_check_range(network, "particle", first, count, network->topology.particle_count);
     if (result == MSPRING_OK)
-        result = check(network, "friction", friction, MOST_FRICTION);
+        result = check(network, "friction", friction, (float)MSPRINGI_MOST_FRICTION);
     if (result == MSPRING_OK)
         result = check(network, "restitution", restitution, 1.0f);
     if (result == MSPRING_OK)

@@ -14,9 +14,6 @@
 #include "store/sleepers.h"
 #include "store/stages.h"
 
-/// Points this near rest on each other, as a share of the thickness.
-#define RESTING_SHARE 0.05
-
 /// Comparisons of points and edges allowed to a step: 75 ms. More are allowed with each list (pair_list.c), each
 /// constraint (contact_solver.c) and each implicit substep (solvers/implicit/work.c).
 #define MOST_WORK ((uint64_t)3 << 20)
@@ -63,7 +60,7 @@ bool mspringi_pair_is_resting(const mspring_network *network, const mspringi_con
                         b = position_of(network, contacts, o->b[pair->edge]);
     const mspringi_closest_point at = mspringi_closest_point_on_edge(p.x, p.y, a.x, a.y, b.x, b.y);
     const double distance = sqrt(at.x * at.x + at.y * at.y) - mspringi_radius_of(contacts, pair->point, pair->edge);
-    return distance <= (1.0 + RESTING_SHARE) * contacts->thickness + way;
+    return distance <= (1.0 + MSPRINGI_RESTING_SHARE) * contacts->thickness + way;
 }
 
 // Both sides of a pair: islands, and the time for which each was still, s; < 0: it sleeps. A moving collider has

@@ -30,7 +30,7 @@ static mspring_result check_numbers(const mspring_contact_def *def, mspringi_mes
     const struct {
         const char *name;
         double value, most;
-    } values[] = {{"friction", (double)def->friction, 1e6},
+    } values[] = {{"friction", (double)def->friction, MSPRINGI_MOST_FRICTION},
                   {"restitution", (double)def->restitution, 1.0},
                   {"push_speed", def->push_speed == -1.0f ? 0.0 : (double)def->push_speed, 1e6},
                   {"thickness", def->thickness, THICKEST}};

@@ -331,6 +331,7 @@ struct mspringi_contacts {
     bool is_missed;               ///< pairs could touch in a quiet substep: repeat the step
     bool is_second_try;           ///< repeated step: scan after each substep
 
+    // An interval.
     mspringi_contact_nodes nodes;
     mspringi_contact_constraint *constraints; ///< [constraint_capacity]
     uint32_t *colours;                        ///< [nodes] colours of its pending constraints, as bits
@@ -509,11 +510,10 @@ void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
 /// False: some would still get much deeper.
 bool mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any);
 
-/* piles.c */
-/// Find the piles: islands that sleep on each other.
-void mspringi_piles_find(mspring_network *network);
-
 /* contact_stage.c */
+
+/// Distance beyond the thickness, as a share of it, up to which bodies rest on each other.
+#define MSPRINGI_RESTING_SHARE 0.05
 
 /// True if point and edge rest on each other, or may after `way` metres.
 bool mspringi_pair_is_resting(const mspring_network *network, const mspringi_contacts *contacts,

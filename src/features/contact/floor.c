@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/cpu.h"
+#include "builder/builder.h"
 #include "store/changed.h"
 #include "store/feature.h"
 #include "store/selection.h"
@@ -16,10 +17,6 @@
 
 /* ----------------------------------------------------------------------------------------------------- checking */
 
-static bool is_coordinate(double value) {
-    return fabs(value) <= MSPRING_MAX_COORDINATE;
-}
-
 static mspring_result check_planes(const mspring_floor_def *def, mspringi_message *message) {
     if (def->plane_count > MSPRING_MAX_PLANES)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor has %u planes, it may have %u",
@@ -28,7 +25,7 @@ static mspring_result check_planes(const mspring_floor_def *def, mspringi_messag
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's planes are NULL");
     for (uint32_t i = 0; i < def->plane_count; ++i) {
         const double *plane = def->planes + 4 * (size_t)i;
-        if (!is_coordinate(plane[0]) || !is_coordinate(plane[1]))
+        if (!mspringi_is_coordinate(plane[0]) || !mspringi_is_coordinate(plane[1]))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                  "the floor's plane %u goes through (%g, %g), which is out of bounds", (unsigned)i,
                                  plane[0], plane[1]);
@@ -53,12 +50,13 @@ static mspring_result check_heights(const mspring_floor_def *def, mspringi_messa
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the floor's heights are %g m apart, it must be 1e-9 to 1e9", def->spacing);
     const double end = def->heights_x + def->spacing * (double)(def->height_count - 1);
-    if (!is_coordinate(def->heights_x) || !is_coordinate(end) || !is_coordinate(def->heights_y))
+    if (!mspringi_is_coordinate(def->heights_x) || !mspringi_is_coordinate(end) ||
+        !mspringi_is_coordinate(def->heights_y))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the floor's heights go from (%g, %g) to x = %g, which is out of bounds",
                              def->heights_x, def->heights_y, end);
     for (uint32_t i = 0; i < def->height_count; ++i)
-        if (!is_coordinate((double)def->heights[i]))
+        if (!mspringi_is_coordinate((double)def->heights[i]))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                  "height %u of the floor is %g m, which is out of bounds", (unsigned)i,
                                  (double)def->heights[i]);
@@ -74,7 +72,6 @@ static mspring_result check_values(const float *values, uint32_t count, const ch
     return MSPRING_OK;
 }
 
-#define MOST_FRICTION 1e6
 #define MOST_RESTITUTION 1.0
 
 static mspring_result check_silt(const mspring_floor_def *def, mspringi_message *message) {
@@ -94,19 +91,19 @@ static mspring_result check_silt(const mspring_floor_def *def, mspringi_message 
 
 static mspring_result check_surface(const mspring_floor_def *def, mspringi_message *message) {
     const uint32_t parts = def->height_count > 0 ? def->height_count - 1 : 0;
-    if (!(def->friction >= 0.0f && (double)def->friction <= MOST_FRICTION))
+    if (!(def->friction >= 0.0f && (double)def->friction <= MSPRINGI_MOST_FRICTION))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's friction is %g, it must be 0 to 1e6",
                              (double)def->friction);
     if (!(def->restitution >= 0.0f && (double)def->restitution <= MOST_RESTITUTION))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's restitution is %g, it must be 0 to 1",
                              (double)def->restitution);
     mspring_result result =
-        check_values(def->plane_frictions, def->plane_count, "plane_frictions", MOST_FRICTION, message);
+        check_values(def->plane_frictions, def->plane_count, "plane_frictions", MSPRINGI_MOST_FRICTION, message);
     if (result == MSPRING_OK)
         result = check_values(def->plane_restitutions, def->plane_count, "plane_restitutions", MOST_RESTITUTION,
                               message);
     if (result == MSPRING_OK)
-        result = check_values(def->height_frictions, parts, "height_frictions", MOST_FRICTION, message);
+        result = check_values(def->height_frictions, parts, "height_frictions", MSPRINGI_MOST_FRICTION, message);
     if (result == MSPRING_OK)
         result = check_values(def->height_restitutions, parts, "height_restitutions", MOST_RESTITUTION, message);
     return result;

@@ -18,6 +18,9 @@
 #include "store/network.h"
 #include "store/safe_box.h"
 
+/// Largest coefficient of friction: of the floor, of contact and of colliders.
+#define MSPRINGI_MOST_FRICTION 1e6
+
 typedef struct mspringi_half_plane {
     double x, y;   ///< a point on its border, world coordinates
     double nx, ny; ///< of length 1
@@ -107,6 +110,14 @@ void mspringi_floor_set_origin(mspringi_floor *floor, double origin_x, double or
 
 /// Distance below which a particle at (x, y) touches a surface: rounding of its coordinates.
 double mspringi_floor_slop(double x, double y);
+
+/// Signed distance from a straight surface, < 0 inside.
+static inline double mspringi_distance_from_line(const mspringi_line *line, double x, double y) {
+    return line->nx * x + line->ny * y + line->offset;
+}
+
+/// Most passes over all surfaces for one particle. Corners need more than one.
+#define MSPRINGI_FLOOR_ROUNDS 4
 
 /// The straight parts of a field of heights are numbered by their left ends; the level ones beyond its ends are -1
 /// and count - 1.

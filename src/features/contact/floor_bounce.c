@@ -3,15 +3,8 @@
 
 #include <math.h>
 
-/// Most passes over all surfaces for one particle. Corners need more than one.
-#define ROUNDS 4
-
-static double distance_from(const mspringi_line *line, double x, double y) {
-    return line->nx * x + line->ny * y + line->offset;
-}
-
 static void put_onto(const mspringi_line *line, double *x, double *y) {
-    const double distance = distance_from(line, *x, *y);
+    const double distance = mspringi_distance_from_line(line, *x, *y);
     *x -= distance < 0.0 ? distance * line->nx : 0.0;
     *y -= distance < 0.0 ? distance * line->ny : 0.0;
 }
@@ -35,7 +28,7 @@ bool mspringi_floor_put_outside(const mspringi_floor *floor, double *x, double *
     bool was_inside = false;
     for (int round = 0; mspringi_floor_distance(floor, *x, *y) < -slop; ++round) {
         was_inside = true;
-        if (round == ROUNDS) {
+        if (round == MSPRINGI_FLOOR_ROUNDS) {
             lift(floor, x, y);
             break;
         }
@@ -58,7 +51,7 @@ static bool is_free_way(const mspringi_floor *floor, double from_x, double from_
         return true;
     const int64_t part = mspringi_heights_first_hit(&floor->heights, from_x, from_y, x, y);
     const mspringi_line line = mspringi_heights_line(&floor->heights, part);
-    return distance_from(&line, x, y) >= -slop;
+    return mspringi_distance_from_line(&line, x, y) >= -slop;
 }
 
 /* ------------------------------------------------------------------------------------------------- with springs */
@@ -105,7 +98,8 @@ bool mspringi_floor_bounce(const mspringi_floor *floor, double h, double from_vx
     const bool ends_inside = mspringi_floor_distance(floor, p->x + h * p->vx, p->y + h * p->vy) < 0.0;
     const bool was_inside = ends_inside && mspringi_floor_put_outside(floor, &p->x, &p->y);
     bool acts = was_inside;
-    for (int round = 0; round < ROUNDS && bounce_at_surfaces(floor, h, round == 0 ? 0.0 : slop, p); ++round)
+    for (int round = 0; round < MSPRINGI_FLOOR_ROUNDS && bounce_at_surfaces(floor, h, round == 0 ? 0.0 : slop, p);
+         ++round)
         acts = true;
     if (acts && !was_inside)
         slow_down(most, p);
@@ -130,7 +124,7 @@ typedef struct hit {
 // Replace *first if the particle meets this line earlier. A line above the particle does not count: that part of
 // the heights ends before it.
 static void find_hit(const mspringi_line *line, double slop, const mspringi_free_particle *p, hit *first) {
-    if (distance_from(line, p->x, p->y) < -mspringi_floor_slop(p->x, p->y))
+    if (mspringi_distance_from_line(line, p->x, p->y) < -mspringi_floor_slop(p->x, p->y))
         return;
     const double time = mspringi_time_to_surface(line->nx, line->ny, line->offset, slop, p);
     if (time < first->time)
@@ -197,7 +191,7 @@ static bool leave_part(const mspringi_floor *floor, const mspringi_bounce_params
     const mspringi_line line = mspringi_heights_line(&floor->heights, part);
     const double across = line.nx * p->wx + line.ny * p->wy, along = line.nx * p->wy - line.ny * p->wx;
     const double pull = line.nx * p->ax + line.ny * p->ay;
-    const bool lay = distance_from(&line, p->x, p->y) <= slop && across < 0.0 &&
+    const bool lay = mspringi_distance_from_line(&line, p->x, p->y) <= slop && across < 0.0 &&
                      -across <= -how->skew * pull + MSPRINGI_TANGENT_ROUNDING * fabs(along);
     p->wx -= lay ? across * line.nx : 0.0;
     p->wy -= lay ? across * line.ny : 0.0;

@@ -18,9 +18,6 @@
 
 #include "store/sleepers.h"
 
-/// Most passes over all surfaces for one particle. Corners need more than one.
-#define ROUNDS 4
-
 // Apply one straight surface to a particle. Return true if it acted.
 static bool collide_line(const mspringi_line *line, mspringi_moved_particle *b, double h, double slop) {
     const double distance = line->nx * b->x + line->ny * b->y + line->offset;
@@ -58,7 +55,7 @@ static bool collide_lines(const mspringi_floor *floor, mspringi_moved_particle *
 
 void mspringi_floor_collide(const mspringi_floor *floor, mspringi_moved_particle *b, double h) {
     const double slop = mspringi_floor_slop(b->x, b->y);
-    for (int round = 0; round < ROUNDS && collide_lines(floor, b, h, slop);)
+    for (int round = 0; round < MSPRINGI_FLOOR_ROUNDS && collide_lines(floor, b, h, slop);)
         ++round;
     if (!(mspringi_floor_distance(floor, b->x, b->y) < -slop))
         return;

@@ -12,7 +12,7 @@
 // Add the support of a particle by a surface, if it is within the thickness.
 static void add_support(mspringi_contacts *contacts, const mspringi_line *line, uint32_t p, uint32_t slot, double x,
                         double y, double vx, double vy) {
-    const double gap = line->nx * x + line->ny * y + line->offset;
+    const double gap = mspringi_distance_from_line(line, x, y);
     if (!(gap < contacts->thickness))
         return;
     contacts->supports[contacts->support_count++] =

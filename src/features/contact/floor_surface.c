@@ -30,10 +30,6 @@ double mspringi_floor_slop(double x, double y) {
     return 0x1p-21 * (fabs(x) + fabs(y)) + 1e-12;
 }
 
-static double distance_from(const mspringi_line *line, double x, double y) {
-    return line->nx * x + line->ny * y + line->offset;
-}
-
 /* ----------------------------------------------------------------------------------------------------- heights */
 
 int64_t mspringi_heights_find_part(const mspringi_heights *h, double x) {
@@ -142,11 +138,11 @@ double mspringi_heights_highest(const mspringi_heights *h, double low, double hi
 double mspringi_floor_distance(const mspringi_floor *floor, double x, double y) {
     double least = INFINITY;
     for (uint32_t i = 0; i < floor->plane_count; ++i)
-        least = fmin(least, distance_from(&floor->lines[i], x, y));
+        least = fmin(least, mspringi_distance_from_line(&floor->lines[i], x, y));
     if (floor->heights.count > 0) {
         const mspringi_heights *h = &floor->heights;
         const mspringi_line line = mspringi_heights_line(h, mspringi_heights_find_part(h, x));
-        least = fmin(least, distance_from(&line, x, y));
+        least = fmin(least, mspringi_distance_from_line(&line, x, y));
     }
     return least;
 }

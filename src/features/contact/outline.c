@@ -305,7 +305,7 @@ static void take_in_all(const mspring_network *network, mspringi_outline *o) {
 
 /* ------------------------------------------------------------------------------------------------------- lists */
 
-static void list_side(mspringi_outline *o, mspring_id a, mspring_id b) {
+static void list_edge(mspringi_outline *o, mspring_id a, mspring_id b) {
     o->a[o->edge_count] = a;
     o->b[o->edge_count++] = b;
     o->first[a]++;
@@ -320,7 +320,7 @@ static void list_sides(mspringi_contacts *contacts) {
         const mspringi_collider *c = &contacts->colliders.list[i];
         const mspring_id first = contacts->particles + c->first;
         for (uint32_t k = 0; k < c->sides; ++k)
-            list_side(o, first + k, first + (k + 1) % c->count);
+            list_edge(o, first + k, first + (k + 1) % c->count);
         for (uint32_t k = 0; k < c->count; ++k)
             o->body[first + k] = first + k;
     }
@@ -337,20 +337,14 @@ static void list_edges(const mspring_network *network, mspringi_outline *o, uint
         if (!o->is_edge[s])
             continue;
         mspringi_outline_ends(network, s, ends);
-        o->a[o->edge_count] = ends[0];
-        o->b[o->edge_count++] = ends[1];
-        o->first[ends[0]]++;
-        o->first[ends[1]]++;
+        list_edge(o, ends[0], ends[1]);
     }
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         if (o->first[p] > 0 || !mspringi_particle_exists(network, p))
             continue;
         mspringi_incident_springs around = mspringi_incident_springs_begin(network, p);
-        if (next_live(network, &around, p, &other) != MSPRING_NONE)
-            continue;
-        o->a[o->edge_count] = o->b[o->edge_count] = p;
-        o->first[p] = 1;
-        ++o->edge_count;
+        if (next_live(network, &around, p, &other) == MSPRING_NONE)
+            list_edge(o, p, p);
     }
 }
 

@@ -3,12 +3,9 @@
 /// The host, a view or breaking springs may move an island from below another before contact looks at them again.
 /// So piles are found when islands fall asleep. They follow from the positions, so a snapshot does not save them.
 #include "features/contact/contacts.h"
+#include "store/feature.h"
 #include "store/sleepers.h"
 #include "store/stages.h"
-
-/// Distance beyond the thickness, as a share of it, up to which islands rest on each other; as for falling asleep
-/// together.
-#define RESTING_SHARE 0.05
 
 // Lowest slot of a particle's island, which names the island in a ring.
 static uint32_t lowest_slot(const mspring_network *network, mspring_id p) {
@@ -49,7 +46,7 @@ void mspringi_piles_find(mspring_network *network) {
     s->piled = network->edits.sleep_changes;
     if (!contacts)
         return;
-    mspringi_near_list(network, contacts, (1.0 + RESTING_SHARE) * contacts->thickness);
+    mspringi_near_list(network, contacts, (1.0 + MSPRINGI_RESTING_SHARE) * contacts->thickness);
     for (uint32_t i = 0; i < contacts->count; ++i) {
         const mspring_id p = contacts->list[i].point, a = contacts->outline.a[contacts->list[i].edge];
         if (sleeps(network, contacts, p) && sleeps(network, contacts, a))

@@ -29,7 +29,8 @@ static inline float clamped(double value) {
     return value > (double)FLT_MAX ? FLT_MAX : value < -(double)FLT_MAX ? -FLT_MAX : (float)value;
 }
 
-// J u. A closed constraint takes differences from its first entry, so rigid motion gives exactly 0.
+// J u; direct_constraints.c has it in double precision. A closed constraint takes differences from its first entry,
+// so rigid motion gives exactly 0.
 static inline double gather(const constraint *c, const entry *e, mspringi_field from) {
     const uint32_t count = c->count;
     double sum = 0.0;

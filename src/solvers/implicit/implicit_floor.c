@@ -22,10 +22,6 @@
 #define DEEPEST_SHARE 0.2
 #define MOST_PIECES 40u
 
-static double distance_from(const mspringi_line *line, double x, double y) {
-    return line->nx * x + line->ny * y + line->offset;
-}
-
 /* ------------------------------------------------------------------------------------------------ what is near */
 
 /// A particle on its way.
@@ -55,8 +51,8 @@ static bool check_surface(const mspring_network *network, const mover *m, const 
                           near_surface nearest[MSPRINGI_MAX_FLOOR_CONTACTS], uint32_t *count) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const double slop = mspringi_floor_slop(n->x[m->slot], n->y[m->slot]);
-    const double before = distance_from(line, m->start_x, m->start_y);
-    const double straight = distance_from(line, m->straight_x, m->straight_y);
+    const double before = mspringi_distance_from_line(line, m->start_x, m->start_y);
+    const double straight = mspringi_distance_from_line(line, m->straight_x, m->straight_y);
     const double drop =
         fall * (line->nx * (double)network->settings.gravity_x + line->ny * (double)network->settings.gravity_y);
     const near_surface found = {line, straight, drop};
@@ -93,7 +89,7 @@ static void add_contact(mspring_network *network, const mover *m, const near_sur
     const double x = n->x[slot], y = n->y[slot], slop = mspringi_floor_slop(x, y), nx = line->nx, ny = line->ny;
     const double depth = -(surface->straight + surface->drop);
     const double slid = nx * (m->straight_y - m->start_y) - ny * (m->straight_x - m->start_x);
-    mspringi_constraint *push = add_constraint(network, slot, nx, ny, distance_from(line, x, y));
+    mspringi_constraint *push = add_constraint(network, slot, nx, ny, mspringi_distance_from_line(line, x, y));
     push->bounded = MSPRINGI_BOUND_PUSH;
     push->activity = depth > -slop ? MSPRINGI_STIFF : MSPRINGI_IDLE;
     push->bound = push->stiffness * slop;

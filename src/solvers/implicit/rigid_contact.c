@@ -91,11 +91,6 @@ static bool keep_apart(const mspring_network *network, mspringi_contact_constrai
     return fabs(change) * h * inverse_mass > unseen;
 }
 
-// Distance of a point from a surface.
-static double distance_of_line(const mspringi_line *line, double x, double y) {
-    return line->nx * x + line->ny * y + line->offset;
-}
-
 // Find the two surfaces of the floor that are nearest to a point. Return their number.
 static uint32_t find_near_surfaces(const mspringi_floor *floor, double x, double y, mspringi_line nearest[2]) {
     const uint32_t all = floor->plane_count + (floor->heights.count > 0);
@@ -105,7 +100,7 @@ static uint32_t find_near_surfaces(const mspringi_floor *floor, double x, double
             i < floor->plane_count
                 ? floor->lines[i]
                 : mspringi_heights_line(&floor->heights, mspringi_heights_find_part(&floor->heights, x));
-        const double distance = distance_of_line(&line, x, y);
+        const double distance = mspringi_distance_from_line(&line, x, y);
         const int to = distance < distances[0] ? 0 : 1;
         if (!(distance < distances[to]))
             continue;
@@ -122,9 +117,9 @@ static bool keep_out(const mspring_network *network, rigid_body *a, size_t slot,
                      const mspringi_line *line, float *sum, double h, double unseen) {
     const mspringi_floor *floor = network->floor;
     const double rx = x - a->origin[0] - a->x, ry = y - a->origin[1] - a->y, arm = rx * line->ny - ry * line->nx;
-    const double gap = distance_of_line(line, x, y), speed = line->nx * (a->rigid_vx + a->push_x) +
-                                                             line->ny * (a->rigid_vy + a->push_y) +
-                                                             arm * (a->rigid_turn + a->push_turn);
+    const double gap = mspringi_distance_from_line(line, x, y), speed = line->nx * (a->rigid_vx + a->push_x) +
+                                                                        line->ny * (a->rigid_vy + a->push_y) +
+                                                                        arm * (a->rigid_turn + a->push_turn);
     const double lacks = (gap < 0.0 ? 0.0 : -gap) - h * speed;
     if (!(lacks > 0.0) && *sum == 0.0f)
         return false;
