@@ -173,6 +173,15 @@ static void move_nodes(const mspring_network *network, mspringi_contacts *contac
         mspringi_relaxation_finish(contacts);
 }
 
+// True if the step has taken too much work. Then it will be rejected, and nothing more is done for it.
+static bool is_too_much(mspringi_contacts *contacts) {
+    if (contacts->work <= contacts->most_work)
+        return false;
+    contacts->is_out_of_room = true;
+    contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
+    return true;
+}
+
 // Solve intervals of equal length. Divide the remaining ones if one fails.
 static void solve_in_intervals(const mspring_network *network, mspringi_contacts *contacts, double h,
                                uint32_t intervals) {
@@ -185,7 +194,7 @@ static void solve_in_intervals(const mspring_network *network, mspringi_contacts
         is_made = false;
         save_velocities(k);
         const bool is_solved = solve_interval(network, contacts, interval);
-        if (mspringi_contact_is_too_much(contacts))
+        if (is_too_much(contacts))
             return;
         if (!is_solved && cuts < MAX_CUTS && left < MAX_INTERVALS) {
             restore_velocities(k);

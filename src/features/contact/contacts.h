@@ -362,15 +362,6 @@ typedef struct mspringi_contacts mspringi_contacts;
 /// square.
 #define MSPRINGI_FREE_EDGES 64u
 
-/// True if the step has taken too much work. Then it will be rejected, and nothing more is done for it.
-static inline bool mspringi_contact_is_too_much(mspringi_contacts *contacts) {
-    if (contacts->work <= contacts->most_work)
-        return false;
-    contacts->is_out_of_room = true;
-    contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
-    return true;
-}
-
 /// Count visits of outline edges at one particle.
 static inline void mspringi_contact_count_visits(mspringi_contacts *contacts, uint32_t visits) {
     if (visits <= MSPRINGI_FREE_EDGES)

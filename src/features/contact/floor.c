@@ -218,7 +218,7 @@ void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory) 
     mspringi_free(memory, floor);
 }
 
-void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory) {
+static void destroy_floor(mspringi_floor *floor, mspringi_memory *memory) {
     if (!floor)
         return;
     mspringi_free(memory, floor->heights.heights);
@@ -308,7 +308,7 @@ static MSPRINGI_NOINLINE mspringi_floor *make_floor(mspring_network *network, co
         return NULL;
     if (!reserve_layout(made, network) || !copy_floor(made, def, &network->memory) ||
         !reserve_constraints(made, network)) {
-        mspringi_floor_destroy(made, &network->memory);
+        destroy_floor(made, &network->memory);
         return NULL;
     }
     return made;
@@ -386,7 +386,7 @@ mspring_result mspring_network_set_floor(mspring_network *network, const mspring
             return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for a floor of %u heights",
                                  (unsigned)def->height_count);
     }
-    mspringi_floor_destroy(network->floor, &network->memory);
+    destroy_floor(network->floor, &network->memory);
     network->floor = made;
     mspringi_notify_change(network, MSPRINGI_CHANGED_NEW_FLOOR, 0);
     return MSPRING_OK;

@@ -90,8 +90,6 @@ typedef struct mspringi_moved_particle {
     double start_x, start_y, x, y, vx, vy;
 } mspringi_moved_particle;
 
-void mspringi_floor_destroy(mspringi_floor *floor, mspringi_memory *memory);
-
 /// Make the floor of another layout of the same particles. Both share the definition. NULL: no memory.
 mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *from);
 
