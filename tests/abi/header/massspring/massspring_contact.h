@@ -43,8 +43,8 @@ typedef struct mspring_contact_def {
     uint32_t capacity;     ///< pairs of a point and a spring that there is room for at first, at most 2^26; default 0:
                            ///< 4096 + 2 for each particle + 16 for each particle of the outline
     uint32_t max_capacity; ///< pairs that there may be room for, at most 2^26; default 0: 16 times the default of
-                           ///< capacity, of which a quarter may touch. A step with more near pairs than there is room
-                           ///< for makes more. Equal to capacity: no step allocates
+                           ///< capacity. A step with more near pairs than there is room for makes more. Equal to
+                           ///< capacity: no step allocates
 } mspring_contact_def;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
@@ -78,7 +78,8 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// If more than capacity pairs are near each other, or more than an eighth of capacity and 1024 may touch in a substep,
 /// a step is undone, doubles the capacity, and is made again in the same call. It has the bits that it would have had
 /// with that room from the first, and MSPRING_STEP_GREW. So a game loop need not know of this. Without memory it returns
-/// MSPRING_ERROR_MEMORY, and beyond max_capacity MSPRING_ERROR_LIMIT, with the state of before.
+/// MSPRING_ERROR_MEMORY, and beyond max_capacity MSPRING_ERROR_LIMIT, with the state of before. If max_capacity is 0, no
+/// more than half of the default of capacity and 1024 may touch.
 ///
 /// A step returns MSPRING_ERROR_LIMIT, too, where it takes too much work: comparisons of points of the outline
 /// with springs near them that form no pair, and visits of constraints beyond 768 for each. It may take what 3.1 million
