@@ -182,6 +182,14 @@ typedef struct mspringi_floor_support {
 /// Most supports of a particle: two where surfaces meet.
 #define MSPRINGI_MAX_SUPPORTS 2u
 
+/// Contact constraint between rigid bodies, in one direction (solvers/implicit/rigid_contact.c). Index 0 is the
+/// side of the point, 1 that of the edge.
+typedef struct mspringi_rigid_row {
+    double x[2], y[2], arm[2]; ///< impulse and torque on each body, for a unit of impulse; m
+    double speed;              ///< relative speed of the bodies without impulses, m/s
+    double mass;               ///< impulse per change of speed, kg; 0: none acts
+} mspringi_rigid_row;
+
 /// Contact constraint in the linear system (solvers/implicit/implicit_contact.c). Index 0 is the point, 1 and 2 are
 /// the ends of the edge.
 typedef struct mspringi_implicit_constraint {
@@ -191,6 +199,8 @@ typedef struct mspringi_implicit_constraint {
     double spare;                     ///< slack before a bouncing constraint becomes active, m
     double friction;                  ///< 0: it has no friction in the system
     bool is_active;                   ///< in the active set at the prediction
+    uint32_t bodies[2];               ///< of point and edge, if contact moves rigid bodies; MSPRINGI_NO_COMPONENT
+    mspringi_rigid_row rigid[2];      ///< across and along
 } mspringi_implicit_constraint;
 
 /// Pose of a collider, world coordinates.

@@ -94,6 +94,8 @@ typedef struct mspringi_component_budget {
     double share;                          ///< share of its way back that it moves
     bool is_rigid;                         ///< contact moves it as a rigid body
     double rigid_vx, rigid_vy, rigid_turn; ///< m/s, rad/s: of that motion before impulses
+    double inverse_mass, inverse_inertia;  ///< 1/kg, 1/(kg m^2): of it
+    double floor_gap, radius;              ///< of it: least distance from the floor; of its particles, m
     double rigid_elastic;                  ///< energy of its springs, which keep their lengths, J
     double push_x, push_y, push_turn;      ///< m/s, rad/s: by these; 0 if it is none
     double floor_impulse_x, floor_impulse_y; ///< N s that the floor has given it, but for what is counted

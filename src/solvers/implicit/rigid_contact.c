@@ -2,11 +2,14 @@
 ///
 /// Impulses on the particles that touch hardly slow a stiff body. The energy budget does not let it deform for
 /// them, so it would fly on, through others. Here bodies near each other keep their shape: they move on as rigid
-/// ones, after impulses that keep gaps from closing: projected Gauss-Seidel (Catto 2005), without friction or
-/// restitution. Such impulses only take energy, after any number of sweeps. They act at once, so the centre of a
+/// ones, after impulses that keep gaps from closing, with friction and without restitution: projected Gauss-Seidel
+/// (Catto 2005). Such impulses only take energy, after any number of sweeps. They act at once, so the centre of a
 /// body goes twice the way that they do work on (energy_budget.c). Bodies with pins move as solved, and are not
 /// pushed.
+///
+/// Positions do not change in the sweeps. So arms and masses are computed before them, once.
 #include <math.h>
+#include <string.h>
 
 #include "features/contact/contacts.h"
 #include "features/contact/floor.h"
@@ -17,16 +20,14 @@
 #define MOST_RIGID_SWEEPS 256
 
 typedef mspringi_component_budget rigid_body;
+typedef mspringi_implicit_constraint hold;
 
-/// A point, or the closest point of an edge, which moves with its body.
-typedef struct contact_side {
-    rigid_body *of;          ///< NULL: not of a rigid body
-    uint32_t nodes[2];       ///< of the edge, or twice the point
-    double shares[2];        ///< of them
-    double inverse_mass;     ///< along the normal, 1/kg
-    double speed;            ///< along the normal, m/s
-    double turn_per_impulse; ///< of the body, 1/(kg m)
-} contact_side;
+/// An interval, and the change of a distance that matters, m.
+typedef struct rigid_interval {
+    const mspring_network *network;
+    const mspringi_motion *before;
+    double h, unseen;
+} rigid_interval;
 
 static rigid_body *body_of(const mspring_network *network, uint32_t node) {
     mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
@@ -37,59 +38,150 @@ static rigid_body *body_of(const mspring_network *network, uint32_t node) {
     return number == MSPRINGI_NO_COMPONENT ? NULL : &budget->components[number];
 }
 
-static contact_side side_of(const mspring_network *network, const mspringi_contact_constraint *t, bool is_edge) {
-    const mspringi_contact_nodes *k = &network->contacts->nodes;
-    contact_side s = {.of = body_of(network, is_edge ? t->a : t->p),
-                      .nodes = {is_edge ? t->a : t->p, is_edge ? t->b : t->p},
-                      .shares = {is_edge ? t->bary_a : 1.0, is_edge ? t->bary_b : 0.0}};
-    const double *a = s.shares;
-    if (!s.of || !s.of->is_rigid) {
-        const mspringi_velocity *v[] = {&k->v[s.nodes[0]], &k->v[s.nodes[1]]};
-        s.of = NULL;
-        s.speed = t->nx * (a[0] * v[0]->x + a[1] * v[1]->x) + t->ny * (a[0] * v[0]->y + a[1] * v[1]->y);
-        s.inverse_mass = a[0] * a[0] * k->inverse_mass[s.nodes[0]] + a[1] * a[1] * k->inverse_mass[s.nodes[1]];
-        return s;
-    }
-    const mspringi_mass_centre c = mspringi_mass_centre_of(s.of);
-    const double x = a[0] * k->x[s.nodes[0]] + a[1] * k->x[s.nodes[1]] - (s.of->origin[0] + s.of->x);
-    const double y = a[0] * k->y[s.nodes[0]] + a[1] * k->y[s.nodes[1]] - (s.of->origin[1] + s.of->y);
-    const double turn = s.of->rigid_turn + s.of->push_turn, arm = x * t->ny - y * t->nx;
-    s.speed = t->nx * (s.of->rigid_vx + s.of->push_x) + t->ny * (s.of->rigid_vy + s.of->push_y) + arm * turn;
-    s.turn_per_impulse = c.inertia > 0.0 ? arm / c.inertia : 0.0;
-    s.inverse_mass = 1.0 / c.mass + arm * s.turn_per_impulse;
-    return s;
+static rigid_body *rigid_body_of(const mspring_network *network, uint32_t node) {
+    rigid_body *a = body_of(network, node);
+    return a && a->is_rigid ? a : NULL;
 }
 
-static void push_side(const mspring_network *network, const mspringi_contact_constraint *t, const contact_side *s,
-                      double impulse) {
-    const mspringi_contact_nodes *k = &network->contacts->nodes;
-    if (s->of) {
-        const double change = impulse / s->of->sums[MSPRINGI_MOMENT_MASS];
-        s->of->push_x += change * t->nx;
-        s->of->push_y += change * t->ny;
-        s->of->push_turn += impulse * s->turn_per_impulse;
+// Let a body keep its shape, with the motion that its momentum and spin give it.
+static void make_rigid(const mspring_network *network, uint32_t node, double h) {
+    rigid_body *a = body_of(network, node);
+    if (!a || a->is_rigid || a->is_pinned || a->is_asleep || !(a->sums[MSPRINGI_MOMENT_MASS] > 0.0))
         return;
+    const mspringi_mass_centre c = mspringi_mass_centre_of(a);
+    a->is_rigid = true;
+    a->rigid_elastic = a->elastic;
+    a->inverse_mass = 1.0 / c.mass;
+    a->inverse_inertia = c.inertia > 0.0 ? 1.0 / c.inertia : 0.0;
+    a->rigid_vx = a->origin[2] + a->vx + h * (double)network->settings.gravity_x;
+    a->rigid_vy = a->origin[3] + a->vy + h * (double)network->settings.gravity_y;
+    a->rigid_turn = a->spin * a->inverse_inertia;
+}
+
+/* ------------------------------------------------------------------------------------------ between two bodies */
+
+// Nodes of a constraint, and the first of each side: the point, then the ends of the edge.
+static uint32_t node_of_side(const mspringi_contact_constraint *t, int i) {
+    return i == 0 ? t->p : i == 1 ? t->a : t->b;
+}
+static const int first_of_side[] = {0, 1, 3};
+
+static const double (*shares_of(const hold *c, bool is_along))[2] {
+    return (const double(*)[2])(is_along ? c->along : c->across);
+}
+
+static rigid_body *side_body(const mspring_network *network, const hold *c, int side) {
+    return c->bodies[side] == MSPRINGI_NO_COMPONENT
+               ? NULL
+               : &mspringi_implicit_of(network)->budget.components[c->bodies[side]];
+}
+
+// Compute the arms of a unit impulse on both sides, their relative speed without impulses, and the mass.
+static void begin_row(const mspring_network *network, const mspringi_contact_constraint *t, hold *c,
+                      bool is_along) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    const double(*shares)[2] = shares_of(c, is_along);
+    mspringi_rigid_row *row = &c->rigid[is_along];
+    double give = 0.0;
+    memset(row, 0, sizeof *row);
+    for (int side = 0; side < 2; ++side) {
+        const rigid_body *a = side_body(network, c, side);
+        double own = 0.0;
+        for (int i = first_of_side[side]; i < first_of_side[side + 1]; ++i) {
+            const uint32_t node = node_of_side(t, i);
+            own += (shares[i][0] * shares[i][0] + shares[i][1] * shares[i][1]) * k->inverse_mass[node];
+            if (!a)
+                continue;
+            const double x = k->x[node] - (a->origin[0] + a->x), y = k->y[node] - (a->origin[1] + a->y);
+            row->x[side] += shares[i][0];
+            row->y[side] += shares[i][1];
+            row->arm[side] += x * shares[i][1] - y * shares[i][0];
+        }
+        if (a) {
+            const double x = row->x[side], y = row->y[side], arm = row->arm[side];
+            own = (x * x + y * y) * a->inverse_mass + arm * arm * a->inverse_inertia;
+            row->speed += x * a->rigid_vx + y * a->rigid_vy + arm * a->rigid_turn;
+        }
+        give += own;
     }
-    for (int i = 0; i < 2; ++i) {
-        const double change = s->shares[i] * k->inverse_mass[s->nodes[i]] * impulse;
-        k->v[s->nodes[i]].x += change * t->nx;
-        k->v[s->nodes[i]].y += change * t->ny;
+    row->mass = give > 0.0 && c->bodies[0] != c->bodies[1] ? 1.0 / give : 0.0;
+}
+
+static void begin_pair(const mspring_network *network, const mspringi_contact_constraint *t, hold *c) {
+    const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    for (int side = 0; side < 2; ++side) {
+        const rigid_body *a = rigid_body_of(network, side == 0 ? t->p : t->a);
+        c->bodies[side] = a ? (uint32_t)(a - budget->components) : MSPRINGI_NO_COMPONENT;
+    }
+    begin_row(network, t, c, false);
+    begin_row(network, t, c, true);
+}
+
+// Relative speed of both sides in one direction, m/s. A side that is no rigid body moves by its nodes.
+static double speed_of_row(const mspring_network *network, const mspringi_contact_constraint *t, const hold *c,
+                           bool is_along) {
+    const mspringi_velocity *v = network->contacts->nodes.v;
+    const mspringi_rigid_row *row = &c->rigid[is_along];
+    const double(*shares)[2] = shares_of(c, is_along);
+    double speed = row->speed;
+    for (int side = 0; side < 2; ++side) {
+        const rigid_body *a = side_body(network, c, side);
+        if (a)
+            speed += row->x[side] * a->push_x + row->y[side] * a->push_y + row->arm[side] * a->push_turn;
+        for (int i = first_of_side[side]; !a && i < first_of_side[side + 1]; ++i)
+            speed += shares[i][0] * v[node_of_side(t, i)].x + shares[i][1] * v[node_of_side(t, i)].y;
+    }
+    return speed;
+}
+
+static void push_row(const mspring_network *network, const mspringi_contact_constraint *t, const hold *c,
+                     bool is_along, double impulse) {
+    const mspringi_contact_nodes *k = &network->contacts->nodes;
+    const mspringi_rigid_row *row = &c->rigid[is_along];
+    const double(*shares)[2] = shares_of(c, is_along);
+    for (int side = 0; side < 2; ++side) {
+        rigid_body *a = side_body(network, c, side);
+        if (a) {
+            a->push_x += impulse * a->inverse_mass * row->x[side];
+            a->push_y += impulse * a->inverse_mass * row->y[side];
+            a->push_turn += impulse * a->inverse_inertia * row->arm[side];
+        }
+        for (int i = first_of_side[side]; !a && i < first_of_side[side + 1]; ++i) {
+            const uint32_t node = node_of_side(t, i);
+            k->v[node].x += impulse * k->inverse_mass[node] * shares[i][0];
+            k->v[node].y += impulse * k->inverse_mass[node] * shares[i][1];
+        }
     }
 }
 
-// Keep a gap from closing, or an overlap from growing. Return true if that took an impulse.
-static bool keep_apart(const mspring_network *network, mspringi_contact_constraint *t, double h, double unseen) {
-    const contact_side point = side_of(network, t, false), edge = side_of(network, t, true);
-    const double inverse_mass = point.inverse_mass + edge.inverse_mass;
-    const double lacks = (t->gap < 0.0 ? 0.0 : -t->gap) - h * (point.speed - edge.speed);
-    if ((!point.of && !edge.of) || point.of == edge.of || !(inverse_mass > 0.0))
+// Keep a gap from closing, or an overlap from growing, and sides from sliding. Return true if that took impulses.
+static bool keep_apart(const rigid_interval *o, mspringi_contact_constraint *t, const hold *c) {
+    const double mass = c->rigid[0].mass, mass_along = c->rigid[1].mass;
+    if (!(mass > 0.0))
         return false;
-    const double change = fmax(lacks / (h * inverse_mass), -t->normal_impulse);
+    const double lacks = (t->gap < 0.0 ? 0.0 : -t->gap) / o->h - speed_of_row(o->network, t, c, false);
+    const double change = fmax(lacks * mass, -t->normal_impulse);
     t->normal_impulse += change;
-    push_side(network, t, &point, change);
-    push_side(network, t, &edge, -change);
-    return fabs(change) * h * inverse_mass > unseen;
+    if (change != 0.0)
+        push_row(o->network, t, c, false, change);
+    double slip = 0.0;
+    if (t->friction > 0.0f && t->tangent_mass > 0.0 && (t->normal_impulse > 0.0 || t->tangent_impulse != 0.0)) {
+        const double slide = speed_of_row(o->network, t, c, true) + t->surface_speed;
+        const double most = (double)t->friction * t->normal_impulse;
+        const double to = fmax(-most, fmin(t->tangent_impulse - slide * mass_along, most));
+        slip = to - t->tangent_impulse;
+        t->tangent_impulse = to;
+        push_row(o->network, t, c, true, slip);
+    }
+    return fabs(change) * o->h > o->unseen * mass || fabs(slip) * o->h > o->unseen * mass_along;
 }
+
+bool mspringi_rigid_contact_has(const mspring_network *network, const mspringi_contact_constraint *t) {
+    return rigid_body_of(network, t->p) || rigid_body_of(network, t->a);
+}
+
+/* -------------------------------------------------------------------------------------------------- at the floor
+ */
 
 // Find the two surfaces of the floor that are nearest to a point. Return their number.
 static uint32_t find_near_surfaces(const mspringi_floor *floor, double x, double y, mspringi_line nearest[2]) {
@@ -112,30 +204,6 @@ static uint32_t find_near_surfaces(const mspringi_floor *floor, double x, double
     return all < 2 ? all : 2;
 }
 
-// Keep a body's particle out of a surface. *sum: its impulse so far, N s. Return true if that changed much.
-static bool keep_out(const mspring_network *network, rigid_body *a, size_t slot, double x, double y,
-                     const mspringi_line *line, float *sum, double h, double unseen) {
-    const mspringi_floor *floor = network->floor;
-    const double rx = x - a->origin[0] - a->x, ry = y - a->origin[1] - a->y, arm = rx * line->ny - ry * line->nx;
-    const double gap = mspringi_distance_from_line(line, x, y), speed = line->nx * (a->rigid_vx + a->push_x) +
-                                                                        line->ny * (a->rigid_vy + a->push_y) +
-                                                                        arm * (a->rigid_turn + a->push_turn);
-    const double lacks = (gap < 0.0 ? 0.0 : -gap) - h * speed;
-    if (!(lacks > 0.0) && *sum == 0.0f)
-        return false;
-    const mspringi_mass_centre c = mspringi_mass_centre_of(a);
-    const double turn = c.inertia > 0.0 ? arm / c.inertia : 0.0, inverse_mass = 1.0 / c.mass + arm * turn;
-    const float to = (float)fmax((double)*sum + lacks / (h * inverse_mass), 0.0);
-    const double change = (double)to - (double)*sum;
-    *sum = to;
-    a->push_x += change / c.mass * line->nx;
-    a->push_y += change / c.mass * line->ny;
-    a->push_turn += change * turn;
-    floor->impulse.x[slot] += (float)(change * line->nx);
-    floor->impulse.y[slot] += (float)(change * line->ny);
-    return fabs(change) * h * inverse_mass > unseen;
-}
-
 static rigid_body *rigid_body_at(const mspring_network *network, size_t slot) {
     const mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
     const uint32_t number = budget->of_slot[slot];
@@ -143,63 +211,112 @@ static rigid_body *rigid_body_at(const mspring_network *network, size_t slot) {
                                                                                   : NULL;
 }
 
-// Keep all rigid bodies out of the floor. Impulses of the linear system count no more.
-static bool keep_all_out(const mspring_network *network, const mspringi_motion *before, double h, double unseen,
-                         bool is_first) {
+// Change the velocity of a body's particle in the direction (x, y) by the impulse that gives it a speed, so far as
+// the sum of such impulses stays in bounds. Return the change of the speed, m/s.
+static double push_at(rigid_body *a, double rx, double ry, double x, double y, double speed, double least,
+                      double most, float *sum, double *impulse) {
+    const double arm = rx * y - ry * x, give = a->inverse_mass + arm * arm * a->inverse_inertia;
+    const double now =
+        x * (a->rigid_vx + a->push_x) + y * (a->rigid_vy + a->push_y) + arm * (a->rigid_turn + a->push_turn);
+    const float to = (float)fmax(least, fmin((double)*sum + (speed - now) / give, most));
+    *impulse = (double)to - (double)*sum;
+    *sum = to;
+    a->push_x += *impulse * a->inverse_mass * x;
+    a->push_y += *impulse * a->inverse_mass * y;
+    a->push_turn += *impulse * a->inverse_inertia * arm;
+    return *impulse * give;
+}
+
+// Keep a body's particle out of a surface. *sum, *along: its impulses so far, N s. Return true if these changed
+// much.
+static bool keep_out(const rigid_interval *o, rigid_body *a, size_t slot, double x, double y,
+                     const mspringi_line *line, float *sum, float *along) {
+    const mspringi_field *to = &o->network->floor->impulse;
+    const double rx = x - a->origin[0] - a->x, ry = y - a->origin[1] - a->y;
+    const double gap = mspringi_distance_from_line(line, x, y), least = gap < 0.0 ? 0.0 : -gap / o->h;
+    double across_impulse, along_impulse;
+    const double change = push_at(a, rx, ry, line->nx, line->ny, least, 0.0, INFINITY, sum, &across_impulse);
+    const double most = line->friction * (double)*sum;
+    const double slip = push_at(a, rx, ry, -line->ny, line->nx, 0.0, -most, most, along, &along_impulse);
+    to->x[slot] += (float)(across_impulse * line->nx - along_impulse * line->ny);
+    to->y[slot] += (float)(across_impulse * line->ny + along_impulse * line->nx);
+    return (fabs(change) + fabs(slip)) * o->h > o->unseen;
+}
+
+// Find how far each body is from the floor at least, and the radius around its mass centre. Impulses of the linear
+// system count no more.
+static void begin_floor(const rigid_interval *o) {
+    const mspring_network *network = o->network;
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_floor *floor = network->floor;
-    bool again = false;
+    for (uint32_t i = 0; i < n->budget.count; ++i) {
+        n->budget.components[i].floor_gap = INFINITY;
+        n->budget.components[i].radius = 0.0;
+    }
     for (size_t slot = 0; slot < mspringi_used_slots(network); ++slot) {
         rigid_body *a = rigid_body_at(network, slot);
         if (!a || !(network->inverse_mass[slot] > 0.0f))
             continue;
-        if (is_first) {
-            floor->impulse.x[slot] = n->budget.impulse.x[slot];
-            floor->impulse.y[slot] = n->budget.impulse.y[slot];
-            n->scaled.x[slot] = n->scaled.y[slot] = 0.0f;
-        }
         mspringi_line surfaces[2];
-        const double x = (double)before->x[slot] + (double)before->low_x[slot];
-        const double y = (double)before->y[slot] + (double)before->low_y[slot];
-        const uint32_t count = find_near_surfaces(floor, x, y, surfaces);
+        const double x = (double)o->before->x[slot] + (double)o->before->low_x[slot];
+        const double y = (double)o->before->y[slot] + (double)o->before->low_y[slot];
+        const double rx = x - a->origin[0] - a->x, ry = y - a->origin[1] - a->y;
+        if (find_near_surfaces(floor, x, y, surfaces) > 0)
+            a->floor_gap = fmin(a->floor_gap, mspringi_distance_from_line(&surfaces[0], x, y));
+        a->radius = fmax(a->radius, sqrt(rx * rx + ry * ry));
+        floor->impulse.x[slot] = n->budget.impulse.x[slot];
+        floor->impulse.y[slot] = n->budget.impulse.y[slot];
+        n->scaled.x[slot] = n->scaled.y[slot] = n->product.x[slot] = n->product.y[slot] = 0.0f;
+    }
+}
+
+// True if a body's fastest particle would come to the floor.
+static bool may_reach_floor(const rigid_body *a, double h) {
+    const double vx = a->rigid_vx + a->push_x, vy = a->rigid_vy + a->push_y;
+    return a->floor_gap <= h * (sqrt(vx * vx + vy * vy) + a->radius * fabs(a->rigid_turn + a->push_turn));
+}
+
+// Keep all rigid bodies out of the floor.
+static bool keep_all_out(const rigid_interval *o) {
+    const mspring_network *network = o->network;
+    const mspringi_implicit *n = mspringi_implicit_of(network);
+    bool again = false;
+    for (size_t slot = 0; slot < mspringi_used_slots(network); ++slot) {
+        rigid_body *a = rigid_body_at(network, slot);
+        const bool is_pushed = n->scaled.x[slot] != 0.0f || n->scaled.y[slot] != 0.0f;
+        if (!a || !(network->inverse_mass[slot] > 0.0f) || !(is_pushed || may_reach_floor(a, o->h)))
+            continue;
+        mspringi_line surfaces[2];
+        const double x = (double)o->before->x[slot] + (double)o->before->low_x[slot];
+        const double y = (double)o->before->y[slot] + (double)o->before->low_y[slot];
+        const uint32_t count = find_near_surfaces(network->floor, x, y, surfaces);
         for (uint32_t i = 0; i < count; ++i)
-            again |= keep_out(network, a, slot, x, y, &surfaces[i],
-                              i == 0 ? &n->scaled.x[slot] : &n->scaled.y[slot], h, unseen);
+            again |= keep_out(o, a, slot, x, y, &surfaces[i], i == 0 ? &n->scaled.x[slot] : &n->scaled.y[slot],
+                              i == 0 ? &n->product.x[slot] : &n->product.y[slot]);
     }
     return again;
 }
 
-// Begin with the motion that momentum and spin give a body near others.
-static void make_rigid(const mspring_network *network, uint32_t node, double h) {
-    rigid_body *a = body_of(network, node);
-    if (!a || a->is_rigid || a->is_pinned || a->is_asleep || !(a->sums[MSPRINGI_MOMENT_MASS] > 0.0))
-        return;
-    const mspringi_mass_centre c = mspringi_mass_centre_of(a);
-    a->is_rigid = true;
-    a->rigid_elastic = a->elastic;
-    a->rigid_vx = a->origin[2] + a->vx + h * (double)network->settings.gravity_x;
-    a->rigid_vy = a->origin[3] + a->vy + h * (double)network->settings.gravity_y;
-    a->rigid_turn = c.inertia > 0.0 ? a->spin / c.inertia : 0.0;
-}
-
-bool mspringi_rigid_contact_has(const mspring_network *network, const mspringi_contact_constraint *t) {
-    const rigid_body *point = body_of(network, t->p), *edge = body_of(network, t->a);
-    return (point && point->is_rigid) || (edge && edge->is_rigid);
-}
+/* ------------------------------------------------------------------------------------------------- the interval */
 
 void mspringi_rigid_contact_find_impulses(const mspring_network *network, const mspringi_motion *before, double h,
                                           double unseen) {
+    const rigid_interval o = {network, before, h, unseen};
     const mspringi_contacts *contacts = network->contacts;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         make_rigid(network, contacts->constraints[i].p, h);
         make_rigid(network, contacts->constraints[i].a, h);
     }
+    for (uint32_t i = 0; i < contacts->constraint_count; ++i)
+        begin_pair(network, &contacts->constraints[i], &contacts->implicit_constraints[i]);
+    if (network->floor)
+        begin_floor(&o);
     for (uint32_t sweep = 0, again = 1; sweep < MOST_RIGID_SWEEPS && again; ++sweep) {
         again = 0;
         for (uint32_t i = 0; i < contacts->constraint_count; ++i)
-            again |= keep_apart(network, &contacts->constraints[i], h, unseen);
+            again |= keep_apart(&o, &contacts->constraints[i], &contacts->implicit_constraints[i]);
         if (network->floor)
-            again |= keep_all_out(network, before, h, unseen, sweep == 0);
+            again |= keep_all_out(&o);
     }
 }
 
@@ -245,9 +362,9 @@ void mspringi_rigid_contact_move(const mspring_network *network, const mspringi_
         const double t = 0.5 * h * (a->rigid_turn + a->push_turn), sine = 2.0 * t / (1.0 + t * t), less = t * sine;
         mspringi_set_x(s, slot, x + h * (a->rigid_vx + a->push_x) - less * rx - sine * ry);
         mspringi_set_y(s, slot, y + h * (a->rigid_vy + a->push_y) - less * ry + sine * rx);
-        const double vx = a->rigid_vx - a->origin[2] - a->vx + a->push_x - a->push_turn * ry;
-        const double vy = a->rigid_vy - a->origin[3] - a->vy + a->push_y + a->push_turn * rx;
-        mspringi_set_velocity_in_full(s, slot, (double)before->vx[slot] + vx, (double)before->vy[slot] + vy);
+        const double vx = a->rigid_vx + a->push_x - (a->rigid_turn + a->push_turn) * ry;
+        const double vy = a->rigid_vy + a->push_y + (a->rigid_turn + a->push_turn) * rx;
+        mspringi_set_velocity_in_full(s, slot, vx, vy);
     }
     for (int corner = 0; network->floor && corner < 2; ++corner)
         lift_rigid(network);

@@ -155,6 +155,43 @@ static void fragments_come_to_rest_in_implicit_steps(void **state) {
     }
 }
 
+/// Twelve bars dropped onto each other between walls, in implicit steps of one substep. While they fall, steps run
+/// out of work and bodies touch as rigid ones. As long as these had no friction and kept their vibration, the heap
+/// never came to rest: 20 to 70 J were left, and each step took 60 calm ones.
+static void dropped_bars_come_to_rest_in_implicit_steps(void **state) {
+    (void)state;
+    const double planes[][4] = {{0, 0, 0, 1}, {-3, 0, 1, 0}, {75, 0, -1, 0}};
+    for (uint64_t seed = 11; seed < 13; seed++) {
+        uint64_t random = seed;
+        bodies *b = bodies_begin(1.0 / 60);
+        for (uint32_t i = 0; i < 12; i++)
+            bodies_add(b, &(bodies_lattice){.width = 12,
+                                            .height = 3,
+                                            .x = i % 4 * 16 + support_random_between(&random, 0, 3),
+                                            .y = 6 + i / 4 * 6,
+                                            .angle = support_random_between(&random, -0.1, 0.1),
+                                            .spacing = 1,
+                                            .mass = 1,
+                                            .f = 0.5});
+        mspring_network_def def = support_def(-9.81f, 1);
+        def.solver = MSPRING_SOLVER_IMPLICIT;
+        mspring_network *network = bodies_network(b, &def);
+        mspring_floor_def floor;
+        check_ok(mspring_floor_def_init(&floor, sizeof floor));
+        floor.planes = &planes[0][0];
+        floor.plane_count = COUNT_OF(planes);
+        floor.friction = 0.5f;
+        check_ok(mspring_network_set_floor(network, &floor));
+        check_ok(bodies_touch(network, 0.3f, 0.5f, 0));
+        support_steps(network, 420, 1.0 / 60);
+        double kinetic, elastic, potential;
+        check_ok(mspring_network_energy(network, &kinetic, &elastic, &potential));
+        assert_true(kinetic < 1e-3);
+        mspring_network_destroy(network);
+        bodies_free(b);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ten_bars_lie_still),
@@ -162,6 +199,7 @@ int main(void) {
         cmocka_unit_test(ten_bars_fall_asleep),
         cmocka_unit_test(fragments_come_to_rest),
         cmocka_unit_test(fragments_come_to_rest_in_implicit_steps),
+        cmocka_unit_test(dropped_bars_come_to_rest_in_implicit_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

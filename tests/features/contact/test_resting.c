@@ -44,7 +44,7 @@ static mspring_network *stack(bodies *b, mspring_solver solver, uint32_t bars, f
 
 static void rest_in_a_stack(mspring_solver solver) {
     bodies *b = bodies_begin(DT / 40);
-    mspring_network *network = stack(b, solver, support_is_quick() ? 3 : 5, 0);
+    mspring_network *network = stack(b, solver, 5, 0);
     support_steps(network, solver == MSPRING_SOLVER_EXPLICIT ? ROUNDS(1000) : 300, DT);
     double fastest = 0;
     uint32_t crossings;

@@ -374,7 +374,7 @@ typedef enum mspring_integrator {
 ///  - The implicit and the direct solver take 32 times as many calm steps, as substeps in which bodies touch have 16 times
 ///    the iterations, and impacts some intervals, halves and passes. A calm one has 8 iterations, or a quarter of the most
 ///    if that is more; with residual 0 all. Where that ends, the rest is done once, by implicit Euler: the energy budget
-///    holds, and bodies near each other move on as rigid ones, which bump without friction. The step has
+///    holds, and bodies near each other move on as rigid ones, with friction but no bounce. The step has
 ///    MSPRING_STEP_FEWER. The solution that comes to the end may be one of two on top.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
