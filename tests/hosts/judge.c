@@ -1,0 +1,164 @@
+/// @file judge.c
+/// Whether all that can be read of a network is as it should be.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "game.h"
+#include "step/finite.h"
+
+/* ------------------------------------------------------------------------------------------------ contents */
+
+// Ids are what they were, and lead where they led.
+static void judge_contents(game *it, const place *p) {
+    static uint32_t ends[MOST_SPRINGS][2];
+    static float values[MOST_SPRINGS];
+    const plain *list = p->plain;
+    JUDGE(it, mspring_network_particle_count(p->network) == list->particles);
+    JUDGE(it, mspring_network_spring_count(p->network) == list->springs);
+    for (mspring_id i = 0; i < list->particles; i++)
+        JUDGE(it, mspring_network_has_particle(p->network, i) == list->has_particle[i]);
+    for (mspring_id i = 0; i < list->springs; i++)
+        JUDGE(it, mspring_network_has_spring(p->network, i) == list->has_spring[i]);
+    JUDGE(it, !mspring_network_has_particle(p->network, list->particles));
+    JUDGE(it, !mspring_network_has_spring(p->network, MSPRING_NONE));
+    JUDGE(it, mspring_network_get_ends(p->network, 0, list->springs, MSPRING_ENDS_IDS, &ends[0][0], &ends[0][1], 2) ==
+                  MSPRING_OK);
+    JUDGE(it, memcmp(ends, list->ends, list->springs * sizeof *ends) == 0);
+    JUDGE(it, mspring_network_get(p->network, MSPRING_MASS, 0, list->particles, values, 1) == MSPRING_OK);
+    for (mspring_id i = 0; i < list->particles; i++)
+        JUDGE(it, values[i] == list->mass[i]);
+    JUDGE(it, mspring_network_get(p->network, MSPRING_STIFFNESS, 0, list->springs, values, 1) == MSPRING_OK);
+    for (mspring_id i = 0; i < list->springs; i++)
+        JUDGE(it, values[i] == list->stiffness[i]);
+}
+
+static void judge_view(game *it, const place *p) {
+    mspring_view view = {.struct_size = sizeof view};
+    double x = 0, y = 0;
+    JUDGE(it, mspring_network_view(p->network, &view) == MSPRING_OK);
+    JUDGE(it, view.particle_count == p->plain->particles);
+    for (mspring_id i = 0; i < view.particle_count; i++) {
+        if (!p->plain->has_particle[i])
+            continue;
+        const uint32_t slot = view.slot_of_particle[i];
+        JUDGE(it, slot < view.slot_count && view.particle_of_slot[slot] == i);
+        JUDGE(it, isfinite(view.x[slot]) && isfinite(view.y[slot]) && isfinite(view.vx[slot] + view.vy[slot]));
+    }
+    for (uint32_t slot = 0; slot < view.slot_count; slot++)
+        JUDGE(it, view.particle_of_slot[slot] == MSPRING_NONE || view.particle_of_slot[slot] < view.particle_count);
+    if (view.particle_count == 0)
+        return;
+    JUDGE(it, mspring_network_get_positions(p->network, view.particle_count - 1, 1, &x, &y, 1) == MSPRING_OK);
+    JUDGE(it, isfinite(x) && isfinite(y));
+}
+
+// What is broken by edits is known at once, what breaks in steps is learnt after them.
+static void judge_flags(game *it, const place *p) {
+    static uint32_t flags[MOST_SPRINGS];
+    JUDGE(it, mspring_network_get_spring_flags(p->network, 0, p->plain->springs, flags, 1) == MSPRING_OK);
+    for (mspring_id i = 0; i < p->plain->springs; i++)
+        JUDGE(it, ((flags[i] & MSPRING_SPRING_BROKEN) != 0) == p->plain->is_broken[i]);
+}
+
+void judge_place(game *it, place *p) {
+    const uint32_t fails = p->memory->fails;
+    p->memory->fails = 0;
+    JUDGE(it, mspringi_is_finite(p->network));
+    JUDGE(it, p->job || mspring_network_memory_used(p->network) == p->memory->watched.live_bytes);
+    const bool is_small = p->plain->particles < 200;
+    if (is_small || it->frame % 16 == 0) {
+        judge_contents(it, p);
+        judge_view(it, p);
+        judge_flags(it, p);
+    }
+    // What is asked depends on nothing that the game draws.
+    draws from = {.seed = it->frame * 977u + (uint64_t)it->name * 131u + 7};
+    if (is_small || it->frame % 4 == 0)
+        judge_queries(it, p, &from);
+    p->memory->fails = fails;
+}
+
+/* -------------------------------------------------------------------------------------------------- motion */
+
+// Nothing from outside acts: no gravity, floor, pin, grip, collider or hook, no force that was given.
+static bool is_closed(const place *p) {
+    mspring_settings settings = {.struct_size = sizeof settings};
+    mspring_floor_def ground = {.struct_size = sizeof ground};
+    mspring_grip_def grip = {.struct_size = sizeof grip};
+    mspring_collider_def collider = {.struct_size = sizeof collider};
+    static float scales[MOST_PARTICLES];
+    if (!p->is_closed || mspring_network_group_count(p->network) > 0 ||
+        mspring_network_get_settings(p->network, &settings) || mspring_network_get_floor(p->network, &ground))
+        return false;
+    if (settings.gravity_x != 0 || settings.gravity_y != 0 || settings.global_damping > 0 || settings.sleep_speed > 0 ||
+        ground.plane_count + ground.height_count > 0)
+        return false;
+    for (int i = 0; i < MOST_HOOKS; i++)
+        if (p->has_hook[i])
+            return false;
+    for (mspring_id i = 0; i < 200; i++)
+        if (mspring_network_get_grip(p->network, i, &grip) == MSPRING_OK ||
+            mspring_network_get_collider(p->network, i, &collider) == MSPRING_OK)
+            return false;
+    if (mspring_network_get(p->network, MSPRING_INVERSE_MASS_SCALE, 0, p->plain->particles, scales, 1))
+        return false;
+    for (mspring_id i = 0; i < p->plain->particles; i++)
+        if (p->plain->has_particle[i] && scales[i] != 1)
+            return false;
+    return true;
+}
+
+static void sum_momenta(const place *p, momenta *sum) {
+    static float vx[MOST_PARTICLES], vy[MOST_PARTICLES];
+    if (mspring_network_get_velocities(p->network, 0, p->plain->particles, vx, vy, 1))
+        return;
+    for (mspring_id i = 0; i < p->plain->particles; i++) {
+        const double mass = p->plain->has_particle[i] ? (double)p->plain->mass[i] : 0;
+        sum->x += mass * (double)vx[i], sum->y += mass * (double)vy[i];
+        sum->scale += mass * (fabs((double)vx[i]) + fabs((double)vy[i]));
+    }
+}
+
+momenta judge_momenta(const place *p) {
+    momenta sum = {.count = is_closed(p)};
+    if (sum.count)
+        sum_momenta(p, &sum);
+    return sum;
+}
+
+// The impulses of springs in a step, N s, at the forces that there are now: their rounding is what may be left.
+static double impulse_scale(const place *p) {
+    static float forces[MOST_SPRINGS];
+    double sum = 0;
+    if (mspring_network_get(p->network, MSPRING_FORCE, 0, p->plain->springs, forces, 1))
+        return 0;
+    for (mspring_id i = 0; i < p->plain->springs; i++)
+        sum += fabs((double)forces[i]) * p->dt;
+    return sum;
+}
+
+void judge_step(game *it, place *p, const momenta *before) {
+    mspring_step_info info = {.struct_size = sizeof info};
+    mspring_solver_def solver = {.struct_size = sizeof solver};
+    JUDGE(it, mspring_network_get_step_info(p->network, &info) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_solver(p->network, &solver) == MSPRING_OK);
+    JUDGE(it, info.result == MSPRING_OK && info.step_count > 0 && info.flags == mspring_network_step_flags(p->network));
+    // The bound on repeated work: 32 times most_work, one solution and the fallback on top; two steps for each group.
+    const double most = 36 * (1.0 + solver.most_work) * (1 + 2.0 * mspring_network_group_count(p->network));
+    if (info.work > most)
+        printf("work %g of %u, %u substeps of %d, solver %d, flags %u\n", info.work, solver.most_work, info.substeps,
+               (int)solver.substeps, (int)solver.solver, info.flags);
+    JUDGE(it, info.work >= 0 && (solver.most_work == 0 || info.work <= most));
+    if (!before->count || info.flags & (MSPRING_STEP_PUT_BACK | MSPRING_STEP_FALLBACK))
+        return;
+    momenta after = {.x = 0};
+    sum_momenta(p, &after);
+    // A solution that is not exact, and sums of single precision: 1e-3 of all that is exchanged.
+    const double tolerance = 1e-3 * (before->scale + after.scale + impulse_scale(p)) + 1e-6;
+    if (it->setup.is_verbose && (fabs(after.x - before->x) > tolerance || fabs(after.y - before->y) > tolerance))
+        printf("momentum %g %g, then %g %g of %g\n", before->x, before->y, after.x, after.y, after.scale);
+    JUDGE(it, fabs(after.x - before->x) <= tolerance && fabs(after.y - before->y) <= tolerance);
+}
