@@ -2,6 +2,7 @@
 /// What is taken back: a chapter that is played twice, from a snapshot or from clones, and has the same log both times.
 ///
 /// SPDX-License-Identifier: MIT
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,9 +30,27 @@ image keep(const mspring_network *network, mspring_snapshot_contents contents) {
     return made;
 }
 
+// The section that differs, for whoever looks into it.
+static void tell_difference(const image *a, const image *b) {
+    size_t at = 0, section = 56;
+    uint64_t size = 0;
+    while (at < a->size && at < b->size && a->bytes[at] == b->bytes[at])
+        at++;
+    while (section + 16 <= a->size) {
+        memcpy(&size, a->bytes + section + 8, sizeof size);
+        if (at < section + 16 + (size + 7) / 8 * 8)
+            break;
+        section += 16 + (size_t)(size + 7) / 8 * 8;
+    }
+    fprintf(stderr, "%zu and %zu bytes differ at %zu: byte %td of section %.4s\n", a->size, b->size, at,
+            (ptrdiff_t)at - (ptrdiff_t)section - 16, section + 4 <= a->size ? (const char *)a->bytes + section : "none");
+}
+
 bool is_same_as(const mspring_network *network, const image *before) {
     const image now = keep(network, MSPRING_SNAPSHOT_ALL);
     const bool same = now.size == before->size && memcmp(now.bytes, before->bytes, now.size) == 0;
+    if (!same)
+        tell_difference(before, &now);
     free(now.bytes);
     return same;
 }

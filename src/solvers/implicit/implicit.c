@@ -545,7 +545,7 @@ void mspringi_implicit_update(const mspring_network *network, mspringi_implicit 
 
 void mspringi_implicit_forget(mspringi_implicit *n) {
     memset(n->history.first.x, 0, n->history_size * sizeof *n->history.first.x);
-    n->history.restarts = 1;
+    n->history.restarts = n->kept_restarts = 1; // also after a step that is refused: that history is gone
     n->budget.knows_elastic = false;
     n->may_have_overflowed = true;
 }
