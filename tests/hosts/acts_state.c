@@ -49,7 +49,8 @@ static mspring_result explode(game *it, place *p, const call *c) {
         mspring_network_get_positions_at(p->network, &c->particle, 1, &at[0], &at[1], 1);
     if (result != MSPRING_OK)
         return result;
-    JUDGE(it, mspring_network_particles_in_circle(p->network, at[0], at[1], 3, ids, 64, &count) == MSPRING_OK);
+    if (mspring_network_particles_in_circle(p->network, at[0], at[1], 3, ids, 64, &count) != MSPRING_OK)
+        return MSPRING_OK; // a place out of bounds
     count = count < 64 ? count : 64;
     JUDGE(it, mspring_network_get_positions_at(p->network, ids, count, x, y, 1) == MSPRING_OK);
     for (uint32_t i = 0; i < count; i++) {

@@ -36,6 +36,8 @@ static mspring_result add_hook(game *it, place *p, const call *c) {
     def.flags = c->pick / 128 % 4;
     def.below_y = 2;
     const mspring_result result = mspring_network_add_hook(p->network, &def, &id);
+    if (it->setup.is_verbose)
+        printf("hook of phase %d, period %u, flags %u\n", (int)def.phase, def.period, def.flags);
     JUDGE(it, (result == MSPRING_OK) == (id != MSPRING_NONE));
     if (result == MSPRING_OK)
         p->has_hook[at] = true, p->hooks[at] = id;

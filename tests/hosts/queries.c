@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdio.h>
 
 #include "game.h"
 
@@ -133,6 +134,8 @@ static void judge_strains(game *it, const place *p) {
         // Of first words, which are rounded to 2^-24 of a coordinate.
         const mspring_id *ends = p->plain->ends[i];
         const double length = (double)lengths[0][i];
+        if (it->setup.is_verbose && p->plain->has_spring[i] && !(fabs((double)lengths[1][i] - length) <= 1e-5 * length))
+            printf("%u: %g %g, ends at %g %g and %g %g\n", i, length, (double)lengths[1][i], x[ends[0]], y[ends[0]], x[ends[1]], y[ends[1]]);
         JUDGE(it, !p->plain->has_spring[i] ||
                       fabs((double)lengths[1][i] - length) <=
                           1e-6 * length + 1.3e-7 * (far_from_origin(p, ends[0]) + far_from_origin(p, ends[1])));

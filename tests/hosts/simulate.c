@@ -5,6 +5,8 @@
 ///   hosts [--seeds FIRST COUNT] [--frames N]    games of N frames each
 ///   hosts --minutes M [--seeds FIRST 1]         as many games as there is time for
 ///   hosts --verbose SEED FRAME                  one game up to a frame, each call on a line
+///   hosts --only LEVEL WORKERS FAILS ...        both games with this level, these workers, and memory that fails so
+///                                               often, in percent; -1: as ever. It tells what makes them differ.
 ///
 /// What is wrong ends the program, with the seed and the frame.
 ///
@@ -18,14 +20,24 @@
 
 static game_counts sum;
 
+/// Of both games, if not -1: what makes them differ is found by setting one after the other.
+static int only_level = -1, only_workers = -1, only_fails = -1;
+
 static game_setup setup_of(uint64_t seed, bool is_first) {
-    return is_first ? (game_setup){.level = MSPRING_SIMD_SCALAR,
+    game_setup made = is_first ? (game_setup){.level = MSPRING_SIMD_SCALAR,
                                    .workers = 1,
                                    .fails = seed % 3 ? 4 : 0,
                                    .looks_back = seed % 2}
-                    : (game_setup){.level = seed % 5 ? MSPRING_SIMD_AUTO : MSPRING_SIMD_SSE2,
+                               : (game_setup){.level = seed % 5 ? MSPRING_SIMD_AUTO : MSPRING_SIMD_SSE2,
                                    .workers = 1 + (uint32_t)(seed % 3),
                                    .has_tasks = seed % 4 == 0};
+    if (only_level >= 0)
+        made.level = (mspring_simd)only_level;
+    if (only_workers >= 0)
+        made.workers = (uint32_t)only_workers, made.has_tasks = false;
+    if (only_fails >= 0)
+        made.fails = (uint32_t)only_fails;
+    return made;
 }
 
 static void add(const game_counts *of) {
@@ -71,6 +83,9 @@ int main(int count, char **arguments) {
             first = strtoull(arguments[i + 1], NULL, 10), seeds = strtoull(arguments[i + 2], NULL, 10), i += 2;
         else if (!strcmp(one, "--frames") && i + 1 < count)
             frames = (uint32_t)strtoul(arguments[++i], NULL, 10);
+        else if (!strcmp(one, "--only") && i + 3 < count)
+            only_level = atoi(arguments[i + 1]), only_workers = atoi(arguments[i + 2]),
+            only_fails = atoi(arguments[i + 3]), i += 3;
         else if (!strcmp(one, "--minutes") && i + 1 < count)
             minutes = strtod(arguments[++i], NULL);
         else if (!strcmp(one, "--verbose") && i + 2 < count)

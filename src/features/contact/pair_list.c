@@ -226,13 +226,14 @@ static bool make_list_for(const mspring_network *network, mspringi_contacts *con
     return make_list(network, contacts);
 }
 
-// True if the list has all pairs within the margins that points of such speeds need.
+// True if the list has all pairs within the margins that points of such speeds need. One that was made while numbers
+// overflowed lacks pairs, though nothing leaves an endless margin.
 static bool is_complete(const mspringi_contacts *contacts, const double *speed) {
     const mspringi_outline *o = &contacts->outline;
     for (uint32_t i = 0; i < o->point_count; ++i) {
         const mspring_id p = o->points[i];
         const double spare = contacts->margin[p] - mspringi_point_margin(contacts, speed[p]);
-        if (!(spare >= 0.0 && contacts->square_moved[p] <= spare * spare))
+        if (!(spare >= 0.0 && spare < INFINITY && contacts->square_moved[p] <= spare * spare))
             return false;
     }
     return true;
