@@ -88,15 +88,20 @@ static void swap(uint32_t **a, uint32_t **b) {
     *b = other;
 }
 
+// True if there was an update. (It may have found none, where all particles were removed.)
+static bool is_known(const mspring_network *network) {
+    return network->components.number != NULL;
+}
+
 mspring_result mspring_network_update_components(mspring_network *network, uint32_t *count, uint32_t *changed) {
     mspring_result result = mspringi_check_call(network);
+    const bool is_first = result == MSPRING_OK && !is_known(network);
     if (result == MSPRING_OK)
         result = reserve(network);
     if (result != MSPRING_OK)
         return result;
     mspringi_components *c = &network->components;
-    const bool is_first = c->count == 0,
-               unchanged = !is_first && c->seen_growth == network->edits.growth &&
+    const bool unchanged = !is_first && c->seen_growth == network->edits.growth &&
                            mspringi_links_change_nothing(network, c->seen, c->number, NULL);
     if (!unchanged) {
         swap(&c->number, &c->old);
@@ -125,7 +130,7 @@ mspring_result mspring_network_get_component_numbers(const mspring_network *netw
     mspringi_selection at;
     mspring_result result =
         mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, numbers, numbers, stride, &at);
-    if (result == MSPRING_OK && network->components.count == 0)
+    if (result == MSPRING_OK && !is_known(network))
         result = mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, NO_UPDATE);
     if (result != MSPRING_OK)
         return result;
@@ -171,7 +176,7 @@ mspring_result mspring_network_get_components(const mspring_network *network, ui
     if (count > 0 && !components)
         return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT, "the place for %u components is NULL",
                                     (unsigned)count);
-    if (network->components.count == 0)
+    if (!is_known(network))
         return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT, NO_UPDATE);
     if (first > network->components.count || count > network->components.count - first)
         return mspringi_shared_fail(shared, MSPRING_ERROR_ID,

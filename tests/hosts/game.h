@@ -153,7 +153,7 @@ void game_step(game *it, place *p);
 void judge_place(game *it, place *p);
 /// Momenta before a step, and after.
 typedef struct momenta {
-    double x, y, scale;
+    double x, y, scale, mass;
     bool count;
 } momenta;
 momenta judge_momenta(const place *p);

@@ -131,14 +131,14 @@ static void judge_strains(game *it, const place *p) {
     JUDGE(it, largest == expected && (spring == first || largest == 0));
     JUDGE(it, mspring_network_get_extents(p->network, lengths[1], NULL, NULL, NULL) == MSPRING_OK);
     for (mspring_id i = 0; i < count; i++) {
-        // Of first words, which are rounded to 2^-24 of a coordinate.
+        // Of first words, which are rounded to 2^-23 of a coordinate and more.
         const mspring_id *ends = p->plain->ends[i];
         const double length = (double)lengths[0][i];
         if (it->setup.is_verbose && p->plain->has_spring[i] && !(fabs((double)lengths[1][i] - length) <= 1e-5 * length))
             printf("%u: %g %g, ends at %g %g and %g %g\n", i, length, (double)lengths[1][i], x[ends[0]], y[ends[0]], x[ends[1]], y[ends[1]]);
         JUDGE(it, !p->plain->has_spring[i] ||
                       fabs((double)lengths[1][i] - length) <=
-                          1e-6 * length + 1.3e-7 * (far_from_origin(p, ends[0]) + far_from_origin(p, ends[1])));
+                          1e-5 * length + 4e-7 * (far_from_origin(p, ends[0]) + far_from_origin(p, ends[1])));
     }
 }
 

@@ -321,6 +321,27 @@ static void the_first_update_survives_every_failure(void **state) {
     recipe_free(&made);
 }
 
+// None is as good a number as another.
+static void where_all_particles_are_removed_there_is_no_component(void **state) {
+    (void)state;
+    mspring_builder *builder = support_builder();
+    const mspring_id only = support_particle(builder, 0, 0, 1);
+    mspring_network_def def = support_def(0, 1);
+    mspring_network *network = support_network(builder, &def);
+    uint32_t count = 7, changed = 7, number = 7;
+    check_error(mspring_network_get_component_numbers(network, 0, 1, &number, 1), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_network_remove_particles(network, &only, 1));
+    for (int i = 0; i < 2; i++) {
+        check_ok(mspring_network_update_components(network, &count, &changed));
+        assert_int_equal(count, 0);
+        assert_int_equal(changed, i == 0);
+        check_ok(mspring_network_get_component_numbers(network, 0, 1, &number, 1));
+        assert_int_equal(number, MSPRING_NONE);
+        check_ok(mspring_network_get_components(network, 0, 0, NULL));
+    }
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(components_are_those_of_a_plain_search),
@@ -328,6 +349,7 @@ int main(void) {
         cmocka_unit_test(more_changes_than_the_log_holds_are_no_harm),
         cmocka_unit_test(bad_requests_are_refused),
         cmocka_unit_test(the_first_update_survives_every_failure),
+        cmocka_unit_test(where_all_particles_are_removed_there_is_no_component),
     };
     return cmocka_run_group_tests_name("components", tests, NULL, NULL);
 }

@@ -127,7 +127,8 @@ static void check_speed(mspringi_contacts *contacts, mspring_id p, double square
     if (square > expected * expected)
         contacts->substeps_to_refresh = 1;
     if (square > most * most) {
-        const double speed = square < INFINITY ? sqrt(square) : 0.0; // a list for an endless reach would have no pairs
+        const double speed =
+            square < INFINITY ? sqrt(square) : 0.0; // a list for an endless reach would have no pairs
         contacts->is_missed = contacts->has_extra_speed = true;
         contacts->extra_speed[p] = speed > contacts->extra_speed[p] ? speed : contacts->extra_speed[p];
     }

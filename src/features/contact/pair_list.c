@@ -226,8 +226,8 @@ static bool make_list_for(const mspring_network *network, mspringi_contacts *con
     return make_list(network, contacts);
 }
 
-// True if the list has all pairs within the margins that points of such speeds need. One that was made while numbers
-// overflowed lacks pairs, though nothing leaves an endless margin.
+// True if the list has all pairs within the margins that points of such speeds need. One that was made while
+// numbers overflowed lacks pairs, though nothing leaves an endless margin.
 static bool is_complete(const mspringi_contacts *contacts, const double *speed) {
     const mspringi_outline *o = &contacts->outline;
     for (uint32_t i = 0; i < o->point_count; ++i) {
