@@ -249,6 +249,7 @@ static mspring_result take(mspring_network *network, mspringi_attempt *attempt) 
         network->seen = mspringi_guard_bound(network, attempt->h, extrema);
     attempt->has_missed =
         mspringi_stages_must_repeat(network, attempt) && attempt->missed_count < attempt->stages->count;
+    network->is_to_repeat = attempt->has_missed;
     if (attempt->has_missed) {
         go_back(network, attempt);
         return MSPRING_OK;

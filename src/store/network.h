@@ -150,6 +150,7 @@ struct mspring_network {
     double step_time;          ///< length of the present step, s: dt, or near it with MSPRING_SUBSTEPS_EVEN
     mspringi_pace next_pace;   ///< becomes steps.pace if the step succeeds
     bool backup_is_start;      ///< only the solver has written to the state since the backup was written
+    bool is_to_repeat;         ///< an assumption failed: the substeps that are undone are taken again
     double origin_x, origin_y; ///< world = origin + local
     float recentre_distance;   ///< distance of the network from its origin from which on a move of the origin is
                                ///< tried, m

@@ -141,6 +141,8 @@ static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     contacts->substeps_done = contacts->touching = 0;
     contacts->substeps_since_scan = 0;
     contacts->deepest = 0.0;
+    contacts->work = 0; // also of a repetition: more workers have more of these
+    contacts->most_work = MOST_WORK;
     mspringi_colliders_begin(network, contacts, substeps);
     return mspringi_pair_list_scan(network, contacts, 0);
 }
@@ -164,8 +166,6 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     contacts->dt = attempt->dt;
     contacts->is_second_try = false;
     clear_extra_speeds(contacts);
-    contacts->work = 0;
-    contacts->most_work = MOST_WORK;
     contacts->has_sleepers = network->sleep.sleeping > 0;
     if (begin_substeps(network, attempt->substeps))
         wake_touched(network, contacts);
@@ -279,12 +279,13 @@ static mspring_result verify(mspring_network *network) {
         contacts->is_pair_list_full ? "are near" : "may touch");
 }
 
-// The state is that before the step. If the step is repeated, perhaps for another stage, it begins with a scan.
+// The state is that before the step. If the step is repeated, perhaps for another stage, it begins with a scan,
+// also where contact failed: for several workers more than contact may have gone wrong.
 static void roll_back(mspring_network *network) {
     mspringi_contacts *contacts = network->contacts;
     contacts->is_fresh = false;
     mspringi_contact_events_discard_step(contacts);
-    if (!has_failed(contacts)) // else the next step scans
+    if (network->is_to_repeat || !has_failed(contacts)) // else the next step scans
         (void)begin_substeps(network, contacts->colliders.substeps);
 }
 
