@@ -143,6 +143,19 @@ static mspring_result read_plan(game *it, place *p, const call *c) {
     return MSPRING_OK;
 }
 
+// What no network has to do with.
+static mspring_result read_library(game *it, place *p, const call *c) {
+    mspring_settings settings;
+    mspring_allocator allocator;
+    (void)p;
+    JUDGE(it, mspring_version() == MSPRING_VERSION && mspring_version_string()[0] && mspring_features() != 0);
+    JUDGE(it, mspring_result_string((mspring_result)(-(int)(c->pick % 32)))[0]);
+    JUDGE(it, mspring_allocator_init(&allocator, sizeof allocator) == MSPRING_OK);
+    JUDGE(it, mspring_settings_init(&settings, sizeof settings) == MSPRING_OK);
+    JUDGE(it, mspring_settings_init(&settings, c->pick % 8) == MSPRING_ERROR_STRUCT);
+    return MSPRING_OK;
+}
+
 // Too many, from an id that is there or from none.
 static mspring_result read_too_many(game *it, place *p, const call *c) {
     double x[1], y[1];
@@ -174,6 +187,7 @@ const act acts_reads[] = {
     {"get_sleepers", read_sleepers, ACT_READS},
     {"get_floor_impulses", read_floor, ACT_READS | ACT_RARE},
     {"get_plan", read_plan, ACT_READS},
+    {"version and defaults", read_library, ACT_READS | ACT_RARE},
     {"too many", read_too_many, ACT_READS | ACT_RARE},
 };
 const uint32_t acts_reads_count = COUNT_OF(acts_reads);

@@ -114,6 +114,7 @@ static mspring_result tune(game *it, place *p, const call *c) {
     mspring_tune_def def;
     mspring_tune_row rows[2];
     mspring_solver_def settings[2];
+    mspring_tune_scene scene;
     uint64_t ticks = 0;
     uint32_t count = 0;
     if (p->plain->particles > 150)
@@ -126,6 +127,9 @@ static mspring_result tune(game *it, place *p, const call *c) {
         rows[i] = (mspring_tune_row){.struct_size = sizeof rows[i]};
     }
     def.settings = settings, def.setting_count = 2;
+    JUDGE(it, mspring_tune_scene_init(&scene, sizeof scene) == MSPRING_OK);
+    scene.start_count = 4, scene.duration = 0.05;
+    def.scene = c->pick / 8 % 2 ? &scene : NULL;
     def.budget = 0.2, def.duration = 0.1, def.clock = count_time, def.user = &ticks;
     const mspring_result result = mspring_network_tune(p->network, &def, rows, 2, &count);
     JUDGE(it, count == (result == MSPRING_OK ? 2u : 0u));
