@@ -1,7 +1,7 @@
 /// @file fuzz_hosts.c
-/// A host of tests/hosts that takes its decisions from bytes: any calls of any function, on some networks at once, with
-/// memory that fails, chapters that are played twice, and judges after each frame. The second judge is another game: the
-/// same one at the best level and with several workers.
+/// A host of tests/hosts that takes its decisions from bytes: any calls of any function, on some networks at once,
+/// with memory that fails, chapters that are played twice, and judges after each frame. The second judge is another
+/// game: the same one at the best level and with several workers.
 ///
 /// SPDX-License-Identifier: MIT
 #include "fuzz.h"
@@ -21,7 +21,10 @@ static void play(const game_setup *setup, const uint8_t *data, size_t size, uint
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static const uint8_t none = 0;
     const uint8_t how = size > 0 ? data[0] : 0;
-    const game_setup first = {.level = MSPRING_SIMD_SCALAR, .workers = 1, .fails = how & 1 ? 5 : 0, .looks_back = true},
+    const game_setup first = {.level = MSPRING_SIMD_SCALAR,
+                              .workers = 1,
+                              .fails = how & 1 ? 5 : 0,
+                              .looks_back = true},
                      second = {.level = MSPRING_SIMD_AUTO, .workers = 1 + how / 2 % 3, .has_tasks = how & 64};
     uint64_t logs[2][2];
     size = size > 0 ? size - 1 : 0;

@@ -117,8 +117,8 @@ static mspring_result read_groups(game *it, place *p, const call *c) {
     const uint32_t first = c->pick % (count + 1), some = count - first < 4 ? count - first : 4;
     const mspring_result result = mspring_network_get_group_flags(p->network, first, some, flags, 1);
     JUDGE(it, count == 0 || result == MSPRING_OK);
-    JUDGE(it, result != MSPRING_OK || mspring_network_observe_groups(p->network, first, some, &chosen, 1, rows[0], 16) ==
-                                          MSPRING_OK);
+    JUDGE(it, result != MSPRING_OK ||
+                  mspring_network_observe_groups(p->network, first, some, &chosen, 1, rows[0], 16) == MSPRING_OK);
     for (uint32_t i = 0; i < some && result == MSPRING_OK; i++) {
         JUDGE(it, (rows[i][MSPRING_OBSERVE_HELD] == 1) == (flags[i] & MSPRING_GROUP_HELD));
         JUDGE(it, rows[i][MSPRING_OBSERVE_MIN_X] <= rows[i][MSPRING_OBSERVE_MAX_X]);

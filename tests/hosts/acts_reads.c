@@ -10,7 +10,8 @@
 
 static mspring_result reserve_events(game *it, place *p, const call *c) {
     (void)it;
-    const mspring_result result = mspring_network_reserve_events(p->network, c->pick % 4 ? 16u << c->pick / 4 % 8 : 0);
+    const mspring_result result =
+        mspring_network_reserve_events(p->network, c->pick % 4 ? 16u << c->pick / 4 % 8 : 0);
     if (result == MSPRING_OK) {
         memcpy(p->plain->breaks_by_events, p->plain->is_broken, sizeof p->plain->is_broken);
         p->plain->knows_events = c->pick % 4 != 0;
@@ -79,13 +80,15 @@ static mspring_result read_lists(game *it, place *p, const call *c) {
     double x[MANY], y[MANY], one[2];
     float xf[2][MANY], yf[2][MANY];
     const mspring_result result = mspring_network_get_positions_at(p->network, c->particles, c->count, x, y, 1);
-    JUDGE(it, mspring_network_get_positions_float_at(p->network, c->particles, c->count, xf[0], yf[0], 1) == result);
+    JUDGE(it,
+          mspring_network_get_positions_float_at(p->network, c->particles, c->count, xf[0], yf[0], 1) == result);
     JUDGE(it, mspring_network_get_velocities_at(p->network, c->particles, c->count, xf[1], yf[1], 1) == result);
     for (uint32_t i = 0; i < c->count && result == MSPRING_OK; i++) {
         float v[2], q[2];
         JUDGE(it, mspring_network_get_positions(p->network, c->particles[i], 1, &one[0], &one[1], 1) == MSPRING_OK);
         JUDGE(it, one[0] == x[i] && one[1] == y[i]);
-        JUDGE(it, mspring_network_get_positions_float(p->network, c->particles[i], 1, &q[0], &q[1], 1) == MSPRING_OK);
+        JUDGE(it,
+              mspring_network_get_positions_float(p->network, c->particles[i], 1, &q[0], &q[1], 1) == MSPRING_OK);
         JUDGE(it, q[0] == xf[0][i] && q[1] == yf[0][i] && q[0] == (float)x[i]);
         JUDGE(it, mspring_network_get_velocities(p->network, c->particles[i], 1, &v[0], &v[1], 2) == MSPRING_OK);
         JUDGE(it, v[0] == xf[1][i] && v[1] == yf[1][i]);

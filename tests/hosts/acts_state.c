@@ -19,23 +19,26 @@ static void spread(const float *from, float low, float high, float *to) {
 
 static mspring_result apply_force(game *it, place *p, const call *c) {
     (void)it;
-    return mspring_network_apply_force(p->network, c->particle, between(c->f[0], -90, 90), between(c->f[1], -90, 90));
+    return mspring_network_apply_force(p->network, c->particle, between(c->f[0], -90, 90),
+                                       between(c->f[1], -90, 90));
 }
 
 static mspring_result apply_forces(game *it, place *p, const call *c) {
     float force[MANY];
     (void)it;
     spread(c->f, -30, 30, force);
-    return c->pick & 1 ? mspring_network_apply_forces_at(p->network, c->particles, c->count / 2, force, force + 1, 2)
-                       : mspring_network_apply_forces(p->network, c->particle, c->count, force, force, c->pick / 2 % 2);
+    return c->pick & 1
+               ? mspring_network_apply_forces_at(p->network, c->particles, c->count / 2, force, force + 1, 2)
+               : mspring_network_apply_forces(p->network, c->particle, c->count, force, force, c->pick / 2 % 2);
 }
 
 static mspring_result apply_impulses(game *it, place *p, const call *c) {
     float impulse[MANY];
     (void)it;
     spread(c->f, -3, 3, impulse);
-    return c->pick & 1 ? mspring_network_apply_impulses_at(p->network, c->particles, c->count, impulse, impulse, 1)
-                       : mspring_network_apply_impulses(p->network, c->particle, c->count / 2, impulse, impulse + 1, 2);
+    return c->pick & 1
+               ? mspring_network_apply_impulses_at(p->network, c->particles, c->count, impulse, impulse, 1)
+               : mspring_network_apply_impulses(p->network, c->particle, c->count / 2, impulse, impulse + 1, 2);
 }
 
 // All particles around one fly away from it.
@@ -45,8 +48,7 @@ static mspring_result explode(game *it, place *p, const call *c) {
     float impulse[2][64];
     uint32_t count = 0;
     const float strength = c->pick % 8 == 0 ? 300 : 12;
-    const mspring_result result =
-        mspring_network_get_positions_at(p->network, &c->particle, 1, &at[0], &at[1], 1);
+    const mspring_result result = mspring_network_get_positions_at(p->network, &c->particle, 1, &at[0], &at[1], 1);
     if (result != MSPRING_OK)
         return result;
     if (mspring_network_particles_in_circle(p->network, at[0], at[1], 3, ids, 64, &count) != MSPRING_OK)
@@ -74,9 +76,9 @@ static mspring_result shift(game *it, place *p, const call *c) {
     float rounded[2][MANY];
     const uint32_t count = c->pick & 1 ? 1 : c->count;
     const bool is_list = c->pick & 2;
-    const mspring_result result =
-        is_list ? mspring_network_get_positions_at(p->network, c->particles, count, x, y, 1)
-                : mspring_network_get_positions(p->network, c->particle, count, x, y, 1);
+    const mspring_result result = is_list
+                                      ? mspring_network_get_positions_at(p->network, c->particles, count, x, y, 1)
+                                      : mspring_network_get_positions(p->network, c->particle, count, x, y, 1);
     if (result != MSPRING_OK)
         return result;
     for (uint32_t i = 0; i < count; i++) {
@@ -167,7 +169,9 @@ static mspring_result set_solver(game *it, place *p, const call *c) {
         def.tile_size = c->pick / 64 % 2 ? 8u << c->pick / 128 % 6 : 0;
         def.residual = c->pick / 1024 % 2 ? 0.1f * c->f[0] : 0.01f;
     }
-    def.substeps = c->pick & 4096 ? MSPRING_SUBSTEPS_AUTO : c->pick & 8192 ? MSPRING_SUBSTEPS_EVEN : 1 + c->pick / 16384;
+    def.substeps = c->pick & 4096   ? MSPRING_SUBSTEPS_AUTO
+                   : c->pick & 8192 ? MSPRING_SUBSTEPS_EVEN
+                                    : 1 + c->pick / 16384;
     def.max_substeps = 40;
     def.most_work = c->pick / 256 % 16 ? 4 : c->count;
     return mspring_network_set_solver(p->network, &def);

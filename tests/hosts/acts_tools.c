@@ -73,7 +73,8 @@ static mspring_result go_on_with_job(game *it, place *p, const call *c) {
         JUDGE(it, left == 0 || mspring_job_error(p->job)[0]);
         mspring_job_destroy(p->job);
         p->job = NULL;
-        result = mspring_job_begin(p->network, c->pick % 4 ? MSPRING_LAYOUT_COMPACT : MSPRING_LAYOUT_WHOLE, &p->job);
+        result =
+            mspring_job_begin(p->network, c->pick % 4 ? MSPRING_LAYOUT_COMPACT : MSPRING_LAYOUT_WHOLE, &p->job);
         p->memory->fails = fails;
         return result;
     }

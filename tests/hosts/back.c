@@ -1,5 +1,6 @@
 /// @file back.c
-/// What is taken back: a chapter that is played twice, from a snapshot or from clones, and has the same log both times.
+/// What is taken back: a chapter that is played twice, from a snapshot or from clones, and has the same log both
+/// times.
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdio.h>
@@ -43,7 +44,8 @@ static void tell_difference(const image *a, const image *b) {
         section += 16 + (size_t)(size + 7) / 8 * 8;
     }
     fprintf(stderr, "%zu and %zu bytes differ at %zu: byte %td of section %.4s\n", a->size, b->size, at,
-            (ptrdiff_t)at - (ptrdiff_t)section - 16, section + 4 <= a->size ? (const char *)a->bytes + section : "none");
+            (ptrdiff_t)at - (ptrdiff_t)section - 16,
+            section + 4 <= a->size ? (const char *)a->bytes + section : "none");
 }
 
 bool is_same_as(const mspring_network *network, const image *before) {

@@ -17,7 +17,8 @@ uint32_t draw(draws *from, uint32_t bound) {
 }
 
 double draw_between(draws *from, double low, double high) {
-    return from->bytes ? low + (high - low) * draw(from, 256) / 256 : support_random_between(&from->seed, low, high);
+    return from->bytes ? low + (high - low) * draw(from, 256) / 256
+                       : support_random_between(&from->seed, low, high);
 }
 
 bool draw_chance(draws *from, uint32_t percent) {

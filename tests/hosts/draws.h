@@ -1,6 +1,6 @@
 /// @file draws.h
-/// Where a host takes its decisions from: a seed, or the bytes of a fuzzer. To copy it is to remember the place, so that
-/// the same decisions can be taken again.
+/// Where a host takes its decisions from: a seed, or the bytes of a fuzzer. To copy it is to remember the place, so
+/// that the same decisions can be taken again.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef HOSTS_DRAWS_H

@@ -80,8 +80,8 @@ static mspring_id draw_id(draws *from, uint32_t count, bool is_hostile) {
 }
 
 static double draw_number(draws *from, bool is_hostile) {
-    static const double extremes[] = {0,    -0.0,  1e-45, 1e-38,     1e-30,    1e-6, 1e6,  1e9, 1e12, 1e15,
-                                      1e30, 3e38,  -1,    INFINITY, -INFINITY, NAN, -1e30, 1e300};
+    static const double extremes[] = {0,    -0.0, 1e-45, 1e-38, 1e-30,    1e-6,      1e6, 1e9,   1e12,
+                                      1e15, 1e30, 3e38,  -1,    INFINITY, -INFINITY, NAN, -1e30, 1e300};
     if (is_hostile && draw_chance(from, 8))
         return extremes[draw(from, COUNT_OF(extremes))];
     return draw_between(from, 0, 1);
@@ -123,7 +123,8 @@ static bool has_raised_substeps(const place *p, mspring_result result) {
 }
 
 // A call that failed for want of memory, once more with enough of it.
-static mspring_result with_memory(game *it, place *p, const act *one, const call *c, double dt, const image *before) {
+static mspring_result with_memory(game *it, place *p, const act *one, const call *c, double dt,
+                                  const image *before) {
     p->memory->has_failed = false;
     mspring_result result = one ? one->make(it, p, c) : mspring_network_step(p->network, dt);
     if (result == MSPRING_ERROR_MEMORY && p->memory->has_failed) {
@@ -184,7 +185,8 @@ static double draw_dt(draws *from, bool is_hostile, double last) {
 static void recover(game *it, place *p) {
     const float none = 0;
     if (p->failed_steps % 3 == 0)
-        JUDGE(it, mspring_network_set_velocities(p->network, 0, p->plain->particles, &none, &none, 0) == MSPRING_OK);
+        JUDGE(it,
+              mspring_network_set_velocities(p->network, 0, p->plain->particles, &none, &none, 0) == MSPRING_OK);
     if (p->failed_steps > 6)
         place_leave(it, p);
 }
@@ -247,7 +249,8 @@ static void log_place(game *it, const place *p) {
 }
 
 static void play_place(game *it, place *p) {
-    static const uint32_t flags[CHAPTERS] = {[QUIET] = ACT_READS, [TWICE_FRAME] = ACT_CALM, [TWICE_WHOLE] = ACT_WHOLE};
+    static const uint32_t flags[CHAPTERS] = {
+        [QUIET] = ACT_READS, [TWICE_FRAME] = ACT_CALM, [TWICE_WHOLE] = ACT_WHOLE};
     const bool is_hostile = it->chapter == HOSTILE;
     const uint32_t most = it->chapter == QUIET ? 2 : 4;
     for (uint32_t acts = draw(&it->from, most); acts > 0; acts--)

@@ -1,9 +1,9 @@
 /// @file game.h
-/// A host as games are: some networks at once, frame by frame, with all that a host does between two steps. After each
-/// frame it judges what it can see.
+/// A host as games are: some networks at once, frame by frame, with all that a host does between two steps. After
+/// each frame it judges what it can see.
 ///
-/// A game follows from its draws alone. Its log, a hash of all answers and states, must not depend on the instruction
-/// set, on workers, on memory that fails, nor on what is taken back and done again.
+/// A game follows from its draws alone. Its log, a hash of all answers and states, must not depend on the
+/// instruction set, on workers, on memory that fails, nor on what is taken back and done again.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef HOSTS_GAME_H

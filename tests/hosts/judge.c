@@ -24,8 +24,8 @@ static void judge_contents(game *it, const place *p) {
         JUDGE(it, mspring_network_has_spring(p->network, i) == list->has_spring[i]);
     JUDGE(it, !mspring_network_has_particle(p->network, list->particles));
     JUDGE(it, !mspring_network_has_spring(p->network, MSPRING_NONE));
-    JUDGE(it, mspring_network_get_ends(p->network, 0, list->springs, MSPRING_ENDS_IDS, &ends[0][0], &ends[0][1], 2) ==
-                  MSPRING_OK);
+    JUDGE(it, mspring_network_get_ends(p->network, 0, list->springs, MSPRING_ENDS_IDS, &ends[0][0], &ends[0][1],
+                                       2) == MSPRING_OK);
     JUDGE(it, memcmp(ends, list->ends, list->springs * sizeof *ends) == 0);
     JUDGE(it, mspring_network_get(p->network, MSPRING_MASS, 0, list->particles, values, 1) == MSPRING_OK);
     for (mspring_id i = 0; i < list->particles; i++)
@@ -93,8 +93,8 @@ static bool is_closed(const place *p) {
     if (!p->is_closed || mspring_network_group_count(p->network) > 0 ||
         mspring_network_get_settings(p->network, &settings) || mspring_network_get_floor(p->network, &ground))
         return false;
-    if (settings.gravity_x != 0 || settings.gravity_y != 0 || settings.global_damping > 0 || settings.sleep_speed > 0 ||
-        ground.plane_count + ground.height_count > 0)
+    if (settings.gravity_x != 0 || settings.gravity_y != 0 || settings.global_damping > 0 ||
+        settings.sleep_speed > 0 || ground.plane_count + ground.height_count > 0)
         return false;
     for (int i = 0; i < MOST_HOOKS; i++)
         if (p->has_hook[i])
@@ -146,8 +146,10 @@ void judge_step(game *it, place *p, const momenta *before) {
     mspring_solver_def solver = {.struct_size = sizeof solver};
     JUDGE(it, mspring_network_get_step_info(p->network, &info) == MSPRING_OK);
     JUDGE(it, mspring_network_get_solver(p->network, &solver) == MSPRING_OK);
-    JUDGE(it, info.result == MSPRING_OK && info.step_count > 0 && info.flags == mspring_network_step_flags(p->network));
-    // The bound on repeated work: 32 times most_work, one solution and the fallback on top; two steps for each group.
+    JUDGE(it,
+          info.result == MSPRING_OK && info.step_count > 0 && info.flags == mspring_network_step_flags(p->network));
+    // The bound on repeated work: 32 times most_work, one solution and the fallback on top; two steps for each
+    // group.
     const double most = 36 * (1.0 + solver.most_work) * (1 + 2.0 * mspring_network_group_count(p->network)) *
                         (info.flags & MSPRING_STEP_FALLBACK ? 8 : 1);
     JUDGE(it, info.work >= 0 && (solver.most_work == 0 || info.work <= most));
@@ -155,11 +157,12 @@ void judge_step(game *it, place *p, const momenta *before) {
         return;
     momenta after = {.x = 0};
     sum_momenta(p, &after);
-    // A solution that is not exact, and sums of single precision: 1e-3 of all that is exchanged. Velocities of linear
-    // systems come from positions.
+    // A solution that is not exact, and sums of single precision: 1e-3 of all that is exchanged. Velocities of
+    // linear systems come from positions.
     const double tolerance = 1e-3 * (before->scale + after.scale + impulse_scale(p)) +
                              (solver.solver == MSPRING_SOLVER_EXPLICIT ? 1e-7 : 1e-5) * after.mass;
     if (it->setup.is_verbose && (fabs(after.x - before->x) > tolerance || fabs(after.y - before->y) > tolerance))
-        printf("solver %d momentum %g %g, then %g %g of %g\n", (int)solver.solver, before->x, before->y, after.x, after.y, after.scale);
+        printf("solver %d momentum %g %g, then %g %g of %g\n", (int)solver.solver, before->x, before->y, after.x,
+               after.y, after.scale);
     JUDGE(it, fabs(after.x - before->x) <= tolerance && fabs(after.y - before->y) <= tolerance);
 }

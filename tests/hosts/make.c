@@ -1,6 +1,6 @@
 /// @file make.c
-/// Networks as games have them: bars with holes, discs, meshes, ropes, herds, graphs, sand, and what several of these
-/// make.
+/// Networks as games have them: bars with holes, discs, meshes, ropes, herds, graphs, sand, and what several of
+/// these make.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -57,8 +57,8 @@ static void add_lattice(yard *y, uint32_t width, uint32_t height) {
     }
     if (draw_chance(y->from, 20)) // relative springs, both of them
         for (int i = 0; i < 2; i++)
-            JUDGE(y->it, mspring_material_preset(&materials[i], sizeof materials[i], (mspring_preset)draw(y->from, 4), 1,
-                                                 1.0 / 240) == MSPRING_OK);
+            JUDGE(y->it, mspring_material_preset(&materials[i], sizeof materials[i],
+                                                 (mspring_preset)draw(y->from, 4), 1, 1.0 / 240) == MSPRING_OK);
     if (draw_chance(y->from, 20))
         materials[1].break_strain = 0.3f, materials[0].yield_strain = 0.05f;
     JUDGE(y->it, mspring_lattice_def_init(&def, sizeof def) == MSPRING_OK);
@@ -233,11 +233,14 @@ static void MSPRING_CALL run_tasks(uint32_t count, mspring_task_fn fn, void *arg
 }
 
 static mspring_network_def draw_def(game *it, draws *from) {
-    static const uint32_t substeps[] = {MSPRING_SUBSTEPS_AUTO, MSPRING_SUBSTEPS_AUTO, MSPRING_SUBSTEPS_EVEN, 1, 2, 4, 7};
+    static const uint32_t substeps[] = {
+        MSPRING_SUBSTEPS_AUTO, MSPRING_SUBSTEPS_AUTO, MSPRING_SUBSTEPS_EVEN, 1, 2, 4, 7};
     mspring_network_def def;
     JUDGE(it, mspring_network_def_init(&def, sizeof def) == MSPRING_OK);
     const uint32_t solver = draw(from, 8);
-    def.solver = solver < 5 ? MSPRING_SOLVER_EXPLICIT : solver < 7 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_DIRECT;
+    def.solver = solver < 5   ? MSPRING_SOLVER_EXPLICIT
+                 : solver < 7 ? MSPRING_SOLVER_IMPLICIT
+                              : MSPRING_SOLVER_DIRECT;
     def.substeps = substeps[draw(from, 7)];
     def.max_substeps = 32;
     def.guard = draw(from, 2) ? MSPRING_GUARD_CLAMP : (mspring_guard)draw(from, 6);

@@ -21,7 +21,8 @@ void place_learn(game *it, place *p) {
     JUDGE(it, list->particles + 64 <= MOST_PARTICLES && list->springs + 64 <= MOST_SPRINGS);
     read_flags(it, p);
     JUDGE(it, mspring_network_get(p->network, MSPRING_MASS, 0, list->particles, list->mass, 1) == MSPRING_OK);
-    JUDGE(it, mspring_network_get(p->network, MSPRING_STIFFNESS, 0, list->springs, list->stiffness, 1) == MSPRING_OK);
+    JUDGE(it,
+          mspring_network_get(p->network, MSPRING_STIFFNESS, 0, list->springs, list->stiffness, 1) == MSPRING_OK);
     JUDGE(it, mspring_network_get_ends(p->network, 0, list->springs, MSPRING_ENDS_IDS, &list->ends[0][0],
                                        &list->ends[0][1], 2) == MSPRING_OK);
     for (mspring_id i = 0; i < list->particles; i++)

@@ -37,7 +37,8 @@ static void judge_near(game *it, const place *p, const double at[2], double radi
         sure += d <= radius - margin;
         at_most += d <= radius + margin;
     }
-    JUDGE(it, mspring_network_nearest_particle(p->network, at[0], at[1], radius, &nearest, &distance) == MSPRING_OK);
+    JUDGE(it,
+          mspring_network_nearest_particle(p->network, at[0], at[1], radius, &nearest, &distance) == MSPRING_OK);
     if (nearest == MSPRING_NONE) {
         JUDGE(it, least > radius - margin);
     } else {
@@ -134,8 +135,10 @@ static void judge_strains(game *it, const place *p) {
         // Of first words, which are rounded to 2^-23 of a coordinate and more.
         const mspring_id *ends = p->plain->ends[i];
         const double length = (double)lengths[0][i];
-        if (it->setup.is_verbose && p->plain->has_spring[i] && !(fabs((double)lengths[1][i] - length) <= 1e-5 * length))
-            printf("%u: %g %g, ends at %g %g and %g %g\n", i, length, (double)lengths[1][i], x[ends[0]], y[ends[0]], x[ends[1]], y[ends[1]]);
+        if (it->setup.is_verbose && p->plain->has_spring[i] &&
+            !(fabs((double)lengths[1][i] - length) <= 1e-5 * length))
+            printf("%u: %g %g, ends at %g %g and %g %g\n", i, length, (double)lengths[1][i], x[ends[0]], y[ends[0]],
+                   x[ends[1]], y[ends[1]]);
         JUDGE(it, !p->plain->has_spring[i] ||
                       fabs((double)lengths[1][i] - length) <=
                           1e-5 * length + 4e-7 * (far_from_origin(p, ends[0]) + far_from_origin(p, ends[1])));

@@ -1,11 +1,13 @@
 /// @file simulate.c
-/// Hosts that live for hours. Each seed is a game; two of them live it in lockstep: one with scalar kernels, one worker
-/// and memory that fails now and then, one with the best kernels and several workers. Both have the same log.
+/// Hosts that live for hours. Each seed is a game; two of them live it in lockstep: one with scalar kernels, one
+/// worker and memory that fails now and then, one with the best kernels and several workers. Both have the same
+/// log.
 ///
 ///   hosts [--seeds FIRST COUNT] [--frames N]    games of N frames each
 ///   hosts --minutes M [--seeds FIRST 1]         as many games as there is time for
 ///   hosts --verbose SEED FRAME                  one game up to a frame, each call on a line
-///   hosts --only LEVEL WORKERS FAILS ...        both games with this level, these workers, and memory that fails so
+///   hosts --only LEVEL WORKERS FAILS ...        both games with this level, these workers, and memory that fails
+///   so
 ///                                               often, in percent; -1: as ever. It tells what makes them differ.
 ///
 /// What is wrong ends the program, with the seed and the frame.
@@ -25,12 +27,12 @@ static int only_level = -1, only_workers = -1, only_fails = -1;
 
 static game_setup setup_of(uint64_t seed, bool is_first) {
     game_setup made = is_first ? (game_setup){.level = MSPRING_SIMD_SCALAR,
-                                   .workers = 1,
-                                   .fails = seed % 3 ? 4 : 0,
-                                   .looks_back = seed % 2}
+                                              .workers = 1,
+                                              .fails = seed % 3 ? 4 : 0,
+                                              .looks_back = seed % 2}
                                : (game_setup){.level = seed % 5 ? MSPRING_SIMD_AUTO : MSPRING_SIMD_SSE2,
-                                   .workers = 1 + (uint32_t)(seed % 3),
-                                   .has_tasks = seed % 4 == 0};
+                                              .workers = 1 + (uint32_t)(seed % 3),
+                                              .has_tasks = seed % 4 == 0};
     if (only_level >= 0)
         made.level = (mspring_simd)only_level;
     if (only_workers >= 0)
@@ -97,10 +99,11 @@ int main(int count, char **arguments) {
     uint64_t seed = first;
     for (; minutes > 0 ? difftime(time(NULL), begin) < 60 * minutes : seed < first + seeds; seed++)
         play(seed, frames);
-    printf("%llu games, %llu networks, %.2f hours of simulated time, %llu calls, %llu refused, %llu without memory, "
-           "%llu chapters played again, %llu events\n",
-           (unsigned long long)(seed - first), (unsigned long long)sum.networks, sum.time / 3600,
-           (unsigned long long)sum.calls, (unsigned long long)sum.refused, (unsigned long long)sum.failed_allocations,
-           (unsigned long long)sum.rollbacks, (unsigned long long)sum.events);
+    printf(
+        "%llu games, %llu networks, %.2f hours of simulated time, %llu calls, %llu refused, %llu without memory, "
+        "%llu chapters played again, %llu events\n",
+        (unsigned long long)(seed - first), (unsigned long long)sum.networks, sum.time / 3600,
+        (unsigned long long)sum.calls, (unsigned long long)sum.refused, (unsigned long long)sum.failed_allocations,
+        (unsigned long long)sum.rollbacks, (unsigned long long)sum.events);
     return 0;
 }
