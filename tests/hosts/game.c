@@ -184,10 +184,10 @@ static double draw_dt(draws *from, bool is_hostile, double last) {
 // What a host does when steps fail again and again: stop all motion, and then begin anew.
 static void recover(game *it, place *p) {
     const float none = 0;
-    if (p->failed_steps % 3 == 0)
+    if (p->failed_steps % 2 == 0)
         JUDGE(it,
               mspring_network_set_velocities(p->network, 0, p->plain->particles, &none, &none, 0) == MSPRING_OK);
-    if (p->failed_steps > 6)
+    if (p->failed_steps > 3)
         place_leave(it, p);
 }
 
