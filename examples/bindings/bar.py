@@ -13,7 +13,8 @@ from ctypes import POINTER, byref, c_char_p, c_double, c_float, c_int32, c_size_
 class Material(ctypes.Structure):
     _fields_ = [("struct_size", c_uint32), ("particle_flags", c_uint32), ("spring_flags", c_uint32),
                 ("mass", c_float), ("stiffness", c_float), ("damping", c_float),
-                ("break_strain", c_float), ("stress_strain", c_float), ("relax_strain", c_float)]
+                ("break_strain", c_float), ("stress_strain", c_float), ("relax_strain", c_float),
+                ("yield_strain", c_float), ("hardening", c_float), ("plastic_limit", c_float)]
 
 
 class LatticeDef(ctypes.Structure):

@@ -18,6 +18,9 @@ struct Material {
     break_strain: f32,
     stress_strain: f32,
     relax_strain: f32,
+    yield_strain: f32,
+    hardening: f32,
+    plastic_limit: f32,
 }
 
 #[repr(C)]

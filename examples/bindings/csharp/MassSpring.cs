@@ -1,0 +1,233 @@
+// libmassspring for C#: Unity, Godot, .NET and mono. Copy this file and MassSpringNative.cs into a project that allows
+// unsafe code, and put the shared library where it looks for native ones (Unity: Assets/Plugins).
+//
+//     using (var builder = new Builder()) {
+//         int[] ids = builder.AddLattice(24, 4, cells, steel, wall);
+//         using (var network = new Network(builder)) {
+//             network.Step(1.0 / 60);
+//             network.Positions(x, y);
+//         }
+//     }
+//
+// It wraps what most games call. The rest is in Native, under the names of the headers: network.Handle is the pointer
+// that these functions take, and MassSpringException.Check says what was wrong with a call.
+//
+// SPDX-License-Identifier: MIT
+using System;
+using System.Runtime.InteropServices;
+
+namespace MassSpring {
+    public sealed class MassSpringException : Exception {
+        public readonly mspring_result Result;
+
+        MassSpringException(mspring_result result, string message) : base(message) { Result = result; }
+
+        /// <summary>Throws if a call has failed; message: what the object says of it.</summary>
+        public static unsafe void Check(mspring_result result, byte* message = null) {
+            if (result == mspring_result.MSPRING_OK) return;
+            string said = message == null ? "" : ": " + Text(message);
+            throw new MassSpringException(result, Text(Native.mspring_result_string(result)) + said);
+        }
+
+        public static unsafe string Text(byte* text) { return Marshal.PtrToStringAnsi((IntPtr)text); }
+    }
+
+    /// <summary>Definitions with the library's defaults.</summary>
+    public static unsafe class Defaults {
+        public static mspring_material Material(float mass, float stiffness, float damping = 0) {
+            mspring_material made;
+            MassSpringException.Check(Native.mspring_material_init(&made, (UIntPtr)sizeof(mspring_material)));
+            made.mass = mass;
+            made.stiffness = stiffness;
+            made.damping = damping;
+            return made;
+        }
+
+        public static mspring_network_def Network() {
+            mspring_network_def made;
+            MassSpringException.Check(Native.mspring_network_def_init(&made, (UIntPtr)sizeof(mspring_network_def)));
+            return made;
+        }
+    }
+
+    /// <summary>Collects particles and springs.</summary>
+    public sealed unsafe class Builder : IDisposable {
+        public IntPtr Handle { get; private set; }
+
+        public Builder() {
+            IntPtr made;
+            MassSpringException.Check(Native.mspring_builder_create(null, &made));
+            Handle = made;
+        }
+
+        void Check(mspring_result result) { MassSpringException.Check(result, Native.mspring_builder_error(Handle)); }
+
+        public int AddParticle(double x, double y, float mass = 1, bool pinned = false) {
+            mspring_particle_def def;
+            uint id;
+            Check(Native.mspring_particle_def_init(&def, (UIntPtr)sizeof(mspring_particle_def)));
+            def.x = x;
+            def.y = y;
+            def.mass = mass;
+            def.flags = pinned ? Native.MSPRING_PARTICLE_PINNED : 0;
+            Check(Native.mspring_builder_add_particle(Handle, &def, &id));
+            return (int)id;
+        }
+
+        public int AddSpring(int a, int b, float stiffness, float damping = 0) {
+            mspring_spring_def def;
+            uint id;
+            Check(Native.mspring_spring_def_init(&def, (UIntPtr)sizeof(mspring_spring_def)));
+            def.a = (uint)a;
+            def.b = (uint)b;
+            def.stiffness = stiffness;
+            def.damping = damping;
+            Check(Native.mspring_builder_add_spring(Handle, &def, &id));
+            return (int)id;
+        }
+
+        /// <summary>cells: top row first, indices of materials or MSPRING_CELL_EMPTY. Returns the particle of each cell,
+        /// -1 for none.</summary>
+        public int[] AddLattice(int width, int height, ushort[] cells, params mspring_material[] materials) {
+            if (cells.Length != width * height) throw new ArgumentException("cells must have width * height values");
+            mspring_lattice_def def;
+            Check(Native.mspring_lattice_def_init(&def, (UIntPtr)sizeof(mspring_lattice_def)));
+            var ids = new int[cells.Length];
+            fixed (ushort* cell = cells)
+            fixed (mspring_material* material = materials)
+            fixed (int* id = ids) {
+                def.width = (uint)width;
+                def.height = (uint)height;
+                def.cells = (IntPtr)cell;
+                def.materials = (IntPtr)material;
+                def.material_count = (uint)materials.Length;
+                Check(Native.mspring_builder_add_lattice(Handle, &def, (uint*)id));
+            }
+            return ids;
+        }
+
+        public void Dispose() {
+            Native.mspring_builder_destroy(Handle);
+            Handle = IntPtr.Zero;
+            GC.SuppressFinalize(this);
+        }
+
+        ~Builder() { Dispose(); }
+    }
+
+    /// <summary>Particles and springs that move. It is no thread's own, but one thread at a time calls it.</summary>
+    public sealed unsafe class Network : IDisposable {
+        public IntPtr Handle { get; private set; }
+        public int ParticleCount { get { return (int)Native.mspring_network_particle_count(Handle); } }
+        public int SpringCount { get { return (int)Native.mspring_network_spring_count(Handle); } }
+
+        public Network(Builder builder) : this(builder, Defaults.Network()) { }
+
+        public Network(Builder builder, mspring_network_def def) {
+            IntPtr made;
+            MassSpringException.Check(Native.mspring_network_create(builder.Handle, &def, &made),
+                Native.mspring_builder_error(builder.Handle));
+            Handle = made;
+        }
+
+        void Check(mspring_result result) { MassSpringException.Check(result, Native.mspring_network_error(Handle)); }
+
+        void CheckRoom(Array array, int values) {
+            if (array.Length < values) throw new ArgumentException("the array needs room for " + values + " values");
+        }
+
+        public void Step(double dt) { Check(Native.mspring_network_step(Handle, dt)); }
+
+        public mspring_settings Settings {
+            get {
+                mspring_settings made;
+                made.struct_size = (uint)sizeof(mspring_settings);
+                Check(Native.mspring_network_get_settings(Handle, &made));
+                return made;
+            }
+            set { Check(Native.mspring_network_set_settings(Handle, &value)); }
+        }
+
+        /// <summary>Fills both with world positions, by id.</summary>
+        public void Positions(double[] x, double[] y) {
+            CheckRoom(x, ParticleCount);
+            CheckRoom(y, ParticleCount);
+            fixed (double* toX = x, toY = y)
+                Check(Native.mspring_network_get_positions(Handle, 0, (uint)ParticleCount, toX, toY, 1));
+        }
+
+        /// <summary>x, y of one particle after the other, as vertices of a mesh have them. stride: floats from one to
+        /// the next, 3 for a Vector3[] that is pinned.</summary>
+        public void Positions(float* vertices, int stride) {
+            Check(Native.mspring_network_get_positions_float(
+                Handle, 0, (uint)ParticleCount, vertices, vertices + 1, (uint)stride));
+        }
+
+        public void Strains(float[] values) {
+            CheckRoom(values, SpringCount);
+            fixed (float* to = values)
+                Check(Native.mspring_network_get(
+                    Handle, mspring_property.MSPRING_STRAIN, 0, (uint)SpringCount, to, 1));
+        }
+
+        public void ApplyForce(int particle, float x, float y) {
+            Check(Native.mspring_network_apply_force(Handle, (uint)particle, x, y));
+        }
+
+        public void BreakSprings(params int[] springs) {
+            fixed (int* ids = springs)
+                Check(Native.mspring_network_break_springs(Handle, (uint*)ids, (uint)springs.Length));
+        }
+
+        /// <summary>Holds a particle softly, as a mouse does. Returns the grip.</summary>
+        public int AddGrip(int particle, double x, double y, float stiffness, float damping) {
+            mspring_grip_def def;
+            uint id;
+            Check(Native.mspring_grip_def_init(&def, (UIntPtr)sizeof(mspring_grip_def)));
+            def.particle = (uint)particle;
+            def.x = x;
+            def.y = y;
+            def.stiffness = stiffness;
+            def.damping = damping;
+            Check(Native.mspring_network_add_grip(Handle, &def, &id));
+            return (int)id;
+        }
+
+        public void MoveGrip(int grip, double x, double y) {
+            Check(Native.mspring_network_move_grip(Handle, (uint)grip, x, y));
+        }
+
+        public void RemoveGrip(int grip) { Check(Native.mspring_network_remove_grip(Handle, (uint)grip)); }
+
+        /// <summary>All that the following steps depend on, for rollback and network play.</summary>
+        public byte[] Save() {
+            UIntPtr size;
+            var contents = mspring_snapshot_contents.MSPRING_SNAPSHOT_FRAME;
+            Check(Native.mspring_network_snapshot_size(Handle, contents, &size));
+            var made = new byte[(int)size];
+            fixed (byte* to = made)
+                Check(Native.mspring_network_save(Handle, contents, to, size, null));
+            return made;
+        }
+
+        public void Load(byte[] snapshot) {
+            fixed (byte* from = snapshot)
+                Check(Native.mspring_network_load(Handle, from, (UIntPtr)snapshot.Length));
+        }
+
+        /// <summary>Equal states have equal hashes on every machine.</summary>
+        public ulong StateHash() {
+            ulong hash;
+            Check(Native.mspring_network_state_hash(Handle, &hash));
+            return hash;
+        }
+
+        public void Dispose() {
+            Native.mspring_network_destroy(Handle);
+            Handle = IntPtr.Zero;
+            GC.SuppressFinalize(this);
+        }
+
+        ~Network() { Dispose(); }
+    }
+}

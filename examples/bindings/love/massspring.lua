@@ -1,0 +1,236 @@
+-- libmassspring for LÖVE and LuaJIT: copy this file and massspring_cdef.lua into a game, beside the shared library.
+--
+--   local ms = require("massspring")
+--   local builder = ms.builder()
+--   builder:lattice { width = 12, height = 4, cells = cells, materials = { { mass = 2, stiffness = 1e5 } } }
+--   local network = builder:network { gravity_y = -9.8, substeps = 8 }
+--   network:step(1 / 60)
+--   local x, y = network:positions()               -- C arrays, x[0] to x[network:particle_count() - 1]
+--
+-- Every function of the headers is a method: mspring_network_set_floor(network, def) is network:set_floor(def), and one
+-- that fails raises its message. ms.def("floor_def", { ... }) makes a definition with its defaults; lists become arrays.
+-- ms.C has the functions as they are, and ms.NONE, ms.PARTICLE_PINNED ... the constants without MSPRING_.
+--
+-- The library is looked for in the variable MASSSPRING_LIBRARY, beside the game, and where the system has libraries.
+--
+-- SPDX-License-Identifier: MIT
+local ffi = require("ffi")
+local constants = require(((...) or ""):gsub("massspring$", "massspring_cdef"))
+
+local function load_library()
+  local extension = ({ Windows = "massspring.dll", OSX = "libmassspring.dylib" })[ffi.os] or "libmassspring.so"
+  local tries = { os.getenv("MASSSPRING_LIBRARY") or extension, "massspring", extension .. ".0" }
+  if love and love.filesystem then
+    table.insert(tries, 2, love.filesystem.getSource() .. "/" .. extension)
+    table.insert(tries, 3, love.filesystem.getSourceBaseDirectory() .. "/" .. extension)
+  end
+  local said = {}
+  for _, name in ipairs(tries) do
+    local found, library = pcall(ffi.load, name)
+    if found then return library end
+    said[#said + 1] = library
+  end
+  error("cannot load libmassspring:\n  " .. table.concat(said, "\n  "))
+end
+
+local C = load_library()
+local ms = setmetatable({ C = C }, {
+  __index = function(_, name) return constants[name] or C["MSPRING_" .. name] end,
+})
+local result_type = ffi.typeof("mspring_result")
+
+local function check(result, message)
+  if result == C.MSPRING_OK then return end
+  error(("%s: %s"):format(ffi.string(C.mspring_result_string(result)), message and ffi.string(message) or ""), 3)
+end
+
+------------------------------------------------------------------------------------------------------ definitions
+
+local elements = { -- of fields that point to arrays
+  cells = "uint16_t", heights = "float", planes = "double", points = "double", triangles = "mspring_id",
+  plane_frictions = "float", plane_restitutions = "float", height_frictions = "float", height_restitutions = "float",
+}
+local anchors = setmetatable({}, { __mode = "k" }) -- a definition keeps what it points to
+
+--- A list as a C array.
+function ms.array(element, list) return ffi.new(element .. "[?]", #list, list) end
+
+local function fill(made, kind, values)
+  local initialise = "mspring_" .. kind .. "_init"
+  local has, init = pcall(function() return C[initialise] end)
+  if has then check(init(made, ffi.sizeof("mspring_" .. kind)))
+  else made.struct_size = ffi.sizeof("mspring_" .. kind) end
+  local kept = {}
+  for name, value in pairs(values or {}) do
+    if name == "materials" and type(value) == "table" then
+      local list = ffi.new("mspring_material[?]", #value)
+      for i, material in ipairs(value) do fill(list[i - 1], "material", material) end
+      made.material_count, value = #value, list
+    elseif type(value) == "table" then
+      if name == "heights" then made.height_count = #value end
+      if name == "planes" then made.plane_count = #value / 4 end
+      if name == "points" then made.point_count = #value / 2 end
+      value = ms.array(assert(elements[name], name .. " is no list"), value)
+    end
+    kept[name] = value
+    made[name] = value
+  end
+  return kept
+end
+
+--- A struct of the headers with its defaults and these values: ms.def("grip_def", { particle = 3 }).
+function ms.def(kind, values)
+  if ffi.istype("mspring_" .. kind, values) then return values end
+  local made = ffi.new("mspring_" .. kind)
+  anchors[made] = fill(made, kind, values)
+  return made
+end
+
+---------------------------------------------------------------------------------------------------------- objects
+
+-- A class whose methods are the functions that begin with that prefix, unless it has better ones.
+local function class(prefix)
+  local methods = {}
+  methods.__index = setmetatable({}, {
+    __index = function(known, name)
+      local call, complain = C[prefix .. name], C[prefix .. "error"]
+      local function method(self, ...)
+        local result = call(self.handle, ...)
+        if not ffi.istype(result_type, result) then return result end
+        check(result, complain(self.handle))
+      end
+      known[name] = method
+      return method
+    end,
+  })
+  return methods, methods.__index
+end
+
+local Network, network = class("mspring_network_")
+local Builder, builder = class("mspring_builder_")
+
+local function make(metatable, handle, destroy)
+  return setmetatable({ handle = ffi.gc(handle, destroy) }, metatable)
+end
+
+--- A description to which you add particles, springs and lattices.
+function ms.builder()
+  local out = ffi.new("mspring_builder *[1]")
+  check(C.mspring_builder_create(nil, out))
+  return make(Builder, out[0], C.mspring_builder_destroy)
+end
+
+local function number(out) return tonumber(out[0]) end
+local id = ffi.typeof("mspring_id[1]")
+
+function builder:particle(values)
+  local out = id()
+  self:add_particle(ms.def("particle_def", values), out)
+  return number(out)
+end
+
+function builder:spring(values)
+  local out = id()
+  self:add_spring(ms.def("spring_def", values), out)
+  return number(out)
+end
+
+--- Returns the particle of each cell as a C array, top row first; ms.NONE where there is none.
+function builder:lattice(values)
+  local def = ms.def("lattice_def", values)
+  local ids = ffi.new("mspring_id[?]", def.width * def.height)
+  self:add_lattice(def, ids)
+  return ids
+end
+
+--- Returns its first particle, which is the centre, and its first spring. The rim comes last.
+function builder:disc(values)
+  local particle, spring = id(), id()
+  self:add_disc(ms.def("disc_def", values), particle, spring)
+  return number(particle), number(spring)
+end
+
+--- Makes a network. The builder can go on.
+function builder:network(values)
+  local out = ffi.new("mspring_network *[1]")
+  check(C.mspring_network_create(self.handle, ms.def("network_def", values), out), C.mspring_builder_error(self.handle))
+  return make(Network, out[0], C.mspring_network_destroy)
+end
+
+--- World positions of all particles, in two C arrays. Pass them again to have them filled anew.
+function network:positions(x, y)
+  local count = self:particle_count()
+  x, y = x or ffi.new("double[?]", count), y or ffi.new("double[?]", count)
+  self:get_positions(0, count, x, y, 1)
+  return x, y
+end
+
+--- A property of all springs, as C.MSPRING_STRAIN, in a C array.
+function network:springs(property, values)
+  values = values or ffi.new("float[?]", self:spring_count())
+  self:get(property, 0, self:spring_count(), values, 1)
+  return values
+end
+
+--- Both ends of all springs, as ids, in two C arrays.
+function network:ends()
+  local count = self:spring_count()
+  local a, b = ffi.new("mspring_id[?]", count), ffi.new("mspring_id[?]", count)
+  self:get_ends(0, count, C.MSPRING_ENDS_IDS, a, b, 1)
+  return a, b
+end
+
+function network:grip(values)
+  local out = id()
+  self:add_grip(ms.def("grip_def", values), out)
+  return number(out)
+end
+
+function network:collider(values)
+  local out = id()
+  self:add_collider(ms.def("collider_def", values), out)
+  return number(out)
+end
+
+--- The particle that is nearest, and its distance; nil if none is within that reach.
+function network:nearest(x, y, within)
+  local out, distance = id(), ffi.new("double[1]")
+  self:nearest_particle(x, y, within, out, distance)
+  if out[0] ~= constants.NONE then return number(out), distance[0] end
+end
+
+--- The ids of springs that the line crosses, in a C array, and how many there are.
+function network:crossed(from_x, from_y, to_x, to_y)
+  local count, all = ffi.new("uint32_t[1]"), self:spring_count()
+  local found = ffi.new("mspring_id[?]", all)
+  self:springs_across(from_x, from_y, to_x, to_y, found, nil, all, count)
+  return found, number(count)
+end
+
+function network:info()
+  local info = ms.def("step_info")
+  self:get_step_info(info)
+  return info
+end
+
+--- All that the following steps depend on, as a string, for rollback and network play.
+function network:save()
+  local size = ffi.new("size_t[1]")
+  self:snapshot_size(C.MSPRING_SNAPSHOT_FRAME, size)
+  local bytes = ffi.new("uint8_t[?]", size[0])
+  check(C.mspring_network_save(self.handle, C.MSPRING_SNAPSHOT_FRAME, bytes, size[0], nil), C.mspring_network_error(self.handle))
+  return ffi.string(bytes, size[0])
+end
+
+function network:load(snapshot)
+  check(C.mspring_network_load(self.handle, snapshot, #snapshot), C.mspring_network_error(self.handle))
+end
+
+--- Sixteen digits, which equal states have on every machine.
+function network:hash()
+  local out = ffi.new("uint64_t[1]")
+  self:state_hash(out)
+  return bit.tohex(tonumber(out[0] / 2 ^ 32)) .. bit.tohex(tonumber(out[0] % 2 ^ 32))
+end
+
+return ms
