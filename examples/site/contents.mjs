@@ -1,15 +1,16 @@
 // What the site's menu has, in its order.
 export const CONTENTS = [
   { title: 'Begin', links: [
-    ['What it is', 'index.html'],
+    ['Playground', 'index.html'],
     ['Ten live figures', 'examples/guides/figures.html'],
+    ['Two peers, one state', 'rollback.html'],
     ['Choose a solver', 'examples/guides/choose.html'],
-    ['The whole README', 'README.html'],
-    ['Build and install', 'examples/guides/building.html'],
-    ['Vendoring', 'examples/guides/vendoring.html'],
+    ['Beside other engines', 'examples/site/comparison.html'],
+    ['Install', 'README.html#install'],
+    ['Download', 'download.html'],
     ['Examples', 'examples/README.html'],
   ] },
-  { title: 'Guide', links: [
+  { title: 'Guides', links: [
     ['Solvers', 'examples/guides/solvers.html'],
     ['Guards', 'examples/guides/solvers.html#guards'],
     ['Materials', 'examples/guides/materials.html'],
@@ -21,10 +22,13 @@ export const CONTENTS = [
     ['Batches', 'examples/guides/batches.html'],
     ['Determinism', 'examples/guides/determinism.html'],
     ['Limits', 'examples/guides/limits.html'],
+    ['Build', 'examples/guides/building.html'],
+    ['Vendoring', 'examples/guides/vendoring.html'],
   ] },
-  { title: 'Move here', links: [
-    ['From Box2D, Chipmunk, Verlet', 'examples/guides/migration.html'],
-    ['From your own code', 'examples/FROM_YOUR_OWN_CODE.html'],
+  { title: 'Coming from', links: [
+    ['Box2D, Chipmunk, Verlet', 'examples/guides/migration.html'],
+    ['Your own code', 'examples/FROM_YOUR_OWN_CODE.html'],
+    ['LÖVE, Unity, Godot', 'examples/bindings/README.html'],
     ['JavaScript', 'pkgconfig/npm/README.html'],
     ['Python', 'pkgconfig/python/README.html'],
   ] },

@@ -2,12 +2,16 @@
 //
 //   #check             compare hashes, and write them into the page, instead of running
 //   #scene=ship&frames=300&solver=1&substeps=2&cut=...    for pictures and measurements: run so many frames, then stop
+//   #scene=ship&breaking=1&cut=x,y,x,y    cut it after a second, once; blast=x,y,radius,speed likewise
+//   #embed=1    in a frame of another page: panels are folded, and it rests while it is out of sight
 'use strict';
 
 const DT = 1 / 64;
 const MOST_STEPS = 2; // in a frame: what is slower than time goes on in slow motion
 const HOLD_RADIUS = 14; // pixels
 const CLICK_REACH = 4; // pixels that a click may move
+const ACT_AFTER = 60; // steps, after which a cut or a blast of the address happens
+const WATCHED = 2000, SLOWEST = 0.012; // ms after the start; frames in a ms
 const REST_TIME = 150; // ms that the pointer rests before it asks for a spring
 const SETTINGS = ['scene', 'solver', 'substeps', 'stiffness', 'gravity', 'damping', 'limit'];
 const SWITCHES = ['breaking', 'floor', 'collide', 'yielding'];
@@ -16,7 +20,8 @@ const settings = new URLSearchParams(location.hash.slice(1));
 
 let core, drawing, marks, materials, current, ownImage;
 const view = { x: 0, y: 0, scale: 1, strainLimit: 0.01 };
-const state = { running: true, tool: 'drag', broken: '', debt: 0, last: 0, frames: 0, seconds: 0, floorAt: 0 };
+const state = { running: true, seen: true, tool: 'drag', broken: '', debt: 0, last: 0, frames: 0, seconds: 0, floorAt: 0,
+  steps: 0, drawn: 0 };
 const cost = { sum: 0, count: 0, drawing: 0, shown: 0 }; // ms
 
 /* ----------------------------------------------------------------------------------------------- resources */
@@ -71,11 +76,11 @@ function start() {
   marks.forget();
   applyAll();
   fit();
-  state.debt = 0;
+  state.debt = state.steps = 0;
   tell('');
   byId('particles').textContent = core.particles().toLocaleString('en');
   byId('springs').textContent = core.spring_count().toLocaleString('en');
-  byId('level').textContent = textAt(core, core.level());
+  byId('level').textContent = textAt(core, core.level()) === 'wasm' ? 'WebAssembly' : 'none';
 }
 
 function floats(pointer, count) {
@@ -378,6 +383,7 @@ function move(from, to) {
 /* -------------------------------------------------------------------------------------------------- frames */
 
 function step() {
+  if (++state.steps === ACT_AFTER && !settings.has('frames')) act();
   const began = performance.now();
   const good = check(core.step(DT));
   const spent = performance.now() - began;
@@ -429,12 +435,14 @@ function showFigures(now) {
 }
 
 function frame(now) {
+  if (!state.seen) return requestAnimationFrame(frame);
   resize();
   state.debt = Math.min(state.debt + (now - state.last) / 1000, MOST_STEPS * DT);
   state.last = now;
   for (; state.running && state.debt >= DT; state.debt -= DT) step();
   const began = performance.now();
   draw();
+  state.drawn++;
   cost.drawing += performance.now() - began;
   state.seconds++;
   showFigures(now);
@@ -462,14 +470,15 @@ function write(lines) {
   document.body.append(text);
 }
 
+function act() {
+  for (const name of ['blast', 'cut'])
+    if (settings.has(name)) check(core[name](...settings.get(name).split(',').map(Number)));
+}
+
 // A run of so many frames, with what it cost; the picture is that of its end.
 function runFrames(count) {
   const times = [];
-  if (settings.has('blast')) {
-    const [x, y, radius, speed] = settings.get('blast').split(',').map(Number);
-    check(core.blast(x, y, radius, speed));
-  }
-  if (settings.has('cut')) check(core.cut(...settings.get('cut').split(',').map(Number)));
+  act();
   for (let i = 0; i < count; i++) times.push(step());
   times.sort((a, b) => a - b);
   resize();
@@ -486,7 +495,9 @@ function runFrames(count) {
 async function main() {
   drawing = new Drawing(byId('canvas'));
   marks = new Marks(byId('marks'), byId('tip'));
-  byId('controls').open = innerWidth > 640;
+  const embedded = settings.has('embed');
+  document.body.classList.toggle('embedded', embedded);
+  byId('controls').open = innerWidth > 640 && !embedded;
   resize();
   core = (await WebAssembly.instantiate(await resource('massspring.wasm'), {})).instance.exports;
   materials = readMaterials(new TextDecoder().decode(await resource('ship_materials.csv')));
@@ -499,10 +510,21 @@ async function main() {
   await load(byId('scene').value);
   if (settings.has('check')) return writeChecks();
   if (settings.has('frames')) return runFrames(Number(settings.get('frames')));
+  if (embedded) new IntersectionObserver(([{ isIntersecting }]) => (state.seen = isIntersecting)).observe(drawing.canvas);
   requestAnimationFrame((now) => {
     state.last = now;
     frame(now);
+    if (embedded) tellParent(now);
   });
+}
+
+// The still picture over the frame may go; and a page may choose a lighter scene for a slow computer.
+function tellParent(start) {
+  parent.postMessage('massspring runs', '*');
+  const drawn = state.drawn;
+  setTimeout(() => {
+    if (state.seen && (state.drawn - drawn) / (performance.now() - start) < SLOWEST) parent.postMessage('massspring is slow', '*');
+  }, WATCHED);
 }
 
 main().catch((problem) => {

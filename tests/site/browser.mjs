@@ -12,7 +12,7 @@ import { Browser } from '../web/browser.js';
 const [site, pictures] = process.argv.slice(2);
 const PAGES = CONTENTS.flatMap(({ links }) => links.map(([, page]) => page))
   .filter((page) => !page.includes('#') && existsSync(join(site, page)));
-const SEEN = /index|choose|troubleshooting|solvers|massspring_8h/; // of these a picture is kept
+const SEEN = /index|choose|troubleshooting|solvers|massspring_8h|rollback|comparison|download/; // of these a picture is kept
 // What moved after the page was there, as browsers count it: 0.1 is what they call good.
 const WATCH = `window.shifted = 0; new PerformanceObserver((list) => { for (const entry of list.getEntries())
   if (!entry.hadRecentInput) { window.shifted += entry.value; window.shifters = [...(window.shifters ?? []),
@@ -52,15 +52,55 @@ async function byKey(browser) {
   assert.equal(await browser.value('window.figureStages.size.playing'), false, 'space stops it');
 }
 
-// A word in the search field leads to its page.
+// Words in the search field lead to their page, also words of its text; where there are none, it says so.
 async function bySearch(browser) {
   const field = '[...document.querySelectorAll("[data-search]")].at(-1)';
-  const first = async (words) => browser.value(`(() => { const field = ${field}; field.value = '${words}';
-    field.dispatchEvent(new Event('input')); return field.nextSibling.querySelector('a')?.href; })()`);
+  const asked = (words, value) => browser.value(`(async () => { const field = ${field}; field.value = '${words}';
+    field.dispatchEvent(new Event('input'));
+    for (let i = 0; i < 200 && !globalThis.siteIndex; i++) await new Promise((done) => setTimeout(done, 20));
+    await new Promise((done) => setTimeout(done, 50));
+    return field.nextSibling.${value}; })()`);
+  const first = (words) => asked(words, "querySelector('a')?.href");
   assert.match(await first('yield strain'), /guides|reference/);
-  assert.match(await first('exact border'), /figures\.html#the-exact-border-of-an-explosion$/);
+  assert.match(await first('One per cent from'), /figures\.html#one-per-cent-from-exploding$/);
+  assert.match(await first('a nudge of a millionth'), /figures\.html#one-per-cent-from-exploding$/, 'text can be searched, too');
+  assert.match(await asked('a nudge of a millionth', "querySelector('mark')?.textContent"), /^a nudge of a millionth$/);
   if (PAGES.some((page) => page.startsWith('reference/'))) assert.match(await first('network_step'), /reference\/massspring_8h\.html#/);
-  assert.equal(await first('no such words'), undefined);
+  assert.match(await asked('no such words', 'textContent'), /^Nothing for no such words\. Try Troubleshooting or the Glossary\.$/);
+  assert.match(await first('no such words'), /troubleshooting\.html$/);
+}
+
+// What shared links show, and stills where figures have not begun.
+async function byLink(browser) {
+  const meta = (name) => browser.value(`document.querySelector('meta[property="og:${name}"], meta[name="${name}"]')?.content ?? ''`);
+  assert((await meta('description')).length > 40, 'a description');
+  assert((await meta('title')).length > 3 && /\.png$/.test(await meta('image')), 'a title and a picture');
+}
+
+// The playground of the first page: something is drawn in its frame, and each button brings its scene.
+async function byPlay(browser, width) {
+  const runs = `document.querySelector('.playground').classList.contains('runs')`;
+  await browser.until(runs, 'the playground runs');
+  const scene = `document.querySelector('.playground iframe').src`;
+  if (width < 700) assert.match(await browser.value(scene), /scene=bridge/, 'a phone gets the bridge');
+  await browser.value(`document.querySelector('[data-scene*=girder]').click()`);
+  await browser.until(`${runs} && ${scene}.includes('girder')`, 'another scene runs');
+  assert.equal(await browser.value(`document.querySelector('[data-scene*=girder]').getAttribute('aria-pressed')`), 'true');
+  await browser.value(`document.querySelector('#tab-Python').click()`);
+  assert.match(await browser.value(`[...document.querySelectorAll('.tab')].find((tab) => tab.offsetHeight > 0).textContent`), /import massspring/);
+}
+
+// Two peers of the page play for a while, and all hashes are equal; then over a line that is far worse.
+async function byRollback(browser, width) {
+  await browser.until('globalThis.rollbackDemo?.session.peers[0].count.compared > 60', 'peers compare hashes');
+  await browser.value(`for (const [name, value] of [['latency', 150], ['loss', 50]]) { const slider =
+    document.querySelector('[data-line=' + name + ']'); slider.value = value; slider.dispatchEvent(new Event('input')); }`);
+  const before = await browser.value('rollbackDemo.session.peers[0].count.compared');
+  await browser.until(`rollbackDemo.session.peers[0].count.compared > ${before + 60}`, 'they go on over a worse line');
+  const peers = await browser.value('rollbackDemo.session.peers.map(({ count }) => count)');
+  console.log(`${width} px, rollback:`, JSON.stringify(peers));
+  for (const { differing, deepest, rollbacks } of peers) assert(!differing && rollbacks > 0 && deepest <= 8, 'all hashes are equal');
+  assert.match(await browser.value(`document.querySelector('[data-verdict]').textContent`), /hashes compared, all equal$/);
 }
 
 // A particle of the jelly follows the pointer, and is let go.
@@ -122,7 +162,9 @@ async function at(place, width, height, scheme) {
       await browser.send('Page.navigate', { url: `${place}/${page}` });
       await browser.until(`location.href.endsWith(${JSON.stringify(page)}) && document.readyState === 'complete'`, `${page} is there`);
       await look(browser, width, scheme);
-      if (page === 'index.html') await browser.until('window.figureStages?.jelly?.steps > 20', 'the first page moves');
+      if (!page.startsWith('reference/')) await byLink(browser);
+      if (page === 'index.html') await byPlay(browser, width);
+      if (page === 'rollback.html') await byRollback(browser, width);
       if (SEEN.test(page)) await picture(browser, 'body', `${page.replace(/.*\/|\.html/g, '')}_${width}`);
     }
     assert.deepEqual(browser.complaints, [], 'nothing complains');

@@ -7,6 +7,7 @@ const make = (ms, stiffness, options) => bar(ms, { width: WIDTH, height: HEIGHT,
 
 export default {
   name: 'bending',
+  still: 150,
   controls: [{ name: 'stiffer', label: 'Times as stiff', min: 1, max: 32, step: 1, value: 1 }],
 
   start(ms, values) {
@@ -21,7 +22,7 @@ export default {
         pen.network(network, 0.02);
         pen.word([40, TOP - rest], `at rest: ${rest.toFixed(4)} m`, { under: true });
       },
-      say: () => `the free end is ${drop().toFixed(2)} m down, ${network.stepInfo().substeps} substeps a frame`,
+      say: () => `sag ${drop().toFixed(2)} m, should end at ${rest.toFixed(2)} m · ${network.stepInfo().substeps} substeps a frame`,
       free: () => network.free(),
     };
   },
@@ -35,8 +36,8 @@ export default {
     const drop = TOP - heightOf(network, probe(WIDTH));
     network.free();
     return [
-      { what: "Newton's method in double precision, m", found: rest, wanted: 20.0586, within: 0.0005, digits: 4 },
-      { what: 'thirty seconds of explicit substeps, m', found: drop, wanted: rest, within: 0.002 * rest, digits: 4 },
+      { what: "sag by Newton's method: {}", unit: ' m', found: rest, wanted: 20.0586, within: 0.0005, digits: 4 },
+      { what: 'after thirty seconds of explicit substeps: {}', unit: ' m', found: drop, wanted: rest, within: 0.002 * rest, digits: 4 },
     ];
   },
 };

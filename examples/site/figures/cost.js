@@ -29,8 +29,15 @@ function measure(ms, substeps) {
   return { substeps, drop, explicit, implicit };
 }
 
+const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
+
+// Explicit cost is in proportion to substeps, implicit cost constant: medians of both, so that one slow moment counts little.
+const crossing = (found) => Math.round(median(found.map(({ implicit }) => implicit)) /
+  median(found.map(({ explicit, substeps }) => explicit / substeps)));
+
 export default {
   name: 'cost',
+  still: 180,
   controls: [{ name: 'substeps', label: 'Substeps', min: 32, max: 256, step: 8, value: 32 }],
 
   start(ms, values) {
@@ -49,15 +56,15 @@ export default {
         const low = times.length ? Math.min(...times) / 2 : 0.01, high = times.length ? Math.max(...times) * 2 : 10;
         const products = found.map(({ drop, explicit }) => explicit * Math.sqrt(drop)).sort((a, b) => a - b);
         const line = found.length ? [20, 0.002].map((drop) => [drop, products[found.length >> 1] / Math.sqrt(drop)]) : [];
-        pen.plot(graph, { x: [20, 0.002], y: [low, high], log: true, logX: true, xName: 'bending, m', yName: 'ms a frame', curves: [
+        pen.plot(graph, { x: [20, 0.002], y: [low, high], log: true, logX: true, xName: 'sag, m', yName: 'ms a frame', curves: [
           { points: line, dash: true },
           { points: found.map(({ drop, explicit }) => [drop, explicit]), colour: 'accent', dots: true, name: 'explicit' },
           { points: found.map(({ drop, implicit }) => [drop, implicit]), colour: 'squeezed', dots: true, name: 'implicit' }] });
       },
       say() {
-        const crossed = found.find(({ explicit, implicit }) => implicit < explicit);
-        return `${values.substeps} substeps, ${(4 - heightOf(network, probe(WIDTH))).toFixed(2)} m down; ` +
-          (crossed ? `implicit is cheaper from ${crossed.substeps} substeps on` : 'measuring ...');
+        const sag = `sag ${(4 - heightOf(network, probe(WIDTH))).toFixed(2)} m with ${values.substeps} substeps · `;
+        if (found.length < NUMBERS.length) return `${sag}measuring ${found.length + 1} of ${NUMBERS.length}`;
+        return `${sag}on this computer implicit is cheaper above ${crossing(found)} substeps`;
       },
       free: () => network.free(),
     };
@@ -74,9 +81,9 @@ export default {
     const wanted = Math.sqrt((1.422e9 * 2 * DT * DT) / (SHARE * MASS));
     const { explicit, implicit } = measure(ms, 2048);
     return [
-      { what: 'substeps x sqrt(bending), least of 64 to 512 substeps', found: Math.min(...products), wanted, within: 0.015 * wanted },
-      { what: 'and the largest', found: Math.max(...products), wanted, within: 0.015 * wanted },
-      { what: 'an explicit frame of 2048 substeps, in implicit ones', found: explicit / implicit, least: 3, digits: 1 },
+      { what: 'substeps × √sag from 64 to 512 substeps: least {}', found: Math.min(...products), wanted, within: 0.015 * wanted },
+      { what: 'substeps × √sag from 64 to 512 substeps: most {}', found: Math.max(...products), wanted, within: 0.015 * wanted },
+      { what: 'at 2,048 substeps an explicit frame costs as much as {} implicit ones', found: explicit / implicit, least: 3, digits: 1 },
     ];
   },
 };

@@ -20,6 +20,7 @@ const stretchOf = (network) => {
 
 export default {
   name: 'damping',
+  still: 900,
   controls: [{ name: 'ratio', label: 'Damping ratio', min: 0, max: 1.2, step: 0.004, value: 0.024 }],
 
   start(ms, values) {
@@ -41,7 +42,8 @@ export default {
         pen.plot(graph, { x: [0, end], y: [-PULL, PULL], xName: 's', yName: 'stretch, m', curves: [
           { points: envelope(1), dash: true }, { points: envelope(-1), dash: true }, { points: trace.map(point), colour: 'accent' }] });
       },
-      say: () => `${(ratio * CRITICAL).toFixed(2)} N s/m of ${CRITICAL.toFixed(0)} that are critical: ratio ${ratio.toFixed(3)}`,
+      say: () => `damping ratio ${ratio.toFixed(3)}: ${(ratio * CRITICAL).toFixed(1)} N s/m, critical would be ` +
+        `${Math.round(CRITICAL).toLocaleString('en')}`,
       free: () => network.free(),
     };
   },
@@ -59,7 +61,7 @@ export default {
     }
     network.free();
     const decrement = Math.log(peaks[0] / peaks[10]) / 10;
-    return [{ what: 'damping ratio of 55.05 N s/m, from ten swings', found: decrement / Math.hypot(decrement, 2 * Math.PI),
+    return [{ what: 'damping ratio measured over ten swings: {}', found: decrement / Math.hypot(decrement, 2 * Math.PI),
       wanted: 55.05 / CRITICAL, within: 0.0001, digits: 4 }];
   },
 };

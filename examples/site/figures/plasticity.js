@@ -11,6 +11,7 @@ const loadAt = (time) => LOAD * Math.max(0, 1 - Math.abs(time - 2) / 2);
 
 export default {
   name: 'plasticity',
+  still: 230,
   controls: [
     { name: 'load', label: 'Load, %', min: 10, max: 100, step: 5, value: 100 },
     { name: 'again', label: 'Load it again', press: true },
@@ -37,8 +38,12 @@ export default {
           pen.label(place, i ? 'yields at 1 %' : 'elastic');
         });
       },
-      say: () => `load ${((loadAt(time) * values.load) / 1e5).toFixed(0)} kN a row; down by ` +
-        bars.map((network) => `${(TOP - heightOf(network, probe(WIDTH))).toFixed(2)} m`).join(' and '),
+      say() {
+        const load = (HEIGHT * loadAt(time) * values.load) / 1e5;
+        const [elastic, yielding] = bars.map((network) => `${Math.abs(TOP - heightOf(network, probe(WIDTH))).toFixed(2)} m`);
+        return load > 0 ? `load ${load.toFixed(0)} kN · elastic: sag ${elastic} · yielding: sag ${yielding}`
+          : `load gone · elastic ${elastic} · yielding keeps ${yielding}`;
+      },
       free: () => bars.forEach((network) => network.free()),
     };
   },
@@ -55,7 +60,7 @@ export default {
     network.step(DT, 4);
     const [strain] = network.get('plasticStrain');
     network.free();
-    return [{ what: 'plastic strain of a spring pulled by 10 %', found: strain, wanted: (pull - YIELD) / (1 + HARDENING),
-      within: 1e-5, digits: 5 }];
+    return [{ what: 'a spring pulled by 10 % keeps {}', found: 100 * strain, wanted: (100 * (pull - YIELD)) / (1 + HARDENING),
+      within: 1e-3, digits: 3, unit: ' %' }];
   },
 };

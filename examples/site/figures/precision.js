@@ -60,7 +60,7 @@ export default {
 
   start(ms) {
     const networks = [distant(ms, NETWORK_PRECISE), distant(ms, 0)], rest = networks[0].positions(), body = plain(networks[0]);
-    const shown = plainBar(WIDTH, HEIGHT), names = ['precise', 'default', 'floats only'];
+    const shown = plainBar(WIDTH, HEIGHT), names = ['precise', 'default', 'plain floats'];
     const speeds = () => [...networks.map((network) => network.stepInfo().largestSpeed), fastest(body.vx, body.vy)];
     return {
       step() {
@@ -77,8 +77,8 @@ export default {
         });
       },
       say() {
-        const fast = speeds().map((speed) => `${speed.toPrecision(2)} m/s`);
-        return `fastest particle: ${fast.join(', ')}; motion drawn ${TIMES} times as large`;
+        const [precise, usual, floats] = speeds().map((speed) => `${Number(speed.toPrecision(2))} m/s`);
+        return `fastest particle: precise ${precise} · default ${usual} · plain floats ${floats} (motion shown ${TIMES}×)`;
       },
       free: () => networks.forEach((network) => network.free()),
     };
@@ -96,9 +96,9 @@ export default {
     }
     networks.forEach((network) => network.free());
     return [
-      { what: 'fastest particle with the flag, m/s', found: most[0], most: 0.02, digits: 4 },
-      { what: 'without it, m/s', found: most[1], least: 1 },
-      { what: 'in a plain program in single precision, m/s', found: most[2], least: 1 },
+      { what: 'fastest particle with the flag: {}', unit: ' m/s', found: most[0], most: 0.02, digits: 4 },
+      { what: 'without it: {}', unit: ' m/s', found: most[1], least: 1 },
+      { what: 'in a plain program in single precision: {}', unit: ' m/s', found: most[2], least: 1 },
     ];
   },
 };

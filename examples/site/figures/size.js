@@ -23,7 +23,8 @@ export default {
         pen.world(pen.all, { minX: -reach, maxX: reach, minY: height - 1 - reach, maxY: 2 * height });
         pen.network(network, 0.05);
       },
-      say: () => `${width} x ${height} = ${width * height} particles, ${network.springCount} springs`,
+      say: () => `${width} × ${height} = ${width * height} particles, ${network.springCount} springs, ` +
+        `${(network.springCount / (width * height)).toFixed(1)} a particle`,
       free: () => network.free(),
     };
   },
@@ -39,6 +40,6 @@ export default {
         builder.free();
         await breathe();
       }
-    return [{ what: 'sizes from 1 x 1 to 24 x 24 that follow the formula', found: right, wanted: sizes, within: 0 }];
+    return [{ what: `{} of ${sizes} sizes follow the formula`, found: right, wanted: sizes, within: 0, digits: 0 }];
   },
 };

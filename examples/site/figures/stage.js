@@ -41,12 +41,14 @@ function makeBreathe() {
   };
 }
 
-function judge({ what, found, wanted, within, least, most, digits = 2 }) {
+// what: a sentence with {} for the number that was found; unit follows each number.
+export function judge({ what, found, wanted, within, least, most, digits = 2, unit = '' }) {
   const ok = least !== undefined ? found >= least : most !== undefined ? found <= most : Math.abs(found - wanted) <= within;
-  const limit = least !== undefined ? `at least ${least}` : most !== undefined ? `at most ${most}`
-    : within ? `expected ${wanted.toFixed(digits)} ± ${Number(within.toPrecision(2))}` : `expected ${wanted}`;
-  const number = Number.isInteger(found) ? String(found) : found.toFixed(digits);
-  return { ok, text: `${ok ? '✓' : '✗'} ${what}: ${number} (${limit})` };
+  const number = (value) => (Number.isInteger(value) && !digits ? String(value) : value.toFixed(digits)) + unit;
+  const [low, high] = [wanted - within, wanted + within].map(number);
+  const limit = least !== undefined ? `at least ${least}${unit}` : most !== undefined ? `at most ${most}${unit}`
+    : low === high ? `must be ${number(wanted)}` : `must be ${low} to ${high}`;
+  return { ok, text: `${ok ? '✓' : '✗'} ${what.replace('{}', number(found))} (${limit})` };
 }
 
 class Stage {
@@ -109,6 +111,7 @@ class Stage {
   }
 
   show() {
+    this.element.classList.add('running');
     this.pen.begin();
     this.running.draw(this.pen);
     this.element.querySelector('[data-now]').textContent = this.running.say();
@@ -205,5 +208,6 @@ async function run() {
 
 run().catch((error) => {
   for (const place of document.querySelectorAll('[data-now]')) place.textContent = `This browser cannot run it: ${error.message}`;
+  for (const place of document.querySelectorAll('[data-check]')) place.replaceChildren();
   console.error(error);
 });
