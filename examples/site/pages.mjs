@@ -70,6 +70,7 @@ function target(from, link) {
   if (/^(https?:|mailto:|#)/.test(link)) return link;
   const [, path, mark = ''] = link.match(/^([^#]*)(#.*)?$/), goal = posix.normalize(posix.join(from, path)).replace(/\/$/, '');
   const back = (to) => posix.relative(from, to) + mark;
+  if (goal === 'examples/site/rollback/page.html') return posix.relative(from, 'rollback.html');
   if (REPOSITORY_ONLY.test(goal) || !existsSync(join(source, goal))) return undefined;
   if (statSync(join(source, goal)).isDirectory()) {
     if (!existsSync(join(source, goal, 'README.md'))) return undefined;
@@ -155,7 +156,7 @@ function navigation(path) {
 // What is above and beside the text of a page.
 function surroundings(path) {
   const root = posix.relative(posix.dirname(path), '.') || '.', home = `${root}/index.html`;
-  const menu = `<input type="search" data-search placeholder="Search guides and functions" aria-label="Search guides and functions">
+  const menu = `<input type="search" data-search placeholder="Search" aria-label="Search guides and functions">
 ${navigation(path)}`;
   return `<a class="skip" href="#content">Skip to the text</a>
 <header><a class="home" href="${home}">libmassspring <small>${version}</small></a>

@@ -3,7 +3,7 @@
 //   #check             compare hashes, and write them into the page, instead of running
 //   #scene=ship&frames=300&solver=1&substeps=2&cut=...    for pictures and measurements: run so many frames, then stop
 //   #scene=ship&breaking=1&cut=x,y,x,y    cut it after a second, once; blast=x,y,radius,speed likewise
-//   #embed=1    in a frame of another page: panels are folded, and it rests while it is out of sight
+//   #embed=1    in a frame of another page: panels are folded, and it rests while it is out of sight; still=1: none
 'use strict';
 
 const DT = 1 / 64;
@@ -497,6 +497,7 @@ async function main() {
   marks = new Marks(byId('marks'), byId('tip'));
   const embedded = settings.has('embed');
   document.body.classList.toggle('embedded', embedded);
+  document.body.classList.toggle('still', settings.has('still'));
   byId('controls').open = innerWidth > 640 && !embedded;
   resize();
   core = (await WebAssembly.instantiate(await resource('massspring.wasm'), {})).instance.exports;

@@ -100,6 +100,7 @@ class Demo {
     this.tenButton = element.querySelector('[data-ten]');
     this.tenButton.onclick = () => this.tenMinutes();
     this.bindKeys();
+    this.bindPointer();
     this.start();
   }
 
@@ -120,6 +121,21 @@ class Demo {
     });
     addEventListener('keydown', (event) => set(event, true));
     addEventListener('keyup', (event) => set(event, false));
+  }
+
+  // On a phone: a finger in a player's half of the canvas leads, and above him he jumps.
+  bindPointer() {
+    const { canvas } = this.pen;
+    const lead = (event) => {
+      const box = canvas.getBoundingClientRect(), point = this.pen.pick(event.clientX - box.left, event.clientY - box.top);
+      if (!point) return;
+      const { world } = this.session.peers[point.index], [x, y] = world.network.positions({ ids: [world.players[point.index].centre] });
+      this.pressed[point.index] = (point.x > x + 0.4 ? RIGHT : point.x < x - 0.4 ? LEFT : 0) | (point.y > y + 1.3 ? JUMP : 0);
+      this.lastKey[point.index] = performance.now();
+    };
+    canvas.addEventListener('pointerdown', lead);
+    canvas.addEventListener('pointermove', (event) => event.buttons && lead(event));
+    for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, () => (this.pressed = [0, 0]));
   }
 
   tick() {
