@@ -45,10 +45,10 @@ export function front(root, { figureOf, escape, version, download, playground, c
 <p class="scenes" hidden>${scenes.join('\n')}
 <a class="button" href="massspring.html#${escape(WIDE)}">Full screen</a></p>
 <p class="without">This needs JavaScript and WebAssembly.</p>
-<p class="try">Pull her. Then choose <em>Cut</em> and draw a line through the hull. Any image becomes a network: open full screen, drop yours.</p>`
+<p class="try">Pull it. Then choose <em>Cut</em> and draw a line through it. Any image becomes a network: open full screen, drop yours.</p>`
     : '<p><img src="examples/pictures/web_ship.png" width="1200" height="660" alt="A steamer of springs, coloured by strain"></p>';
   return `<h1>Springs that bend, swing and break</h1>
-<p class="lead">A C library for 2D networks of masses, springs and dampers. This ship has 157,962 springs and runs in your browser.</p>
+<p class="lead">A C library for 2D networks of masses, springs and dampers. A ship of 157,962 springs runs in your browser.</p>
 ${play}
 <h2 id="in-your-program">In your program</h2>
 ${tabs(code)}
