@@ -117,6 +117,25 @@ async function byHand(browser) {
   assert.equal(await browser.value(`${held} === undefined`), true, 'it lets go');
 }
 
+// Without WebAssembly: still pictures in place of what cannot run, and words that say why.
+async function withoutWasm() {
+  const browser = new Browser();
+  const shown = (selector) => browser.value(`document.querySelector('${selector}').offsetHeight > 100`);
+  try {
+    await browser.open('about:blank', 1280, 800);
+    await browser.send('Page.addScriptToEvaluateOnNewDocument', { source: 'delete globalThis.WebAssembly;' });
+    await browser.send('Page.navigate', { url: `${DISK}/index.html` });
+    await browser.until(`document.querySelector('[data-now]')?.textContent.startsWith('This browser cannot run it')`, 'it says so');
+    await browser.value(`document.querySelector('.still').scrollIntoView()`);
+    await browser.until(`document.querySelector('.still').naturalWidth > 0`, 'a still picture is there');
+    assert(await shown('.still') && !await shown('.live canvas') && await shown('.playground img'), 'stills are shown');
+    assert.equal(await browser.value(`document.querySelector('.without').offsetHeight > 10`), true);
+    assert.equal(await browser.value(`document.querySelector('.playground iframe')`), null);
+  } finally {
+    await browser.close();
+  }
+}
+
 async function look(browser, width, scheme) {
   await browser.send('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: scheme }] });
   await browser.value(WATCH);
@@ -175,6 +194,7 @@ async function at(place, width, height, scheme) {
 }
 
 try {
+  await withoutWasm();
   let first = Math.min(await at(DISK, 1280, 800, 'light'), await at(SERVER, 390, 844, 'dark'));
   // A machine that does other things meanwhile gets more tries.
   for (let i = 0; i < 4 && first > 1000; i++) {
