@@ -34,6 +34,7 @@ void mspring_builder_destroy(mspring_builder *builder) {
     mspringi_free(&memory, builder->limits);
     mspringi_free(&memory, builder->areas);
     mspringi_free(&memory, builder->corners);
+    mspringi_free(&memory, builder->archive);
     mspringi_free(&memory, builder);
 }
 

@@ -372,7 +372,8 @@ mspring_result mspringi_topology_begin(const mspring_builder *builder, const msp
                              builder->particle_count, builder->spring_count);
     a->made = (mspringi_topology){.particle_count = (uint32_t)builder->particle_count,
                                   .spring_count = (uint32_t)builder->spring_count,
-                                  .reserve = *reserve};
+                                  .reserve = *reserve,
+                                  .may_have_bundles = has_bundles};
     a->topology = &a->made;
     a->memory = memory;
     a->message = message;

@@ -130,6 +130,7 @@ typedef struct mspringi_topology {
     /// Strip of the bundles, or MSPRING_NONE.
     uint32_t bundle_strip;
     uint32_t bundle_springs; ///< springs in bundles
+    bool may_have_bundles;   ///< it was laid out for a solver that sweeps bundles
 
     uint32_t parallel_count; ///< springs parallel to another one
     /// Tiers of the irregular row, each with springs to its neighbours only; 0 if it has none.

@@ -14,6 +14,7 @@
 #include "stability/guard.h"
 #include "stability/stability_limit.h"
 #include "step/origin.h"
+#include "store/archive.h"
 #include "store/feature.h"
 #include "store/fractions.h"
 #include "store/id_pool.h"
@@ -285,6 +286,24 @@ static mspring_result set_limits(mspring_network *network, const mspring_builder
 
 /* -------------------------------------------------------------------------------------------------- lifecycle */
 
+// Lay out the builder's particles, which in an archive's network lie where the archived layout had them.
+static mspring_result lay_out(mspring_network *network, const mspring_builder *builder,
+                              const mspringi_reserve *reserve, bool has_bundles) {
+    mspring_builder placed = *builder;
+    mspring_result result = MSPRING_OK;
+    if (builder->archive)
+        result = mspringi_archive_lay_out(builder, &network->memory, &network->message, &placed);
+    if (result == MSPRING_OK)
+        result = mspringi_topology_create(
+            &network->topology, &placed, reserve,
+            builder->archive ? mspringi_archive_may_have_bundles(builder) : has_bundles,
+            mspringi_tasks_partition_size(network->tasks), network->kernels->lanes, &network->memory,
+            &network->message);
+    if (builder->archive)
+        mspringi_free(&network->memory, placed.particles);
+    return result;
+}
+
 // Fill a network whose memory is initialised. Its message describes a failure.
 static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const mspring_builder *builder,
                                              const mspring_network_def *def) {
@@ -302,9 +321,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
-        result = mspringi_topology_create(&network->topology, builder, &reserve, has_bundles ? true : false,
-                                          mspringi_tasks_partition_size(network->tasks), network->kernels->lanes,
-                                          &network->memory, &network->message);
+        result = lay_out(network, builder, &reserve, has_bundles);
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level == MSPRING_SIMD_AUTO)
@@ -362,15 +379,22 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
 
 mspring_result mspring_network_create(mspring_builder *builder, const mspring_network_def *def,
                                       mspring_network **network) {
-    mspring_network_def taken;
+    mspring_network_def taken, archived;
     mspringi_memory memory;
+    const mspring_network_def *wanted = NULL;
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     mspringi_message *message = &builder->message;
     mspringi_message_clear(message);
     if (!network)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network is NULL");
+    const bool is_given = def != NULL;
     mspring_result result = check_def(&def, &taken, message);
+    if (result == MSPRING_OK && builder->archive) {
+        wanted = is_given ? def : NULL;
+        def = &archived;
+        result = mspringi_archive_take_def(builder, wanted, &archived);
+    }
     if (result != MSPRING_OK)
         return result;
     if (builder->particle_count == 0)
@@ -385,6 +409,8 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     created->tasks_memory = (mspringi_memory){.allocator = memory.allocator};
     const mspringi_fp_state before = mspringi_fp_enter();
     result = fill(created, builder, def);
+    if (result == MSPRING_OK && builder->archive)
+        result = mspringi_archive_resume(created, builder, wanted);
     mspringi_fp_leave(before);
     if (result != MSPRING_OK) {
         *message = created->message;

@@ -7,12 +7,10 @@
 #include "store/feature.h"
 #include "store/sections.h"
 
-/// Sections in the order of loading.
-static const mspringi_section *const sections[] = {
+const mspringi_section *const mspringi_sections[MSPRINGI_SECTIONS] = {
 #define SECTION(name) &mspringi_section_##name,
 #include "store/features.def"
 };
-enum { SECTIONS = sizeof sections / sizeof sections[0] };
 
 /* --------------------------------------------------------------------------------------------------- messages */
 
@@ -47,22 +45,24 @@ static mspring_result fail(mspring_network *network, const char *what) {
 
 /* ------------------------------------------------------------------------------------------------------ saving */
 
-static size_t section_size(const mspring_network *network, const mspringi_section *section,
-                           mspring_snapshot_contents contents) {
+size_t mspringi_section_size(const mspring_network *network, const mspringi_section *section) {
     mspringi_writer counts = {0};
-    if (section->parameters && contents == MSPRING_SNAPSHOT_FRAME)
-        return 0;
     if (section->size)
         return section->size(network);
     section->save(network, &counts);
     return counts.counted;
 }
 
+static size_t section_size(const mspring_network *network, const mspringi_section *section,
+                           mspring_snapshot_contents contents) {
+    return section->parameters && contents == MSPRING_SNAPSHOT_FRAME ? 0 : mspringi_section_size(network, section);
+}
+
 static size_t total_size(const mspring_network *network, mspring_snapshot_contents contents, uint32_t *count) {
     size_t size = MSPRINGI_SNAPSHOT_HEADER_BYTES;
     *count = 0;
-    for (int i = 0; i < SECTIONS; ++i) {
-        const size_t of_section = section_size(network, sections[i], contents);
+    for (int i = 0; i < MSPRINGI_SECTIONS; ++i) {
+        const size_t of_section = section_size(network, mspringi_sections[i], contents);
         if (of_section == 0)
             continue;
         size += MSPRINGI_SECTION_HEADER_BYTES + mspringi_round_up(of_section, 8);
@@ -125,10 +125,10 @@ mspring_result mspring_network_save(const mspring_network *network, mspring_snap
     header.size = total;
     mspringi_writer to = mspringi_writer_begin(snapshot, network->kernels);
     mspringi_put_header(&to, &header);
-    for (int i = 0; i < SECTIONS; ++i) {
-        const size_t of_section = section_size(network, sections[i], contents);
+    for (int i = 0; i < MSPRINGI_SECTIONS; ++i) {
+        const size_t of_section = section_size(network, mspringi_sections[i], contents);
         if (of_section > 0)
-            put_section(network, sections[i], of_section, &to);
+            put_section(network, mspringi_sections[i], of_section, &to);
     }
     const size_t written = (size_t)(to.at - (uint8_t *)snapshot);
     mspringi_put_zeros(&to, total - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES - written);
@@ -140,12 +140,6 @@ mspring_result mspring_network_save(const mspring_network *network, mspring_snap
 }
 
 /* ----------------------------------------------------------------------------------------------------- loading */
-
-/// Position of each section in a snapshot; size 0 if absent.
-typedef struct found {
-    const uint8_t *from[SECTIONS];
-    size_t size[SECTIONS];
-} found;
 
 static mspring_result check_frame(mspring_network *network, const uint8_t *snapshot, size_t size,
                                   mspringi_snapshot_header *header) {
@@ -193,17 +187,17 @@ static mspring_result check_compatible(mspring_network *network, const mspringi_
 }
 
 static int number_of(const uint8_t *tag) {
-    for (int i = 0; i < SECTIONS; ++i)
-        if (memcmp(tag, sections[i]->tag, 4) == 0)
+    for (int i = 0; i < MSPRINGI_SECTIONS; ++i)
+        if (memcmp(tag, mspringi_sections[i]->tag, 4) == 0)
             return i;
     return -1;
 }
 
 static mspring_result find_sections(mspring_network *network, const mspringi_snapshot_header *header,
-                                    const uint8_t *snapshot, found *out) {
+                                    const uint8_t *snapshot, mspringi_found *out) {
     const uint8_t *at = snapshot + MSPRINGI_SNAPSHOT_HEADER_BYTES;
     size_t left = (size_t)header->size - MSPRINGI_SNAPSHOT_HEADER_BYTES - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
-    *out = (found){.size = {0}};
+    *out = (mspringi_found){.size = {0}};
     for (uint32_t i = 0, next = 0; i < header->section_count; ++i) {
         uint64_t size = 0;
         const int number = left >= MSPRINGI_SECTION_HEADER_BYTES ? number_of(at) : -1;
@@ -214,7 +208,7 @@ static mspring_result find_sections(mspring_network *network, const mspringi_sna
         at += MSPRINGI_SECTION_HEADER_BYTES;
         if (size == 0 || size > left || left - size < mspringi_round_up((size_t)size, 8) - size ||
             (uint32_t)number < next)
-            return mspringi_section_fail(network, sections[number],
+            return mspringi_section_fail(network, mspringi_sections[number],
                                          "they do not fit in, or come twice or too late");
         next = (uint32_t)number + 1;
         out->from[number] = at;
@@ -234,16 +228,16 @@ static bool are_zeros(const uint8_t *from, size_t size) {
 
 // Check the bytes without meaning: in the headers of sections, and behind each section.
 static mspring_result check_unused(mspring_network *network, const mspringi_snapshot_header *header,
-                                   const uint8_t *snapshot, const found *in) {
+                                   const uint8_t *snapshot, const mspringi_found *in) {
     const uint8_t *const end = snapshot + header->size - MSPRINGI_SNAPSHOT_CHECKSUM_BYTES;
     const uint8_t *at = snapshot + MSPRINGI_SNAPSHOT_HEADER_BYTES;
-    for (int i = 0; i < SECTIONS; ++i) {
+    for (int i = 0; i < MSPRINGI_SECTIONS; ++i) {
         const size_t size = in->size[i], padding = mspringi_round_up(size, 8) - size;
         if (size == 0)
             continue;
         at = in->from[i] + size + padding;
         if (!are_zeros(in->from[i] - 12, 4) || !are_zeros(at - padding, padding))
-            return mspringi_section_fail(network, sections[i], "unused bytes are not 0");
+            return mspringi_section_fail(network, mspringi_sections[i], "unused bytes are not 0");
     }
     const size_t left = (size_t)(end - at);
     return left < MSPRINGI_CHECKSUM_UNIT && are_zeros(at, left)
@@ -257,15 +251,15 @@ static bool concerns(const mspringi_section *section, const mspringi_snapshot_he
 }
 
 typedef struct saved_sections {
-    const found *in;
+    const mspringi_found *in;
     const mspringi_snapshot_header *header;
 } saved_sections;
 
 bool mspringi_saved_section(const mspringi_saved *saved, const mspringi_section *section, const uint8_t **from,
                             size_t *size) {
     const saved_sections *all = saved->in;
-    for (int i = 0; i < SECTIONS; ++i) {
-        if (sections[i] != section || !concerns(section, all->header))
+    for (int i = 0; i < MSPRINGI_SECTIONS; ++i) {
+        if (mspringi_sections[i] != section || !concerns(section, all->header))
             continue;
         *from = all->in->from[i];
         *size = all->in->size[i];
@@ -276,36 +270,29 @@ bool mspringi_saved_section(const mspringi_saved *saved, const mspringi_section 
 
 // Check the sections against each other.
 static mspring_result check_together(mspring_network *network, const mspringi_snapshot_header *header,
-                                     const found *in) {
+                                     const mspringi_found *in) {
     mspringi_saved saved = {.network = network, .in = &(saved_sections){in, header}};
     mspring_result result = MSPRING_OK;
-    for (int i = 0; i < SECTIONS; ++i) {
-        if (sections[i] == &mspringi_section_growth && in->size[i] > 0)
+    for (int i = 0; i < MSPRINGI_SECTIONS; ++i) {
+        if (mspringi_sections[i] == &mspringi_section_growth && in->size[i] > 0)
             saved.growth = in->from[i];
-        if (sections[i] == &mspringi_section_broken && in->size[i] > 0)
+        if (mspringi_sections[i] == &mspringi_section_broken && in->size[i] > 0)
             saved.live = in->from[i];
     }
-    for (int i = 0; result == MSPRING_OK && i < SECTIONS; ++i)
-        if (sections[i]->check_against && concerns(sections[i], header))
-            result = sections[i]->check_against(network, &saved, in->from[i], in->size[i]);
+    for (int i = 0; result == MSPRING_OK && i < MSPRINGI_SECTIONS; ++i)
+        if (mspringi_sections[i]->check_against && concerns(mspringi_sections[i], header))
+            result = mspringi_sections[i]->check_against(network, &saved, in->from[i], in->size[i]);
     return result;
 }
 
-static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uint8_t *snapshot, size_t size) {
-    mspringi_snapshot_header header = {0};
-    found in;
-    mspring_result result = check_frame(network, snapshot, size, &header);
+mspring_result mspringi_sections_load(mspring_network *network, const mspringi_snapshot_header *header,
+                                      const mspringi_found *in) {
+    mspring_result result = MSPRING_OK;
+    for (int i = 0; result == MSPRING_OK && i < MSPRINGI_SECTIONS; ++i)
+        if (concerns(mspringi_sections[i], header))
+            result = mspringi_sections[i]->check(network, in->from[i], in->size[i]);
     if (result == MSPRING_OK)
-        result = check_compatible(network, &header);
-    if (result == MSPRING_OK)
-        result = find_sections(network, &header, snapshot, &in);
-    for (int i = 0; result == MSPRING_OK && i < SECTIONS; ++i)
-        if (concerns(sections[i], &header))
-            result = sections[i]->check(network, in.from[i], in.size[i]);
-    if (result == MSPRING_OK)
-        result = check_unused(network, &header, snapshot, &in);
-    if (result == MSPRING_OK)
-        result = check_together(network, &header, &in);
+        result = check_together(network, header, in);
     if (result != MSPRING_OK)
         return result;
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
@@ -313,13 +300,26 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
         mspringi_sent_forget(&network->sent[i]);
 #define LOADS(function) function(network);
 #include "store/features.def"
-    for (int i = 0; i < SECTIONS; ++i)
-        if (concerns(sections[i], &header))
-            sections[i]->load(network, in.from[i], in.size[i]);
-    network->parameter_fingerprint = header.parameter_fingerprint;
+    for (int i = 0; i < MSPRINGI_SECTIONS; ++i)
+        if (concerns(mspringi_sections[i], header))
+            mspringi_sections[i]->load(network, in->from[i], in->size[i]);
+    network->parameter_fingerprint = header->parameter_fingerprint;
 #define LOADED(function) function(network);
 #include "store/features.def"
     return MSPRING_OK;
+}
+
+static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uint8_t *snapshot, size_t size) {
+    mspringi_snapshot_header header = {0};
+    mspringi_found in;
+    mspring_result result = check_frame(network, snapshot, size, &header);
+    if (result == MSPRING_OK)
+        result = check_compatible(network, &header);
+    if (result == MSPRING_OK)
+        result = find_sections(network, &header, snapshot, &in);
+    if (result == MSPRING_OK)
+        result = check_unused(network, &header, snapshot, &in);
+    return result == MSPRING_OK ? mspringi_sections_load(network, &header, &in) : result;
 }
 
 mspring_result mspring_network_load(mspring_network *network, const void *snapshot, size_t size) {

@@ -404,3 +404,30 @@ const mspringi_section mspringi_section_growth = {"grow",      "added and remove
                                                   false,       growth_size,
                                                   growth_save, growth_check,
                                                   growth_load, growth_check_against};
+
+/* ------------------------------------------------------------------------------------------------------ archives */
+
+// Set where the spare ids in use lie.
+static void set_places(const mspring_network *network, uint8_t *section, size_t size, bool in_archive) {
+    const mspringi_topology *t = &network->topology;
+    const size_t slots = size_of(t) - (size_t)9 * mspringi_spare_springs(t) - mspringi_spare_particles(t);
+    uint8_t *const of_particle = section + slots, *const of_spring = of_particle + mspringi_spare_particles(t);
+    if (size != size_of(t))
+        return;
+    for (uint32_t i = 0; i < mspringi_spare_particles(t); ++i)
+        of_particle[i] = !in_archive && particle_is_laid_out(t, t->reserve.first_particle + i) ? IS_LAID_OUT : 0;
+    for (uint32_t i = 0; i < mspringi_spare_springs(t); ++i)
+        of_spring[i] = (uint8_t)((of_spring[i] & ~IS_LAID_OUT) |
+                                 (!in_archive && spring_is_laid_out(t, t->reserve.first_spring + i) ? IS_LAID_OUT : 0));
+}
+
+static void growth_leave(const mspring_network *network, uint8_t *section, size_t size) {
+    set_places(network, section, size, true);
+}
+
+static size_t growth_enter(const mspring_network *network, uint8_t *section, size_t size) {
+    set_places(network, section, size, false);
+    return size;
+}
+
+const mspringi_by_id mspringi_by_id_growth = {&mspringi_section_growth, NULL, growth_leave, growth_enter};

@@ -25,6 +25,19 @@ static void implicit_load(mspring_network *network, const uint8_t *from, size_t 
 const mspringi_section mspringi_section_implicit = {"impl",        "implicit solver", false,         NULL,
                                                     implicit_save, implicit_check,    implicit_load, NULL};
 
+static uint32_t implicit_runs(const mspring_network *network, mspringi_io head, mspringi_run *runs) {
+    const mspringi_solver *solver = &network->solver;
+    runs[0] = (mspringi_run){MSPRINGI_BYTES, MSPRINGI_THE_REST};
+    return solver->ops->runs ? solver->ops->runs(network, solver->object, head, runs) : 1;
+}
+
+static size_t implicit_enter(const mspring_network *network, uint8_t *section, size_t size) {
+    const mspringi_solver *solver = &network->solver;
+    return solver->ops->enter ? solver->ops->enter(network, solver->object, section, size) : size;
+}
+
+const mspringi_by_id mspringi_by_id_implicit = {&mspringi_section_implicit, implicit_runs, NULL, implicit_enter};
+
 /* --------------------------------------------------------------------------------------------------- precision */
 
 // 1 if low words count in the lengths of springs, else absent. Fixed at creation.

@@ -103,6 +103,15 @@ static mspring_result broken_check_against(mspring_network *network, const mspri
 const mspringi_section mspringi_section_broken = {"brok",      "broken springs", false,       broken_size,
                                                   broken_save, broken_check,     broken_load, broken_check_against};
 
+static uint32_t bits_runs(const mspring_network *network, mspringi_io head, mspringi_run *runs) {
+    (void)network;
+    (void)head;
+    runs[0] = (mspringi_run){MSPRINGI_BITS, 1};
+    return 1;
+}
+
+const mspringi_by_id mspringi_by_id_broken = {&mspringi_section_broken, bits_runs, NULL, NULL};
+
 /* ----------------------------------------------------------------------------------------------------- values */
 
 // Values of a spring: nominal stiffness and damping, and rest length. That of a spring on a ramp is the present
@@ -271,3 +280,5 @@ static void stressed_load(mspring_network *network, const uint8_t *from, size_t 
 
 const mspringi_section mspringi_section_stressed = {"stsd",        "stressed springs", false,         stressed_size,
                                                     stressed_save, stressed_check,     stressed_load, NULL};
+
+const mspringi_by_id mspringi_by_id_stressed = {&mspringi_section_stressed, bits_runs, NULL, NULL};

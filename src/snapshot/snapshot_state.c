@@ -23,10 +23,10 @@ static void hand_settings(mspringi_io *io, settings *s) {
     MSPRINGI_HAND(io, s->origin_x);
     MSPRINGI_HAND(io, s->origin_y);
     mspringi_hand(io, &s->recentre_distance, 2, sizeof(float)); // and the next one
+    mspringi_hand(io, &s->substeps, 4, sizeof(uint32_t));       // and those that follow
 #define SETTING(name, first, range, is_good, change) MSPRINGI_HAND(io, s->values.name);
 #define SLEEP_SETTING(name, first, range, is_good, change)
 #include "base/settings.def"
-    mspringi_hand(io, &s->substeps, 4, sizeof(uint32_t));
 }
 
 static void settings_save(const mspring_network *network, mspringi_writer *to) {
@@ -77,6 +77,19 @@ static void settings_load(mspring_network *network, const uint8_t *from, size_t 
 
 const mspringi_section mspringi_section_settings = {"sett",        "settings",     false,         NULL,
                                                     settings_save, settings_check, settings_load, NULL};
+
+// An archive by a library with fewer settings: the network has the others from its definition.
+static size_t settings_enter(const mspring_network *network, uint8_t *section, size_t size) {
+    uint8_t own[sizeof(settings)];
+    mspringi_writer to = mspringi_writer_begin(own, network->kernels);
+    const size_t full = mspringi_section_size(network, &mspringi_section_settings);
+    settings_save(network, &to);
+    if (size < full)
+        memcpy(section + size, own + size, full - size);
+    return size < full ? full : size;
+}
+
+const mspringi_by_id mspringi_by_id_settings = {&mspringi_section_settings, NULL, NULL, settings_enter};
 
 /* ------------------------------------------------------------------------------------------------ step count */
 
@@ -231,6 +244,14 @@ static void motion_load(mspring_network *network, const uint8_t *from, size_t si
 const mspringi_section mspringi_section_motion = {
     "moti", "positions and velocities", false, motion_size, motion_save, motion_check, motion_load, NULL};
 
+static uint32_t motion_runs(const mspring_network *network, mspringi_io head, mspringi_run *runs) {
+    (void)head;
+    runs[0] = (mspringi_run){MSPRINGI_FLOATS, mspringi_state_arrays(network)};
+    return 1;
+}
+
+const mspringi_by_id mspringi_by_id_motion = {&mspringi_section_motion, motion_runs, NULL, NULL};
+
 /* ----------------------------------------------------------------------------------------------------- masses */
 
 // Contents of the section: kind; a mass for each particle; inverse masses by slot or, if some are scaled, a scale
@@ -376,6 +397,18 @@ static void masses_load(mspring_network *network, const uint8_t *from, size_t si
 const mspringi_section mspringi_section_masses = {"mass",      "masses",     false,       masses_size,
                                                   masses_save, masses_check, masses_load, NULL};
 
+static uint32_t masses_runs(const mspring_network *network, mspringi_io head, mspringi_run *runs) {
+    uint32_t kind;
+    MSPRINGI_HAND(&head, kind);
+    runs[0] =
+        (mspringi_run){MSPRINGI_BYTES, sizeof kind + network->topology.reserve.particle_end * sizeof(float)};
+    runs[1] = (mspringi_run){MSPRINGI_FLOATS, kind & SCALED ? 0 : 1};
+    runs[2] = (mspringi_run){MSPRINGI_BYTES, MSPRINGI_THE_REST};
+    return 3;
+}
+
+const mspringi_by_id mspringi_by_id_masses = {&mspringi_section_masses, masses_runs, NULL, NULL};
+
 /* ----------------------------------------------------------------------------------------------------- forces */
 
 static size_t forces_size(const mspring_network *network) {
@@ -415,3 +448,11 @@ static void forces_load(mspring_network *network, const uint8_t *from, size_t si
 
 const mspringi_section mspringi_section_forces = {
     "forc", "forces given for the next step", false, forces_size, forces_save, forces_check, forces_load, NULL};
+
+static uint32_t forces_runs(const mspring_network *network, mspringi_io head, mspringi_run *runs) {
+    (void)network;
+    runs[0] = (mspringi_run){MSPRINGI_FLOATS, head.size > 0 ? 2 : 0};
+    return 1;
+}
+
+const mspringi_by_id mspringi_by_id_forces = {&mspringi_section_forces, forces_runs, NULL, NULL};

@@ -1,5 +1,7 @@
 /// The queue of events: a ring that the host sizes.
 #include "store/events.h"
+
+#include "store/archive.h"
 #include "store/feature.h"
 
 void mspringi_events_push(mspring_network *network, mspring_event event) {
@@ -79,3 +81,19 @@ mspring_result mspring_network_read_events(mspring_network *network, mspring_eve
         *lost = queue->lost;
     return MSPRING_OK;
 }
+
+/* ----------------------------------------------------------------------------------------------------- archives */
+
+// Events that wait are in no archive: only the room for them.
+static void events_save(const mspring_network *network, mspringi_io *io) {
+    if (network->events)
+        MSPRINGI_HAND(io, network->events->capacity);
+}
+
+static mspring_result events_load(mspring_network *network, mspringi_io *io) {
+    uint32_t capacity;
+    MSPRINGI_HAND(io, capacity);
+    return mspring_network_reserve_events(network, mspringi_chunk_room(network, capacity));
+}
+
+const mspringi_chunk mspringi_chunk_events = {"evnt", "room for events", events_save, events_load, NULL};

@@ -62,6 +62,54 @@ mspringi_spring_slot mspringi_saved_place(const mspringi_saved *saved, mspring_i
 #define SECTION(name) extern const mspringi_section mspringi_section_##name;
 #include "store/features.def"
 
+/// All sections, in the order of loading.
+enum {
+#define SECTION(name) MSPRINGI_SECTION_##name,
+#include "store/features.def"
+    MSPRINGI_SECTIONS
+};
+extern const mspringi_section *const mspringi_sections[MSPRINGI_SECTIONS];
+
+/// Bytes of a section as the network would save it now; 0: it has none.
+size_t mspringi_section_size(const mspring_network *network, const mspringi_section *section);
+
+/// Where each section of a snapshot lies; size 0 if it has none.
+typedef struct mspringi_found {
+    const uint8_t *from[MSPRINGI_SECTIONS];
+    size_t size[MSPRINGI_SECTIONS];
+} mspringi_found;
+
+/// Load sections: all of them, or on error none.
+mspring_result mspringi_sections_load(mspring_network *network, const mspringi_snapshot_header *header,
+                                      const mspringi_found *in);
+
+/// A part of a section.
+typedef struct mspringi_run {
+    enum {
+        MSPRINGI_BYTES,  ///< `count` bytes, the same in any layout
+        MSPRINGI_FLOATS, ///< `count` arrays of floats by slot
+        MSPRINGI_BITS,   ///< a bit for each spring, by spring slot, in whole words of 16
+        MSPRINGI_SLOTS   ///< `count` slots, each with a double
+    } kind;
+    size_t count;
+} mspringi_run;
+#define MSPRINGI_MOST_RUNS 4
+/// Bytes up to the end.
+#define MSPRINGI_THE_REST SIZE_MAX
+
+/// A section in an archive: what lies by slot in a snapshot lies by id, so that any layout can load it (archive/by_id.c).
+typedef struct mspringi_by_id {
+    const mspringi_section *section;
+    /// List the parts of a section, from its head. NULL: it has bytes only. Bytes that are not there read as 0.
+    uint32_t (*runs)(const mspring_network *network, mspringi_io head, mspringi_run runs[MSPRINGI_MOST_RUNS]);
+    /// Adapt what else depends on the layout: in a section for the archive, and in one for this network. NULL: nothing
+    /// does. Return the size of the section, at most `size`.
+    void (*leave)(const mspring_network *network, uint8_t *section, size_t size);
+    size_t (*enter)(const mspring_network *network, uint8_t *section, size_t size);
+} mspringi_by_id;
+#define BY_ID(name) extern const mspringi_by_id mspringi_by_id_##name;
+#include "store/features.def"
+
 /// Fail with what is wrong with a section.
 mspring_result mspringi_section_fail(mspring_network *network, const mspringi_section *section, const char *format,
                                      ...) MSPRINGI_PRINTF(3, 4);

@@ -18,7 +18,7 @@
 #include "kernels/kernels.h"
 
 /// Grows with each change of the format, so that no library misreads a snapshot of another.
-#define MSPRINGI_SNAPSHOT_VERSION 11u
+#define MSPRINGI_SNAPSHOT_VERSION 12u
 #define MSPRINGI_SNAPSHOT_CHECKSUM_BYTES 8
 
 typedef struct mspringi_snapshot_header {

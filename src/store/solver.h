@@ -15,6 +15,8 @@
 #include "layout/topology.h"
 
 struct mspringi_writer;
+struct mspringi_io;
+struct mspringi_run;
 typedef struct mspringi_solver_ops mspringi_solver_ops;
 
 /// Two floats per slot, x and then y, in one block of memory.
@@ -107,11 +109,14 @@ struct mspringi_solver_ops {
     bool (*is_isolated)(const mspring_network *network, const void *object, size_t slot);
     bool (*has_isolated)(const void *object);
 
-    // describe: fill in its part of a plan. The others: its snapshot section (store/sections.h).
+    // describe: fill in its part of a plan. The others: its section (store/sections.h) in snapshots, and in archives.
     void (*describe)(const void *object, mspring_plan *plan);
     void (*save)(const mspring_network *network, const void *object, struct mspringi_writer *to);
     mspring_result (*check)(mspring_network *network, const void *object, const uint8_t *from, size_t size);
     void (*load)(mspring_network *network, void *object, const uint8_t *from, size_t size);
+    uint32_t (*runs)(const mspring_network *network, const void *object, struct mspringi_io head,
+                     struct mspringi_run *runs);
+    size_t (*enter)(const mspring_network *network, const void *object, uint8_t *section, size_t size);
 };
 
 /// Work of a calm substep, in explicit substeps.

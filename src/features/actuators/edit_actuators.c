@@ -3,6 +3,7 @@
 
 #include "base/cpu.h"
 #include "builder/builder.h"
+#include "store/archive.h"
 #include "store/changed.h"
 #include "store/feature.h"
 #include "store/id_pool.h"
@@ -104,8 +105,10 @@ static mspring_result make(mspring_network *network, const mspring_id *springs, 
     mspring_result result = allocate(network, *made);
     if (result == MSPRING_OK)
         result = fill(network, *made, springs);
-    if (result != MSPRING_OK)
+    if (result != MSPRING_OK) {
         free_all(network, *made);
+        *made = NULL;
+    }
     return result;
 }
 
@@ -124,6 +127,50 @@ mspring_result mspring_network_set_actuators(mspring_network *network, const msp
     network->actuators = made;
     return MSPRING_OK;
 }
+
+/* ----------------------------------------------------------------------------------------------------- archives */
+
+static void actuators_save(const mspring_network *network, mspringi_io *io) {
+    const mspringi_actuators *a = network->actuators;
+    if (!a)
+        return;
+    const uint32_t head[] = {a->count, a->changes};
+    mspringi_put(io->to, head, 2, sizeof head[0]);
+    mspringi_put(io->to, a->spring, a->count, sizeof *a->spring);
+    mspringi_put(io->to, a->nominal, a->count, sizeof *a->nominal);
+}
+
+// The rest length of an actuator may have become one that no actuator begins with, and its spring may be gone.
+static mspring_result check_archived(mspring_network *network, const mspring_id *springs, uint32_t count,
+                                     uint32_t changes, const float *nominal) {
+    bool good = count > 0 && changes >= 1 && changes <= MAX_CHANGES;
+    for (uint32_t i = 0; good && i < count; ++i)
+        good = springs[i] < network->topology.spring_count && nominal[i] >= SHORTEST && nominal[i] <= LONGEST;
+    return good ? MSPRING_OK
+                : mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT,
+                                "%u actuators of %u changes, or one of them, cannot be", (unsigned)count,
+                                (unsigned)changes);
+}
+
+static mspring_result actuators_load(mspring_network *network, mspringi_io *io) {
+    uint32_t head[2];
+    mspring_result result = MSPRING_OK;
+    mspringi_hand(io, head, 2, sizeof head[0]);
+    mspring_id *springs = mspringi_chunk_array(network, io, head[0], sizeof *springs, &result);
+    float *nominal = mspringi_chunk_array(network, io, head[0], sizeof *nominal, &result);
+    if (result == MSPRING_OK)
+        result = check_archived(network, springs, head[0], head[1], nominal);
+    if (result == MSPRING_OK)
+        result = make(network, springs, head[0], head[1], &network->actuators);
+    for (uint32_t i = 0; result == MSPRING_OK && i < head[0]; ++i)
+        network->actuators->nominal[i] = nominal[i];
+    mspringi_free(&network->memory, nominal);
+    mspringi_free(&network->memory, springs);
+    return result;
+}
+
+const mspringi_chunk mspringi_chunk_actuators = {"acts", "signals of actuators", actuators_save, actuators_load,
+                                                 &mspringi_section_actuators};
 
 uint32_t mspring_network_actuator_count(const mspring_network *network) {
     return network ? mspringi_actuator_count(network) : 0;

@@ -220,3 +220,16 @@ static void sleep_load(mspring_network *network, const uint8_t *from, size_t siz
 
 const mspringi_section mspringi_section_sleep = {"slee",     "sleep",     false,      NULL,
                                                  sleep_save, sleep_check, sleep_load, NULL};
+
+static uint32_t sleep_runs(const mspring_network *network, mspringi_io io, mspringi_run *runs) {
+    sleep_head head;
+    const size_t size = io.left;
+    hand_head(&io, &head);
+    runs[0] = (mspringi_run){MSPRINGI_BYTES, size - io.left};
+    runs[1] = (mspringi_run){MSPRINGI_SLOTS, head.still_count};
+    runs[2] = (mspringi_run){MSPRINGI_BYTES, head.has_bits ? words_of_particles(network) * sizeof(uint32_t) : 0};
+    runs[3] = (mspringi_run){MSPRINGI_FLOATS, head.has_force ? 2 : 0};
+    return 4;
+}
+
+const mspringi_by_id mspringi_by_id_sleep = {&mspringi_section_sleep, sleep_runs, NULL, NULL};

@@ -167,6 +167,11 @@ mspring_result mspringi_implicit_check(mspring_network *network, const mspringi_
                                        const uint8_t *from, size_t size);
 void mspringi_implicit_load(mspring_network *network, mspringi_implicit *implicit, const uint8_t *from,
                             size_t size);
+/// In archives: see mspringi_by_id (store/sections.h).
+uint32_t mspringi_implicit_runs(const mspring_network *network, const mspringi_implicit *implicit,
+                                struct mspringi_io head, struct mspringi_run *runs);
+size_t mspringi_implicit_enter(const mspring_network *network, const mspringi_implicit *implicit, uint8_t *section,
+                               size_t size);
 
 /// Arguments that the workers of a substep share.
 typedef struct mspringi_implicit_substep {

@@ -127,3 +127,33 @@ void mspringi_implicit_load(mspring_network *network, mspringi_implicit *n, cons
         mspringi_hand(&io, n->coarse.values, n->coarse.value_count, sizeof(double));
     n->has_constraints_in_coarse = false;
 }
+
+/* ------------------------------------------------------------------------------------------------------ archives */
+
+uint32_t mspringi_implicit_runs(const mspring_network *network, const mspringi_implicit *n, mspringi_io io,
+                                mspringi_run *runs) {
+    const size_t size = io.left, slots = mspringi_slot_count(network);
+    implicit_head head;
+    hand_head(&io, &head);
+    runs[0] = (mspringi_run){MSPRINGI_BYTES, size - io.left};
+    runs[1] = (mspringi_run){MSPRINGI_FLOATS, n->history_size / slots};
+    runs[2] = (mspringi_run){MSPRINGI_BYTES, MSPRINGI_THE_REST};
+    return 3;
+}
+
+// Other tiles begin with another matrix, and another order of elimination is as good.
+size_t mspringi_implicit_enter(const mspring_network *network, const mspringi_implicit *n, uint8_t *section,
+                               size_t size) {
+    mspringi_io io = mspringi_io_from(section, size);
+    mspringi_writer to = mspringi_writer_begin(section, network->kernels);
+    mspringi_io back = mspringi_io_to(&to);
+    implicit_head head;
+    hand_head(&io, &head);
+    if (head.fingerprint == fingerprint_of(n) || io.is_short)
+        return size;
+    const size_t history = n->history_size * sizeof(float);
+    head.fingerprint = fingerprint_of(n);
+    head.age = 0;
+    hand_head(&back, &head);
+    return io.left > history ? size - (io.left - history) : size;
+}

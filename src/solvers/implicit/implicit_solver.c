@@ -3,6 +3,7 @@
 
 #include "features/contact/floor.h"
 #include "solvers/implicit/implicit.h"
+#include "store/sections.h"
 
 static mspring_result create(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
                              void **object) {
@@ -204,6 +205,15 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
     mspringi_implicit_load(network, object, from, bytes);
 }
 
+static uint32_t runs(const mspring_network *network, const void *object, struct mspringi_io head,
+                     struct mspringi_run *list) {
+    return mspringi_implicit_runs(network, object, head, list);
+}
+
+static size_t enter(const mspring_network *network, const void *object, uint8_t *section, size_t size) {
+    return mspringi_implicit_enter(network, object, section, size);
+}
+
 #define BOTH                                                                                                       \
     .takes_one_substep = true, .has_implicit_grips = true, .has_implicit_contact = true,                           \
     .has_implicit_areas = true, .create = create, .build = build, .fits = fits, .adjust = adjust,                  \
@@ -212,7 +222,7 @@ static void load(mspring_network *network, void *object, const uint8_t *from, si
     .allow_work = allow_work, .count_work = count_work, .keep = keep, .restore = restore, .forget = forget,        \
     .is_finite = is_finite, .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring,        \
     .new_floor = new_floor, .is_isolated = is_isolated, .has_isolated = has_isolated, .describe = describe,        \
-    .save = save, .check = check, .load = load
+    .save = save, .check = check, .load = load, .runs = runs, .enter = enter
 
 const mspringi_solver_ops mspringi_implicit_ops = {.can_add = true, BOTH};
 

@@ -1,0 +1,72 @@
+/// @file archive.h
+/// Archives: files that all later versions read.
+///
+///   head     16 bytes: magic, version of the format, 0
+///   chunks   each: tag (4 bytes), version (2), flags (2), size (8), hash (8) of all that, then so many bytes
+///   the last chunk has the tag "end." and no bytes
+///
+/// All is little-endian. A chunk is one of these:
+///
+///   netw   definition, counts and bounds of the network (archive/archive_head.c)
+///   plan   ends and flags of the first springs, and where the layout had the first particles
+///   a row of features.def: CHUNK, or SECTION, whose bytes are those of a snapshot, but by id (BY_ID)
+///
+/// Rules for versions. A reader ignores what a chunk has behind the bytes that it knows, so chunks may grow at their
+/// ends; what an older archive lacks reads as 0. A change that older readers would misread gets a new version, and the
+/// reader converts the old one. Chunks of unknown tag or later version are skipped and counted, unless
+/// MSPRINGI_CHUNK_IS_NEEDED. tests/archive/files has files of each version.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef MSPRINGI_ARCHIVE_H
+#define MSPRINGI_ARCHIVE_H
+
+#include "builder/builder.h"
+#include "store/sections.h"
+
+/// Version of the format of files, and of the chunks that this library writes.
+#define MSPRINGI_ARCHIVE_VERSION 1u
+#define MSPRINGI_CHUNK_VERSION 1u
+
+/// Flags of a chunk: without it the network would be another one.
+#define MSPRINGI_CHUNK_IS_NEEDED 1u
+
+/// What a network has beside its sections.
+typedef struct mspringi_chunk {
+    char tag[5];
+    const char *name; ///< of its contents, for messages
+    /// Write it; nothing if the network has no such data.
+    void (*save)(const mspring_network *network, mspringi_io *io);
+    /// Give it to a new network, of which it is the first. It may come from anywhere.
+    mspring_result (*load)(mspring_network *network, mspringi_io *io);
+    /// A section that needs it, and is loaded right after it. NULL: there is none, and it is loaded before the
+    /// sections.
+    const mspringi_section *section;
+} mspringi_chunk;
+
+#define CHUNK(name) extern const mspringi_chunk mspringi_chunk_##name;
+#include "store/features.def"
+
+/// Read an array of a chunk: NULL if it is too short or memory is out, and then *result says so. Free it.
+void *mspringi_chunk_array(mspring_network *network, mspringi_io *io, size_t count, size_t width,
+                           mspring_result *result);
+
+/// Room for events that an archive may ask for: more than a network of its size has use for is cut.
+static inline uint32_t mspringi_chunk_room(const mspring_network *network, uint32_t asked) {
+    const mspringi_reserve *r = &network->topology.reserve;
+    const uint32_t ids = r->particle_end + r->spring_end, most = ids > 0x10000 ? ids : 0x10000;
+    return asked < most ? asked : most;
+}
+
+/// Definition of a network from the builder's archive: as given, and what else the archive had. NULL: the archive's.
+mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring_network_def *given,
+                                         mspring_network_def *def);
+/// The builder whose particles lie where the archived layout had them. Its particles are made in this memory.
+mspring_result mspringi_archive_lay_out(const mspring_builder *builder, mspringi_memory *memory,
+                                        mspringi_message *message, mspring_builder *placed);
+/// True if the archived layout was one that may have bundles.
+bool mspringi_archive_may_have_bundles(const mspring_builder *builder);
+/// Give a new network what the archive has beside particles and springs.
+mspring_result mspringi_archive_resume(mspring_network *network, const mspring_builder *builder,
+                                       const mspring_network_def *given);
+
+#endif
