@@ -85,7 +85,7 @@ static mspring_result hand_head(archiver *a, const void *what, mspringi_io *io) 
 // in the order of their slots (as network/survivors.c has them).
 static void find_places(const mspringi_topology *t, const mspring_id *particle_of_slot, int32_t (*places)[2]) {
     for (mspring_id p = 0; p < t->reserve.first_particle; ++p)
-        places[p][0] = places[p][1] = -10 - 3 * (int32_t)t->slot_of_particle[p];
+        places[p][0] = places[p][1] = (int32_t)(-10 - 3 * (int64_t)t->slot_of_particle[p]);
     for (uint32_t i = 0; i < t->lattice_rows; ++i)
         for (uint32_t k = t->rows[i].first_span; k < t->rows[i].first_span + t->rows[i].span_count; ++k)
             for (uint32_t slot = t->spans[k].first_slot; slot < t->spans[k].end_slot; ++slot) {

@@ -31,12 +31,17 @@ static uint32_t implicit_runs(const mspring_network *network, mspringi_io head, 
     return solver->ops->runs ? solver->ops->runs(network, solver->object, head, runs) : 1;
 }
 
+static void implicit_leave(const mspring_network *network, uint8_t *section, size_t size) {
+    if (network->solver.ops->leave)
+        network->solver.ops->leave(network, section, size);
+}
+
 static size_t implicit_enter(const mspring_network *network, uint8_t *section, size_t size) {
     const mspringi_solver *solver = &network->solver;
     return solver->ops->enter ? solver->ops->enter(network, solver->object, section, size) : size;
 }
 
-const mspringi_by_id mspringi_by_id_implicit = {&mspringi_section_implicit, implicit_runs, NULL, implicit_enter};
+const mspringi_by_id mspringi_by_id_implicit = {&mspringi_section_implicit, implicit_runs, implicit_leave, implicit_enter};
 
 /* --------------------------------------------------------------------------------------------------- precision */
 

@@ -116,6 +116,7 @@ struct mspringi_solver_ops {
     void (*load)(mspring_network *network, void *object, const uint8_t *from, size_t size);
     uint32_t (*runs)(const mspring_network *network, const void *object, struct mspringi_io head,
                      struct mspringi_run *runs);
+    void (*leave)(const mspring_network *network, uint8_t *section, size_t size);
     size_t (*enter)(const mspring_network *network, const void *object, uint8_t *section, size_t size);
 };
 

@@ -107,7 +107,11 @@ void mspringi_irregular_list_fill(mspringi_irregular_list *list, const mspringi_
     }
 }
 
-static uint32_t key_of(const mspringi_irregular_list *list, const mspringi_particle *particle) {
+// Particles of an archive lie at the negative of the order that they had (archive/archive_write.c).
+static uint32_t key_of(const mspringi_irregular_list *list, const mspring_builder *builder, uint32_t p) {
+    const mspringi_particle *particle = &builder->particles[p];
+    if (builder->archive)
+        return (uint32_t)-particle->x;
     return spread_bits(quantise(particle->x, list->min_x, list->max_x)) |
            spread_bits(quantise(particle->y, list->min_y, list->max_y)) << 1;
 }
@@ -118,7 +122,7 @@ void mspringi_irregular_list_sort(mspringi_irregular_list *list, const mspringi_
     for (uint32_t i = 0; i < list->count; ++i) {
         const uint32_t p = list->particles[i];
         const uint32_t key =
-            i < list->assigned_count ? assignment->assigned_strip[p] : key_of(list, &graph->builder->particles[p]);
+            i < list->assigned_count ? assignment->assigned_strip[p] : key_of(list, graph->builder, p);
         list->keys[i] = (uint64_t)key << 32 | p;
     }
     mspringi_sort_keys(list->keys, list->scratch, list->assigned_count);

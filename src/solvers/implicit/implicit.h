@@ -170,6 +170,7 @@ void mspringi_implicit_load(mspring_network *network, mspringi_implicit *implici
 /// In archives: see mspringi_by_id (store/sections.h).
 uint32_t mspringi_implicit_runs(const mspring_network *network, const mspringi_implicit *implicit,
                                 struct mspringi_io head, struct mspringi_run *runs);
+void mspringi_implicit_leave(const mspring_network *network, uint8_t *section, size_t size);
 size_t mspringi_implicit_enter(const mspring_network *network, const mspringi_implicit *implicit, uint8_t *section,
                                size_t size);
 

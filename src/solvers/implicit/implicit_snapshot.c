@@ -141,6 +141,17 @@ uint32_t mspringi_implicit_runs(const mspring_network *network, const mspringi_i
     return 3;
 }
 
+// The tiles matter to a matrix of theirs only.
+void mspringi_implicit_leave(const mspring_network *network, uint8_t *section, size_t size) {
+    mspringi_io io = mspringi_io_from(section, size);
+    mspringi_writer to = mspringi_writer_begin(section, network->kernels);
+    mspringi_io back = mspringi_io_to(&to);
+    implicit_head head;
+    hand_head(&io, &head);
+    head.fingerprint = head.age > 0 ? head.fingerprint : 0;
+    hand_head(&back, &head);
+}
+
 // Other tiles begin with another matrix, and another order of elimination is as good.
 size_t mspringi_implicit_enter(const mspring_network *network, const mspringi_implicit *n, uint8_t *section,
                                size_t size) {
