@@ -110,7 +110,6 @@ void mspringi_archive_hand_head(mspringi_io *io, mspringi_archive_head *head) {
     MSPRINGI_HAND(io, head->parameter_fingerprint);
     MSPRINGI_HAND(io, head->basis.scale);
     MSPRINGI_HAND(io, head->basis.turn_inertia);
-    MSPRINGI_HAND(io, head->basis.tile_size);
     MSPRINGI_HAND(io, def->flags);
     mspringi_hand(io, names, 3, sizeof names[0]);
     mspringi_hand(io, &def->iterations, 3, sizeof(uint32_t)); // and the next two

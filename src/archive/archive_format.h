@@ -18,7 +18,7 @@ typedef struct mspringi_archive_head {
     float shortest_set, grid;
     double shortest;
     uint64_t parameter_fingerprint;
-    mspringi_solver_basis basis; ///< of the solver; tile_size 0: it has none
+    mspringi_solver_basis basis; ///< of the solver, without its tiles; scale 0: it has none
     mspring_network_def def;
 } mspringi_archive_head;
 

@@ -66,18 +66,17 @@ bool mspringi_archive_may_have_bundles(const mspring_builder *builder) {
 
 /* ----------------------------------------------------------------------------------------------------- messages */
 
-// What is wrong with an archive is no wrong argument of the host's. Sections call it a snapshot.
-static mspring_result name_archive(mspring_network *network, mspring_result result, const char *chunk) {
+mspring_result mspringi_archive_blame(mspringi_message *message, mspring_result result, const char *chunk) {
     static const char snapshot[] = "the snapshot's ";
-    const mspringi_message message = network->message;
-    const char *text = message.text;
+    const mspringi_message said = *message;
+    const char *text = said.text;
     if (result == MSPRING_OK || result == MSPRING_ERROR_MEMORY || result == MSPRING_ERROR_THREAD)
         return result;
     if (chunk)
-        return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "the archive's %s: %s", chunk, text);
+        return mspringi_fail(message, MSPRING_ERROR_SNAPSHOT, "the archive's %s: %s", chunk, text);
     if (strncmp(text, snapshot, sizeof snapshot - 1) == 0)
         text += sizeof snapshot - 1;
-    return mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "the archive's %s", text);
+    return mspringi_fail(message, MSPRING_ERROR_SNAPSHOT, "the archive's %s", text);
 }
 
 /* ------------------------------------------------------------------------------------------------------- chunks */
@@ -108,7 +107,7 @@ static mspring_result load_chunk(mspring_network *network, const mspringi_archiv
     if (result == MSPRING_OK && io.is_short)
         result = mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "they take %zu bytes, which are too few",
                                found.size);
-    return name_archive(network, result, chunk->name);
+    return mspringi_archive_blame(&network->message, result, chunk->name);
 }
 
 /* ----------------------------------------------------------------------------------------------------- sections */
@@ -161,7 +160,7 @@ static mspring_result load_sections(mspring_network *network, const mspringi_arc
         result = mspringi_sections_load(network, &header, &in);
     for (int i = 0; i < MSPRINGI_SECTIONS; ++i)
         mspringi_free(&network->memory, made[i]);
-    return name_archive(network, result, NULL);
+    return mspringi_archive_blame(&network->message, result, NULL);
 }
 
 static mspring_result load_section(mspring_network *network, const mspringi_archive *archive,
@@ -175,7 +174,7 @@ static mspring_result load_section(mspring_network *network, const mspringi_arch
     if (result == MSPRING_OK)
         section->load(network, from, size);
     mspringi_free(&network->memory, made);
-    return name_archive(network, result, NULL);
+    return mspringi_archive_blame(&network->message, result, NULL);
 }
 
 /* ------------------------------------------------------------------------------------------------------- layout */
@@ -201,7 +200,7 @@ static void set_bounds(mspring_network *network, const mspringi_archive_head *he
 }
 
 static void set_basis(mspring_network *network, const mspringi_archive_head *head) {
-    if (head->basis.tile_size > 0 && head->basis.tile_size == mspringi_solver_get_basis(&network->solver).tile_size)
+    if (head->basis.scale > 0.0 && network->solver.ops->set_basis)
         network->solver.ops->set_basis(network->solver.object, network, &head->basis);
 }
 

@@ -11,7 +11,10 @@ static mspring_result check(mspring_builder *builder, const mspringi_struct *of,
         if (ids[i] >= there)
             return mspringi_fail(&builder->message, MSPRING_ERROR_ID, "index %u of the list: ids are below %zu, not %s",
                                  (unsigned)i, there, MSPRINGI_ID(ids[i]));
-    return count > 0 ? mspringi_check_outputs(&builder->message, of, defs, count) : MSPRING_OK;
+    if (count == 0)
+        return MSPRING_OK;
+    const mspring_result result = mspringi_check_given(&builder->message, of, defs);
+    return result == MSPRING_OK ? mspringi_check_outputs(&builder->message, of, defs, count) : result;
 }
 
 mspring_result mspring_builder_get_particles(mspring_builder *builder, const mspring_id *ids, mspring_id first,

@@ -301,7 +301,7 @@ static mspring_result lay_out(mspring_network *network, const mspring_builder *b
             &network->message);
     if (builder->archive)
         mspringi_free(&network->memory, placed.particles);
-    return result;
+    return builder->archive ? mspringi_archive_blame(&network->message, result, "plan") : result;
 }
 
 // Fill a network whose memory is initialised. Its message describes a failure.

@@ -63,6 +63,9 @@ mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring
 /// The builder whose particles lie where the archived layout had them. Its particles are made in this memory.
 mspring_result mspringi_archive_lay_out(const mspring_builder *builder, mspringi_memory *memory,
                                         mspringi_message *message, mspring_builder *placed);
+/// Turn a failure into one of the archive's: what is wrong there is no wrong argument of the host's. chunk: its
+/// contents; NULL: the message is that of a section, which speaks of a snapshot.
+mspring_result mspringi_archive_blame(mspringi_message *message, mspring_result result, const char *chunk);
 /// True if the archived layout was one that may have bundles.
 bool mspringi_archive_may_have_bundles(const mspring_builder *builder);
 /// Give a new network what the archive has beside particles and springs.

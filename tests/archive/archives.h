@@ -21,13 +21,21 @@ mspring_network *archives_read(const archived *from, uint32_t workers);
 /// @return the network that was read
 mspring_network *archives_check_same(const mspring_network *network, uint32_t workers);
 
-/// Where a chunk's bytes are; NULL if there is none.
+/// Both go on for so many steps with the same bits, and end in the same snapshot.
+void archives_check_goes_on(mspring_network *network, mspring_network *other, uint32_t steps);
+
+/// Networks that have a bit of everything between them.
+enum { ARCHIVES_KINDS = 12 };
+mspring_network *archives_make(int kind);
+
+/// Where the bytes of a chunk are; NULL if there is none.
 uint8_t *archives_chunk(const archived *in, const char *tag, size_t *size);
 
-/// Make the checksums of all chunks right again.
+/// Make the checksums of all chunks right again, as far as these lie where their sizes say.
 void archives_renew(archived *of);
 
-/// True if reading, or making a network, fails with this in the message; then a builder that read nothing is empty.
-bool archives_is_refused(const archived *from, const char *part);
+/// Reading it, or making a network of it, fails with MSPRING_ERROR_SNAPSHOT; builder and memory are as before.
+/// @return the message, valid until the next call
+const char *archives_refused(const archived *from);
 
 #endif
