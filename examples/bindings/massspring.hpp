@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -45,6 +46,10 @@ public:
         std::vector<mspring_id> ids(size_t(def.width) * def.height);
         check(mspring_builder_add_lattice(get(), &def, ids.data()));
         return ids;
+    }
+    /// Read an archive: a network that is made of this builder goes on where the archived one was.
+    void read(const std::vector<unsigned char> &archive) {
+        check(mspring_builder_read(get(), archive.data(), archive.size(), nullptr));
     }
     void check(mspring_result result) const {
         if (result != MSPRING_OK)
@@ -89,6 +94,22 @@ public:
         std::uint64_t value = 0;
         check(mspring_network_state_hash(get(), &value));
         return value;
+    }
+    /// All of the network, for a file that later versions read, too.
+    std::vector<unsigned char> archive() const {
+        std::vector<unsigned char> bytes;
+        const auto append = [](const void *piece, size_t size, void *user) {
+            const auto *from = static_cast<const unsigned char *>(piece);
+            auto &to = *static_cast<std::vector<unsigned char> *>(user);
+            try {
+                to.insert(to.end(), from, from + size);
+            } catch (const std::bad_alloc &) {
+                return MSPRING_ERROR_MEMORY;
+            }
+            return MSPRING_OK;
+        };
+        check(mspring_network_write(get(), append, &bytes));
+        return bytes;
     }
     void check(mspring_result result) const {
         if (result != MSPRING_OK)

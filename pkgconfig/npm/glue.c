@@ -42,3 +42,27 @@ mspring_result massspring_steps(mspring_network *network, double dt, uint32_t co
     }
     return result;
 }
+
+typedef struct bytes {
+    unsigned char *to; ///< NULL: only count them
+    size_t size;
+} bytes;
+
+static mspring_result append(const void *piece, size_t size, void *user) {
+    bytes *all = user;
+    for (size_t i = 0; all->to && i < size; ++i)
+        all->to[all->size + i] = ((const unsigned char *)piece)[i];
+    all->size += size;
+    return MSPRING_OK;
+}
+
+/// Write an archive to memory.
+/// @param to    NULL: only count the bytes
+/// @param size  receives their number
+mspring_result massspring_archive(const mspring_network *network, unsigned char *to, size_t *size);
+mspring_result massspring_archive(const mspring_network *network, unsigned char *to, size_t *size) {
+    bytes all = {to, 0};
+    const mspring_result result = mspring_network_write(network, append, &all);
+    *size = all.size;
+    return result;
+}

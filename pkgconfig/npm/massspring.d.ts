@@ -63,6 +63,11 @@ export interface Builder {
   addStrainLimits(firstSpring: number, count: number, strain: number, stiffening: number): number;
   addMesh(options: MeshOptions): { firstParticle: number; firstSpring: number };
   addDisc(options: DiscOptions): { firstParticle: number; firstSpring: number };
+  /**
+   * Read an archive of Network.write() into an empty builder. A network that is made of it goes on where that one was;
+   * the options are what is to be different. Returns how many parts only later versions know.
+   */
+  read(archive: Uint8Array): number;
   /** Frees it now. Otherwise the garbage collector does so some time. */
   free(): void;
 }
@@ -232,6 +237,8 @@ export interface Network {
   /** A snapshot, for rollback and replay: the following steps repeat, bit for bit. */
   save(contents?: SnapshotContents): Uint8Array;
   load(snapshot: Uint8Array): void;
+  /** An archive, for files: all but what waits to be read. This and later versions read it, see Builder.read(). */
+  write(): Uint8Array;
   clone(): Network;
 }
 

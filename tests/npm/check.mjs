@@ -212,6 +212,18 @@ function goingBack(ms) {
   refused(() => network.load(snapshot), 'snapshot', /./);
   refused(() => network.load('snapshot'), 'argument', /Uint8Array/);
   assert.strictEqual(network.stateHash(), hash, 'calls that fail change nothing');
+  const archive = network.write(), builder = new ms.Builder();
+  assert(archive instanceof Uint8Array);
+  assert.strictEqual(builder.read(archive), 0);
+  const again = new ms.Network(builder), light = new ms.Network(builder, { gravityY: -1 });
+  assert.deepStrictEqual(again.write(), archive);
+  assert.strictEqual(light.getSettings().gravityY, -1);
+  network.step(1 / 64, 10);
+  again.step(1 / 64, 10);
+  assert.strictEqual(again.stateHash(), network.stateHash());
+  refused(() => new ms.Builder().read(archive.subarray(0, 3000)), 'snapshot', /cut off/);
+  refused(() => builder.read(archive), 'argument', /empty/);
+  refused(() => builder.read([1]), 'argument', /Uint8Array/);
 }
 
 function hostile(ms) {

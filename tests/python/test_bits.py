@@ -5,6 +5,7 @@ SPDX-License-Identifier: MIT
 import copy
 import multiprocessing
 import os
+import tempfile
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -85,6 +86,29 @@ class Bits(unittest.TestCase):
             for again in (network, clone, copied):
                 again.step(1 / 64, 10)
                 self.assertEqual(again.state_hash(), after)
+
+    def test_archive(self):
+        network = bar(gravity=(0, -5))
+        network.reserve_events(4000)
+        network.step(1 / 64, 10)
+        archive = network.archive()
+        with tempfile.TemporaryDirectory() as folder:
+            network.write(Path(folder) / "bar.archive")
+            networks = [massspring.Network.read(Path(folder) / "bar.archive"), massspring.Network.read(archive),
+                        massspring.Network.read(bytearray(archive), worker_count=2)]
+        for again in networks:
+            self.assertEqual(again.archive(), archive)
+            again.step(1 / 64, 10)
+        network.step(1 / 64, 10)
+        self.assertEqual({again.state_hash() for again in networks}, {network.state_hash()})
+        heavy = massspring.Network.read(archive, gravity=(0, -20))
+        self.assertEqual(heavy.settings.gravity_y, -20)
+        count = min(network.spring_count, 1500)
+        network.break_springs(range(count))
+        networks[0].break_springs(range(count))
+        self.assertEqual(len(networks[0].read_events()), len(network.read_events()))
+        self.assertRaisesRegex(massspring.SnapshotError, "cut off", massspring.Network.read, archive[:-30])
+        self.assertRaises(FileNotFoundError, massspring.Network.read, "no such file")
 
     def test_threads_step_different_networks(self):
         networks = [bar() for _ in range(4)]

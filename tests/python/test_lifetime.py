@@ -198,7 +198,13 @@ class Lifetime(unittest.TestCase):
         error = massspring.UnstableError("text", -7, 3, None)
         again = pickle.loads(pickle.dumps(error))
         self.assertEqual((type(again), again.particle, str(again)), (massspring.UnstableError, 3, "text"))
-        self.assertRaises(TypeError, pickle.dumps, pair())
+        network = pair()
+        network.step(1 / 64, 3)
+        again = pickle.loads(pickle.dumps(network))
+        for one in (network, again):
+            one.step(1 / 64, 5)
+        self.assertEqual(again.state_hash(), network.state_hash())
+        self.assertEqual(again.time, network.time)
 
 
 if __name__ == "__main__":

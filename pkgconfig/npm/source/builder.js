@@ -84,6 +84,19 @@ export class Builder extends Handle {
     return { particles, firstSpring };
   }
 
+  read(archive) {
+    if (!(archive instanceof Uint8Array)) fail('an archive must be a Uint8Array');
+    let skipped;
+    this.#add((core, exports, pointer, found) => {
+      const copy = core.take(Math.max(1, archive.length));
+      new Uint8Array(core.memory.buffer).set(archive, copy);
+      const result = exports.mspring_builder_read(pointer, copy, archive.length, found);
+      skipped = core.data.getUint32(found, true);
+      return result;
+    });
+    return skipped;
+  }
+
   addStrainLimits(firstSpring, count, strain, stiffening) {
     return this.#add((core, exports, pointer, id) =>
       exports.mspring_builder_add_strain_limits(pointer, firstSpring, count, strain, stiffening, id))[0];

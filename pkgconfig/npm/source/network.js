@@ -14,8 +14,10 @@ export class Made {
 function create(core, builder, options) {
   if (!(builder instanceof Builder) || builder.core !== core) fail('a network needs a Builder of the same module');
   return core.call(() => {
-    const { pointer } = builder, def = core.write('network_def', options);
-    core.check(core.exports.massspring_network(pointer, def, core.word), core.exports.mspring_builder_error(pointer));
+    const { exports } = core, { pointer } = builder, def = core.blank('network_def');
+    core.check(exports.mspring_builder_get_network_def(pointer, def), exports.mspring_builder_error(pointer));
+    core.overlay('network_def', def, options);
+    core.check(exports.massspring_network(pointer, def, core.word), exports.mspring_builder_error(pointer));
     return core.data.getUint32(core.word, true);
   });
 }
@@ -291,6 +293,16 @@ export class Network extends Laws {
       const copy = core.take(Math.max(1, snapshot.length));
       new Uint8Array(core.memory.buffer).set(snapshot, copy);
       return exports.mspring_network_load(pointer, copy, snapshot.length);
+    });
+  }
+
+  write() {
+    const { core } = this;
+    return core.call(() => {
+      this.check(core.exports.massspring_archive(this.pointer, 0, core.word));
+      const size = core.data.getUint32(core.word, true), found = core.take(size);
+      this.check(core.exports.massspring_archive(this.pointer, found, core.word));
+      return new Uint8Array(core.memory.buffer, found, size).slice();
     });
   }
 

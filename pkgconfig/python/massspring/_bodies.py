@@ -113,6 +113,8 @@ class BodyCalls(NetworkCalls):
         self._change(lib.mspring_network_read_contact_events, pointer("mspring_contact_event", events), len(events),
                      count, lost)
         self.contact_events_lost = lost[0]
+        if 0 < count[0] == len(events):  # there may be more, of a network from an archive
+            return np.concatenate((events, self.read_contact_events()))
         return events[:count[0]].copy()
 
     def set_contact_groups(self, groups: int, masks: int, ids: Ids = None) -> None:

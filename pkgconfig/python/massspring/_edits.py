@@ -101,6 +101,8 @@ class EditCalls(NetworkCalls):
         count, lost = ffi.new("uint32_t *"), ffi.new("uint64_t *")
         self._change(lib.mspring_network_read_events, pointer("mspring_event", events), len(events), count, lost)
         self.events_lost = lost[0]
+        if 0 < count[0] == len(events):  # there may be more, of a network from an archive
+            return np.concatenate((events, self.read_events()))
         return events[:count[0]].copy()
 
     # ----------------------------------------------------------------------------------------------- components

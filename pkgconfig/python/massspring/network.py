@@ -4,14 +4,16 @@ SPDX-License-Identifier: MIT
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Union
+import os
+from typing import TYPE_CHECKING, Any, Dict, List, Tuple, Union
 
 import numpy as np
 
 from . import _header
 from ._bodies import BodyCalls
 from ._calls import count_of
-from ._core import as_number, bad_argument, enum_value, fail, ffi, filled, lib, pointer, text_of, with_keywords
+from ._core import (as_number, bad_argument, changed, empty, enum_value, fail, ffi, filled, lib, pointer, text_of,
+                    with_keywords)
 from ._edits import EditCalls
 from ._laws import LawCalls
 from ._measure import MeasureCalls
@@ -170,6 +172,58 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
             raise bad_argument("the snapshot's bytes must lie together")
         with self._lock:
             self._change(lib.mspring_network_load, ffi.from_buffer(buffer), buffer.nbytes)
+
+    # ------------------------------------------------------------------------------------------------- archives
+
+    def archive(self) -> bytes:
+        """An archive: all of the network but hooks, components and events that wait, as bytes.
+
+        This and all later versions read it, on every machine. Networks are pickled as archives.
+        """
+        pieces: List[bytes] = []
+
+        @ffi.callback("mspring_write_fn", error=_header.ERROR_MEMORY)
+        def write(piece: Any, size: int, _: Any) -> int:
+            pieces.append(ffi.buffer(piece, size)[:])
+            return 0
+
+        self._read(lib.mspring_network_write, write, ffi.NULL)
+        return b"".join(pieces)
+
+    def write(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Write an archive to a file. Network.read() makes a network of it that goes on."""
+        archive = self.archive()
+        with open(path, "wb") as file:
+            file.write(archive)
+
+    @classmethod
+    @with_keywords("mspring_network_def")
+    def read(cls, source: Union[bytes, str, os.PathLike[str]], **settings: Unpack[NetworkKeywords]) -> Network:
+        """Make a network of an archive, which goes on where the archived one was, with the same ids.
+
+        source    bytes of archive(), or the path of a file
+        settings  what is to be different, such as worker_count
+        """
+        if isinstance(source, (str, os.PathLike)):
+            with open(source, "rb") as file:
+                source = file.read()
+        return cls._of_archive(bytes(source), dict(settings))
+
+    @classmethod
+    def _of_archive(cls, archive: bytes, settings: Dict[str, Any]) -> Network:
+        made, def_ = ffi.new("mspring_network **"), empty("mspring_network_def")
+        with Builder() as builder:
+            builder._call(lib.mspring_builder_read, ffi.from_buffer(archive), len(archive), ffi.NULL)
+            builder._call(lib.mspring_builder_get_network_def, def_)
+            builder._call(lib.mspring_network_create, changed("mspring_network_def", def_, settings), made)
+        network = cls.__new__(cls)
+        network._take(made[0])
+        network._was_compacted = True  # perhaps
+        network._event_capacity = network._contact_capacity = 1024  # read at a time
+        return network
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return type(self)._of_archive, (self.archive(), {})
 
     # ------------------------------------------------------------------------------------------------- pictures
 
