@@ -61,8 +61,8 @@ const mspringi_by_id *mspringi_by_id_of(const mspringi_section *section);
 /// too few or too many.
 size_t mspringi_by_id_size(const mspring_network *network, const mspringi_by_id *by, bool is_archived,
                            const uint8_t *from, size_t size);
-/// Translate it into so many zeros, and as many again as the network's own section has (mspringi_by_id.enter). False:
-/// it names particles that are not there.
+/// Translate it into so many zeros, and as many again as the network's own section has (mspringi_by_id.enter).
+/// False: it names particles that are not there.
 bool mspringi_by_id_translate(const mspring_network *network, const mspringi_by_id *by, bool is_archived,
                               const uint8_t *from, size_t size, uint8_t *to);
 

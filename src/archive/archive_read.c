@@ -27,9 +27,8 @@ typedef struct known {
 
 // Name of a chunk's contents, and its number; NULL if this library does not know it.
 static const char *name_of(const char *tag, uint32_t *number) {
-    static const known own[] = {{mspringi_head_tag, "definition"},
-                                {mspringi_plan_tag, "plan"},
-                                {mspringi_end_tag, "end"}};
+    static const known own[] = {
+        {mspringi_head_tag, "definition"}, {mspringi_plan_tag, "plan"}, {mspringi_end_tag, "end"}};
     static const mspringi_chunk *const chunks[] = {
 #define CHUNK(name) &mspringi_chunk_##name,
 #include "store/features.def"
@@ -116,8 +115,8 @@ static mspring_result check_head(mspring_builder *builder, const mspringi_archiv
     if (result != MSPRING_OK)
         return fail_in(builder, "definition", message.text);
     const bool has_counts = head->first_particle >= 1 && head->first_particle <= head->particle_end &&
-                            head->particle_end <= MSPRING_MAX_PARTICLES &&
-                            head->first_spring <= head->spring_end && head->spring_end <= MSPRING_MAX_SPRINGS;
+                            head->particle_end <= MSPRING_MAX_PARTICLES && head->first_spring <= head->spring_end &&
+                            head->spring_end <= MSPRING_MAX_SPRINGS;
     const uint32_t flags =
         MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE | MSPRING_NETWORK_PRECISE;
     if (is_short || !has_counts || head->def.flags & ~flags || head->may_have_bundles > 1 || head->is_compact > 1 ||
@@ -156,7 +155,8 @@ static mspring_result find_parts(mspring_builder *builder, const uint8_t *bytes,
                                  parts *out) {
     const size_t particles = head->particle_end, springs = head->spring_end;
     out->arrays = head->def.flags & MSPRING_NETWORK_PRECISE ? 8 : 6;
-    mspring_result result = find(builder, bytes, mspringi_section_motion.tag, particles * out->arrays * 4, &out->motion);
+    mspring_result result =
+        find(builder, bytes, mspringi_section_motion.tag, particles * out->arrays * 4, &out->motion);
     if (result == MSPRING_OK)
         result = find(builder, bytes, mspringi_section_values.tag, springs * 12, &out->values);
     if (result == MSPRING_OK)
@@ -207,8 +207,8 @@ static mspring_result append_particle(mspring_builder *builder, const mspringi_a
 
 static mspring_result append_spring(mspring_builder *builder, const mspringi_archive_head *head, const parts *in,
                                     mspring_id s) {
-    const uint8_t *from = in->plan + head->first_particle * MSPRINGI_PLAN_PARTICLE_BYTES +
-                          (size_t)s * MSPRINGI_PLAN_SPRING_BYTES;
+    const uint8_t *from =
+        in->plan + head->first_particle * MSPRINGI_PLAN_PARTICLE_BYTES + (size_t)s * MSPRINGI_PLAN_SPRING_BYTES;
     mspring_id ends[2];
     from = mspringi_get(from, ends, 2, sizeof ends[0]);
     const mspringi_spring spring = {.a = ends[0],
@@ -294,7 +294,8 @@ static mspring_result keep(mspring_builder *builder, const uint8_t *bytes, size_
         return fail(builder, "is too large");
     builder->archive = mspringi_alloc_unset(&builder->memory, sizeof *builder->archive + size, 1);
     if (!builder->archive)
-        return mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for an archive of %zu bytes", size);
+        return mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for an archive of %zu bytes",
+                             size);
     builder->archive->head = *head;
     builder->archive->size = size;
     memcpy(builder->archive->bytes, bytes, size);
@@ -335,7 +336,8 @@ mspring_result mspring_builder_read(mspring_builder *builder, const void *archiv
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "the archive is NULL");
     if (builder->particle_count > 0 || builder->archive)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
-                             "the builder has %zu particles, an archive needs an empty one", builder->particle_count);
+                             "the builder has %zu particles, an archive needs an empty one",
+                             builder->particle_count);
     const mspringi_fp_state before = mspringi_fp_enter();
     const mspring_result result = read_all(builder, archive, size, &count);
     mspringi_fp_leave(before);

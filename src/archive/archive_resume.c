@@ -24,11 +24,12 @@ mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring
                              (unsigned)head->first_particle, (unsigned)head->first_spring);
     if (given && (given->spare_particles != own->spare_particles || given->spare_springs != own->spare_springs ||
                   given->flags != own->flags))
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
-                             "spare_particles is %u, spare_springs %u, flags %#x, but the archive's are %u, %u, %#x: "
-                             "begin with mspring_builder_get_network_def()",
-                             (unsigned)given->spare_particles, (unsigned)given->spare_springs, (unsigned)given->flags,
-                             (unsigned)own->spare_particles, (unsigned)own->spare_springs, (unsigned)own->flags);
+        return mspringi_fail(
+            &builder->message, MSPRING_ERROR_ARGUMENT,
+            "spare_particles is %u, spare_springs %u, flags %#x, but the archive's are %u, %u, %#x: "
+            "begin with mspring_builder_get_network_def()",
+            (unsigned)given->spare_particles, (unsigned)given->spare_springs, (unsigned)given->flags,
+            (unsigned)own->spare_particles, (unsigned)own->spare_springs, (unsigned)own->flags);
     *def = *own;
     if (given) {
         def->simd_level = given->simd_level;
@@ -36,7 +37,8 @@ mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring
         def->tasks = given->tasks;
         def->worker_count = given->worker_count;
     }
-    // The direct solver finds an order of elimination, and a compact layout tiles: not before all springs are there.
+    // The direct solver finds an order of elimination, and a compact layout tiles: not before all springs are
+    // there.
     if (head->is_compact || own->solver == MSPRING_SOLVER_DIRECT)
         def->solver = MSPRING_SOLVER_EXPLICIT;
     return MSPRING_OK;
@@ -74,7 +76,7 @@ mspring_result mspringi_archive_blame(mspringi_message *message, mspring_result 
         return result;
     if (chunk)
         return mspringi_fail(message, MSPRING_ERROR_SNAPSHOT, "the archive's %s: %s", chunk, text);
-    if (strncmp(text, snapshot, sizeof snapshot - 1) == 0)
+    if (memcmp(text, snapshot, sizeof snapshot - 1) == 0)
         text += sizeof snapshot - 1;
     return mspringi_fail(message, MSPRING_ERROR_SNAPSHOT, "the archive's %s", text);
 }
@@ -87,11 +89,11 @@ void *mspringi_chunk_array(mspring_network *network, mspringi_io *io, size_t cou
         return NULL;
     void *array = NULL;
     if (io->is_short || count > io->left / width)
-        *result = mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "they are too short for %zu values",
-                                count);
+        *result =
+            mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "they are too short for %zu values", count);
     else if (!(array = mspringi_alloc_unset(&network->memory, count, width)))
-        *result = mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %zu values of an archive",
-                                count);
+        *result =
+            mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %zu values of an archive", count);
     else
         mspringi_hand(io, array, count, width);
     return array;

@@ -24,10 +24,11 @@ static mspring_result no_memory(const archiver *a) {
 
 static mspring_result put(const archiver *a, const void *bytes, size_t size) {
     const mspring_result result = size > 0 ? a->write(bytes, size, a->user) : MSPRING_OK;
-    return result == MSPRING_OK ? result
-                                : mspringi_shared_fail(a->network->shared, result,
-                                                       "the host's function returned %d for %zu bytes of the archive",
-                                                       (int)result, size);
+    return result == MSPRING_OK
+               ? result
+               : mspringi_shared_fail(a->network->shared, result,
+                                      "the host's function returned %d for %zu bytes of the archive", (int)result,
+                                      size);
 }
 
 static mspring_result put_chunk(const archiver *a, const char *tag, bool is_needed, const uint8_t *bytes,

@@ -26,11 +26,14 @@ static size_t run_size(const mspring_network *network, const mspringi_run *run, 
     const mspringi_topology *t = &network->topology;
     const size_t elements = by_id ? t->reserve.particle_end : mspringi_slot_count(network);
     switch (run->kind) {
-    case MSPRINGI_FLOATS: return run->count * elements * sizeof(float);
+    case MSPRINGI_FLOATS:
+        return run->count * elements * sizeof(float);
     case MSPRINGI_BITS:
         return by_id ? words_of(t->reserve.spring_end) : mspringi_spring_slot_words(t) * sizeof(uint16_t);
-    case MSPRINGI_SLOTS: return run->count > left / SLOT_BYTES ? SIZE_MAX : run->count * SLOT_BYTES;
-    default: return run->count == MSPRINGI_THE_REST ? left : run->count;
+    case MSPRINGI_SLOTS:
+        return run->count > left / SLOT_BYTES ? SIZE_MAX : run->count * SLOT_BYTES;
+    default:
+        return run->count == MSPRINGI_THE_REST ? left : run->count;
     }
 }
 

@@ -1,16 +1,17 @@
 /// Particles and springs of a builder as definitions that would add them again.
 #include "builder/builder.h"
 
-static mspring_result check(mspring_builder *builder, const mspringi_struct *of, size_t there, const mspring_id *ids,
-                            mspring_id first, uint32_t count, const void *defs) {
+static mspring_result check(mspring_builder *builder, const mspringi_struct *of, size_t there,
+                            const mspring_id *ids, mspring_id first, uint32_t count, const void *defs) {
     mspringi_message_clear(&builder->message);
     if (!ids && (first > there || count > there - first))
         return mspringi_fail(&builder->message, MSPRING_ERROR_ID, "%u from id %s on: ids are below %zu",
                              (unsigned)count, MSPRINGI_ID(first), there);
     for (uint32_t i = 0; ids && i < count; ++i)
         if (ids[i] >= there)
-            return mspringi_fail(&builder->message, MSPRING_ERROR_ID, "index %u of the list: ids are below %zu, not %s",
-                                 (unsigned)i, there, MSPRINGI_ID(ids[i]));
+            return mspringi_fail(&builder->message, MSPRING_ERROR_ID,
+                                 "index %u of the list: ids are below %zu, not %s", (unsigned)i, there,
+                                 MSPRINGI_ID(ids[i]));
     if (count == 0)
         return MSPRING_OK;
     const mspring_result result = mspringi_check_given(&builder->message, of, defs);
@@ -21,8 +22,8 @@ mspring_result mspring_builder_get_particles(mspring_builder *builder, const msp
                                              uint32_t count, mspring_particle_def *defs) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = check(builder, &mspringi_struct_particle_def, builder->particle_count, ids, first,
-                                        count, defs);
+    const mspring_result result =
+        check(builder, &mspringi_struct_particle_def, builder->particle_count, ids, first, count, defs);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const mspringi_particle *particle = &builder->particles[ids ? ids[i] : first + i];
         const mspring_particle_def def = {.flags = particle->flags & MSPRING_PARTICLE_PINNED,
@@ -40,8 +41,8 @@ mspring_result mspring_builder_get_springs(mspring_builder *builder, const mspri
                                            uint32_t count, mspring_spring_def *defs) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
-    const mspring_result result = check(builder, &mspringi_struct_spring_def, builder->spring_count, ids, first,
-                                        count, defs);
+    const mspring_result result =
+        check(builder, &mspringi_struct_spring_def, builder->spring_count, ids, first, count, defs);
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
         const mspring_id id = ids ? ids[i] : first + i;
         const mspringi_spring *spring = &builder->springs[id];

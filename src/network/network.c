@@ -294,11 +294,11 @@ static mspring_result lay_out(mspring_network *network, const mspring_builder *b
     if (builder->archive)
         result = mspringi_archive_lay_out(builder, &network->memory, &network->message, &placed);
     if (result == MSPRING_OK)
-        result = mspringi_topology_create(
-            &network->topology, &placed, reserve,
-            builder->archive ? mspringi_archive_may_have_bundles(builder) : has_bundles,
-            mspringi_tasks_partition_size(network->tasks), network->kernels->lanes, &network->memory,
-            &network->message);
+        result =
+            mspringi_topology_create(&network->topology, &placed, reserve,
+                                     builder->archive ? mspringi_archive_may_have_bundles(builder) : has_bundles,
+                                     mspringi_tasks_partition_size(network->tasks), network->kernels->lanes,
+                                     &network->memory, &network->message);
     if (builder->archive)
         mspringi_free(&network->memory, placed.particles);
     return builder->archive ? mspringi_archive_blame(&network->message, result, "plan") : result;

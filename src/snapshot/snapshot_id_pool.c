@@ -405,7 +405,8 @@ const mspringi_section mspringi_section_growth = {"grow",      "added and remove
                                                   growth_save, growth_check,
                                                   growth_load, growth_check_against};
 
-/* ------------------------------------------------------------------------------------------------------ archives */
+/* ------------------------------------------------------------------------------------------------------ archives
+ */
 
 // Set where the spare ids in use lie.
 static void set_places(const mspring_network *network, uint8_t *section, size_t size, bool in_archive) {
@@ -417,8 +418,9 @@ static void set_places(const mspring_network *network, uint8_t *section, size_t 
     for (uint32_t i = 0; i < mspringi_spare_particles(t); ++i)
         of_particle[i] = !in_archive && particle_is_laid_out(t, t->reserve.first_particle + i) ? IS_LAID_OUT : 0;
     for (uint32_t i = 0; i < mspringi_spare_springs(t); ++i)
-        of_spring[i] = (uint8_t)((of_spring[i] & ~IS_LAID_OUT) |
-                                 (!in_archive && spring_is_laid_out(t, t->reserve.first_spring + i) ? IS_LAID_OUT : 0));
+        of_spring[i] =
+            (uint8_t)((of_spring[i] & ~IS_LAID_OUT) |
+                      (!in_archive && spring_is_laid_out(t, t->reserve.first_spring + i) ? IS_LAID_OUT : 0));
 }
 
 static void growth_leave(const mspring_network *network, uint8_t *section, size_t size) {

@@ -41,7 +41,8 @@ static size_t implicit_enter(const mspring_network *network, uint8_t *section, s
     return solver->ops->enter ? solver->ops->enter(network, solver->object, section, size) : size;
 }
 
-const mspringi_by_id mspringi_by_id_implicit = {&mspringi_section_implicit, implicit_runs, implicit_leave, implicit_enter};
+const mspringi_by_id mspringi_by_id_implicit = {&mspringi_section_implicit, implicit_runs, implicit_leave,
+                                                implicit_enter};
 
 /* --------------------------------------------------------------------------------------------------- precision */
 

@@ -400,8 +400,7 @@ const mspringi_section mspringi_section_masses = {"mass",      "masses",     fal
 static uint32_t masses_runs(const mspring_network *network, mspringi_io head, mspringi_run *runs) {
     uint32_t kind;
     MSPRINGI_HAND(&head, kind);
-    runs[0] =
-        (mspringi_run){MSPRINGI_BYTES, sizeof kind + network->topology.reserve.particle_end * sizeof(float)};
+    runs[0] = (mspringi_run){MSPRINGI_BYTES, sizeof kind + network->topology.reserve.particle_end * sizeof(float)};
     runs[1] = (mspringi_run){MSPRINGI_FLOATS, kind & SCALED ? 0 : 1};
     runs[2] = (mspringi_run){MSPRINGI_BYTES, MSPRINGI_THE_REST};
     return 3;

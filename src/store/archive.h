@@ -11,10 +11,12 @@
 ///   plan   ends and flags of the first springs, and where the layout had the first particles
 ///   a row of features.def: CHUNK, or SECTION, whose bytes are those of a snapshot, but by id (BY_ID)
 ///
-/// Rules for versions. A reader ignores what a chunk has behind the bytes that it knows, so chunks may grow at their
-/// ends; what an older archive lacks reads as 0. A change that older readers would misread gets a new version, and the
-/// reader converts the old one. Chunks of unknown tag or later version are skipped and counted, unless
-/// MSPRINGI_CHUNK_IS_NEEDED. tests/archive/files has files of each version.
+/// Rules for versions. A chunk may grow at its end: readers ignore what is behind the bytes that they know, and
+/// check whether those are there. A section has the size that its check asks for: one that changes gets a version
+/// of its own instead of MSPRINGI_CHUNK_VERSION, and the reader converts the old one before mspringi_by_id.enter,
+/// as settings_enter() does for settings that were added. Chunks of unknown tag or later version are skipped and
+/// counted, unless MSPRINGI_CHUNK_IS_NEEDED. tests/archive/files has files of each version, which are never
+/// renewed.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ARCHIVE_H
@@ -57,7 +59,8 @@ static inline uint32_t mspringi_chunk_room(const mspring_network *network, uint3
     return asked < most ? asked : most;
 }
 
-/// Definition of a network from the builder's archive: as given, and what else the archive had. NULL: the archive's.
+/// Definition of a network from the builder's archive: as given, and what else the archive had. NULL: the
+/// archive's.
 mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring_network_def *given,
                                          mspring_network_def *def);
 /// The builder whose particles lie where the archived layout had them. Its particles are made in this memory.

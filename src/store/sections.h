@@ -97,13 +97,14 @@ typedef struct mspringi_run {
 /// Bytes up to the end.
 #define MSPRINGI_THE_REST SIZE_MAX
 
-/// A section in an archive: what lies by slot in a snapshot lies by id, so that any layout can load it (archive/by_id.c).
+/// A section in an archive: what lies by slot in a snapshot lies by id, so that any layout can load it
+/// (archive/by_id.c).
 typedef struct mspringi_by_id {
     const mspringi_section *section;
     /// List the parts of a section, from its head. NULL: it has bytes only. Bytes that are not there read as 0.
     uint32_t (*runs)(const mspring_network *network, mspringi_io head, mspringi_run runs[MSPRINGI_MOST_RUNS]);
-    /// Adapt what else depends on the layout: in a section for the archive, and in one for this network. NULL: nothing
-    /// does. Return the size of the section, at most `size`.
+    /// Adapt what else depends on the layout: in a section for the archive, and in one for this network. NULL:
+    /// nothing does. Return the size of the section, at most `size`.
     void (*leave)(const mspring_network *network, uint8_t *section, size_t size);
     size_t (*enter)(const mspring_network *network, uint8_t *section, size_t size);
 } mspringi_by_id;

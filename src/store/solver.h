@@ -109,7 +109,8 @@ struct mspringi_solver_ops {
     bool (*is_isolated)(const mspring_network *network, const void *object, size_t slot);
     bool (*has_isolated)(const void *object);
 
-    // describe: fill in its part of a plan. The others: its section (store/sections.h) in snapshots, and in archives.
+    // describe: fill in its part of a plan. The others: its section (store/sections.h) in snapshots, and in
+    // archives.
     void (*describe)(const void *object, mspring_plan *plan);
     void (*save)(const mspring_network *network, const void *object, struct mspringi_writer *to);
     mspring_result (*check)(mspring_network *network, const void *object, const uint8_t *from, size_t size);

@@ -48,8 +48,8 @@ static bool is_good(const mspring_network *network, const mspringi_mark *mark) {
     for (size_t i = 0; i < 2 * (size_t)g->count; ++i)
         good = good && fabs(mark->origin[i]) <= 2.0 * MSPRING_MAX_COORDINATE;
     for (size_t i = values * g->first[0]; i < values * g->first[g->count]; ++i)
-        good = good && fabsf(mark->motion[i]) <= (i % values < 2 ? (float)MSPRING_MAX_COORDINATE
-                                                                 : (float)MSPRING_MAX_SPEED);
+        good = good && fabsf(mark->motion[i]) <=
+                           (i % values < 2 ? (float)MSPRING_MAX_COORDINATE : (float)MSPRING_MAX_SPEED);
     for (size_t i = 0; i < 2 * (size_t)g->first_spring[g->count]; ++i)
         good = good && mark->lengths[i] > 0.0f && mark->lengths[i] <= 1e14f;
     for (size_t i = 0; i < g->first_spring[g->count]; ++i)

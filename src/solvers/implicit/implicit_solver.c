@@ -222,8 +222,7 @@ static size_t enter(const mspring_network *network, const void *object, uint8_t 
     .allow_work = allow_work, .count_work = count_work, .keep = keep, .restore = restore, .forget = forget,        \
     .is_finite = is_finite, .clear_slot = clear_slot, .rest_slot = rest_slot, .clear_spring = clear_spring,        \
     .new_floor = new_floor, .is_isolated = is_isolated, .has_isolated = has_isolated, .describe = describe,        \
-    .save = save, .check = check, .load = load, .runs = runs, .leave = mspringi_implicit_leave,                     \
-    .enter = enter
+    .save = save, .check = check, .load = load, .runs = runs, .leave = mspringi_implicit_leave, .enter = enter
 
 const mspringi_solver_ops mspringi_implicit_ops = {.can_add = true, BOTH};
 
