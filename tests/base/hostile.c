@@ -18,6 +18,36 @@ static mspring_result note_text(const char *text) {
     return note_size(strlen(text));
 }
 
+static mspring_result MSPRING_CALL count_bytes(const void *bytes, size_t size, void *user) {
+    (void)bytes;
+    *(size_t *)user += size;
+    return MSPRING_OK;
+}
+
+typedef struct archive_bytes {
+    unsigned char bytes[1 << 16];
+    size_t size;
+} archive_bytes;
+
+static mspring_result MSPRING_CALL keep_bytes(const void *bytes, size_t size, void *user) {
+    archive_bytes *all = user;
+    assert_true(size <= sizeof all->bytes - all->size);
+    memcpy(all->bytes + all->size, bytes, size);
+    all->size += size;
+    return MSPRING_OK;
+}
+
+// Into an empty builder; bytes that are spoilt are tested in tests/archive.
+static mspring_result read_archive(arguments *a) {
+    static archive_bytes all;
+    mspring_builder *builder = support_builder();
+    all.size = 0;
+    check_ok(mspring_network_write(a->network, keep_bytes, &all));
+    const mspring_result result = mspring_builder_read(a->builder ? builder : NULL, all.bytes, all.size, NULL);
+    mspring_builder_destroy(builder);
+    return result;
+}
+
 static mspring_result create_builder(arguments *a) {
     const mspring_result result = mspring_builder_create(a->given, a->out[0]);
     if (result == MSPRING_OK) {
@@ -421,6 +451,14 @@ static void add_hook(arguments *a) {
       mspring_builder_add_disc(a->builder, a->given, a->out[0], a->out[1]))                                        \
     X(mspring_material_preset, "Z0KT", (a->size = sizeof(mspring_material), a->kind = MSPRING_PRESET_WOOD),        \
       mspring_material_preset(a->out[0], a->size, a->kind, 1, a->dt))                                              \
+    X(mspring_builder_get_particles, "BIP", OUT_STRUCT(0, particle_def),                                            \
+      mspring_builder_get_particles(a->builder, NULL, a->id, 1, a->out[0]))                                        \
+    X(mspring_builder_get_springs, "BIP", OUT_STRUCT(0, spring_def),                                                \
+      mspring_builder_get_springs(a->builder, NULL, a->id, 1, a->out[0]))                                          \
+    X(mspring_builder_read, "B", NOTHING, read_archive(a))                                                          \
+    X(mspring_builder_get_network_def, "BP", OUT_STRUCT(0, network_def),                                            \
+      mspring_builder_get_network_def(a->builder, a->out[0]))                                                      \
+    X(mspring_network_write, "n", NOTHING, mspring_network_write(a->network, count_bytes, &sink))                   \
     X(mspring_builder_add_network, "Bno", NOTHING,                                                                 \
       mspring_builder_add_network(a->builder, a->network, NULL, 0, a->out[0], a->out[1]))                          \
     X(mspring_network_create, "Bs0", FILL(network_def), create_network(a))                                         \

@@ -28,7 +28,7 @@
 ///
 ///     library     version, version_string, features, result_string
 ///     builder     builder_create, _destroy, _error, _particle_count, _spring_count, _add_particle(s), _add_spring(s),
-///                 _add_lattice
+///                 _add_lattice, _get_particles, _get_springs; archives: _read, _get_network_def
 ///     defaults    particle_def_init, spring_def_init, material_init, lattice_def_init, solver_def_init,
 ///                 network_def_init, settings_init, floor_def_init, allocator_init, tasks_init
 ///     network     network_create, _destroy, _error, _particle_count, _spring_count
@@ -45,6 +45,7 @@
 ///                 _get_components
 ///     measure     network_energy, _momentum, _bounds
 ///     snapshots   network_snapshot_size, _save, _load
+///     archives    network_write, builder_read, _get_network_def
 ///
 /// massspring_contact.h: contact, colliders, grips; massspring_laws.h: yielding, areas, angles; massspring_batch.h:
 /// groups; massspring_tools.h: the rest, as ropes, meshes, clones, hooks, queries, stability, equilibrium, tuning.
@@ -389,10 +390,10 @@ typedef struct mspring_solver_def {
                             ///< 256; 0, the default: chosen by the plan
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
                             ///< if the network turns little in them; 0, the default: 1
-    uint32_t most_work; ///< work in a step, in calm steps, up to which MSPRING_SUBSTEPS_AUTO and _EVEN take more
-                        ///< substeps for violent motion, MSPRING_GUARD_RETRY repeats, and the implicit and the direct
-                        ///< solver take parts again; at most MSPRING_MAX_SUBSTEPS; default 4; 0: no bound but
-                        ///< max_substeps. See above
+    uint32_t most_work;     ///< work in a step, in calm steps, up to which MSPRING_SUBSTEPS_AUTO and _EVEN take more
+        ///< substeps for violent motion, MSPRING_GUARD_RETRY repeats, and the implicit and the direct
+        ///< solver take parts again; at most MSPRING_MAX_SUBSTEPS; default 4; 0: no bound but
+        ///< max_substeps. See above
     float residual; ///< 0 to 1; default 0.01: the implicit solver stops iterating when r . z, a square of the forces
                     ///< out of balance, has fallen to this share of its value after the first iteration. 0: exactly
                     ///< `iterations`; 1: springs hardly act. With a floor it is squared, or the iterations double;
@@ -595,6 +596,36 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_sp
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_add_lattice(
     mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids);
 
+/// Read particles of a builder back, as definitions that would add them again.
+/// @param ids    [count]; NULL: the particles first ... first + count - 1
+/// @param first  not used if ids is given
+/// @param defs   [count], struct_size set in each, the same for all
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_get_particles(
+    mspring_builder *builder, const mspring_id *ids, mspring_id first, uint32_t count, mspring_particle_def *defs);
+
+/// Read springs back: with the rest length in metres, and damping in N s/m or as a fraction, never as a ratio.
+/// @param ids, first, defs  as in mspring_builder_get_particles()
+/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_get_springs(
+    mspring_builder *builder, const mspring_id *ids, mspring_id first, uint32_t count, mspring_spring_def *defs);
+
+/// Read an archive that mspring_network_write() has written, by this or an earlier version, into an empty builder.
+/// mspring_network_create() then makes a network that goes on where the written one was, with the same ids. The builder
+/// has the particles and springs that this was created with, as they are now: removed ones, too, and none that were
+/// added. No others can be added.
+///
+/// Archives may come from anywhere. This call checks the form of all chunks, and all values of particles and springs;
+/// mspring_network_create() checks the rest, and returns MSPRING_ERROR_SNAPSHOT, too. Messages name the chunk. Both use
+/// memory in proportion to size.
+/// @param archive  [size] bytes, of any alignment; copied
+/// @param skipped  receives how many chunks were left out, because only later versions or other parts of the library
+///                 know them; may be NULL
+/// @threads exclusive   @allocates yes; size and 100 bytes for each particle and spring   @since 0.2
+/// @errors SNAPSHOT (the message says what is wrong), ARGUMENT also for a builder that is not empty, MEMORY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_read(
+    mspring_builder *builder, const void *archive, size_t size, uint32_t *skipped);
+
 /* ------------------------------------------------------------------------------------------------------- network */
 
 /// A network: its topology and its state.
@@ -603,12 +634,21 @@ typedef struct mspring_network mspring_network;
 /// Make a network of what the builder holds.
 /// Finds lattices and chains in it, whatever the order in which they were added, and lays the state out for them. On
 /// failure the builder has the error message.
-/// @param def  NULL for the defaults
+///
+/// With a builder that has read an archive, the network goes on where the archived one was. Then def may change the
+/// settings, the solver, workers and the allocator; flags and spare room are the archive's.
+/// @param def  NULL for the defaults, or those of mspring_builder_get_network_def()
 /// @threads exclusive for builder   @allocates yes   @errors ARGUMENT also for a builder without particles;
-///          DUPLICATE if two springs join the same two particles; THREAD if a worker cannot start; STRUCT, LIMIT,
-///          MEMORY
+///          DUPLICATE if two springs join the same two particles; THREAD if a worker cannot start; SNAPSHOT for an
+///          archive with impossible values; STRUCT, LIMIT, MEMORY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_create(
     mspring_builder *builder, const mspring_network_def *def, mspring_network **network);
+
+/// Fill a network's definition with what the builder's archive has: settings, solver, flags and spare room. Without an
+/// archive: with the defaults. Set struct_size first.
+/// @threads exclusive for builder   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_get_network_def(
+    mspring_builder *builder, mspring_network_def *def);
 
 /// Free a network. NULL is allowed. Not allowed inside a hook.
 /// @threads exclusive   @allocates never
@@ -688,9 +728,9 @@ enum {
     MSPRING_STEP_PUT_BACK = 1u << 2, ///< particles were put back into the bounds (MSPRING_GUARD_CLAMP_BOUNDS)
     MSPRING_STEP_RETRIED = 1u << 3,  ///< with more substeps than were set (MSPRING_GUARD_RETRY)
     MSPRING_STEP_ASLEEP = 1u << 4,   ///< all of the network slept: nothing was computed
-    MSPRING_STEP_FEWER = 1u << 5, ///< with fewer substeps, or parts of these, than its violent motion needs
-                                  ///< (mspring_solver_def.most_work)
-    MSPRING_STEP_GREW = 1u << 6   ///< contact allocated room for more pairs (mspring_contact_def.max_capacity)
+    MSPRING_STEP_FEWER = 1u << 5,    ///< with fewer substeps, or parts of these, than its violent motion needs
+                                     ///< (mspring_solver_def.most_work)
+    MSPRING_STEP_GREW = 1u << 6      ///< contact allocated room for more pairs (mspring_contact_def.max_capacity)
 };
 
 /// Report of the last step, and of all steps so far. Set struct_size first.
@@ -707,8 +747,8 @@ typedef struct mspring_step_info {
     double largest_speed;    ///< length of the fastest particle's velocity now, m/s
     double time_left;        ///< with MSPRING_SUBSTEPS_EVEN, dt that steps were given and have not taken yet, s; < 0:
                              ///< they are ahead
-    double work;             ///< of the last step, even if it failed, in calm steps (mspring_solver_def.most_work): 1 if
-                             ///< nothing was repeated or raised; 0 if nothing was computed
+    double work; ///< of the last step, even if it failed, in calm steps (mspring_solver_def.most_work): 1 if
+                 ///< nothing was repeated or raised; 0 if nothing was computed
 } mspring_step_info;
 
 /// Read the report of the last step. Takes a pass over the velocities; mspring_network_step_flags() does not.
@@ -1164,7 +1204,7 @@ typedef enum mspring_snapshot_contents {
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_snapshot_size(
     const mspring_network *network, mspring_snapshot_contents contents, size_t *size);
 
-/// Save a snapshot, for rollback, replay and network play; not for archives.
+/// Save a snapshot, for rollback, replay and network play; for files use mspring_network_write().
 /// It is the same on every machine, at any SIMD level, for any number of workers. It fits networks made of the same
 /// particles and springs, with the same solver, integrator, flags and layout (mspring_network_compact()), by the same
 /// minor version. Hooks, the floor and unread events are not in it.
@@ -1181,6 +1221,25 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_save(
 ///          is wrong), ARGUMENT, MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_load(
     mspring_network *network, const void *snapshot, size_t size);
+
+/* ------------------------------------------------------------------------------------------------------ archives */
+
+/// Receives the next bytes of an archive, [size] of them. Return MSPRING_OK to go on, else an error.
+typedef mspring_result(MSPRING_CALL *mspring_write_fn)(const void *bytes, size_t size, void *user);
+
+/// Write an archive: a file that this and all later versions read (mspring_builder_read()), on every machine.
+/// It has all but hooks, components, events that wait, and reports on the last step: ids, state, removed and broken
+/// springs, laws, ramps, sleep, settings, solver, forces for the next step, floor, contact, colliders, grips, areas,
+/// groups with their marks, and actuators. It does not depend on the machine, SIMD level or workers.
+///
+/// The next steps of a network that was read repeat those of the written one bit for bit, if both have the same layout.
+/// They do unless a later version lays networks out otherwise; the guide examples/guides/archives.md has what holds then.
+/// @param write  called with one piece after another; no call of the network's is allowed in it
+/// @param user   passed to write
+/// @threads exclusive for the allocator, otherwise shared   @allocates up to twice its largest chunk, about 16 bytes for
+///          each particle and spring, and frees it   @since 0.2   @errors ARGUMENT, MEMORY, BUSY, what write returned
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_write(
+    const mspring_network *network, mspring_write_fn write, void *user);
 
 #ifdef __cplusplus
 }
