@@ -159,6 +159,8 @@ static mspring_result load_sections(mspring_network *network, const mspringi_arc
         if (!is_of_chunk(mspringi_sections[i]) && (i != MSPRINGI_SECTION_implicit || has_solver))
             result = enter(network, archive, mspringi_sections[i], &made[i], &in.from[i], &in.size[i]);
     if (result == MSPRING_OK)
+        result = mspringi_sections_check(network, &header, &in);
+    if (result == MSPRING_OK)
         result = mspringi_sections_load(network, &header, &in);
     for (int i = 0; i < MSPRINGI_SECTIONS; ++i)
         mspringi_free(&network->memory, made[i]);

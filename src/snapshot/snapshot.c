@@ -285,14 +285,18 @@ static mspring_result check_together(mspring_network *network, const mspringi_sn
     return result;
 }
 
-mspring_result mspringi_sections_load(mspring_network *network, const mspringi_snapshot_header *header,
-                                      const mspringi_found *in) {
+mspring_result mspringi_sections_check(mspring_network *network, const mspringi_snapshot_header *header,
+                                       const mspringi_found *in) {
     mspring_result result = MSPRING_OK;
     for (int i = 0; result == MSPRING_OK && i < MSPRINGI_SECTIONS; ++i)
         if (concerns(mspringi_sections[i], header))
             result = mspringi_sections[i]->check(network, in->from[i], in->size[i]);
-    if (result == MSPRING_OK)
-        result = check_together(network, header, in);
+    return result;
+}
+
+mspring_result mspringi_sections_load(mspring_network *network, const mspringi_snapshot_header *header,
+                                      const mspringi_found *in) {
+    const mspring_result result = check_together(network, header, in);
     if (result != MSPRING_OK)
         return result;
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
@@ -317,6 +321,8 @@ static MSPRINGI_NOINLINE mspring_result load(mspring_network *network, const uin
         result = check_compatible(network, &header);
     if (result == MSPRING_OK)
         result = find_sections(network, &header, snapshot, &in);
+    if (result == MSPRING_OK)
+        result = mspringi_sections_check(network, &header, &in);
     if (result == MSPRING_OK)
         result = check_unused(network, &header, snapshot, &in);
     return result == MSPRING_OK ? mspringi_sections_load(network, &header, &in) : result;

@@ -79,7 +79,9 @@ typedef struct mspringi_found {
     size_t size[MSPRINGI_SECTIONS];
 } mspringi_found;
 
-/// Load sections: all of them, or on error none.
+/// Check sections one by one; then check them against each other, and load all of them or, on error, none.
+mspring_result mspringi_sections_check(mspring_network *network, const mspringi_snapshot_header *header,
+                                       const mspringi_found *in);
 mspring_result mspringi_sections_load(mspring_network *network, const mspringi_snapshot_header *header,
                                       const mspringi_found *in);
 

@@ -37,12 +37,16 @@ static mspring_result MSPRING_CALL keep_bytes(const void *bytes, size_t size, vo
     return MSPRING_OK;
 }
 
-// Into an empty builder; bytes that are spoilt are tested in tests/archive.
+// Into an empty builder, with memory of its own; failing memory and bytes that are spoilt are tested in tests/archive.
 static mspring_result read_archive(arguments *a) {
     static archive_bytes all;
     mspring_builder *builder = support_builder();
+    support_particle(builder, 0, 0, 1);
+    mspring_network *network = support_network(builder, NULL);
     all.size = 0;
-    check_ok(mspring_network_write(a->network, keep_bytes, &all));
+    check_ok(mspring_network_write(network, keep_bytes, &all));
+    mspring_network_destroy(network);
+    builder = support_builder();
     const mspring_result result = mspring_builder_read(a->builder ? builder : NULL, all.bytes, all.size, NULL);
     mspring_builder_destroy(builder);
     return result;

@@ -361,13 +361,13 @@ static void a_version_has_one_format(void **state) {
     char text[400];
     describe(network, text, sizeof text);
     assert_string_equal(text,
-                        "11: grow 23 sett 60 step 72 moti 24/slot mass 28 forc 8/slot valu 24 brks 8 strs 8 "
+                        "12: grow 23 sett 60 step 72 moti 24/slot mass 28 forc 8/slot valu 24 brks 8 strs 8 "
                         "rlxs 8 stsd 4 ramp 32 slee 24 guar 56");
     snapshots_use_solver(network, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1);
     check_ok(mspring_network_step(network, 0.01));
     describe(network, text, sizeof text);
     assert_string_equal(
-        text, "11: grow 23 sett 60 step 72 moti 24/slot mass 28 valu 24 brks 8 strs 8 rlxs 8 stsd 4 ramp 32 "
+        text, "12: grow 23 sett 60 step 72 moti 24/slot mass 28 valu 24 brks 8 strs 8 rlxs 8 stsd 4 ramp 32 "
               "slee 24 impl 1324 guar 56");
     mspring_network_destroy(network);
 }
