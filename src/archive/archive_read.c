@@ -138,13 +138,13 @@ typedef struct parts {
     uint32_t kind; ///< of the masses
 } parts;
 
-// Find a chunk, and refuse another size than that for `count` elements beside `besides` bytes.
+// Find a chunk, and refuse one that is too short.
 static mspring_result find(mspring_builder *builder, const uint8_t *bytes, const char *tag, size_t least,
                            const uint8_t **from) {
     const mspringi_read_chunk chunk = mspringi_archive_find(bytes, tag);
     uint32_t number;
     *from = chunk.bytes;
-    if (chunk.bytes && chunk.size >= least)
+    if (least == 0 || (chunk.bytes && chunk.size >= least))
         return MSPRING_OK;
     return mspringi_fail(&builder->message, MSPRING_ERROR_SNAPSHOT,
                          SAID "they take %zu bytes instead of at least %zu", name_of(tag, &number), chunk.size,

@@ -183,6 +183,21 @@ static void sleepers_sleep_on(void **state) {
     recipe_free(&made);
 }
 
+static void particles_without_springs_fall_on(void **state) {
+    (void)state;
+    for (uint32_t count = 1; count < 40; count += 19) {
+        mspring_builder *builder = support_builder();
+        for (uint32_t i = 0; i < count; i++)
+            support_particle(builder, i, 0.5 * i, 1);
+        mspring_network *network = support_network(builder, NULL);
+        support_steps(network, 3, 1.0 / 64);
+        mspring_network *other = archives_check_same(network, 1);
+        archives_check_goes_on(network, other, 3);
+        mspring_network_destroy(other);
+        mspring_network_destroy(network);
+    }
+}
+
 static void events_have_room(void **state) {
     (void)state;
     mspring_network *network = archives_make(0), *other = archives_check_same(network, 1);
@@ -314,6 +329,7 @@ int main(void) {
         cmocka_unit_test(floor_and_colliders_are_as_given),
         cmocka_unit_test(groups_go_back_to_their_marks),
         cmocka_unit_test(sleepers_sleep_on),
+        cmocka_unit_test(particles_without_springs_fall_on),
         cmocka_unit_test(events_have_room),
         cmocka_unit_test(the_hosts_function_may_refuse),
         cmocka_unit_test(a_definition_may_change_the_rest),
