@@ -10,6 +10,11 @@ const char mspringi_head_tag[5] = "netw", mspringi_plan_tag[5] = "plan", mspring
 
 /* ------------------------------------------------------------------------------------------------------- chunks */
 
+const mspringi_chunk *const mspringi_chunks[] = {
+#define CHUNK(name) &mspringi_chunk_##name,
+#include "store/features.def"
+    NULL};
+
 static uint64_t hash_bytes(uint64_t hash, const uint8_t *bytes, size_t size) {
     uint64_t word;
     for (; size >= sizeof word; size -= sizeof word, bytes += sizeof word) {

@@ -29,17 +29,13 @@ typedef struct known {
 static const char *name_of(const char *tag, uint32_t *number) {
     static const known own[] = {
         {mspringi_head_tag, "definition"}, {mspringi_plan_tag, "plan"}, {mspringi_end_tag, "end"}};
-    static const mspringi_chunk *const chunks[] = {
-#define CHUNK(name) &mspringi_chunk_##name,
-#include "store/features.def"
-    };
     *number = 0;
     for (size_t i = 0; i < sizeof own / sizeof own[0]; ++i, ++*number)
         if (memcmp(own[i].tag, tag, 4) == 0)
             return own[i].name;
-    for (size_t i = 0; i < sizeof chunks / sizeof chunks[0]; ++i, ++*number)
-        if (memcmp(chunks[i]->tag, tag, 4) == 0)
-            return chunks[i]->name;
+    for (const mspringi_chunk *const *chunk = mspringi_chunks; *chunk; ++chunk, ++*number)
+        if (memcmp((*chunk)->tag, tag, 4) == 0)
+            return (*chunk)->name;
     for (int i = 0; i < MSPRINGI_SECTIONS; ++i, ++*number)
         if (memcmp(mspringi_sections[i]->tag, tag, 4) == 0)
             return mspringi_sections[i]->name;

@@ -6,11 +6,6 @@
 #include "store/changed.h"
 #include "store/springs.h"
 
-static const mspringi_chunk *const chunks[] = {
-#define CHUNK(name) &mspringi_chunk_##name,
-#include "store/features.def"
-};
-
 /* ----------------------------------------------------------------------------------------- before the network */
 
 mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring_network_def *given,
@@ -116,8 +111,8 @@ static mspring_result load_chunk(mspring_network *network, const mspringi_archiv
 
 static bool is_of_chunk(const mspringi_section *section) {
     bool any = false;
-    for (size_t i = 0; i < sizeof chunks / sizeof chunks[0]; ++i)
-        any = any || chunks[i]->section == section;
+    for (const mspringi_chunk *const *chunk = mspringi_chunks; *chunk; ++chunk)
+        any = any || (*chunk)->section == section;
     return any;
 }
 
@@ -234,9 +229,9 @@ mspring_result mspringi_archive_resume(mspring_network *network, const mspring_b
     const bool is_laid_out_anew = head->is_compact || head->def.solver == MSPRING_SOLVER_DIRECT;
     mspring_result result = MSPRING_OK;
     set_bounds(network, head);
-    for (size_t i = 0; result == MSPRING_OK && i < sizeof chunks / sizeof chunks[0]; ++i)
-        if (!chunks[i]->section)
-            result = load_chunk(network, archive, chunks[i]);
+    for (const mspringi_chunk *const *chunk = mspringi_chunks; result == MSPRING_OK && *chunk; ++chunk)
+        if (!(*chunk)->section)
+            result = load_chunk(network, archive, *chunk);
     set_basis(network, head);
     if (result == MSPRING_OK)
         result = load_sections(network, archive);
@@ -246,12 +241,12 @@ mspring_result mspringi_archive_resume(mspring_network *network, const mspring_b
         set_basis(network, head);
         result = load_sections(network, archive);
     }
-    for (size_t i = 0; result == MSPRING_OK && i < sizeof chunks / sizeof chunks[0]; ++i) {
-        if (!chunks[i]->section)
+    for (const mspringi_chunk *const *chunk = mspringi_chunks; result == MSPRING_OK && *chunk; ++chunk) {
+        if (!(*chunk)->section)
             continue;
-        result = load_chunk(network, archive, chunks[i]);
+        result = load_chunk(network, archive, *chunk);
         if (result == MSPRING_OK)
-            result = load_section(network, archive, chunks[i]->section);
+            result = load_section(network, archive, (*chunk)->section);
     }
     set_bounds(network, head);
     network->parameter_fingerprint = head->parameter_fingerprint;

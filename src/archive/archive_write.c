@@ -5,11 +5,6 @@
 #include "base/cpu.h"
 #include "store/springs.h"
 
-static const mspringi_chunk *const chunks[] = {
-#define CHUNK(name) &mspringi_chunk_##name,
-#include "store/features.def"
-};
-
 // An archive on its way to the host.
 typedef struct archiver {
     const mspring_network *network;
@@ -195,8 +190,8 @@ static MSPRINGI_NOINLINE mspring_result write_all(archiver *a) {
         result = put_handed(a, mspringi_head_tag, true, hand_head, NULL);
     if (result == MSPRING_OK)
         result = put_handed(a, mspringi_plan_tag, true, hand_plan, NULL);
-    for (size_t i = 0; result == MSPRING_OK && i < sizeof chunks / sizeof chunks[0]; ++i)
-        result = put_handed(a, chunks[i]->tag, false, hand_chunk, chunks[i]);
+    for (const mspringi_chunk *const *chunk = mspringi_chunks; result == MSPRING_OK && *chunk; ++chunk)
+        result = put_handed(a, (*chunk)->tag, false, hand_chunk, *chunk);
     for (int i = 0; result == MSPRING_OK && i < MSPRINGI_SECTIONS; ++i)
         result = put_section(a, mspringi_sections[i]);
     return result == MSPRING_OK ? put_chunk(a, mspringi_end_tag, true, NULL, 0) : result;

@@ -48,6 +48,9 @@ typedef struct mspringi_chunk {
 #define CHUNK(name) extern const mspringi_chunk mspringi_chunk_##name;
 #include "store/features.def"
 
+/// All of them, and NULL.
+extern const mspringi_chunk *const mspringi_chunks[];
+
 /// Read an array of a chunk: NULL if it is too short or memory is out, and then *result says so. Free it.
 void *mspringi_chunk_array(mspring_network *network, mspringi_io *io, size_t count, size_t width,
                            mspring_result *result);
