@@ -144,7 +144,7 @@ static mspring_result load_materials(mspring_network *network, mspringi_io *io) 
 }
 
 static mspring_result load_collider(mspring_network *network, mspringi_io *io) {
-    mspringi_collider c;
+    mspringi_collider c = {.is_moving = false};
     mspring_result result = MSPRING_OK;
     double *points = NULL;
     (void)mspring_collider_def_init(&c.def, sizeof c.def);
