@@ -131,6 +131,9 @@ static const mspringi_array_entry members[] = {
     VIEW(nodes.v_before),
     ARRAY(constraints),
     ARRAY(colours),
+    VIEW(due.first),
+    ARRAY(due.is_due),
+    ARRAY(due.next),
     ARRAY(supports),
     ARRAY(implicit_constraints),
     ARRAY(candidates),
@@ -185,11 +188,12 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     k->particles = mspringi_alloc(memory, 2 * nodes, sizeof *k->particles);
     k->is_fast = mspringi_alloc(memory, nodes, sizeof *k->is_fast);
     k->v = mspringi_alloc(memory, 3 * nodes, sizeof *k->v);
-    made->colours = mspringi_alloc(memory, nodes, sizeof *made->colours);
+    made->colours = mspringi_alloc(memory, 2 * nodes, sizeof *made->colours);
     made->supports = mspringi_alloc(memory, MSPRINGI_MAX_SUPPORTS * nodes, sizeof *made->supports);
     if (!made->groups || !made->stamp || !made->excluded_edges || !o->is_known || !k->particles || !k->is_fast ||
         !k->v || !made->colours || !made->supports)
         return false;
+    made->due.first = made->colours + nodes;
     k->v_start = k->v + nodes;
     k->v_before = k->v_start + nodes;
     made->inner.visited = made->stamp + particles;

@@ -12,6 +12,7 @@
 ///   constraints.c        narrow phase: contact constraints of an interval, in a fixed order
 ///   contact_solver.c     intervals of a substep, and motion in them
 ///   gauss_seidel.c       impulses: projected Gauss-Seidel
+///   penetration.c        more sweeps of constraints that would get deeper
 ///   relaxation.c         explicit solver: velocities without what pushed overlaps apart
 ///   floor_support.c      floor below bodies, in the same sweeps
 ///   contact_events.c     begin and end events for the host
@@ -177,6 +178,7 @@ typedef struct mspringi_floor_support {
     double free_speed;    ///< speed away from the surface without contact, m/s
     double min_speed;     ///< lower bound of that speed with contact, m/s
     double across, along; ///< accumulated changes of normal and tangential speed, m/s
+    bool has_moved;       ///< the last sweep changed the velocity
 } mspringi_floor_support;
 
 /// Most supports of a particle: two where surfaces meet.
@@ -189,6 +191,14 @@ typedef struct mspringi_rigid_row {
     double speed;              ///< relative speed of the bodies without impulses, m/s
     double mass;               ///< impulse per change of speed, kg; 0: none acts
 } mspringi_rigid_row;
+
+/// Constraints that a sweep of penetrating ones has to visit (penetration.c).
+typedef struct mspringi_due_constraints {
+    uint8_t *is_due;        ///< [constraint_capacity + 8] a node has another velocity than at the last visit
+    uint32_t *first, *next; ///< [nodes], [3 constraint_capacity] constraints at a node, numbered as 3 i + 0 to 2
+    uint64_t made;          ///< due in this sweep
+    bool are_all;
+} mspringi_due_constraints;
 
 /// Contact constraint in the linear system (solvers/implicit/implicit_contact.c). Index 0 is the point, 1 and 2 are
 /// the ends of the edge.
@@ -344,9 +354,10 @@ struct mspringi_contacts {
     // An interval.
     mspringi_contact_nodes nodes;
     mspringi_contact_constraint *constraints; ///< [constraint_capacity]
-    uint32_t *colours;                        ///< [nodes] colours of its pending constraints, as bits
-    uint8_t *is_seen;                         ///< [capacity] candidates with a constraint, while more are added
-    uint32_t *near_misses;                    ///< [capacity] candidates just out of reach
+    mspringi_due_constraints due;
+    uint32_t *colours;     ///< [nodes] colours of its pending constraints, as bits
+    uint8_t *is_seen;      ///< [capacity] candidates with a constraint, while more are added
+    uint32_t *near_misses; ///< [capacity] candidates just out of reach
     uint32_t constraint_count, near_miss_count, constraint_capacity;
     mspringi_pending_constraint pending[MSPRINGI_MAX_PENDING];
     uint32_t pending_count, max_pending;
@@ -371,6 +382,11 @@ typedef struct mspringi_contacts mspringi_contacts;
 /// Edges at a particle that cost nothing to visit. More count as comparisons: hubs of thousands would take their
 /// square.
 #define MSPRINGI_FREE_EDGES 64u
+
+/// Count visits of constraints: three take as long as a comparison of a point with an edge.
+static inline void mspringi_contact_count_constraints(mspringi_contacts *contacts, uint64_t visits) {
+    contacts->work += visits / 3;
+}
 
 /// Count visits of outline edges at one particle.
 static inline void mspringi_contact_count_visits(mspringi_contacts *contacts, uint32_t visits) {
@@ -507,6 +523,10 @@ static inline double mspringi_normal_speed(const mspringi_contact_constraint *t,
 /// Sweep all constraints so many times, or once those that push overlaps apart, and count the work.
 void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps);
 void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
+/// Find and apply the normal impulse of a constraint alone.
+void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint);
+
+/* penetration.c */
 /// Sweep the constraints that would penetrate in an interval of h seconds. *any becomes true if there are any.
 /// False: some would still get much deeper.
 bool mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any);

@@ -64,6 +64,7 @@ void mspringi_floor_support_sweep(const mspringi_contacts *contacts) {
         mspringi_floor_support *g = &contacts->supports[i];
         const double speed = k->v[g->p].x * g->nx + k->v[g->p].y * g->ny, sum = g->across + (g->min_speed - speed);
         const double across = sum > 0.0 ? sum : 0.0, by = across - g->across;
+        g->has_moved = false;
         if (across == 0.0 && g->across == 0.0)
             continue;
         g->across = across;
@@ -73,6 +74,7 @@ void mspringi_floor_support_sweep(const mspringi_contacts *contacts) {
         const double wanted = g->along - slide, along = wanted > most ? most : wanted < -most ? -most : wanted;
         k->v[g->p].x -= (along - g->along) * g->ny;
         k->v[g->p].y += (along - g->along) * g->nx;
+        g->has_moved = by != 0.0 || along != g->along;
         g->along = along;
     }
 }

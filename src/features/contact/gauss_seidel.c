@@ -9,38 +9,16 @@
 /// 1. sweep_all() visits all constraints, and floor supports, a given number of times.
 /// 2. Several bounces together may add energy, because one throws a point at another edge. Then all of them bounce
 ///    less, and are swept again.
-/// 3. A heavy body that presses a light one against another needs more sweeps. So
-///    mspringi_contact_resolve_penetration sweeps constraints that would get deeper until none does. Bodies at rest
-///    on each other have none.
 #include <math.h>
 
 #include "base/cpu.h"
 #include "features/contact/contacts.h"
-
-/// Speed at which a constraint beyond the kept depth may close, in thicknesses per substep; colliders: any overlap.
-/// (With 1e-3, light fragments under many heavy ones, which are not pushed out, sank by 0.6 thicknesses in a
-/// second.)
-#define CLOSING_SPEED 1e-6
-
-/// Overlap that more sweeps are spent on, as a share of the thickness. If one gets that deep within an interval,
-/// the interval is too long.
-#define DEEPEST_SHARE 0.1
-
-/// Sweeps of penetrating constraints: most and least of them; between these, visits of constraints. Then most
-/// of those that are deepest, and of colliders alone.
-#define MOST_DEPTH_SWEEPS 256
-#define LEAST_DEPTH_SWEEPS 16
-#define DEPTH_VISITS 16384
-#define MORE_SWEEPS 64
 
 /// Factor on bounces that add energy, and most rounds of it; the last one removes bounces. Work below this share is
 /// rounding.
 #define BOUNCE_SHARE 0.5
 #define MOST_BOUNCES 3
 #define ROUNDING_SHARE 1e-9
-
-/// Visits of constraints that take as long as a comparison of a point with an edge.
-#define VISITS_OF_WORK 3u
 
 /* -------------------------------------------------------------------------------------------- one constraint */
 
@@ -72,8 +50,9 @@ MSPRINGI_ALWAYS_INLINE double add_normal_impulse(mspringi_contact_constraint *t,
     return by;
 }
 
-// Find and apply the normal impulse alone.
-static void push_apart(const mspringi_contact_nodes *k, mspringi_contact_constraint *t) {
+void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint) {
+    const mspringi_contact_nodes *k = &contacts->nodes;
+    mspringi_contact_constraint *t = &contacts->constraints[constraint];
     const double speed = mspringi_normal_speed(t, k->v);
     if (is_idle(t, speed))
         return;
@@ -113,43 +92,9 @@ MSPRINGI_ALWAYS_INLINE void solve_constraint(const mspringi_contact_nodes *k, ms
                   -tangent * t->couple_x);
 }
 
-/// Bounds on constraints after the sweeps of an interval.
-typedef struct penetration {
-    double h, speed; ///< interval, s; closing speed of a too deep constraint, m/s
-    double deepest;  ///< m
-} penetration;
-
-static penetration penetration_limit(const mspringi_contacts *contacts, double h, double share) {
-    return (penetration){h, CLOSING_SPEED * contacts->thickness / (double)contacts->h, share * contacts->thickness};
-}
-
-// True if a constraint would end too deep, and deeper than it begins.
-MSPRINGI_ALWAYS_INLINE bool is_penetrating(const mspringi_contacts *contacts, const mspringi_contact_constraint *t,
-                                           const penetration *most) {
-    const double speed = mspringi_normal_speed(t, contacts->nodes.v),
-                 end = t->gap + most->h * (speed + most->speed);
-    return end < (t->gap < 0.0 ? t->gap : 0.0) && end < -most->deepest;
-}
-
-// Sweep constraints that penetrate, between bodies by more than a share of the thickness. Return true if any did.
-static bool sweep_penetrating(mspringi_contacts *contacts, double h, double share) {
-    const penetration of_bodies = penetration_limit(contacts, h, share),
-                      of_colliders = penetration_limit(contacts, h, 0.0);
-    bool any = false;
-    contacts->work += contacts->constraint_count / VISITS_OF_WORK;
-    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
-        mspringi_contact_constraint *t = &contacts->constraints[i];
-        if (!is_penetrating(contacts, t, t->collider == MSPRING_NONE ? &of_bodies : &of_colliders))
-            continue;
-        push_apart(&contacts->nodes, t);
-        any = true;
-    }
-    return any;
-}
-
 static void sweep_all(mspringi_contacts *contacts, uint32_t sweeps) {
     const mspringi_contact_nodes k = contacts->nodes;
-    contacts->work += (uint64_t)sweeps * contacts->constraint_count / VISITS_OF_WORK;
+    mspringi_contact_count_constraints(contacts, (uint64_t)sweeps * contacts->constraint_count);
     for (uint32_t n = 0; n < sweeps; ++n) {
         for (uint32_t i = 0; i < contacts->constraint_count; ++i)
             solve_constraint(&k, &contacts->constraints[i]);
@@ -189,31 +134,9 @@ void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps) {
     }
 }
 
-bool mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any) {
-    const uint32_t by_visits = LEAST_DEPTH_SWEEPS + DEPTH_VISITS / (contacts->constraint_count + 1);
-    const uint32_t most = by_visits < MOST_DEPTH_SWEEPS ? by_visits : MOST_DEPTH_SWEEPS;
-    static const double shares[] = {DEEPEST_SHARE, HUGE_VAL}; // the last are colliders alone
-    for (uint32_t n = 0; n < most; ++n) {
-        if (!sweep_penetrating(contacts, h, MSPRINGI_KEPT_DEPTH))
-            return true;
-        *any = true;
-        mspringi_floor_support_sweep(contacts);
-    }
-    for (int i = 0; i < 2; ++i)
-        for (uint32_t n = 0; n < MORE_SWEEPS && sweep_penetrating(contacts, h, shares[i]); ++n)
-            mspringi_floor_support_sweep(contacts);
-    const penetration deepest = penetration_limit(contacts, h, DEEPEST_SHARE);
-    for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
-        const mspringi_contact_constraint *t = &contacts->constraints[i];
-        if ((t->gap > -deepest.deepest || t->collider != MSPRING_NONE) && is_penetrating(contacts, t, &deepest))
-            return false;
-    }
-    return true;
-}
-
 void mspringi_contact_sweep_pushed(mspringi_contacts *contacts) {
     const mspringi_contact_nodes k = contacts->nodes;
-    contacts->work += contacts->constraint_count / VISITS_OF_WORK;
+    mspringi_contact_count_constraints(contacts, contacts->constraint_count);
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         mspringi_contact_constraint *t = &contacts->constraints[i];
         if (!t->is_pushed)
