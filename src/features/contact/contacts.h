@@ -527,9 +527,15 @@ void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
 void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint);
 
 /* penetration.c */
+/// How an interval ends: solved; with bodies too deep in each other, as sweeps did not suffice; or too long, as
+/// nodes move too far, or too deep into colliders.
+typedef enum mspringi_interval_end {
+    MSPRINGI_INTERVAL_SOLVED,
+    MSPRINGI_INTERVAL_TOO_DEEP,
+    MSPRINGI_INTERVAL_TOO_LONG
+} mspringi_interval_end;
 /// Sweep the constraints that would penetrate in an interval of h seconds. *any becomes true if there are any.
-/// False: some would still get much deeper.
-bool mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any);
+mspringi_interval_end mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any);
 
 /* contact_stage.c */
 

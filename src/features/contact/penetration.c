@@ -151,27 +151,31 @@ static bool sweep_due(mspringi_contacts *contacts, const penetration_limits *mos
     return true;
 }
 
-bool mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any) {
+mspringi_interval_end mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any) {
     const uint32_t by_visits = LEAST_DEPTH_SWEEPS + DEPTH_VISITS / (contacts->constraint_count + 1);
     const uint32_t most = by_visits < MOST_DEPTH_SWEEPS ? by_visits : MOST_DEPTH_SWEEPS;
     static const double shares[] = {DEEPEST_SHARE, HUGE_VAL}; // the last are colliders alone
     const penetration_limits kept = limits_for(contacts, h, MSPRINGI_KEPT_DEPTH);
     if (!begin_sweeps(contacts, &kept))
-        return true;
+        return MSPRINGI_INTERVAL_SOLVED;
     *any = true;
     for (uint32_t n = 0; n < most; ++n)
         if (!sweep_due(contacts, &kept))
-            return true;
+            return MSPRINGI_INTERVAL_SOLVED;
     for (int i = 0; i < 2; ++i) {
         const penetration_limits deeper = limits_for(contacts, h, shares[i]);
         for (uint32_t n = 0; n < MORE_SWEEPS && sweep_due(contacts, &deeper); ++n)
             ;
     }
     const penetration deepest = penetration_limit(contacts, h, DEEPEST_SHARE);
+    mspringi_interval_end end = MSPRINGI_INTERVAL_SOLVED;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
-        if ((t->gap > -deepest.deepest || t->collider != MSPRING_NONE) && is_penetrating(contacts, t, &deepest))
-            return false;
+        if ((t->collider == MSPRING_NONE && t->gap <= -deepest.deepest) || !is_penetrating(contacts, t, &deepest))
+            continue;
+        if (t->collider != MSPRING_NONE)
+            return MSPRINGI_INTERVAL_TOO_LONG;
+        end = MSPRINGI_INTERVAL_TOO_DEEP;
     }
-    return true;
+    return end;
 }
