@@ -17,8 +17,8 @@
 #define MAX_CUTS 6
 
 /// Intervals of a substep in which bodies end too deep in each other: fewer where constraints are many, as there
-/// it is sweeps that lack. (With 64, walls that close on a heap of 600 loose particles took 5e6 comparisons a step and LIMIT;
-/// now 0.6e6.)
+/// it is sweeps that lack. (With 64 of them, steps in which walls close on a heap of 600 loose particles took 5e6
+/// comparisons, and ended with LIMIT; now 0.6e6.)
 #define LEAST_DEPTH_INTERVALS 4
 #define DEPTH_INTERVALS 4096u
 

@@ -38,7 +38,9 @@
 
 #include <massspring/massspring_contact.h>
 
+#include "features/contact/floor_support.h"
 #include "features/contact/inner_points.h"
+#include "features/contact/penetration.h"
 #include "store/network.h"
 
 /// Outline: springs with a free side, their ends, and particles without springs, as edges of length 0. Edges are
@@ -170,20 +172,6 @@ typedef struct mspringi_pending_constraint {
     uint32_t candidate, colour;
 } mspringi_pending_constraint;
 
-/// Floor support: constraint of a particle that other bodies may press into the floor.
-typedef struct mspringi_floor_support {
-    uint32_t p, slot; ///< dense number and slot of the particle
-    double nx, ny, friction;
-    double gap;           ///< distance to the surface at the end of the substep, without contact, m
-    double free_speed;    ///< speed away from the surface without contact, m/s
-    double min_speed;     ///< lower bound of that speed with contact, m/s
-    double across, along; ///< accumulated changes of normal and tangential speed, m/s
-    bool has_moved;       ///< the last sweep changed the velocity
-} mspringi_floor_support;
-
-/// Most supports of a particle: two where surfaces meet.
-#define MSPRINGI_MAX_SUPPORTS 2u
-
 /// Contact constraint between rigid bodies, in one direction (solvers/implicit/rigid_contact.c). Index 0 is the
 /// side of the point, 1 that of the edge.
 typedef struct mspringi_rigid_row {
@@ -191,14 +179,6 @@ typedef struct mspringi_rigid_row {
     double speed;              ///< relative speed of the bodies without impulses, m/s
     double mass;               ///< impulse per change of speed, kg; 0: none acts
 } mspringi_rigid_row;
-
-/// Constraints that a sweep of penetrating ones has to visit (penetration.c).
-typedef struct mspringi_due_constraints {
-    uint8_t *is_due;        ///< [constraint_capacity + 8] a node has another velocity than at the last visit
-    uint32_t *first, *next; ///< [nodes], [3 constraint_capacity] constraints at a node, numbered as 3 i + 0 to 2
-    uint64_t made;          ///< due in this sweep
-    bool are_all;
-} mspringi_due_constraints;
 
 /// Contact constraint in the linear system (solvers/implicit/implicit_contact.c). Index 0 is the point, 1 and 2 are
 /// the ends of the edge.
@@ -525,17 +505,6 @@ void mspringi_contact_sweep(mspringi_contacts *contacts, uint32_t sweeps);
 void mspringi_contact_sweep_pushed(mspringi_contacts *contacts);
 /// Find and apply the normal impulse of a constraint alone.
 void mspringi_contact_push_apart(const mspringi_contacts *contacts, uint32_t constraint);
-
-/* penetration.c */
-/// How an interval ends: solved; with bodies too deep in each other, as sweeps did not suffice; or too long, as
-/// nodes move too far, or too deep into colliders.
-typedef enum mspringi_interval_end {
-    MSPRINGI_INTERVAL_SOLVED,
-    MSPRINGI_INTERVAL_TOO_DEEP,
-    MSPRINGI_INTERVAL_TOO_LONG
-} mspringi_interval_end;
-/// Sweep the constraints that would penetrate in an interval of h seconds. *any becomes true if there are any.
-mspringi_interval_end mspringi_contact_resolve_penetration(mspringi_contacts *contacts, double h, bool *any);
 
 /* contact_stage.c */
 
