@@ -55,17 +55,51 @@ static void mark_nodes(const mspring_network *network, mspringi_paths *p) {
     }
 }
 
-void mspringi_condense_straighten(const mspring_network *network, const mspringi_prediction *prediction,
-                                  size_t first, size_t end) {
-    const mspringi_paths *p = &mspringi_implicit_of(network)->paths;
-    for (uint32_t i = 0; i < p->node_count; ++i) {
-        const uint32_t slot = p->slots[i];
-        if (slot < first || slot >= end)
-            continue;
-        prediction->arm_x[slot] -= prediction->turned_x[slot];
-        prediction->arm_y[slot] -= prediction->turned_y[slot];
-        prediction->turned_x[slot] = prediction->turned_y[slot] = 0.0f;
+// Displacement of a path's end by the rotation of its tile.
+static void turned_end(const mspringi_prediction *prediction, uint32_t slot, double turned[2]) {
+    turned[0] = slot != MSPRING_NONE ? (double)prediction->turned_x[slot] : 0.0;
+    turned[1] = slot != MSPRING_NONE ? (double)prediction->turned_y[slot] : 0.0;
+}
+
+static void turn_node(const mspringi_prediction *prediction, uint32_t slot, float x, float y) {
+    prediction->arm_x[slot] += x - prediction->turned_x[slot];
+    prediction->arm_y[slot] += y - prediction->turned_y[slot];
+    prediction->turned_x[slot] = x;
+    prediction->turned_y[slot] = y;
+}
+
+// Between the ends' turns, in equal steps. A loose end goes along with the other one. Particles that do not move
+// are ends, too.
+static void turn_path(const mspringi_paths *p, const mspringi_prediction *prediction, const mspringi_path *path) {
+    const float *weight = prediction->inverse_mass;
+    for (uint32_t first = path->first, end; first < path->end; first = end + 1) {
+        for (end = first; end < path->end && weight[p->slots[end]] > 0.0f;)
+            ++end;
+        const uint32_t before = first == path->first ? path->ends[0] : p->slots[first - 1];
+        const uint32_t behind = end == path->end ? path->ends[1] : p->slots[end];
+        double from[2], to[2];
+        if (end < path->end)
+            turn_node(prediction, p->slots[end], 0.0f, 0.0f);
+        turned_end(prediction, before != MSPRING_NONE ? before : behind, from);
+        turned_end(prediction, behind != MSPRING_NONE ? behind : before, to);
+        for (uint32_t i = first; i < end; ++i) {
+            const double share = (double)(i - first + 1) / (double)(end - first + 1);
+            turn_node(prediction, p->slots[i], (float)(from[0] + share * (to[0] - from[0])),
+                      (float)(from[1] + share * (to[1] - from[1])));
+        }
     }
+}
+
+void mspringi_condense_turn(const mspring_network *network, const mspringi_prediction *prediction,
+                            mspringi_team_member *member) {
+    const mspringi_paths *p = &mspringi_implicit_of(network)->paths;
+    if (p->count == 0)
+        return;
+    mspringi_team_barrier(member);
+    const size_t end = mspringi_range_end(member, p->count);
+    for (size_t i = mspringi_range_begin(member, p->count); i < end; ++i)
+        turn_path(p, prediction, &p->list[i]);
+    mspringi_team_barrier(member);
 }
 
 static uint32_t moving_end(const mspringi_implicit *n, uint32_t slot) {

@@ -181,7 +181,10 @@ static bool is_small(double product, double least) {
     return product < NO_PRODUCT || product <= least;
 }
 
-// The same for a system without paths.
+// The same for a system without paths. It ends by a share of the r . z that it begins with, or has after an
+// iteration: the loads of paths on their ends, often most of the first r . z, are balanced by then. (By the first
+// alone 7 of 120 random scenes with ropes had more than twice the error that they had without condensation, now 3.
+// The median fell from 0.20 to 0.064 % of the motion, for 1.14 times the products.)
 static float solve_without_paths(const substep_of *substep, mspringi_team_member *member) {
     const mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
@@ -199,7 +202,9 @@ static float solve_without_paths(const substep_of *substep, mspringi_team_member
     double product = tiles_first ? solve_tiles(substep, member) : begin_anew(substep, member);
     left -= tiles_first;
     product += correct(substep, member, !tiles_first);
-    const double least = least_share(n, times) * product;
+    const double share = least_share(n, times);
+    double least = share * product;
+    bool is_loaded = n->paths.count > 0;
     turn(substep, member, MSPRINGI_SEARCH_RESTART, 0.0f);
     for (;;) {
         const double curvature = mspringi_multiply(substep, member);
@@ -214,6 +219,9 @@ static float solve_without_paths(const substep_of *substep, mspringi_team_member
             return alpha;
         double next = advance(substep, member, alpha, false);
         next += correct(substep, member, false);
+        if (is_loaded)
+            least = fmin(least, share * next);
+        is_loaded = false;
         if (is_small(next, least))
             return 0.0f;
         turn(substep, member, MSPRINGI_SEARCH_CONTINUE, (float)(next / product));

@@ -207,7 +207,7 @@ void mspringi_predict(const mspringi_implicit_substep *substep, mspringi_team_me
     mspringi_team_barrier(member);
     const mspringi_part_range parts = mspringi_tiles_parts(tiles, slots.first, slots.end);
     kernels->rotate_tiles(&substep->prediction, parts.parts, parts.count, n->tile_motions);
-    mspringi_condense_straighten(network, &substep->prediction, slots.first, slots.end);
+    mspringi_condense_turn(network, &substep->prediction, member);
     for (size_t at = slots.first; mspringi_next_slots(network, slots, &at, &run);)
         kernels->predict(&substep->prediction, run.first, run.end);
 }
