@@ -432,13 +432,17 @@ static void usual_settings_are_tried_where_none_are_given(void **state) {
     check_ok(mspring_tune_settings(network, 1.0 / 64, settings, TUNES_MOST, &count));
     check_ok(mspring_network_suggest_substeps(network, 1.0 / 64, 0.9, &least));
     assert_int_equal(settings[0].substeps, least);
-    uint32_t implicit = 0, bdf2 = 0;
+    uint32_t implicit = 0, bdf2 = 0, coarse = 0, fine = 0;
     for (uint32_t i = 0; i < count; i++) {
         check_ok(mspring_network_set_solver(network, &settings[i]));
         support_steps(network, 1, 1.0 / 64);
         implicit += settings[i].solver == MSPRING_SOLVER_IMPLICIT;
         bdf2 += settings[i].integrator == MSPRING_INTEGRATOR_BDF2;
+        coarse += settings[i].residual == 0.1f;
+        fine += settings[i].residual == 0.01f;
     }
+    assert_int_equal(coarse, 4); // both integrators, one and two substeps
+    assert_true(fine >= coarse);
     assert_in_range(bdf2, 4, count - 4);
     assert_in_range(implicit, 4, count - 3);
     check_error(mspring_tune_settings(NULL, 1.0 / 64, settings, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);

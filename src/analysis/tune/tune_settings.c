@@ -10,16 +10,13 @@
 /// Number of particles up to which a factorisation in each step may pay off.
 #define MAX_DIRECT_PARTICLES 20000
 
-/// Iterations for the default integrator, beside the other one.
-#define DEFAULT_ITERATIONS 8
-
 typedef struct settings {
     mspring_solver_def list[MSPRINGI_TUNE_DEFAULT_SETTINGS];
     uint32_t count;
 } settings;
 
 static void add(settings *s, mspring_solver solver, mspring_integrator integrator, uint32_t substeps,
-                uint32_t iterations) {
+                float residual) {
     mspring_solver_def def;
     if (!mspringi_solver_ops_of(solver))
         return; // not in this build
@@ -27,20 +24,19 @@ static void add(settings *s, mspring_solver solver, mspring_integrator integrato
     def.solver = solver;
     def.integrator = integrator;
     def.substeps = substeps;
-    def.iterations = iterations;
-    def.residual = 0.0f; // exactly these
+    def.residual = residual;
     s->list[s->count++] = def;
 }
 
 // Add explicit settings, in increasing order of substeps.
 static void add_explicit(settings *s, uint32_t substeps) {
     if (substeps <= MAX_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
-        add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, substeps, 0);
+        add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, substeps, 0.0f);
 }
 
 static void list_settings(settings *s, const mspring_network *network, uint32_t least) {
     static const uint32_t usual[] = {10, 20, 30, 40, 60, 80};
-    static const uint32_t iterations[] = {4, 8, 15};
+    static const float residuals[] = {0.1f, 0.03f, 0.01f};
     for (size_t i = 0; network->fractions.values && i < sizeof usual / sizeof usual[0]; ++i)
         if (usual[i] >= least)
             add_explicit(s, usual[i]);
@@ -50,15 +46,16 @@ static void list_settings(settings *s, const mspring_network *network, uint32_t 
         add_explicit(s, 2 * least);
         add_explicit(s, 4 * least);
     }
-    for (uint32_t substeps = 1; substeps <= 4; substeps *= 2) {
-        for (size_t i = 0; i < sizeof iterations / sizeof iterations[0]; ++i)
-            add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, substeps, iterations[i]);
-        add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, DEFAULT_ITERATIONS);
+    for (uint32_t substeps = 1; substeps <= 2; ++substeps) {
+        for (size_t i = 0; i < sizeof residuals / sizeof residuals[0]; ++i) {
+            add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, substeps, residuals[i]);
+            add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, residuals[i]);
+        }
     }
     for (uint32_t substeps = 1; network->topology.particle_count <= MAX_DIRECT_PARTICLES && substeps <= 2;
          ++substeps) {
-        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, substeps, 0);
-        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, substeps, 0);
+        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, substeps, 0.0f);
+        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, substeps, 0.0f);
     }
 }
 
