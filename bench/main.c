@@ -42,6 +42,9 @@ int main(int count, char **arguments) {
     case BENCH_SOLVERS:
         ok = bench_run_solvers(&options);
         break;
+    case BENCH_ERRORS:
+        ok = bench_run_errors(&options);
+        break;
     case BENCH_ROOFLINE:
         ok = bench_run_roofline(&options);
         break;

@@ -11,7 +11,7 @@
 /// Measure scenes against the naive step (scenes.c), what features cost (features.c), what contact costs
 /// (contact.c), what workers gain (workers.c), what more of them would gain (cores.c), what is done to a network
 /// between its steps (session.c), a whole frame of a game (game.c), what the sparse direct solver costs (linear.c),
-/// what steps of the implicit and the direct solver cost (solvers.c), how far from the machine's bounds the scenes
+/// what steps of the implicit and the direct solver cost (solvers.c), how far they err (errors.c), how far from the machine's bounds the scenes
 /// are (roofline.c), where networks are stable (map.c), one case of that (map_cases.c), how long the worst step
 /// takes (map_frames.c), whether the guard refuses ordinary steps (alarms.c) and what it costs (guard.c), what a
 /// floor and spare particles cost (spare.c), measure against other ways to write the loop (loops.c), or compare
@@ -25,6 +25,7 @@ bool bench_run_session(const bench_options *options);
 bool bench_run_game(const bench_options *options);
 bool bench_run_linear(const bench_options *options);
 bool bench_run_solvers(const bench_options *options);
+bool bench_run_errors(const bench_options *options);
 bool bench_run_roofline(const bench_options *options);
 bool bench_run_map(const bench_options *options);
 bool bench_run_map_case(const bench_options *options);

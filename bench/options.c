@@ -27,6 +27,7 @@ void bench_options_help(void) {
          "  --game               a whole frame of a game: its calls, and frames in which springs break\n"
          "  --linear             what the sparse direct solver costs, in explicit substeps\n"
          "  --solvers            what steps of the implicit and the direct solver cost, in explicit substeps\n"
+         "  --errors             error against time of stiff structures, at 1e7 to 1e10 N/m; takes minutes\n"
          "  --roofline           the bounds of this machine, and how near to them each scene comes\n"
          "  --map                where networks are stable, at the extremes of every setting; takes minutes\n"
          "  --frames             how long the worst step takes next to the median\n"
@@ -61,7 +62,7 @@ void bench_options_help(void) {
          "  --out FOLDER         of --map: draw its pictures into this folder\n"
          "\n"
          "The map\n"
-         "  --family NAME        of --map: only the cases of this family; of --spare: only this row\n"
+         "  --family NAME        of --map: only the cases of this family; of --spare: only this row; of --errors: only this scene\n"
          "  --shard I/N          of --map: every N-th part of the cases, the I-th of them, to run N at once\n"
          "  --map-case CASE      run one case, as a fault names it (family:number), and print its energies");
 }
@@ -135,7 +136,7 @@ static bool is_switch(const char *option, bench_options *out) {
     } modes[] = {{"--features", BENCH_FEATURES}, {"--contact", BENCH_CONTACT},
                  {"--workers", BENCH_WORKERS},   {"--session", BENCH_SESSION},
                  {"--game", BENCH_GAME}, {"--linear", BENCH_LINEAR},     {"--solvers", BENCH_SOLVERS},
-                 {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
+                 {"--errors", BENCH_ERRORS},     {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
                  {"--frames", BENCH_FRAMES},     {"--alarms", BENCH_ALARMS},
                  {"--guard", BENCH_GUARD},       {"--check", BENCH_CHECK},
                  {"--spare", BENCH_SPARE},       {"--loops", BENCH_LOOPS},

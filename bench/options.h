@@ -20,6 +20,7 @@ typedef enum bench_mode {
     BENCH_GAME,
     BENCH_LINEAR,
     BENCH_SOLVERS,
+    BENCH_ERRORS,
     BENCH_ROOFLINE,
     BENCH_MAP,
     BENCH_MAP_CASE,
