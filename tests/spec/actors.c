@@ -114,28 +114,30 @@ static void MSPRING_CALL blow(const mspring_hook_args *args, void *user) {
     }
 }
 
-static void blow_specified(const spec_network *n, spec_vector *fields) {
+static void blow_specified(const spec_network *n, spec_vector *forces) {
     for (uint32_t p = 0; p < n->particle_count; p++) {
         const spec_vector force = wind_on(n->motions[p].place.y, n->motions[p].velocity);
-        fields[p] = (spec_vector){fields[p].x + force.x, fields[p].y + force.y};
+        forces[p] = (spec_vector){forces[p].x + force.x, forces[p].y + force.y};
     }
 }
 
-static void add_hook(mspring_network *library, spec_network *n) {
+static void add_hook(scene *s, mspring_network *library, spec_network *n) {
     mspring_hook_def def;
     check_ok(mspring_hook_def_init(&def, sizeof def));
     def.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
     def.fn = blow;
+    def.period = n->hook_period = scene_chance(s, 0.5) ? 1 : 1 + scene_below(s, 6);
     check_ok(mspring_network_add_hook(library, &def, NULL));
     n->hook = blow_specified;
 }
 
 static void add_grips(scene *s, mspring_network *library, specification *to) {
     spec_network *n = &to->network;
+    const uint32_t spread = scene_chance(s, 0.5) ? SCENE_GRIPS : 1 + scene_below(s, 2); // particles with grips
     for (uint32_t i = 0, first = scene_below(s, n->particle_count); i < SCENE_GRIPS && i < n->particle_count; i++) {
         mspring_grip_def def;
         check_ok(mspring_grip_def_init(&def, sizeof def));
-        def.particle = (first + i) % n->particle_count;
+        def.particle = (first + i % spread) % n->particle_count;
         def.stiffness = s->stiffness * (float)scene_between(s, 0, 10);
         def.damping = scene_chance(s, 0.5) ? 0 : (float)scene_between(s, 0, 100);
         def.max_force = scene_chance(s, 0.5) ? MSPRING_NEVER : s->stiffness;
@@ -160,9 +162,9 @@ static void add_actuators(scene *s, mspring_network *library, specification *to)
 
 void actors_add(scene *s, mspring_network *library, specification *to) {
     if (!s->is_calm && scene_chance(s, 0.15)) {
-        add_hook(library, &to->network);
+        add_hook(s, library, &to->network);
     }
-    if (!s->is_calm && s->plane_count + s->height_count == 0 && scene_chance(s, 0.3)) {
+    if (!s->is_calm && scene_chance(s, 0.3)) {
         add_grips(s, library, to);
     }
     if (!s->is_calm && s->spring_count > 0 && scene_chance(s, 0.2)) {

@@ -14,7 +14,7 @@
 typedef struct specification {
     spec_network network;
     spec_motion motions[SCENE_PARTICLES], before[SCENE_PARTICLES];
-    spec_vector forces[SCENE_PARTICLES], fields[SCENE_PARTICLES];
+    spec_vector forces[SCENE_PARTICLES], fields[SCENE_PARTICLES], held[SCENE_PARTICLES];
     spec_element elements[SCENE_ELEMENTS];
     spec_grip grips[SCENE_GRIPS];
     mspring_id grip_ids[SCENE_GRIPS];

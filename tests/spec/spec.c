@@ -467,7 +467,7 @@ void spec_begin(spec_network *network) {
     network->is_damped = false;
     for (uint32_t i = 0; i < network->spring_count; i++) {
         const spec_spring *s = &network->springs[i];
-        network->is_damped |= s->damping > 0.0f;
+        network->is_damped |= s->damping > 0.0f || (s->is_relative && s->damping_share > 0.0f);
         network->shortest =
             s->rest_length > 0.0f ? fmin(network->shortest, (double)s->rest_length) : network->shortest;
         longest = fmax(longest, (double)s->rest_length);
@@ -491,19 +491,33 @@ static void take_substep(spec_network *network, const substep *now) {
     }
 }
 
-// Take substeps between which nothing else acts. Particles without springs take all of them at once.
-static void take_together(spec_network *network, const step *all) {
-    memcpy(network->fields, network->forces, network->particle_count * sizeof *network->fields);
-    spec_add_fields(network);
-    for (uint32_t i = all->first; i < all->end; i++) {
-        const substep now = substep_of(network, all, i);
-        take_substep(network, &now);
-    }
+// Let particles without springs take substeps at once.
+static void glide_all(const spec_network *network, const step *all) {
     const glide g = glide_of(network, all);
     for (uint32_t p = 0; p < network->particle_count; p++) {
         if (!has_springs(&network->sums[p])) {
             glide_particle(network, &g, p);
         }
+    }
+}
+
+// Take substeps between which nothing else acts. Particles without springs take all of them at once, or one by one
+// in a network with a hook.
+static void take_together(spec_network *network, const step *all) {
+    memcpy(network->fields, network->forces, network->particle_count * sizeof *network->fields);
+    spec_add_fields(network, all->first);
+    for (uint32_t i = all->first; i < all->end; i++) {
+        const substep now = substep_of(network, all, i);
+        step one = *all;
+        one.first = i;
+        one.end = i + 1;
+        take_substep(network, &now);
+        if (network->hook != NULL) {
+            glide_all(network, &one);
+        }
+    }
+    if (network->hook == NULL) {
+        glide_all(network, all);
     }
 }
 

@@ -94,7 +94,10 @@ typedef struct spec_element {
     double cosine, sine;                      ///< of an angle's rest
 } spec_element;
 
-/// A soft constraint of one particle to a place. Each particle has one at most.
+/// Most grips of one particle.
+#define SPEC_GRIPS 4
+
+/// A soft constraint of one particle to a place.
 typedef struct spec_grip {
     uint32_t particle;
     float stiffness, damping, max_force;
@@ -136,7 +139,9 @@ struct spec_network {
     spec_actuator *actuators; ///< set in the next step
     uint32_t changes;         ///< most of an actuator's length in a step
     spec_element *elements; ///< in the order in which they were added
-    void (*hook)(const spec_network *network, spec_vector *fields); ///< adds forces before each substep; or NULL
+    void (*hook)(const spec_network *network, spec_vector *forces); ///< adds forces; or NULL
+    uint32_t hook_period; ///< substeps that its forces last, counted from the first of a step
+    spec_vector *held;    ///< [particle_count] scratch: its forces, N
     float gravity_x, gravity_y, global_damping; ///< m/s^2, 1/s
     bool is_precise;
     uint32_t substeps;                ///< of a step, or SPEC_AUTO or SPEC_EVEN
@@ -185,8 +190,8 @@ void spec_begin_element(const spec_network *network, spec_element *element);
 /// Actors beside springs. spec_laws.c
 uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count); ///< taken together
 void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count); ///< actuators, one-way springs
-void spec_add_fields(const spec_network *network);                               ///< to spec_network.fields
-void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h);
+void spec_add_fields(const spec_network *network, uint32_t first);               ///< to spec_network.fields
+void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h); ///< spec_grips.c
 void spec_end_step(spec_network *network);
 void spec_derive_relative(const spec_network *network, float h);
 double spec_reduced_mass(const spec_network *network, const spec_spring *spring);
@@ -207,5 +212,8 @@ typedef struct spec_bounce {
 /// Let the floor act on a particle that a substep of h seconds has moved from network->before to network->motions.
 /// Its velocity became keep v + a h / scale, with the acceleration a. spec_floor.c
 spec_bounce spec_touch_floor(const spec_network *network, uint32_t particle, double h, double keep, double scale);
+
+/// Let the floor stop a particle that a grip has moved from here: b is where it would be. spec_floor.c
+void spec_stop_at_floor(const spec_network *network, double from_x, double from_y, double h, spec_bounce *b);
 
 #endif

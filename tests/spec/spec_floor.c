@@ -297,3 +297,54 @@ spec_bounce spec_touch_floor(const spec_network *network, uint32_t p, double h, 
     }
     return (spec_bounce){acts, b.x + h * b.vx, b.y + h * b.vy, b.vx, b.vy};
 }
+
+/* ---------------------------------------------------------------------------------------------- motion by grips */
+
+// Let a surface stop a particle that a grip has moved. Friction brakes it, and takes its way along the surface back.
+static bool stop(const spec_plane *plane, double h, double slop, spec_bounce *b) {
+    const double distance = distance_from(plane, b->x, b->y), across = plane->nx * b->vx + plane->ny * b->vy;
+    if (!(distance < slop)) {
+        return false;
+    }
+    if (across < 0.0) {
+        const double along = plane->nx * b->vy - plane->ny * b->vx, most = plane->friction * -across;
+        const double taken = along > most ? most : along < -most ? -most : along;
+        b->vx += -across * plane->nx + taken * plane->ny;
+        b->vy += -across * plane->ny - taken * plane->nx;
+        b->x += h * taken * plane->ny;
+        b->y -= h * taken * plane->nx;
+    }
+    if (distance < 0.0) {
+        b->x -= distance * plane->nx;
+        b->y -= distance * plane->ny;
+    }
+    return across < 0.0 || distance < 0.0;
+}
+
+void spec_stop_at_floor(const spec_network *network, double from_x, double from_y, double h, spec_bounce *b) {
+    const double slop = slop_at(b->x, b->y);
+    bool goes_on = network->plane_count > 0 || network->heights.count > 0;
+    if (!goes_on) {
+        return;
+    }
+    for (int round = 0; round < ROUNDS_OF_PLANES && goes_on; round++) {
+        goes_on = false;
+        for (uint32_t i = 0; i < network->plane_count; i++) {
+            goes_on |= stop(&network->planes[i], h, slop, b);
+        }
+        if (network->heights.count > 0) {
+            const spec_plane met = first_hit(&network->heights, from_x, from_y, b->x, b->y);
+            goes_on |= stop(&met, h, slop, b);
+        }
+    }
+    if (!(distance_from_all(network, b->x, b->y) < -slop)) {
+        return;
+    }
+    if (distance_from_all(network, from_x, from_y) >= -8.0 * slop) { // a narrow corner: back
+        b->x = from_x;
+        b->y = from_y;
+    } else {
+        (void)put_outside(network, &b->x, &b->y);
+    }
+    b->vx = b->vy = 0.0;
+}

@@ -13,6 +13,7 @@
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 typedef struct wide_vector {
     double x, y;
@@ -246,41 +247,6 @@ void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count) 
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------- grips */
-
-// After a substep: a grip's force at its end, F = (k (t - p) + c (u - v)) / (1 + (h c + h^2 k) / m), within its
-// bound. t and u are place and velocity of the target, which goes evenly through the step.
-static void pull_grip(const spec_network *network, const spec_grip *g, uint32_t substep, uint32_t count, double h) {
-    const double inverse_mass = (double)network->inverse_masses[g->particle], k = (double)g->stiffness,
-                 c = (double)g->damping;
-    const double part = 1.0 / (double)count, share = (double)substep * part + part, seconds = h / part;
-    const double way_x = g->x - g->from_x, way_y = g->y - g->from_y;
-    spec_motion *m = &network->motions[g->particle];
-    const double x = spec_x_of(network, g->particle), y = spec_y_of(network, g->particle);
-    const double vx = (double)m->velocity.x, vy = (double)m->velocity.y;
-    const double to_x = (g->from_x + share * way_x) - network->origin_x - x;
-    const double to_y = (g->from_y + share * way_y) - network->origin_y - y;
-    const double over = 1.0 / (1.0 + h * (c + h * k) * inverse_mass);
-    double fx = over * (k * to_x + c * (way_x / seconds - vx)), fy = over * (k * to_y + c * (way_y / seconds - vy));
-    const double size = sqrt(fx * fx + fy * fy), most = (double)g->max_force;
-    if (size > most) {
-        fx *= most / size;
-        fy *= most / size;
-    }
-    const double change_x = h * inverse_mass * fx, change_y = h * inverse_mass * fy;
-    m->velocity.x = (float)(vx + change_x);
-    m->velocity.y = (float)(vy + change_y);
-    spec_put(network, g->particle, x + h * change_x, y + h * change_y);
-}
-
-void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h) {
-    for (uint32_t i = 0; i < network->grip_count; i++) {
-        if (network->inverse_masses[network->grips[i].particle] > 0.0f) {
-            pull_grip(network, &network->grips[i], substep, count, (double)h);
-        }
-    }
-}
-
 /* --------------------------------------------------------------------------------------------------- in a step */
 
 void spec_end_step(spec_network *network) {
@@ -297,7 +263,8 @@ void spec_end_step(spec_network *network) {
 // Substeps from first on that are taken together. Where anything acts between two, each is taken alone; actuators
 // that change several times in a step cut it there.
 uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count) {
-    bool is_cut = network->hook != NULL;
+    const uint32_t period = network->hook != NULL ? network->hook_period : count;
+    bool is_cut = false;
     for (uint32_t k = 0; k < network->element_count; k++) {
         is_cut |= !is_open(network, &network->elements[k]);
     }
@@ -308,16 +275,21 @@ uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_
         is_cut |= network->springs[s].side != 0;
     }
     uint32_t end = first + 1;
-    while (!is_cut && end < count && changes_by(network, end, count) == changes_by(network, first, count)) {
+    while (!is_cut && end < count && end % period != 0 && changes_by(network, end, count) == changes_by(network, first, count)) {
         end++;
     }
     return end - first;
 }
 
 // The hook comes first, then elements.
-void spec_add_fields(const spec_network *network) {
-    if (network->hook != NULL) {
-        network->hook(network, network->fields);
+void spec_add_fields(const spec_network *network, uint32_t first) {
+    if (network->hook != NULL && first % network->hook_period == 0) {
+        memset(network->held, 0, network->particle_count * sizeof *network->held);
+        network->hook(network, network->held);
+    }
+    for (uint32_t p = 0; network->hook != NULL && p < network->particle_count; p++) {
+        network->fields[p].x += network->held[p].x;
+        network->fields[p].y += network->held[p].y;
     }
     for (uint32_t k = 0; k < network->element_count; k++) {
         const spec_element *e = &network->elements[k];

@@ -119,6 +119,7 @@ static void make_specification(specification *to, scene *s, uint32_t substeps) {
                         .before = to->before,
                         .forces = to->forces,
                         .fields = to->fields,
+                        .held = to->held,
                         .elements = to->elements,
                         .grips = to->grips,
                         .actuators = to->actuators,
