@@ -319,7 +319,7 @@ static void scatter(scene *s) {
         made->vy = (float)(speed * scene_between(s, -1, 1)) + 0.0f;
         made->x += far;
     }
-    if (!has_loose && scene_chance(s, 0.5)) {
+    if (scene_chance(s, 0.5)) {
         add_floor(s);
         for (uint32_t i = 0; i < s->plane_count; i++) {
             s->planes[i][0] += far;

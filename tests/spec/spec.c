@@ -362,13 +362,19 @@ static void glide_particle(const spec_network *network, const glide *g, uint32_t
                 g->gravity.y, g->gravity_way.y);
 }
 
+static bool has_floor(const spec_network *network) {
+    return network->plane_count > 0 || network->heights.count > 0;
+}
+
 // Let the floor act on a particle that has moved.
 static void bounce(spec_network *network, const substep *now, uint32_t p) {
-    const double h = (double)now->h, keep = 1.0 - (double)now->loss, scale = h / (double)now->kick;
-    if ((network->plane_count == 0 && network->heights.count == 0) || !(network->inverse_masses[p] > 0.0f)) {
+    const double h = (double)now->h, scale = h / (double)now->kick;
+    if (!has_floor(network) || !(network->inverse_masses[p] > 0.0f)) {
         return;
     }
-    const spec_bounce b = spec_touch_floor(network, p, h, keep, scale);
+    const spec_bounce b = has_springs(&network->sums[p])
+                              ? spec_touch_floor(network, p, h, 1.0 - (double)now->loss, scale)
+                              : spec_fly(network, p, h, 1.0 - (double)now->damping, scale);
     if (!b.acts) {
         return;
     }
@@ -480,44 +486,42 @@ void spec_begin(spec_network *network) {
     network->pace = (spec_pace){0};
 }
 
-// Springs see the state before the substep, whatever the order of the particles.
-static void take_substep(spec_network *network, const substep *now) {
-    memcpy(network->before, network->motions, network->particle_count * sizeof *network->motions);
-    for (uint32_t p = 0; p < network->particle_count; p++) {
-        if (has_springs(&network->sums[p])) {
-            move_particle(network, now, p);
-            bounce(network, now, p);
+// Move a particle without springs: in all substeps at once, or one by one where a hook or the floor may act.
+static void glide_through(spec_network *network, const step *all, uint32_t p) {
+    const double seconds = (double)all->h * (double)(all->end - all->first);
+    const bool is_near = has_floor(network) && spec_may_meet_floor(network, p, seconds);
+    step part = *all;
+    for (; part.first < all->end; part.first = part.end) {
+        part.end = network->hook != NULL || is_near ? part.first + 1 : all->end;
+        const glide g = glide_of(network, &part);
+        const substep now = substep_of(network, all, part.first);
+        network->before[p] = network->motions[p];
+        glide_particle(network, &g, p);
+        if (is_near) {
+            bounce(network, &now, p);
         }
     }
 }
 
-// Let particles without springs take substeps at once.
-static void glide_all(const spec_network *network, const step *all) {
-    const glide g = glide_of(network, all);
-    for (uint32_t p = 0; p < network->particle_count; p++) {
-        if (!has_springs(&network->sums[p])) {
-            glide_particle(network, &g, p);
-        }
-    }
-}
-
-// Take substeps between which nothing else acts. Particles without springs take all of them at once, or one by one
-// in a network with a hook.
+// Take substeps between which nothing else acts. Springs see the state before a substep, whatever the order of the
+// particles.
 static void take_together(spec_network *network, const step *all) {
     memcpy(network->fields, network->forces, network->particle_count * sizeof *network->fields);
     spec_add_fields(network, all->first);
     for (uint32_t i = all->first; i < all->end; i++) {
         const substep now = substep_of(network, all, i);
-        step one = *all;
-        one.first = i;
-        one.end = i + 1;
-        take_substep(network, &now);
-        if (network->hook != NULL) {
-            glide_all(network, &one);
+        memcpy(network->before, network->motions, network->particle_count * sizeof *network->motions);
+        for (uint32_t p = 0; p < network->particle_count; p++) {
+            if (has_springs(&network->sums[p])) {
+                move_particle(network, &now, p);
+                bounce(network, &now, p);
+            }
         }
     }
-    if (network->hook == NULL) {
-        glide_all(network, all);
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        if (!has_springs(&network->sums[p])) {
+            glide_through(network, all, p);
+        }
     }
 }
 

@@ -213,6 +213,12 @@ typedef struct spec_bounce {
 /// Its velocity became keep v + a h / scale, with the acceleration a. spec_floor.c
 spec_bounce spec_touch_floor(const spec_network *network, uint32_t particle, double h, double keep, double scale);
 
+/// Move a particle without springs likewise. spec_flight.c
+spec_bounce spec_fly(const spec_network *network, uint32_t particle, double h, double keep, double scale);
+
+/// True if a particle without springs takes these seconds substep by substep, because it may meet the floor.
+bool spec_may_meet_floor(const spec_network *network, uint32_t particle, double seconds);
+
 /// Let the floor stop a particle that a grip has moved from here: b is where it would be. spec_floor.c
 void spec_stop_at_floor(const spec_network *network, double from_x, double from_y, double h, spec_bounce *b);
 

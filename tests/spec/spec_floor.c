@@ -8,7 +8,7 @@
 /// has shown that.
 ///
 /// SPDX-License-Identifier: MIT
-#include "spec.h"
+#include "spec_floor.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -25,12 +25,6 @@ typedef struct bouncer {
     double slack;           ///< 1 - (l/h)^2, or 0
     double spare;           ///< growth of |w|^2 that is left: 0 once a surface has acted
 } bouncer;
-
-/// Margin for rounding where |w|^2 must not grow.
-#define GROWTH (1.0 + 1e-9)
-
-/// Restitution that counts as none.
-#define NO_RESTITUTION 0.1
 
 // The square of w with what it may grow by.
 static double square_of(const bouncer *b) {
@@ -69,19 +63,17 @@ static bouncer bouncer_of(const spec_network *network, uint32_t p, double h, dou
     return b;
 }
 
-static double distance_from(const spec_plane *plane, double x, double y) {
+double spec_distance_from(const spec_plane *plane, double x, double y) {
     return plane->nx * x + plane->ny * y + plane->offset;
 }
 
-// Distance below which a particle touches a plane, m: rounding of its coordinates.
-static double slop_at(double x, double y) {
+double spec_slop_at(double x, double y) {
     return 0x1p-21 * (fabs(x) + fabs(y)) + 1e-12;
 }
 
 /* ------------------------------------------------------------------------------------------------------ heights */
 
-// Number of the part below x: that of its left end. The level ones are -1 and count - 1.
-static int64_t part_below(const spec_heights *h, double x) {
+int64_t spec_part_below(const spec_heights *h, double x) {
     const double place = (x - h->local_x) / h->spacing;
     return !(place >= 0.0) ? -1 : place < (double)(h->count - 1) ? (int64_t)place : (int64_t)h->count - 1;
 }
@@ -94,8 +86,7 @@ static double knot_y(const spec_heights *h, int64_t knot) {
     return h->local_y + (double)h->heights[knot];
 }
 
-// A part as a half-plane. The level ones have the friction and restitution of the outermost parts.
-static spec_plane plane_of(const spec_heights *h, int64_t part) {
+spec_plane spec_plane_of(const spec_heights *h, int64_t part) {
     const int64_t last = (int64_t)h->count - 2, sloping = part < 0 ? 0 : part < last ? part : last;
     const double rise = (double)h->heights[sloping + 1] - (double)h->heights[sloping];
     const double length = sqrt(h->spacing * h->spacing + rise * rise);
@@ -112,32 +103,31 @@ static spec_plane plane_of(const spec_heights *h, int64_t part) {
     return plane;
 }
 
-// The part that a way meets: that before the first knot which it passes below, or else the part below its end.
-static spec_plane first_hit(const spec_heights *h, double from_x, double from_y, double x, double y) {
-    const int64_t first = part_below(h, from_x), last = part_below(h, x), onward = first < last ? 1 : -1;
-    const double along_x = x - from_x, along_y = y - from_y, slop = slop_at(x, y);
+spec_plane spec_first_hit(const spec_heights *h, double from_x, double from_y, double x, double y) {
+    const int64_t first = spec_part_below(h, from_x), last = spec_part_below(h, x), onward = first < last ? 1 : -1;
+    const double along_x = x - from_x, along_y = y - from_y, slop = spec_slop_at(x, y);
     for (int64_t edge = first; edge != last; edge += onward) {
         const int64_t knot = onward > 0 ? edge + 1 : edge;
         const double share = (knot_x(h, knot) - from_x) / along_x;
         if (from_y + share * along_y < knot_y(h, knot) - slop) {
-            return plane_of(h, edge);
+            return spec_plane_of(h, edge);
         }
     }
-    return plane_of(h, last);
+    return spec_plane_of(h, last);
 }
 
 static spec_plane plane_below(const spec_network *network, double x) {
-    return plane_of(&network->heights, part_below(&network->heights, x));
+    return spec_plane_of(&network->heights, spec_part_below(&network->heights, x));
 }
 
-static double distance_from_all(const spec_network *network, double x, double y) {
+double spec_distance_from_all(const spec_network *network, double x, double y) {
     double least = INFINITY;
     for (uint32_t i = 0; i < network->plane_count; i++) {
-        least = fmin(least, distance_from(&network->planes[i], x, y));
+        least = fmin(least, spec_distance_from(&network->planes[i], x, y));
     }
     if (network->heights.count > 0) {
         const spec_plane below = plane_below(network, x);
-        least = fmin(least, distance_from(&below, x, y));
+        least = fmin(least, spec_distance_from(&below, x, y));
     }
     return least;
 }
@@ -157,7 +147,7 @@ static bool bounce(const spec_plane *plane, double h, double allowed, bouncer *b
     const double half = nx * b->half_x + ny * b->half_y, inward = half - normal_speed;
     const double e = plane->restitution < b->max_restitution ? plane->restitution : b->max_restitution;
     const double bounce_speed = e * inward + half, landing_speed = (depth - distance) / h;
-    const bool bounces = inward > 0.0 && bounce_speed > landing_speed && e > NO_RESTITUTION;
+    const bool bounces = inward > 0.0 && bounce_speed > landing_speed && e > SPEC_NO_RESTITUTION;
     const double wanted = bounces ? bounce_speed : landing_speed;
     const double normal_change = (wanted > normal_speed ? wanted : normal_speed) - normal_speed;
     const double speed = nx * b->vy - ny * b->vx, half_along = nx * b->half_y - ny * b->half_x;
@@ -166,7 +156,7 @@ static bool bounce(const spec_plane *plane, double h, double allowed, bouncer *b
                  most = b->slack > 0.0 ? sqrt(square) : fabs(in_step);
     const double friction = speed > most_friction ? most_friction : speed < -most_friction ? -most_friction : speed;
     const double braked = in_step - friction;
-    const double end = fabs(braked) > most * GROWTH ? (braked > 0.0 ? most : -most) : braked, brake = in_step - end;
+    const double end = fabs(braked) > most * SPEC_GROWTH ? (braked > 0.0 ? most : -most) : braked, brake = in_step - end;
     b->vx = b->vx + (normal_change * nx + brake * ny);
     b->vy = b->vy + (normal_change * ny - brake * nx);
     b->x = b->x - depth * nx;
@@ -179,17 +169,17 @@ static bool bounce(const spec_plane *plane, double h, double allowed, bouncer *b
 #define ROUNDS_OF_PLANES 4
 
 static void put_onto(const spec_plane *plane, double *x, double *y) {
-    const double distance = distance_from(plane, *x, *y);
+    const double distance = spec_distance_from(plane, *x, *y);
     *x -= distance < 0.0 ? distance * plane->nx : 0.0;
     *y -= distance < 0.0 ? distance * plane->ny : 0.0;
 }
 
 // Put a point that is inside the floor onto its surfaces, in one more round than a bounce takes. In the last round
 // the heights lift it straight up.
-static bool put_outside(const spec_network *network, double *x, double *y) {
-    const double slop = slop_at(*x, *y);
+bool spec_put_outside(const spec_network *network, double *x, double *y) {
+    const double slop = spec_slop_at(*x, *y);
     bool was_inside = false;
-    for (int round = 0; round <= ROUNDS_OF_PLANES && distance_from_all(network, *x, *y) < -slop; round++) {
+    for (int round = 0; round <= ROUNDS_OF_PLANES && spec_distance_from_all(network, *x, *y) < -slop; round++) {
         was_inside = true;
         for (uint32_t i = 0; i < network->plane_count; i++) {
             put_onto(&network->planes[i], x, y);
@@ -208,13 +198,13 @@ static bool put_outside(const spec_network *network, double *x, double *y) {
 
 // True if a particle ends outside, and passes through no part of the heights.
 static bool ends_outside(const spec_network *network, double h, const bouncer *b) {
-    const double x = b->x + h * b->vx, y = b->y + h * b->vy, slop = slop_at(x, y);
-    if (!(distance_from_all(network, x, y) >= -slop)) {
+    const double x = b->x + h * b->vx, y = b->y + h * b->vy, slop = spec_slop_at(x, y);
+    if (!(spec_distance_from_all(network, x, y) >= -slop)) {
         return false;
     }
     const spec_plane met =
-        network->heights.count > 0 ? first_hit(&network->heights, b->x, b->y, x, y) : (spec_plane){0};
-    return network->heights.count == 0 || distance_from(&met, x, y) >= -slop;
+        network->heights.count > 0 ? spec_first_hit(&network->heights, b->x, b->y, x, y) : (spec_plane){0};
+    return network->heights.count == 0 || spec_distance_from(&met, x, y) >= -slop;
 }
 
 // Let all surfaces act once, of the heights the part that the particle meets on its way, or else the one below its
@@ -226,7 +216,7 @@ static bool bounce_at_all(const spec_network *network, double h, double allowed,
     }
     if (network->heights.count > 0) {
         const double x = b->x + h * b->vx, y = b->y + h * b->vy;
-        const spec_plane met = first_hit(&network->heights, b->x, b->y, x, y), below = plane_below(network, x);
+        const spec_plane met = spec_first_hit(&network->heights, b->x, b->y, x, y), below = plane_below(network, x);
         acts |= bounce(&met, h, allowed, b) || bounce(&below, h, allowed, b);
     }
     return acts;
@@ -234,16 +224,16 @@ static bool bounce_at_all(const spec_network *network, double h, double allowed,
 
 // The rare cases: a particle that was below a plane, that has slack or became faster, or that is in a corner.
 static bool bounce_with_care(const spec_network *network, double h, const spec_motion *from, bouncer *b) {
-    const double slop = slop_at(b->x, b->y), most = square_of(b);
-    const bool ends_inside = distance_from_all(network, b->x + h * b->vx, b->y + h * b->vy) < 0.0;
-    const bool was_inside = ends_inside && put_outside(network, &b->x, &b->y);
+    const double slop = spec_slop_at(b->x, b->y), most = square_of(b);
+    const bool ends_inside = spec_distance_from_all(network, b->x + h * b->vx, b->y + h * b->vy) < 0.0;
+    const bool was_inside = ends_inside && spec_put_outside(network, &b->x, &b->y);
     bool acts = was_inside, goes_on = true;
     for (int round = 0; round < ROUNDS_OF_PLANES && goes_on; round++) {
         goes_on = bounce_at_all(network, h, round == 0 ? 0.0 : slop, b);
         acts |= goes_on;
     }
     const double square = square_of(b);
-    if (acts && !was_inside && square > most * GROWTH) {
+    if (acts && !was_inside && square > most * SPEC_GROWTH) {
         const double keep = sqrt(most / square);
         b->vx = b->half_x + keep * (b->vx - b->half_x);
         b->vy = b->half_y + keep * (b->vy - b->half_y);
@@ -261,35 +251,35 @@ static bool bounce_with_care(const spec_network *network, double h, const spec_m
 
 // True if a particle, or its end, is not above or below this part.
 static bool has_left(const spec_network *network, int64_t part, double h, const bouncer *b) {
-    return part_below(&network->heights, b->x) != part || part_below(&network->heights, b->x + h * b->vx) != part;
+    return spec_part_below(&network->heights, b->x) != part || spec_part_below(&network->heights, b->x + h * b->vx) != part;
 }
 
 // The common case: each plane acts once, then the part of the heights below the end. Others begin anew, with care.
 spec_bounce spec_touch_floor(const spec_network *network, uint32_t p, double h, double keep, double scale) {
     const bool has_heights = network->heights.count > 0;
     const bouncer start = bouncer_of(network, p, h, keep, scale);
-    const double slop = slop_at(start.x, start.y);
+    const double slop = spec_slop_at(start.x, start.y);
     bouncer b = start;
     bool acts = false, needs_care = false;
-    const int64_t part = has_heights ? part_below(&network->heights, b.x + h * b.vx) : 0;
-    const spec_plane below = has_heights ? plane_of(&network->heights, part) : (spec_plane){0};
+    const int64_t part = has_heights ? spec_part_below(&network->heights, b.x + h * b.vx) : 0;
+    const spec_plane below = has_heights ? spec_plane_of(&network->heights, part) : (spec_plane){0};
     needs_care |= has_heights && has_left(network, part, h, &b);
     for (uint32_t i = 0; i < network->plane_count; i++) {
-        needs_care |= distance_from(&network->planes[i], b.x, b.y) < -slop;
+        needs_care |= spec_distance_from(&network->planes[i], b.x, b.y) < -slop;
         acts |= bounce(&network->planes[i], h, 0.0, &b);
     }
     if (has_heights) {
-        needs_care |= has_left(network, part, h, &b) || distance_from(&below, b.x, b.y) < -slop;
+        needs_care |= has_left(network, part, h, &b) || spec_distance_from(&below, b.x, b.y) < -slop;
         acts |= bounce(&below, h, 0.0, &b);
         needs_care |= has_left(network, part, h, &b);
     }
-    needs_care |= acts && (start.slack > 0.0 || square_of(&b) >= square_of(&start) * GROWTH);
+    needs_care |= acts && (start.slack > 0.0 || square_of(&b) >= square_of(&start) * SPEC_GROWTH);
     if (network->plane_count + has_heights > 1) {
         const double x = b.x + h * b.vx, y = b.y + h * b.vy;
         for (uint32_t i = 0; i < network->plane_count; i++) {
-            needs_care |= distance_from(&network->planes[i], x, y) < -0.25 * slop;
+            needs_care |= spec_distance_from(&network->planes[i], x, y) < -0.25 * slop;
         }
-        needs_care |= has_heights && distance_from(&below, x, y) < -0.25 * slop;
+        needs_care |= has_heights && spec_distance_from(&below, x, y) < -0.25 * slop;
     }
     if (needs_care) {
         b = start;
@@ -302,7 +292,7 @@ spec_bounce spec_touch_floor(const spec_network *network, uint32_t p, double h, 
 
 // Let a surface stop a particle that a grip has moved. Friction brakes it, and takes its way along the surface back.
 static bool stop(const spec_plane *plane, double h, double slop, spec_bounce *b) {
-    const double distance = distance_from(plane, b->x, b->y), across = plane->nx * b->vx + plane->ny * b->vy;
+    const double distance = spec_distance_from(plane, b->x, b->y), across = plane->nx * b->vx + plane->ny * b->vy;
     if (!(distance < slop)) {
         return false;
     }
@@ -322,7 +312,7 @@ static bool stop(const spec_plane *plane, double h, double slop, spec_bounce *b)
 }
 
 void spec_stop_at_floor(const spec_network *network, double from_x, double from_y, double h, spec_bounce *b) {
-    const double slop = slop_at(b->x, b->y);
+    const double slop = spec_slop_at(b->x, b->y);
     bool goes_on = network->plane_count > 0 || network->heights.count > 0;
     if (!goes_on) {
         return;
@@ -333,18 +323,18 @@ void spec_stop_at_floor(const spec_network *network, double from_x, double from_
             goes_on |= stop(&network->planes[i], h, slop, b);
         }
         if (network->heights.count > 0) {
-            const spec_plane met = first_hit(&network->heights, from_x, from_y, b->x, b->y);
+            const spec_plane met = spec_first_hit(&network->heights, from_x, from_y, b->x, b->y);
             goes_on |= stop(&met, h, slop, b);
         }
     }
-    if (!(distance_from_all(network, b->x, b->y) < -slop)) {
+    if (!(spec_distance_from_all(network, b->x, b->y) < -slop)) {
         return;
     }
-    if (distance_from_all(network, from_x, from_y) >= -8.0 * slop) { // a narrow corner: back
+    if (spec_distance_from_all(network, from_x, from_y) >= -8.0 * slop) { // a narrow corner: back
         b->x = from_x;
         b->y = from_y;
     } else {
-        (void)put_outside(network, &b->x, &b->y);
+        (void)spec_put_outside(network, &b->x, &b->y);
     }
     b->vx = b->vy = 0.0;
 }

@@ -219,7 +219,7 @@ bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const msprin
     bool acts = mspringi_floor_distance(floor, x, y) < 0.0 && push_out_free_particle(floor, p);
     acts |= leave_part(floor, how, slop, p);
     const mspringi_free_particle start = *p;
-    double restitution = floor->restitution; // of the last surface that it met
+    double restitution = 0.0; // of the last surface that it met
     bool has_slid = false;
     for (int turns = 1; turns <= MSPRINGI_MAX_DEFLECTIONS; ++turns) {
         const hit first = find_first_hit(floor, slop, p);

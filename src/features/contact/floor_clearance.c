@@ -144,12 +144,17 @@ static double hardest_push(const mspring_network *network) {
     return (double)all;
 }
 
-// Reach of a survey, m: four times the way of a particle by its speed, gravity and forces from outside. A strip is
-// far if half of it is clear, so that particles may be twice as fast as assumed.
+// Twice the way of a particle by its speed, gravity and a push from outside, m. The first kick lasts half the lag, too.
+static double reach_by(const mspring_network *network, float fastest, double outside, double seconds) {
+    const double push =
+        fabs((double)network->settings.gravity_x) + fabs((double)network->settings.gravity_y) + outside;
+    return 2.0 * seconds * ((double)fastest + push * (seconds + (double)network->steps.lag));
+}
+
+// Reach of a survey, m: twice that of any particle. A strip is far if half of it is clear, so that particles may be
+// twice as fast as assumed.
 static double reach_of(const mspring_network *network, float fastest, double seconds) {
-    const double push = fabs((double)network->settings.gravity_x) + fabs((double)network->settings.gravity_y) +
-                        hardest_push(network);
-    return 4.0 * seconds * ((double)fastest + push * seconds) + 1e-6;
+    return 2.0 * reach_by(network, fastest, hardest_push(network), seconds) + 1e-6;
 }
 
 /* ------------------------------------------------------------------------------------------------------ strips */
@@ -183,20 +188,38 @@ void mspringi_floor_update_clearances(mspring_network *network, double seconds) 
     floor->has_impulse |= floor->is_near;
 }
 
-bool mspringi_floor_is_near_block(const mspring_network *network, const mspringi_strip *strip, uint32_t block) {
+// True if a particle within reach of its place may meet a surface.
+static bool is_within_reach(const mspringi_floor *floor, double x, double y, double reach) {
+    const mspringi_heights *h = &floor->heights;
+    const double silt = mspringi_has_silt(h) ? h->silt_depth : 0.0;
+    for (uint32_t i = 0; i < floor->plane_count; ++i)
+        if (!(mspringi_distance_from_line(&floor->lines[i], x, y) >= reach))
+            return true;
+    return h->count > 0 && !(y - mspringi_heights_highest(h, x - reach, x + reach) >= reach + silt);
+}
+
+uint32_t mspringi_floor_near_lanes(const mspring_network *network, const mspringi_strip *strip, uint32_t block,
+                                   const mspringi_sweep *sweep) {
     const mspringi_floor *floor = network->floor;
     const mspringi_state *s = &network->state;
     const size_t first = (size_t)block * MSPRINGI_WIDTH;
     const mspringi_bounds *all = &floor->clearances[strip - network->topology.strips].clear;
     const double way = 0.5 * floor->reach;
+    const float *inverse_mass = mspringi_active_inverse_mass(network);
     // Usually the clear box of the whole strip is enough.
     const mspringi_bounds within = {bound((double)all->min_x + way), bound((double)all->max_x - way),
                                     bound((double)all->min_y + way), bound((double)all->max_y - way)};
     if (network->kernels->beyond(s->x, s->y, first, first + MSPRINGI_WIDTH, &within) != first)
-        return false;
-    float fastest = 0.0f;
-    const box around = cover(network, first, first + MSPRINGI_WIDTH, &fastest);
-    return !find_clearance(floor, &around, floor->reach).is_far;
+        return 0;
+    uint32_t lanes = 0;
+    for (size_t slot = first; slot < first + MSPRINGI_WIDTH; ++slot) {
+        const float fast = fmaxf(fabsf(s->vx[slot]), fabsf(s->vy[slot]));
+        const float force = sweep->force_x ? fmaxf(fabsf(sweep->force_x[slot]), fabsf(sweep->force_y[slot])) : 0.0f;
+        const double reach = reach_by(network, fast, (double)(force * inverse_mass[slot]), floor->seconds);
+        if (inverse_mass[slot] > 0.0f && is_within_reach(floor, (double)s->x[slot], (double)s->y[slot], reach))
+            lanes |= 1u << (slot - first);
+    }
+    return lanes;
 }
 
 /* ------------------------------------------------------------------------------------------- the whole network */

@@ -1,6 +1,8 @@
 /// Particles without springs: all substeps at once, or one by one.
 #include "solvers/explicit/loose.h"
 
+#include <string.h>
+
 #include "features/contact/floor.h"
 #include "features/hooks/hooks.h"
 #include "solvers/explicit/strip.h"
@@ -35,22 +37,8 @@ static mspringi_free_motion plan_free_motion(const mspring_network *network, con
                                   .gravity_way_y = (float)(gravity_fall * ay)};
 }
 
-/// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.
-#define LOOSE_CHUNK 16
-
-// The end of the blocks from that one on that are all near the floor, or all far. strip: NULL if no floor is near.
-static uint32_t end_of_chunk(const mspring_network *network, const mspringi_strip *strip, uint32_t block,
-                             uint32_t end, bool *is_near) {
-    *is_near = strip && mspringi_floor_is_near_block(network, strip, block);
-    const uint32_t most = end - block < LOOSE_CHUNK ? end : block + LOOSE_CHUNK;
-    uint32_t next = block + 1;
-    while (next < most && (strip && mspringi_floor_is_near_block(network, strip, next)) == *is_near)
-        ++next;
-    return next;
-}
-
-// True if a hook within reach would act in substeps; with groups always, as a floor that only others are near cuts
-// a step. All substeps at once round differently, so the bits of a group would depend on the others.
+// True if a hook within reach would act in substeps; with groups always, as contact that only others are near cuts a
+// step. All substeps at once round differently, so the bits of a group would depend on the others.
 static bool may_be_cut(const mspring_network *network) {
     if (network->groups.count > 0)
         return true;
@@ -75,26 +63,73 @@ static void sweep_one_by_one(const mspringi_loose *l, const mspringi_span *span,
     }
 }
 
+/// State of a block, array by array.
+typedef struct loose_block {
+    float values[8][MSPRINGI_WIDTH];
+} loose_block;
+
+static void copy_block(const mspring_network *network, uint32_t block, loose_block *to) {
+    const mspringi_state *s = &network->state;
+    const size_t slots = mspringi_slot_count(network), arrays = mspringi_state_arrays(network);
+    for (size_t i = 0; i < arrays; ++i)
+        memcpy(to->values[i], s->x + i * slots + (size_t)block * MSPRINGI_WIDTH, sizeof to->values[i]);
+}
+
+// Put back the lanes of a block that are set.
+static void put_lanes(const mspring_network *network, uint32_t block, const loose_block *from, uint32_t lanes) {
+    const mspringi_state *s = &network->state;
+    const size_t slots = mspringi_slot_count(network), arrays = mspringi_state_arrays(network);
+    for (size_t i = 0; i < arrays; ++i)
+        for (uint32_t lane = 0; lane < MSPRINGI_WIDTH; ++lane)
+            if (lanes >> lane & 1)
+                s->x[i * slots + (size_t)block * MSPRINGI_WIDTH + lane] = from->values[i][lane];
+}
+
+// Take the substeps with a block of which some lanes are near a floor: these one by one, the others all at once.
+static void sweep_mixed(const mspringi_loose *l, const mspringi_span *span, uint32_t near) {
+    const mspring_network *network = l->network;
+    const mspringi_loose_fn loose = network->kernels->loose[l->sweep->force_x != NULL];
+    const uint32_t block = span->first_slot / MSPRINGI_WIDTH, all = (1u << MSPRINGI_WIDTH) - 1;
+    loose_block before, after;
+    if (near != all) {
+        copy_block(network, block, &before);
+        loose(l->sweep, span, &l->all);
+        copy_block(network, block, &after);
+        put_lanes(network, block, &before, all);
+    }
+    sweep_one_by_one(l, span, true);
+    if (near != all)
+        put_lanes(network, block, &after, ~near & all);
+}
+
 void mspringi_loose_sweep(const mspringi_loose *l, const mspringi_span *span) {
     const mspring_network *network = l->network;
     const mspringi_loose_fn loose = network->kernels->loose[l->sweep->force_x != NULL];
-    const bool is_floor_near = mspringi_floor_is_near(network, l->strip), glides = !may_be_cut(network);
-    if (!is_floor_near && glides) {
-        loose(l->sweep, span, &l->all);
+    const bool is_floor_near = mspringi_floor_is_near(network, l->strip);
+    if (may_be_cut(network) || (is_floor_near && l->count == 1)) {
+        sweep_one_by_one(l, span, is_floor_near);
         return;
     }
     const uint32_t end = span->end_slot / MSPRINGI_WIDTH;
-    for (uint32_t block = span->first_slot / MSPRINGI_WIDTH, next; block < end; block = next) {
-        bool is_near;
-        next = end_of_chunk(network, is_floor_near ? l->strip : NULL, block, end, &is_near);
-        mspringi_span chunk = *span;
-        chunk.first_slot = block * MSPRINGI_WIDTH;
-        chunk.end_slot = next * MSPRINGI_WIDTH;
-        if (is_near || !glides)
-            sweep_one_by_one(l, &chunk, is_near);
-        else
-            loose(l->sweep, &chunk, &l->all);
+    uint32_t far = span->first_slot / MSPRINGI_WIDTH; // the first block that is not taken
+    for (uint32_t block = far; block < end && is_floor_near; ++block) {
+        const uint32_t near = mspringi_floor_near_lanes(network, l->strip, block, l->sweep);
+        if (near == 0)
+            continue;
+        mspringi_span part = *span;
+        part.first_slot = far * MSPRINGI_WIDTH;
+        part.end_slot = block * MSPRINGI_WIDTH;
+        if (far < block)
+            loose(l->sweep, &part, &l->all);
+        part.first_slot = block * MSPRINGI_WIDTH;
+        part.end_slot = (block + 1) * MSPRINGI_WIDTH;
+        sweep_mixed(l, &part, near);
+        far = block + 1;
     }
+    mspringi_span rest = *span;
+    rest.first_slot = far * MSPRINGI_WIDTH;
+    if (rest.first_slot < rest.end_slot)
+        loose(l->sweep, &rest, &l->all);
 }
 
 mspringi_loose mspringi_loose_prepare(const mspring_network *network, const mspringi_sweep *sweep,
