@@ -202,7 +202,18 @@ mspring_result mspring_network_apply_force(mspring_network *network, mspring_id 
 
 /* ----------------------------------------------------------------------------------------------------- impulses */
 
+// Drop low words that do not belong to velocities which a hook or a view wrote: an impulse could hide that they don't.
+static void drop_stale_lows(const mspring_network *network, const mspringi_selection *at) {
+    const mspringi_state *s = &network->state;
+    for (uint32_t i = 0; network->is_open && s->low_vx && i < at->count; ++i) {
+        const uint32_t slot = network->topology.slot_of_particle[mspringi_selected(at, i)];
+        s->low_vx[slot] = mspringi_low_of(s->vx[slot], s->low_vx[slot], 0.0f);
+        s->low_vy[slot] = mspringi_low_of(s->vy[slot], s->low_vy[slot], 0.0f);
+    }
+}
+
 static mspring_result apply_impulses(mspring_network *network, const mspringi_selection *at, const pushes *given) {
+    drop_stale_lows(network, at);
     const target velocities = {{network->state.vx, network->state.vy}, network->inverse_mass};
     const mspring_result result = add_rounding_to_nearest(network, at, given, &velocities);
     if (result == MSPRING_OK)

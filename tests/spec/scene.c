@@ -302,7 +302,7 @@ static void scatter(scene *s) {
         const double x = s->left * scene_between(s, 0, 1);
         add_particle(s, x, scene_between(s, -3, 3));
     }
-    if (!has_loose || s->spring_count == 0) {
+    if (!has_loose) {
         drop_loose(s);
     }
     if (scene_chance(s, 0.5)) {
@@ -351,6 +351,9 @@ void scene_make(scene *s, uint64_t seed) {
     }
     for (uint32_t part = 0, parts = 1 + scene_below(s, 4); part < parts; part++) {
         add_part(s);
+    }
+    if (s->spring_count == 0) {
+        add_chain(s, SPEC_NONE);
     }
     scatter(s);
 }
