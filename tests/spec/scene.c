@@ -56,6 +56,8 @@ static void add_spring(scene *s, uint32_t a, uint32_t b) {
     const float damping = scene_chance(s, 0.2) ? 0 : s->damping * (float)scene_between(s, 0, 1);
     s->springs[s->spring_count++] =
         (spec_spring){.a = a, .b = b, .stiffness = stiffness, .damping = damping, .rest_length = (float)length};
+    s->springs[s->spring_count - 1].break_strain =
+        scene_chance(s, s->brittle) ? (float)scene_between(s, 0.05, 0.5) : INFINITY;
     if (!s->is_calm && scene_chance(s, s->relative)) {
         spec_spring *made = &s->springs[s->spring_count - 1];
         made->is_relative = true;
@@ -341,6 +343,7 @@ void scene_make(scene *s, uint64_t seed) {
     s->welds = scene_chance(s, 0.8) ? 0 : 0.1;
     s->one_way = scene_chance(s, 0.85) ? 0 : 0.1;
     s->relative = s->one_way > 0 || scene_chance(s, 0.85) ? 0 : 0.5;
+    s->brittle = scene_chance(s, 0.8) ? 0 : scene_between(s, 0, 0.5);
     s->max_substeps = scene_chance(s, 0.8) ? 1000 : 1 + scene_below(s, 20);
     s->most_work = scene_chance(s, 0.7) ? 4 : scene_below(s, 3);
     s->flags = scene_chance(s, 0.4) ? MSPRING_NETWORK_PRECISE : 0;

@@ -37,6 +37,7 @@ typedef struct scene {
     double welds;     ///< share of welds among springs
     double relative;  ///< of those that are relative
     double one_way;   ///< of those that only pull or push
+    double brittle;   ///< of those that break
     double left;      ///< where the next part begins, m
 } scene;
 

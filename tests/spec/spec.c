@@ -415,7 +415,19 @@ void spec_set_velocity(spec_network *network, uint32_t particle, float vx, float
     network->motions[particle].low_velocity = (spec_vector){0.0f, 0.0f};
 }
 
+// Drop low words that cannot be the rest of a value, in a network whose hook may have written to the state.
+static void tidy(const spec_network *network, uint32_t p) {
+    spec_motion *m = &network->motions[p];
+    if (network->hook != NULL) {
+        m->low_place = (spec_vector){low_of(m->place.x, m->low_place.x, network->grid),
+                                     low_of(m->place.y, m->low_place.y, network->grid)};
+        m->low_velocity = (spec_vector){low_of(m->velocity.x, m->low_velocity.x, 0.0f),
+                                        low_of(m->velocity.y, m->low_velocity.y, 0.0f)};
+    }
+}
+
 void spec_hit(spec_network *network, uint32_t particle, float x, float y) {
+    tidy(network, particle);
     spec_vector *v = &network->motions[particle].velocity;
     const double per_impulse = (double)network->inverse_masses[particle];
     v->x = (float)((double)v->x + (double)x * per_impulse);
@@ -534,15 +546,10 @@ static void stop_creeping(const spec_network *network) {
     }
 }
 
-// Drop low words that cannot be the rest of a value: before and after a step of a network whose hook may have written
-// to the state.
-static void tidy(const spec_network *network) {
-    for (uint32_t p = 0; network->hook != NULL && p < network->particle_count; p++) {
-        spec_motion *m = &network->motions[p];
-        m->low_place = (spec_vector){low_of(m->place.x, m->low_place.x, network->grid),
-                                     low_of(m->place.y, m->low_place.y, network->grid)};
-        m->low_velocity = (spec_vector){low_of(m->velocity.x, m->low_velocity.x, 0.0f),
-                                        low_of(m->velocity.y, m->low_velocity.y, 0.0f)};
+// Before and after a step.
+static void tidy_all(const spec_network *network) {
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        tidy(network, p);
     }
 }
 
@@ -569,7 +576,8 @@ uint32_t spec_step(spec_network *network, double dt) {
         all.spring_lag = all.lag = h;
     }
     spec_derive_relative(network, h);
-    tidy(network);
+    spec_follow_ramps(network, time);
+    tidy_all(network);
     begin_floor(network);
     for (; all.first < count; all.first = all.end) {
         all.end = all.first + spec_free_substeps(network, all.first, count);
@@ -577,7 +585,7 @@ uint32_t spec_step(spec_network *network, double dt) {
         take_together(network, &all);
         spec_pull_grips(network, all.first, count, h);
     }
-    spec_end_step(network);
+    spec_end_step(network, time);
     memset(network->forces, 0, network->particle_count * sizeof *network->forces);
     if (network->is_damped || network->global_damping > 0.0f) {
         stop_creeping(network);
@@ -585,7 +593,7 @@ uint32_t spec_step(spec_network *network, double dt) {
     network->lag = h;
     network->uneven = spec_changes_dt(network, dt) ? 600 : network->uneven > 0 ? network->uneven - 1 : 0;
     network->dt = dt;
-    tidy(network);
+    tidy_all(network);
     follow(network);
     return count;
 }

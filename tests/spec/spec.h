@@ -41,6 +41,13 @@ typedef struct spec_motion {
     spec_vector place, low_place, velocity, low_velocity;
 } spec_motion;
 
+/// A rest length that goes evenly from that of a restored spring to its own.
+typedef struct spec_ramp {
+    double from; ///< m
+    float to;    ///< m
+    double seconds, passed; ///< seconds 0: there is none
+} spec_ramp;
+
 typedef struct spec_spring {
     uint32_t a, b;
     float stiffness, damping, rest_length; ///< N/m, N s/m, m; 0: a weld
@@ -49,6 +56,8 @@ typedef struct spec_spring {
     bool is_broken;
     int side;      ///< 1: it only pulls, -1: it only pushes, 0: both
     bool is_slack; ///< of one that has a side: it does nothing in this substep
+    spec_ramp ramp;
+    float break_strain; ///< or INFINITY
 } spec_spring;
 
 /// Place of a particle's springs in the sum of its forces. It is part of the input, as it decides the bits.
@@ -187,14 +196,20 @@ bool spec_changes_dt(const spec_network *network, double dt);
 /// Set the springs along an element and its reach, after it was added. spec_laws.c
 void spec_begin_element(const spec_network *network, spec_element *element);
 
-/// Actors beside springs. spec_laws.c
-uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count); ///< taken together
-void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count); ///< actuators, one-way springs
-void spec_add_fields(const spec_network *network, uint32_t first);               ///< to spec_network.fields
-void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h); ///< spec_grips.c
-void spec_end_step(spec_network *network);
+/// Springs that change. spec_springs.c
 void spec_derive_relative(const spec_network *network, float h);
 double spec_reduced_mass(const spec_network *network, const spec_spring *spring);
+uint32_t spec_changes_by(const spec_network *network, uint32_t substep, uint32_t count); ///< of actuators
+void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count); ///< actuators, one-way springs
+void spec_begin_ramp(const spec_network *network, spec_spring *spring, double seconds); ///< of one restored
+void spec_follow_ramps(const spec_network *network, double dt);
+void spec_break(spec_spring *spring);
+void spec_end_step(spec_network *network, double dt);
+
+/// Forces beside springs. spec_laws.c
+uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count); ///< taken together
+void spec_add_fields(const spec_network *network, uint32_t first);               ///< to spec_network.fields
+void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h); ///< spec_grips.c
 void spec_add_strengths(const spec_network *network, spec_motion *sums);
 double spec_largest_quotient(const spec_network *network, const spec_motion *sums, bool of_damping);
 

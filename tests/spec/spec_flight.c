@@ -188,7 +188,7 @@ spec_bounce spec_fly(const spec_network *network, uint32_t particle, double h, d
     return to;
 }
 
-// Twice the way by the present speed, gravity and the force from outside, the first kick included.
+// Twice the way by the present speed, gravity and the force from outside, the first kick included, and rounding.
 bool spec_may_meet_floor(const spec_network *network, uint32_t particle, double seconds) {
     const spec_motion *m = &network->motions[particle];
     const spec_vector force = network->fields[particle];
@@ -196,7 +196,8 @@ bool spec_may_meet_floor(const spec_network *network, uint32_t particle, double 
     const float outside = fmaxf(fabsf(force.x), fabsf(force.y)) * network->inverse_masses[particle];
     const double x = (double)m->place.x, y = (double)m->place.y;
     const double push = fabs((double)network->gravity_x) + fabs((double)network->gravity_y) + (double)outside;
-    const double reach = 2.0 * seconds * ((double)fastest + push * (seconds + (double)network->lag));
+    const double way = 2.0 * seconds * ((double)fastest + push * (seconds + (double)network->lag));
+    const double reach = way + (double)network->grid + spec_slop_at(x, y);
     bool may_meet = false;
     for (uint32_t i = 0; i < network->plane_count; i++) {
         may_meet |= !(spec_distance_from(&network->planes[i], x, y) >= reach);

@@ -1,11 +1,7 @@
 /// @file spec_laws.c
-/// Specification of what acts beside plain springs, in the order of a substep: actuators, hooks, areas and angle
-/// springs, one-way springs, and after it grips. All of it is computed in double precision from the state before the
-/// substep (grips: after it). Forces are added to those of the host as floats, in the order in which the elements were
-/// added.
-///
-/// Not covered: elastic areas around cells of lattices, which rows have in their sums; several grips on one particle;
-/// grips where there is a floor.
+/// Specification of forces from outside of springs: hooks, areas and angle springs. They are computed in double
+/// precision from the state before the substep, and added to those of the host as floats, in the order in which the
+/// elements were added.
 ///
 /// SPDX-License-Identifier: MIT
 #include "spec.h"
@@ -189,76 +185,7 @@ double spec_largest_quotient(const spec_network *network, const spec_motion *sum
     return largest;
 }
 
-/* ------------------------------------------------------------------------------------------------------- springs */
-
-double spec_reduced_mass(const spec_network *network, const spec_spring *spring) {
-    return 1.0 / (1.0 / (double)network->masses[spring->a] + 1.0 / (double)network->masses[spring->b]);
-}
-
-// Relative springs have the stiffness and damping that a substep of h can take.
-void spec_derive_relative(const spec_network *network, float h) {
-    const double rate = 1.0 / (double)h;
-    for (uint32_t i = 0; i < network->spring_count; i++) {
-        spec_spring *s = &network->springs[i];
-        if (s->is_relative) {
-            const double mass = spec_reduced_mass(network, s);
-            s->stiffness = (float)((double)s->stiffness_share * mass * rate * rate);
-            s->damping = (float)((double)s->damping_share * mass * rate);
-        }
-    }
-}
-
-// Changes of actuators that are due by a substep, that before it included.
-static uint32_t changes_by(const spec_network *network, uint32_t substep, uint32_t count) {
-    if (network->actuator_count == 0 || network->changes <= 1) {
-        return 1;
-    }
-    return network->changes >= count ? substep + 1 : (uint32_t)((uint64_t)substep * network->changes / count) + 1;
-}
-
-// Actuators go to their new length in equal parts; the last change sets it exactly.
-static void set_lengths(spec_network *network, uint32_t substep, uint32_t count) {
-    const uint32_t all = network->changes < count ? network->changes : count;
-    const uint32_t by = changes_by(network, substep, count);
-    for (uint32_t i = 0; i < network->actuator_count; i++) {
-        const spec_actuator *a = &network->actuators[i];
-        const float part = a->from + (a->to - a->from) * ((float)by / (float)all);
-        network->springs[a->spring].rest_length = by == all ? a->to : part;
-    }
-}
-
-// A spring that only pulls acts in a substep if it is longer than its rest length and the sum of its forces pulls.
-static bool is_slack(const spec_network *network, const spec_spring *s) {
-    const wide_vector along = between(network, s->a, s->b);
-    const spec_vector a = network->motions[s->a].velocity, b = network->motions[s->b].velocity;
-    const double length = sqrt(square_of(along)), side = (double)s->side, dvx = (double)b.x - (double)a.x,
-                 dvy = (double)b.y - (double)a.y;
-    const double stretch = length - (double)s->rest_length;
-    const double rate = length > 0.0 ? (dvx * along.x + dvy * along.y) / length : 0.0;
-    const double force = (double)s->stiffness * stretch + (double)s->damping * rate;
-    return !(side * stretch > 0.0 && side * force > 0.0);
-}
-
-void spec_begin_substeps(spec_network *network, uint32_t first, uint32_t count) {
-    set_lengths(network, first, count);
-    for (uint32_t i = 0; i < network->spring_count; i++) {
-        spec_spring *s = &network->springs[i];
-        s->is_slack = s->side != 0 && is_slack(network, s);
-    }
-}
-
 /* --------------------------------------------------------------------------------------------------- in a step */
-
-void spec_end_step(spec_network *network) {
-    for (uint32_t i = 0; i < network->grip_count; i++) {
-        network->grips[i].from_x = network->grips[i].x;
-        network->grips[i].from_y = network->grips[i].y;
-    }
-    for (uint32_t i = 0; i < network->spring_count; i++) {
-        network->springs[i].is_slack = false;
-    }
-    network->actuator_count = 0;
-}
 
 // Substeps from first on that are taken together. Where anything acts between two, each is taken alone; actuators
 // that change several times in a step cut it there.
@@ -275,7 +202,7 @@ uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_
         is_cut |= network->springs[s].side != 0;
     }
     uint32_t end = first + 1;
-    while (!is_cut && end < count && end % period != 0 && changes_by(network, end, count) == changes_by(network, first, count)) {
+    while (!is_cut && end < count && end % period != 0 && spec_changes_by(network, end, count) == spec_changes_by(network, first, count)) {
         end++;
     }
     return end - first;

@@ -52,6 +52,7 @@ static mspring_network *make_library(const scene *s, uint32_t substeps) {
         def.stiffness = s->springs[i].stiffness;
         def.damping = s->springs[i].damping;
         def.rest_length = s->springs[i].rest_length;
+        def.break_strain = s->springs[i].break_strain;
         def.flags = s->springs[i].side > 0   ? MSPRING_SPRING_PULL_ONLY
                     : s->springs[i].side < 0 ? MSPRING_SPRING_PUSH_ONLY
                                              : 0;
@@ -296,13 +297,16 @@ static void edit_values(scene *s, mspring_network *library, specification *to, u
         } else if (kind == 5) {
             s->springs[k].stiffness *= factor;
             s->springs[k].rest_length *= 1 + 0.01f * factor;
+            s->springs[k].ramp = (spec_ramp){0};
             check_ok(mspring_network_set(library, MSPRING_STIFFNESS, k, 1, &s->springs[k].stiffness, 1));
             check_ok(mspring_network_set(library, MSPRING_REST_LENGTH, k, 1, &s->springs[k].rest_length, 1));
         } else if (s->springs[k].is_broken) {
+            const double seconds = scene_chance(s, 0.5) || to->actuated_count > 0 ? 0 : 20 * fmin(n->any_shape, 1) * scene_between(s, 0, 1);
             s->springs[k].is_broken = false;
-            check_ok(mspring_network_restore_springs(library, &k, 1, 0));
+            spec_begin_ramp(n, &s->springs[k], seconds);
+            check_ok(mspring_network_restore_springs(library, &k, 1, seconds));
         } else {
-            s->springs[k].is_broken = true;
+            spec_break(&s->springs[k]);
             check_ok(mspring_network_break_springs(library, &k, 1));
         }
     }

@@ -144,11 +144,13 @@ static double hardest_push(const mspring_network *network) {
     return (double)all;
 }
 
-// Twice the way of a particle by its speed, gravity and a push from outside, m. The first kick lasts half the lag, too.
+// Twice the way of a particle by its speed, gravity and a push from outside, and what rounds first words, m. The first
+// kick lasts half the lag, too.
 static double reach_by(const mspring_network *network, float fastest, double outside, double seconds) {
     const double push =
         fabs((double)network->settings.gravity_x) + fabs((double)network->settings.gravity_y) + outside;
-    return 2.0 * seconds * ((double)fastest + push * (seconds + (double)network->steps.lag));
+    return 2.0 * seconds * ((double)fastest + push * (seconds + (double)network->steps.lag)) +
+           (double)network->state.grid;
 }
 
 // Reach of a survey, m: twice that of any particle. A strip is far if half of it is clear, so that particles may be
@@ -215,8 +217,9 @@ uint32_t mspringi_floor_near_lanes(const mspring_network *network, const mspring
     for (size_t slot = first; slot < first + MSPRINGI_WIDTH; ++slot) {
         const float fast = fmaxf(fabsf(s->vx[slot]), fabsf(s->vy[slot]));
         const float force = sweep->force_x ? fmaxf(fabsf(sweep->force_x[slot]), fabsf(sweep->force_y[slot])) : 0.0f;
+        const double x = (double)s->x[slot], y = (double)s->y[slot];
         const double reach = reach_by(network, fast, (double)(force * inverse_mass[slot]), floor->seconds);
-        if (inverse_mass[slot] > 0.0f && is_within_reach(floor, (double)s->x[slot], (double)s->y[slot], reach))
+        if (inverse_mass[slot] > 0.0f && is_within_reach(floor, x, y, reach + mspringi_floor_slop(x, y)))
             lanes |= 1u << (slot - first);
     }
     return lanes;
