@@ -16,6 +16,30 @@ static bool is_twice(const spec_element *e, uint32_t particle) {
     return is_there;
 }
 
+static uint32_t other_end(const spec_spring *spring, uint32_t p) {
+    return spring->a == p ? spring->b : spring->b == p ? spring->a : SPEC_NONE;
+}
+
+/// Four corners that springs join in a ring. False: none were found.
+static bool draw_ring(scene *s, spec_element *e) {
+    for (uint32_t trial = 0, first = scene_below(s, s->spring_count); trial < s->spring_count; trial++) {
+        const spec_spring *spring = &s->springs[(first + trial) % s->spring_count];
+        for (uint32_t i = 0; i < s->spring_count; i++) {
+            const uint32_t c = other_end(&s->springs[i], spring->b);
+            for (uint32_t k = 0; c != SPEC_NONE && c != spring->a && k < s->spring_count; k++) {
+                const uint32_t d = other_end(&s->springs[k], spring->a);
+                for (uint32_t n = 0; d != SPEC_NONE && d != spring->b && d != c && n < s->spring_count; n++) {
+                    if (other_end(&s->springs[n], c) == d) {
+                        *e = (spec_element){.kind = e->kind, .count = 4, .corners = {spring->a, spring->b, c, d}};
+                        return true;
+                    }
+                }
+            }
+        }
+    }
+    return false;
+}
+
 /// Corners of an element: the ends of a spring, and others nearby by number. False: there are too few.
 static bool draw_corners(scene *s, spec_element *e, uint32_t count) {
     const spec_spring *spring = &s->springs[scene_below(s, s->spring_count)];
@@ -84,7 +108,8 @@ void actors_add_elements(scene *s, mspring_network *library, specification *to) 
     const uint32_t count = s->is_calm || s->spring_count == 0 || scene_chance(s, 0.7) ? 0 : 1 + scene_below(s, 6);
     for (uint32_t i = 0; i < count; i++) {
         spec_element e = {.kind = (spec_element_kind)scene_below(s, 3)};
-        if (!draw_corners(s, &e, e.kind == SPEC_ANGLE ? 3 : 3 + 2 * scene_below(s, 2))) {
+        const uint32_t corners = e.kind == SPEC_ANGLE ? 3 : 3 + scene_below(s, 3);
+        if (corners == 4 ? !draw_ring(s, &e) : !draw_corners(s, &e, corners)) {
             continue;
         }
         e.stiffness = e.kind == SPEC_GAS ? 0 : 0.1f * s->stiffness * (float)scene_between(s, 0, 1);

@@ -172,9 +172,46 @@ static bool has_springs(const spec_sums *sums) {
     return sums->is_in_rows || sums->other_count > 0;
 }
 
+// A way between particles, a - b.
+static spec_vector between(const spec_network *network, uint32_t a, uint32_t b) {
+    const spec_motion *m = &network->before[a], *n = &network->before[b];
+    const spec_vector d = {m->place.x - n->place.x, m->place.y - n->place.y};
+    const spec_vector low = {m->low_place.x - n->low_place.x, m->low_place.y - n->low_place.y};
+    return network->is_precise ? add(d, low) : d;
+}
+
+// Add to the force of a diagonal on one end that of the area around its cell: with the diagonals D and D', it is
+// half the pressure times the other diagonal, across.
+static spec_vector add_cells(const spec_network *network, uint32_t p, uint32_t corner, spec_vector force) {
+    for (uint32_t k = 0; k < network->element_count; k++) {
+        const spec_element *e = &network->elements[k];
+        if (e->cell[0] == SPEC_NONE || e->cell[corner] != p) {
+            continue;
+        }
+        const spec_vector up = between(network, e->cell[0], e->cell[2]), down = between(network, e->cell[1], e->cell[3]);
+        const float half = e->cell_force - e->cell_decrease * (up.x * down.y - up.y * down.x);
+        const spec_vector across = corner % 2 == 0 ? (spec_vector){half * down.y, -(half * down.x)}
+                                                   : (spec_vector){-(half * up.y), half * up.x};
+        force = corner < 2 ? add(force, across) : add(force, (spec_vector){-across.x, -across.y});
+    }
+    return force;
+}
+
 static spec_vector pull_from(const spec_network *network, uint32_t particle, spec_side side) {
     const uint32_t spring = network->sums[particle].rows[side];
-    return spring == SPEC_NONE ? (spec_vector){0.0f, 0.0f} : pull(network, spring, particle);
+    const spec_vector force = spring == SPEC_NONE ? (spec_vector){0.0f, 0.0f} : pull(network, spring, particle);
+    switch (side) { // the corner of the cell that the particle is
+    case SPEC_NORTH_EAST:
+        return add_cells(network, particle, 0, force);
+    case SPEC_NORTH_WEST:
+        return add_cells(network, particle, 1, force);
+    case SPEC_SOUTH_WEST:
+        return add_cells(network, particle, 2, force);
+    case SPEC_SOUTH_EAST:
+        return add_cells(network, particle, 3, force);
+    default:
+        return force;
+    }
 }
 
 // Sum of the springs in rows: those that lead south come first, then west, east, north. Pairs are added before they
@@ -575,6 +612,7 @@ uint32_t spec_step(spec_network *network, double dt) {
     if (network->has_relative && network->lag > 0.0f) {
         all.spring_lag = all.lag = h;
     }
+    spec_find_cells(network);
     spec_derive_relative(network, h);
     spec_follow_ramps(network, time);
     tidy_all(network);

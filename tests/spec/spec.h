@@ -101,6 +101,8 @@ typedef struct spec_element {
     float stiffness, damping, pressure, fill; ///< damping: of angles; fill: 1 of angles
     double rest_area;                         ///< m^2; 1 of angles
     double cosine, sine;                      ///< of an angle's rest
+    uint32_t cell[4]; ///< corners by rows: south-west, south-east, north-east, north-west; SPEC_NONE: in no rows
+    float cell_force, cell_decrease; ///< half the force of a cell per distance at area 0, and what it loses per area
 } spec_element;
 
 /// Most grips of one particle.
@@ -209,6 +211,7 @@ void spec_end_step(spec_network *network, double dt);
 /// Forces beside springs. spec_laws.c
 uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count); ///< taken together
 void spec_add_fields(const spec_network *network, uint32_t first);               ///< to spec_network.fields
+void spec_find_cells(const spec_network *network); ///< areas that rows have in their sums
 void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t count, float h); ///< spec_grips.c
 void spec_add_strengths(const spec_network *network, spec_motion *sums);
 double spec_largest_quotient(const spec_network *network, const spec_motion *sums, bool of_damping);

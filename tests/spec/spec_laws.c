@@ -42,6 +42,11 @@ static bool is_open(const spec_network *network, const spec_element *e) {
     return open;
 }
 
+// True if an element acts, and not in the sums of rows.
+static bool is_outside(const spec_network *network, const spec_element *e) {
+    return !is_open(network, e) && e->cell[0] == SPEC_NONE;
+}
+
 static void add_force(const spec_network *network, uint32_t p, double x, double y) {
     network->fields[p].x += bounded(x);
     network->fields[p].y += bounded(y);
@@ -72,6 +77,55 @@ static void push_area(const spec_network *network, const spec_element *e) {
     for (uint32_t i = 0; i < e->count; i++) {
         const wide_vector along = between(network, corner_of(e, i + e->count - 1), corner_of(e, i + 1));
         add_force(network, e->corners[i], half * along.y, half * -along.x);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- cells */
+
+// The other end of a live spring in rows, or SPEC_NONE.
+static uint32_t neighbour_of(const spec_network *network, uint32_t p, spec_side side) {
+    const uint32_t spring = p == SPEC_NONE ? SPEC_NONE : network->sums[p].rows[side];
+    if (spring == SPEC_NONE || network->springs[spring].is_broken) {
+        return SPEC_NONE;
+    }
+    return network->springs[spring].a == p ? network->springs[spring].b : network->springs[spring].a;
+}
+
+// Enter an elastic area of four corners into the sums of rows, if live springs of rows lead around it from some
+// corner on, in either sense.
+static void find_cell(const spec_network *network, spec_element *e) {
+    for (uint32_t i = 0; i < 4 && e->cell[0] == SPEC_NONE; i++) {
+        const uint32_t here = e->corners[i], next = corner_of(e, i + 1), before = corner_of(e, i + 3);
+        const uint32_t east = neighbour_of(network, here, SPEC_EAST), north = neighbour_of(network, here, SPEC_NORTH);
+        const uint32_t opposite = neighbour_of(network, east, SPEC_NORTH);
+        const bool is_along = east == next && north == before, is_against = east == before && north == next;
+        if ((is_along || is_against) && opposite == corner_of(e, i + 2) &&
+            opposite == neighbour_of(network, north, SPEC_EAST)) {
+            const double force = (double)e->pressure + (double)e->stiffness * (double)e->fill;
+            e->cell[0] = here;
+            e->cell[1] = east;
+            e->cell[2] = opposite;
+            e->cell[3] = north;
+            e->cell_force = (float)((is_along ? 0.5 : -0.5) * force);
+            e->cell_decrease = (float)(0.25 * (double)e->stiffness / e->rest_area);
+        }
+    }
+}
+
+// Of several areas around one cell the first one with a force is in the sums of rows.
+void spec_find_cells(const spec_network *network) {
+    for (uint32_t k = 0; k < network->element_count; k++) {
+        spec_element *e = &network->elements[k];
+        e->cell[0] = SPEC_NONE;
+        if (e->kind == SPEC_ELASTIC && e->count == 4 && !is_open(network, e)) {
+            find_cell(network, e);
+        }
+        for (uint32_t i = 0; i < k; i++) {
+            const spec_element *other = &network->elements[i];
+            if (other->cell[0] == e->cell[0] && (other->cell_force != 0.0f || other->cell_decrease != 0.0f)) {
+                e->cell[0] = SPEC_NONE;
+            }
+        }
     }
 }
 
@@ -193,7 +247,7 @@ uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_
     const uint32_t period = network->hook != NULL ? network->hook_period : count;
     bool is_cut = false;
     for (uint32_t k = 0; k < network->element_count; k++) {
-        is_cut |= !is_open(network, &network->elements[k]);
+        is_cut |= is_outside(network, &network->elements[k]);
     }
     for (uint32_t i = 0; i < network->grip_count; i++) {
         is_cut |= network->inverse_masses[network->grips[i].particle] > 0.0f;
@@ -220,9 +274,9 @@ void spec_add_fields(const spec_network *network, uint32_t first) {
     }
     for (uint32_t k = 0; k < network->element_count; k++) {
         const spec_element *e = &network->elements[k];
-        if (!is_open(network, e) && e->kind == SPEC_ANGLE) {
+        if (is_outside(network, e) && e->kind == SPEC_ANGLE) {
             push_angle(network, e);
-        } else if (!is_open(network, e)) {
+        } else if (is_outside(network, e)) {
             push_area(network, e);
         }
     }
