@@ -22,6 +22,7 @@ typedef struct specification {
     mspring_id actuated[SCENE_ACTUATORS];
     float nominal[SCENE_ACTUATORS];
     uint32_t actuated_count;
+    uint32_t first_particles; ///< at the beginning
     float inverse_masses[SCENE_PARTICLES], masses[SCENE_PARTICLES];
     spec_sums sums[SCENE_PARTICLES];
     uint32_t others[2 * SCENE_SPRINGS];

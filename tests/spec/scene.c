@@ -47,7 +47,7 @@ static void add_particle_in(scene *s, double width, double low, double high) {
     add_particle(s, x, y);
 }
 
-static void add_spring(scene *s, uint32_t a, uint32_t b) {
+void scene_add_spring(scene *s, uint32_t a, uint32_t b, bool is_made) {
     assert_true(s->spring_count < SCENE_SPRINGS);
     const double dx = s->particles[a].x - s->particles[b].x, dy = s->particles[a].y - s->particles[b].y;
     const double strain = s->is_calm ? 0 : scene_between(s, -0.1, 0.1);
@@ -58,6 +58,9 @@ static void add_spring(scene *s, uint32_t a, uint32_t b) {
         (spec_spring){.a = a, .b = b, .stiffness = stiffness, .damping = damping, .rest_length = (float)length};
     s->springs[s->spring_count - 1].break_strain =
         scene_chance(s, s->brittle) ? (float)scene_between(s, 0.05, 0.5) : INFINITY;
+    if (!is_made) {
+        return;
+    }
     if (!s->is_calm && scene_chance(s, s->relative)) {
         spec_spring *made = &s->springs[s->spring_count - 1];
         made->is_relative = true;
@@ -67,6 +70,10 @@ static void add_spring(scene *s, uint32_t a, uint32_t b) {
     if (!s->is_calm && scene_chance(s, s->one_way)) {
         s->springs[s->spring_count - 1].side = scene_chance(s, 0.5) ? 1 : -1;
     }
+}
+
+static void add_spring(scene *s, uint32_t a, uint32_t b) {
+    scene_add_spring(s, a, b, true);
 }
 
 /// Add a spring, unless there is one already.
@@ -344,6 +351,7 @@ void scene_make(scene *s, uint64_t seed) {
     s->one_way = scene_chance(s, 0.85) ? 0 : 0.1;
     s->relative = s->one_way > 0 || scene_chance(s, 0.85) ? 0 : 0.5;
     s->brittle = scene_chance(s, 0.8) ? 0 : scene_between(s, 0, 0.5);
+    s->grows = scene_chance(s, 0.3);
     s->max_substeps = scene_chance(s, 0.8) ? 1000 : 1 + scene_below(s, 20);
     s->most_work = scene_chance(s, 0.7) ? 4 : scene_below(s, 3);
     s->flags = scene_chance(s, 0.4) ? MSPRING_NETWORK_PRECISE : 0;

@@ -34,6 +34,7 @@ typedef struct scene {
     uint32_t flags, max_substeps, most_work;
     bool is_calm;     ///< one particle moves, and time is short
     bool has_bundles; ///< for spec_arrange()
+    bool grows;       ///< particles and springs may be added
     double welds;     ///< share of welds among springs
     double relative;  ///< of those that are relative
     double one_way;   ///< of those that only pull or push
@@ -41,8 +42,14 @@ typedef struct scene {
     double left;      ///< where the next part begins, m
 } scene;
 
+/// Particles and springs that may be added.
+#define SCENE_SPARES 20
+
 /// Draw a network.
 void scene_make(scene *s, uint64_t seed);
+
+/// Draw a spring between two particles with places of now, the next number. is_made: at the beginning; later it is plain.
+void scene_add_spring(scene *s, uint32_t a, uint32_t b, bool is_made);
 
 /// Draw a number, low <= number < high; a whole one below count; true with this probability.
 double scene_between(scene *s, double low, double high);

@@ -52,32 +52,6 @@ static float lead(float value) {
     return value;
 }
 
-// Difference of neighbouring floats at a value.
-static float last_place_of(float value) {
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    bits &= 0xff800000u;
-    memcpy(&value, &bits, sizeof value);
-    return (float)((double)value * 0x1p-23);
-}
-
-// Round the first word of a coordinate to the grid of a precise network.
-static float on_grid(float grid, float coordinate) {
-    const float rounding = grid * 0x1.8p23f;
-    return grid > 0.0f ? (coordinate + rounding) - rounding : coordinate;
-}
-
-// A low word that is too large to be the rest of its value counts as 0.
-static float low_of(float value, float low, float grid) {
-    return fabsf(low) <= fabsf(value) * 0x1p-21f || fabsf(low) <= grid ? low : 0.0f;
-}
-
-// Split a coordinate into two words, the first one on a grid, if there is one.
-static void put_coordinate(double x, float grid, float *first, float *low) {
-    *first = on_grid(grid, (float)x);
-    *low = low_of(*first, (float)(x - (double)*first), grid);
-}
-
 static spec_vector add(spec_vector a, spec_vector b) {
     return (spec_vector){a.x + b.x, a.y + b.y};
 }
@@ -229,12 +203,34 @@ static spec_vector add_rows(const spec_network *network, uint32_t p) {
     return add(add(add(below, add(west, north_west)), add(east, north)), north_east);
 }
 
+static bool is_added_to(const spec_network *network, uint32_t spring, uint32_t p) {
+    const spec_spring *s = &network->springs[spring];
+    return (s->a == p || s->b == p) && !s->is_broken;
+}
+
+static bool has_added(const spec_network *network, uint32_t p) {
+    bool any = false;
+    for (uint32_t i = network->first_added; i < network->spring_count; i++) {
+        any |= is_added_to(network, i, p);
+    }
+    return any;
+}
+
 // Sum of the other springs, by rising number, from 0.
 static spec_vector add_others(const spec_network *network, uint32_t p) {
     const spec_sums *sums = &network->sums[p];
     spec_vector force = {0.0f, 0.0f};
     for (uint32_t i = 0; i < sums->other_count; i++) {
         force = add(force, pull(network, network->others[sums->first_other + i], p));
+    }
+    return force;
+}
+
+// Sum of the springs that were added, likewise.
+static spec_vector add_added(const spec_network *network, uint32_t p) {
+    spec_vector force = {0.0f, 0.0f};
+    for (uint32_t i = network->first_added; i < network->spring_count; i++) {
+        force = is_added_to(network, i, p) ? add(force, pull(network, i, p)) : force;
     }
     return force;
 }
@@ -315,9 +311,22 @@ static void add_kick(const spec_network *network, float *v, float *low, float pu
 
 // Kahan's compensated sum: the low word keeps what the first word can't.
 static void move(const spec_network *network, float *x, float *low, float way) {
-    const float whole = way + *low, to = on_grid(network->grid, *x + whole);
+    const float whole = way + *low, to = spec_on_grid(network->grid, *x + whole);
     *low = whole - (to - *x);
     *x = to;
+}
+
+// Add a kick and a move of their own for springs that act after the move of their particle.
+static void push_on(const spec_network *network, const substep *now, uint32_t p, spec_vector force) {
+    const float per_force = network->inverse_masses[p] * now->kick;
+    const float push_x = force.x * per_force, push_y = force.y * per_force;
+    spec_motion *m = &network->motions[p];
+    if (network->inverse_masses[p] > 0.0f) {
+        add_kick(network, &m->velocity.x, &m->low_velocity.x, push_x);
+        add_kick(network, &m->velocity.y, &m->low_velocity.y, push_y);
+        move(network, &m->place.x, &m->low_place.x, push_x * now->h);
+        move(network, &m->place.y, &m->low_place.y, push_y * now->h);
+    }
 }
 
 static void move_particle(const spec_network *network, const substep *now, uint32_t p) {
@@ -334,15 +343,9 @@ static void move_particle(const spec_network *network, const substep *now, uint3
     }
     move(network, &m->place.x, &m->low_place.x, m->velocity.x * now->h);
     move(network, &m->place.y, &m->low_place.y, m->velocity.y * now->h);
-    if (!sums->is_in_rows || sums->other_count == 0 || !(inverse_mass > 0.0f)) {
-        return;
+    if (sums->is_in_rows && sums->other_count > 0) {
+        push_on(network, now, p, add_others(network, p));
     }
-    const spec_vector force = add_others(network, p);
-    const float push_x = force.x * per_force, push_y = force.y * per_force;
-    add_kick(network, &m->velocity.x, &m->low_velocity.x, push_x);
-    add_kick(network, &m->velocity.y, &m->low_velocity.y, push_y);
-    move(network, &m->place.x, &m->low_place.x, push_x * now->h);
-    move(network, &m->place.y, &m->low_place.y, push_y * now->h);
 }
 
 /// Motion of particles without springs in all substeps that are taken together: v' = keep v + (gain a + gravity), x' = x + (reach
@@ -409,109 +412,17 @@ static void bounce(spec_network *network, const substep *now, uint32_t p) {
     if (!has_floor(network) || !(network->inverse_masses[p] > 0.0f)) {
         return;
     }
-    const spec_bounce b = has_springs(&network->sums[p])
+    const spec_bounce b = has_springs(&network->sums[p]) || has_added(network, p)
                               ? spec_touch_floor(network, p, h, 1.0 - (double)now->loss, scale)
                               : spec_fly(network, p, h, 1.0 - (double)now->damping, scale);
     if (!b.acts) {
         return;
     }
     spec_motion *m = &network->motions[p];
-    put_coordinate(b.x, network->grid, &m->place.x, &m->low_place.x);
-    put_coordinate(b.y, network->grid, &m->place.y, &m->low_place.y);
+    spec_put_coordinate(b.x, network->grid, &m->place.x, &m->low_place.x);
+    spec_put_coordinate(b.y, network->grid, &m->place.y, &m->low_place.y);
     m->velocity = (spec_vector){(float)b.vx, (float)b.vy};
     m->low_velocity = (spec_vector){0.0f, 0.0f};
-}
-
-/* ------------------------------------------------------------------------------------------------------- origin */
-
-/// Smallest distance at which the origin is looked at, m.
-#define NEAREST_LOOK 64.0f
-
-static double middle(double low, double high) {
-    return floor(0.5 * (low + high) + 0.5);
-}
-
-void spec_set_origin(spec_network *network, double min_x, double min_y, double max_x, double max_y) {
-    network->origin_x = middle(min_x, max_x);
-    network->origin_y = middle(min_y, max_y);
-    network->look_distance = NEAREST_LOOK;
-}
-
-void spec_put(const spec_network *network, uint32_t p, double x, double y) {
-    spec_motion *m = &network->motions[p];
-    put_coordinate(x, network->grid, &m->place.x, &m->low_place.x);
-    put_coordinate(y, network->grid, &m->place.y, &m->low_place.y);
-}
-
-void spec_place(spec_network *network, uint32_t particle, double x, double y) {
-    spec_put(network, particle, x - network->origin_x, y - network->origin_y);
-}
-
-void spec_set_velocity(spec_network *network, uint32_t particle, float vx, float vy) {
-    network->motions[particle].velocity = (spec_vector){vx, vy};
-    network->motions[particle].low_velocity = (spec_vector){0.0f, 0.0f};
-}
-
-// Drop low words that cannot be the rest of a value, in a network whose hook may have written to the state.
-static void tidy(const spec_network *network, uint32_t p) {
-    spec_motion *m = &network->motions[p];
-    if (network->hook != NULL) {
-        m->low_place = (spec_vector){low_of(m->place.x, m->low_place.x, network->grid),
-                                     low_of(m->place.y, m->low_place.y, network->grid)};
-        m->low_velocity = (spec_vector){low_of(m->velocity.x, m->low_velocity.x, 0.0f),
-                                        low_of(m->velocity.y, m->low_velocity.y, 0.0f)};
-    }
-}
-
-void spec_hit(spec_network *network, uint32_t particle, float x, float y) {
-    tidy(network, particle);
-    spec_vector *v = &network->motions[particle].velocity;
-    const double per_impulse = (double)network->inverse_masses[particle];
-    v->x = (float)((double)v->x + (double)x * per_impulse);
-    v->y = (float)((double)v->y + (double)y * per_impulse);
-}
-
-double spec_x_of(const spec_network *network, uint32_t particle) {
-    const spec_motion *m = &network->motions[particle];
-    return (double)m->place.x + (double)low_of(m->place.x, m->low_place.x, network->grid);
-}
-
-double spec_y_of(const spec_network *network, uint32_t particle) {
-    const spec_motion *m = &network->motions[particle];
-    return (double)m->place.y + (double)low_of(m->place.y, m->low_place.y, network->grid);
-}
-
-// The middle of one coordinate, if all particles lie to one side of the origin and the shift is exact.
-static double shift_of(double origin, double low, double high) {
-    const double nearest = low > 0.0 ? low : -high, half = 0.501 * (high - low) + 1.0;
-    return nearest >= half && fabs(origin + middle(low, high)) <= 2e12 ? (double)(float)middle(low, high) : 0.0;
-}
-
-// After a step: the origin follows a network that flies away.
-static void follow(spec_network *network) {
-    const spec_motion *m = network->motions;
-    if (fabsf(m->place.x) < network->look_distance && fabsf(m->place.y) < network->look_distance) {
-        return;
-    }
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (uint32_t p = 0; p < network->particle_count; p++) {
-        low[0] = fmin(low[0], (double)m[p].place.x);
-        low[1] = fmin(low[1], (double)m[p].place.y);
-        high[0] = fmax(high[0], (double)m[p].place.x);
-        high[1] = fmax(high[1], (double)m[p].place.y);
-    }
-    const double shift_x = shift_of(network->origin_x, low[0], high[0]);
-    const double shift_y = shift_of(network->origin_y, low[1], high[1]);
-    if (shift_x == 0.0 && shift_y == 0.0) {
-        network->look_distance *= 2.0f;
-        return;
-    }
-    for (uint32_t p = 0; p < network->particle_count; p++) {
-        spec_put(network, p, spec_x_of(network, p) - shift_x, spec_y_of(network, p) - shift_y);
-    }
-    network->origin_x += shift_x;
-    network->origin_y += shift_y;
-    network->look_distance = NEAREST_LOOK;
 }
 
 /* --------------------------------------------------------------------------------------------------------- step */
@@ -527,7 +438,7 @@ void spec_begin(spec_network *network) {
             s->rest_length > 0.0f ? fmin(network->shortest, (double)s->rest_length) : network->shortest;
         longest = fmax(longest, (double)s->rest_length);
     }
-    network->grid = network->is_precise ? last_place_of((float)(2.0 * longest)) : 0.0f;
+    network->grid = network->is_precise ? spec_last_place_of((float)(2.0 * longest)) : 0.0f;
     spec_renew(network);
     network->lag = 0.0f; // velocities are of now
     network->dt = 0.0;
@@ -535,13 +446,23 @@ void spec_begin(spec_network *network) {
     network->pace = (spec_pace){0};
 }
 
-// Move a particle without springs: in all substeps at once, or one by one where a hook or the floor may act.
+static bool has_any_added(const spec_network *network) {
+    bool any = false;
+    for (uint32_t i = network->first_added; i < network->spring_count; i++) {
+        any |= !network->springs[i].is_broken;
+    }
+    return any;
+}
+
+// Move a particle without springs: in all substeps at once, or one by one in a network with a hook or with added
+// springs, or where the floor may act.
 static void glide_through(spec_network *network, const step *all, uint32_t p) {
     const double seconds = (double)all->h * (double)(all->end - all->first);
     const bool is_near = has_floor(network) && spec_may_meet_floor(network, p, seconds);
+    const bool is_cut = network->hook != NULL || has_any_added(network) || is_near;
     step part = *all;
     for (; part.first < all->end; part.first = part.end) {
-        part.end = network->hook != NULL || is_near ? part.first + 1 : all->end;
+        part.end = is_cut ? part.first + 1 : all->end;
         const glide g = glide_of(network, &part);
         const substep now = substep_of(network, all, part.first);
         network->before[p] = network->motions[p];
@@ -552,23 +473,37 @@ static void glide_through(spec_network *network, const step *all, uint32_t p) {
     }
 }
 
-// Take substeps between which nothing else acts. Springs see the state before a substep, whatever the order of the
+// Take one substep with all particles that have springs. These see the state before it, whatever the order of the
 // particles.
+static void take_substep(spec_network *network, const step *all, uint32_t number) {
+    const substep now = substep_of(network, all, number);
+    const step one = {all->count, number, number + 1, all->h, all->spring_lag, all->lag};
+    const glide g = glide_of(network, &one);
+    memcpy(network->before, network->motions, network->particle_count * sizeof *network->motions);
+    for (uint32_t p = 0; p < network->particle_count; p++) {
+        if (has_springs(&network->sums[p])) {
+            move_particle(network, &now, p);
+        } else if (has_added(network, p)) {
+            glide_particle(network, &g, p);
+        } else {
+            continue;
+        }
+        if (has_added(network, p)) {
+            push_on(network, &now, p, add_added(network, p));
+        }
+        bounce(network, &now, p);
+    }
+}
+
+// Take substeps between which nothing else acts.
 static void take_together(spec_network *network, const step *all) {
     memcpy(network->fields, network->forces, network->particle_count * sizeof *network->fields);
     spec_add_fields(network, all->first);
     for (uint32_t i = all->first; i < all->end; i++) {
-        const substep now = substep_of(network, all, i);
-        memcpy(network->before, network->motions, network->particle_count * sizeof *network->motions);
-        for (uint32_t p = 0; p < network->particle_count; p++) {
-            if (has_springs(&network->sums[p])) {
-                move_particle(network, &now, p);
-                bounce(network, &now, p);
-            }
-        }
+        take_substep(network, all, i);
     }
     for (uint32_t p = 0; p < network->particle_count; p++) {
-        if (!has_springs(&network->sums[p])) {
+        if (!has_springs(&network->sums[p]) && !has_added(network, p)) {
             glide_through(network, all, p);
         }
     }
@@ -580,13 +515,6 @@ static void stop_creeping(const spec_network *network) {
         spec_vector *v = &network->motions[p].velocity;
         v->x = v->x != 0.0f ? flushed(v->x) : v->x;
         v->y = v->y != 0.0f ? flushed(v->y) : v->y;
-    }
-}
-
-// Before and after a step.
-static void tidy_all(const spec_network *network) {
-    for (uint32_t p = 0; p < network->particle_count; p++) {
-        tidy(network, p);
     }
 }
 
@@ -615,7 +543,7 @@ uint32_t spec_step(spec_network *network, double dt) {
     spec_find_cells(network);
     spec_derive_relative(network, h);
     spec_follow_ramps(network, time);
-    tidy_all(network);
+    spec_tidy(network);
     begin_floor(network);
     for (; all.first < count; all.first = all.end) {
         all.end = all.first + spec_free_substeps(network, all.first, count);
@@ -631,7 +559,7 @@ uint32_t spec_step(spec_network *network, double dt) {
     network->lag = h;
     network->uneven = spec_changes_dt(network, dt) ? 600 : network->uneven > 0 ? network->uneven - 1 : 0;
     network->dt = dt;
-    tidy_all(network);
-    follow(network);
+    spec_tidy(network);
+    spec_follow(network);
     return count;
 }

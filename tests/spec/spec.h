@@ -142,7 +142,8 @@ struct spec_network {
     bool has_relative;           ///< springs
     const spec_sums *sums;       ///< [particle_count]
     const uint32_t *others;
-    spec_spring *springs; ///< [spring_count]
+    spec_spring *springs;  ///< [spring_count]
+    uint32_t first_added;  ///< number of the first spring that was added after the layout was made
     spec_plane planes[8];
     spec_heights heights;
     uint32_t element_count, grip_count, actuator_count;
@@ -216,7 +217,14 @@ void spec_pull_grips(const spec_network *network, uint32_t substep, uint32_t cou
 void spec_add_strengths(const spec_network *network, spec_motion *sums);
 double spec_largest_quotient(const spec_network *network, const spec_motion *sums, bool of_damping);
 
-/// A coordinate in local coordinates, both words. spec.c
+/// Words of coordinates. spec_state.c
+float spec_last_place_of(float value); ///< difference of neighbouring floats there
+float spec_on_grid(float grid, float coordinate);
+void spec_put_coordinate(double x, float grid, float *first, float *low);
+void spec_tidy(const spec_network *network);  ///< before and after a step
+void spec_follow(spec_network *network);      ///< after a step: the origin follows a network that flies away
+
+/// A coordinate in local coordinates, both words.
 double spec_x_of(const spec_network *network, uint32_t particle);
 double spec_y_of(const spec_network *network, uint32_t particle);
 void spec_put(const spec_network *network, uint32_t particle, double x, double y);

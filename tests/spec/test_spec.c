@@ -30,6 +30,20 @@ static uint64_t seed_count = ROUNDS(1000);
 
 /* ------------------------------------------------------------------------------------------------ the two sides */
 
+static mspring_spring_def spring_def_of(const spec_spring *from) {
+    mspring_spring_def def;
+    check_ok(mspring_spring_def_init(&def, sizeof def));
+    def.a = from->a;
+    def.b = from->b;
+    def.stiffness = from->is_relative ? from->stiffness_share : from->stiffness;
+    def.damping = from->is_relative ? from->damping_share : from->damping;
+    def.rest_length = from->rest_length;
+    def.break_strain = from->break_strain;
+    def.flags = from->side > 0 ? MSPRING_SPRING_PULL_ONLY : from->side < 0 ? MSPRING_SPRING_PUSH_ONLY : 0;
+    def.flags |= from->is_relative ? MSPRING_SPRING_RELATIVE : 0;
+    return def;
+}
+
 static mspring_network *make_library(const scene *s, uint32_t substeps) {
     mspring_builder *builder = support_builder();
     for (uint32_t p = 0; p < s->particle_count; p++) {
@@ -45,22 +59,7 @@ static mspring_network *make_library(const scene *s, uint32_t substeps) {
         check_ok(mspring_builder_add_particle(builder, &def, NULL));
     }
     for (uint32_t i = 0; i < s->spring_count; i++) {
-        mspring_spring_def def;
-        check_ok(mspring_spring_def_init(&def, sizeof def));
-        def.a = s->springs[i].a;
-        def.b = s->springs[i].b;
-        def.stiffness = s->springs[i].stiffness;
-        def.damping = s->springs[i].damping;
-        def.rest_length = s->springs[i].rest_length;
-        def.break_strain = s->springs[i].break_strain;
-        def.flags = s->springs[i].side > 0   ? MSPRING_SPRING_PULL_ONLY
-                    : s->springs[i].side < 0 ? MSPRING_SPRING_PUSH_ONLY
-                                             : 0;
-        if (s->springs[i].is_relative) {
-            def.flags |= MSPRING_SPRING_RELATIVE;
-            def.stiffness = s->springs[i].stiffness_share;
-            def.damping = s->springs[i].damping_share;
-        }
+        const mspring_spring_def def = spring_def_of(&s->springs[i]);
         check_ok(mspring_builder_add_spring(builder, &def, NULL));
     }
     mspring_network_def def = support_def(s->gravity_y, substeps);
@@ -68,6 +67,7 @@ static mspring_network *make_library(const scene *s, uint32_t substeps) {
     def.global_damping = s->global_damping;
     def.flags = s->flags;
     def.max_substeps = s->max_substeps;
+    def.spare_particles = def.spare_springs = s->grows ? SCENE_SPARES : 0;
     def.simd_level = level;
     def.worker_count = mspring_features() & MSPRING_FEATURE_THREADS ? 1 + 2 * (s->spring_count % 4 == 0) : 1;
     mspring_network *network = support_network(builder, &def);
@@ -129,6 +129,7 @@ static void make_specification(specification *to, scene *s, uint32_t substeps) {
                         .sums = to->sums,
                         .others = to->others,
                         .springs = s->springs,
+                        .first_added = s->spring_count,
                         .gravity_x = s->gravity_x,
                         .gravity_y = s->gravity_y,
                         .global_damping = s->global_damping,
@@ -165,6 +166,7 @@ static void make_specification(specification *to, scene *s, uint32_t substeps) {
         to->x[p] = s->particles[p].x;
         to->y[p] = s->particles[p].y;
     }
+    to->first_particles = s->particle_count;
     spec_begin(n);
     place_all(to);
     for (uint32_t p = 0; p < s->particle_count; p++) {
@@ -313,6 +315,66 @@ static void edit_values(scene *s, mspring_network *library, specification *to, u
     spec_renew(n);
 }
 
+static bool is_joined(const spec_network *n, uint32_t a, uint32_t b) {
+    bool is_there = a == b;
+    for (uint32_t i = 0; i < n->spring_count; i++) {
+        const spec_spring *s = &n->springs[i];
+        is_there |= (s->a == a && s->b == b) || (s->a == b && s->b == a);
+    }
+    return is_there;
+}
+
+static bool has_layout_springs(const spec_sums *sums) {
+    return sums->is_in_rows || sums->other_count > 0;
+}
+
+/// Add a particle. It hangs on nothing as yet.
+static void add_particle(scene *s, mspring_network *library, specification *to) {
+    spec_network *n = &to->network;
+    const support_point near = support_position(library, scene_below(s, n->particle_count));
+    const uint32_t p = n->particle_count;
+    mspring_particle_def def;
+    mspring_id id;
+    check_ok(mspring_particle_def_init(&def, sizeof def));
+    def.x = near.x + scene_between(s, -1, 1);
+    def.y = near.y + scene_between(s, -1, 1);
+    def.vx = (float)scene_between(s, -1, 1);
+    def.mass = (float)scene_between(s, 0.5, 2);
+    check_ok(mspring_network_add_particles(library, &def, 1, &id));
+    assert_int_equal(id, p);
+    s->particles[p] = (scene_particle){.x = def.x, .y = def.y, .vx = def.vx, .mass = def.mass};
+    to->masses[p] = def.mass;
+    to->inverse_masses[p] = 1.0f / def.mass;
+    to->sums[p] = (spec_sums){0};
+    n->forces[p] = (spec_vector){0};
+    n->motions[p] = (spec_motion){0};
+    s->particle_count = ++n->particle_count;
+    spec_place(n, p, def.x, def.y);
+    spec_set_velocity(n, p, def.vx, def.vy);
+}
+
+/// Add a spring between any two; where there is a floor, between two that have springs of the layout.
+static void add_spring(scene *s, mspring_network *library, specification *to) {
+    spec_network *n = &to->network;
+    const bool has_floor = n->plane_count > 0 || n->heights.count > 0;
+    const uint32_t a = scene_below(s, n->particle_count), b = scene_below(s, n->particle_count);
+    if (is_joined(n, a, b) ||
+        (has_floor && !(has_layout_springs(&n->sums[a]) && has_layout_springs(&n->sums[b])))) {
+        return;
+    }
+    mspring_id id;
+    scene_add_spring(s, a, b, false);
+    spec_spring *made = &s->springs[s->spring_count - 1];
+    const support_point from = support_position(library, a), way = support_position(library, b);
+    made->damping = n->is_damped ? made->damping : 0;
+    made->rest_length = (float)sqrt((way.x - from.x) * (way.x - from.x) + (way.y - from.y) * (way.y - from.y));
+    const mspring_spring_def def = spring_def_of(made);
+    check_ok(mspring_network_add_springs(library, &def, 1, &id));
+    assert_int_equal(id, n->spring_count);
+    n->spring_count = s->spring_count;
+    spec_renew(n);
+}
+
 /// Edit both sides alike between steps.
 static void edit(scene *s, mspring_network *library, specification *to) {
     spec_network *n = &to->network;
@@ -329,6 +391,12 @@ static void edit(scene *s, mspring_network *library, specification *to) {
         }
         check_ok(mspring_network_set_positions(library, 0, n->particle_count, to->x, to->y, 1));
         place_all(to);
+    } else if (kind > 10 && s->grows && s->particle_count < to->first_particles + SCENE_SPARES &&
+               s->spring_count < n->first_added + SCENE_SPARES - 4) {
+        add_particle(s, library, to);
+        for (uint32_t i = 0; i < 4; i++) {
+            add_spring(s, library, to);
+        }
     } else if (kind == 8) {
         n->gravity_y = (float)scene_between(s, -10, 10);
         n->global_damping = (float)scene_between(s, 0, 5);

@@ -37,10 +37,11 @@ static mspringi_free_motion plan_free_motion(const mspring_network *network, con
                                   .gravity_way_y = (float)(gravity_fall * ay)};
 }
 
-// True if a hook within reach would act in substeps; with groups always, as contact that only others are near cuts a
-// step. All substeps at once round differently, so the bits of a group would depend on the others.
+// True if a hook within reach would act in substeps. Always with added springs, which act on some of a block, and with
+// groups, as contact that only others are near cuts a step. All substeps at once round differently, so bits would
+// depend on the others.
 static bool may_be_cut(const mspring_network *network) {
-    if (network->groups.count > 0)
+    if (network->groups.count > 0 || network->added_springs.count > 0)
         return true;
     for (size_t i = 0; i < mspringi_hook_count(network); ++i)
         if (network->hooks->list[i].def.phase != MSPRING_PHASE_BEFORE_STEP)
@@ -48,7 +49,10 @@ static bool may_be_cut(const mspring_network *network) {
     return false;
 }
 
-static void sweep_one_by_one(const mspringi_loose *l, const mspringi_span *span, bool is_floor_near) {
+/// Blocks of loose particles that go through all substeps before the next ones do: they take 10 kB.
+#define LOOSE_CHUNK (16 * MSPRINGI_WIDTH)
+
+static void sweep_chunk_one_by_one(const mspringi_loose *l, const mspringi_span *span, bool is_floor_near) {
     const mspring_network *network = l->network;
     const mspringi_loose_fn loose = network->kernels->loose[l->sweep->force_x != NULL];
     mspringi_sweep substep = *l->sweep;
@@ -60,6 +64,15 @@ static void sweep_one_by_one(const mspringi_loose *l, const mspringi_span *span,
         loose(&substep, span, &one);
         if (is_floor_near)
             mspringi_floor_apply_loose(network, l->strip, span, &substep);
+    }
+}
+
+static void sweep_one_by_one(const mspringi_loose *l, const mspringi_span *span, bool is_floor_near) {
+    mspringi_span chunk = *span;
+    for (; chunk.first_slot < span->end_slot; chunk.first_slot = chunk.end_slot) {
+        const uint32_t left = span->end_slot - chunk.first_slot;
+        chunk.end_slot = chunk.first_slot + (left < LOOSE_CHUNK ? left : LOOSE_CHUNK);
+        sweep_chunk_one_by_one(l, &chunk, is_floor_near);
     }
 }
 
