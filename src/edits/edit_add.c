@@ -130,17 +130,6 @@ mspring_result mspring_network_add_particles(mspring_network *network, const msp
 
 /* ----------------------------------------------------------------------------------------------------- springs */
 
-static mspring_id other_end(const mspring_network *network, mspring_id spring, mspring_id particle) {
-    const mspringi_topology *t = &network->topology;
-    if (spring >= t->reserve.first_spring) {
-        const mspring_id *ends = network->growth.particle_of_end + 2 * (spring - t->reserve.first_spring);
-        return ends[0] == particle ? ends[1] : ends[0];
-    }
-    uint32_t base, tip;
-    mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
-    return t->particle_of_slot[base] == particle ? t->particle_of_slot[tip] : t->particle_of_slot[base];
-}
-
 static mspring_result check_ends(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
     const mspring_id ends[] = {def->a, def->b};
     if (def->a == MSPRING_NONE || def->b == MSPRING_NONE)
@@ -155,13 +144,13 @@ static mspring_result check_ends(mspring_network *network, mspring_id id, const 
 }
 
 static mspring_result check_unique(mspring_network *network, mspring_id id, const mspring_spring_def *def) {
-    mspringi_incident_springs around = mspringi_incident_springs_begin(network, def->a);
-    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;)
-        if (other_end(network, s, def->a) == def->b)
-            return mspringi_fail(&network->message, MSPRING_ERROR_DUPLICATE,
-                                 "spring %u: particles %u and %u are joined by spring %u, which may be broken",
-                                 (unsigned)id, (unsigned)def->a, (unsigned)def->b, (unsigned)s);
-    return MSPRING_OK;
+    mspringi_springs_between pair = mspringi_springs_between_begin(network, def->a, def->b);
+    const mspring_id s = mspringi_springs_between_next(network, &pair);
+    return s == MSPRING_NONE
+               ? MSPRING_OK
+               : mspringi_fail(&network->message, MSPRING_ERROR_DUPLICATE,
+                               "spring %u: particles %u and %u are joined by spring %u, which may be broken",
+                               (unsigned)id, (unsigned)def->a, (unsigned)def->b, (unsigned)s);
 }
 
 static mspring_result check_kind(mspring_network *network, mspring_id id, const mspring_spring_def *def) {

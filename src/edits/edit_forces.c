@@ -202,7 +202,8 @@ mspring_result mspring_network_apply_force(mspring_network *network, mspring_id 
 
 /* ----------------------------------------------------------------------------------------------------- impulses */
 
-// Drop low words that do not belong to velocities which a hook or a view wrote: an impulse could hide that they don't.
+// Drop low words that do not belong to velocities which a hook or a view wrote: an impulse could hide that they
+// don't.
 static void drop_stale_lows(const mspring_network *network, const mspringi_selection *at) {
     const mspringi_state *s = &network->state;
     for (uint32_t i = 0; network->is_open && s->low_vx && i < at->count; ++i) {

@@ -24,8 +24,6 @@ static void remove_particle(mspring_network *network, mspring_id particle) {
     mspringi_incident_springs around = mspringi_incident_springs_begin(network, particle);
     for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;)
         remove_spring(network, s, particle);
-#define FORGETS(function) function(network, particle);
-#include "store/features.def"
     mspringi_id_pool_take_particle(network, particle);
     network->growth.particles[particle] = MSPRINGI_GONE;
     mspringi_fingerprint(network, MSPRINGI_EDIT_REMOVED_PARTICLE, particle);
@@ -52,6 +50,8 @@ mspring_result mspring_network_remove_particles(mspring_network *network, const 
         return result;
     for (uint32_t i = 0; i < count; ++i)
         remove_particle(network, particles[i]);
+#define FORGETS(function) function(network);
+#include "store/features.def"
     mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0); // as after pinning
     finish(network);
     return MSPRING_OK;

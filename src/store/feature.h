@@ -28,7 +28,7 @@ typedef struct mspringi_feature_state {
 #define LOADS(function) void function(mspring_network *network);
 #define LOADED(function) void function(mspring_network *network);
 #define DISCARDS(function) void function(mspring_network *network);
-#define FORGETS(function) void function(mspring_network *network, mspring_id particle);
+#define FORGETS(function) void function(mspring_network *network);
 #define ACTS(function) bool function(const mspring_network *network);
 #define FINITE(function) bool function(const mspring_network *network);
 #define GROWS(function) mspring_result function(mspring_network *network);

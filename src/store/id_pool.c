@@ -122,9 +122,13 @@ void mspringi_id_pool_link(mspring_network *network, mspring_id spring, mspring_
     const uint32_t first = 2 * (spring - network->topology.reserve.first_spring);
     const mspring_id ends[] = {a, b};
     for (uint32_t i = 0; i < 2; ++i) {
-        g->particle_of_end[first + i] = ends[i];
-        g->next_end[first + i] = g->first_end[ends[i]];
-        g->first_end[ends[i]] = first + i;
+        const uint32_t end = first + i, next = g->first_end[ends[i]];
+        g->particle_of_end[end] = ends[i];
+        g->next_end[end] = next;
+        g->previous_end[end] = MSPRINGI_NO_END;
+        if (next != MSPRINGI_NO_END)
+            g->previous_end[next] = end;
+        g->first_end[ends[i]] = end;
     }
 }
 
@@ -134,10 +138,13 @@ void mspringi_id_pool_unlink(mspring_network *network, mspring_id spring) {
         return;
     const uint32_t first = 2 * (spring - network->topology.reserve.first_spring);
     for (uint32_t end = first; end < first + 2; ++end) {
-        uint32_t *link = &g->first_end[g->particle_of_end[end]];
-        while (*link != end)
-            link = &g->next_end[*link];
-        *link = g->next_end[end];
+        const uint32_t next = g->next_end[end], previous = g->previous_end[end];
+        if (previous == MSPRINGI_NO_END)
+            g->first_end[g->particle_of_end[end]] = next;
+        else
+            g->next_end[previous] = next;
+        if (next != MSPRINGI_NO_END)
+            g->previous_end[next] = previous;
     }
 }
 
@@ -201,13 +208,39 @@ mspring_id mspringi_incident_springs_next(const mspring_network *network, msprin
     return network->topology.reserve.first_spring + end / 2;
 }
 
-mspring_id mspringi_incident_springs_find(const mspring_network *network, mspring_id particle,
-                                          mspringi_spring_slot spring_slot) {
-    mspringi_incident_springs around = mspringi_incident_springs_begin(network, particle);
-    mspring_id spring = mspringi_incident_springs_next(network, &around);
-    while (mspringi_slot_of_spring(&network->topology, spring) != spring_slot) {
-        spring = mspringi_incident_springs_next(network, &around);
-        MSPRINGI_ASSERT(spring != MSPRING_NONE);
+static mspring_id other_end(const mspring_network *network, mspring_id spring, mspring_id particle) {
+    const mspringi_topology *t = &network->topology;
+    const mspring_id *ends = spring < t->reserve.first_spring
+                                 ? NULL
+                                 : network->growth.particle_of_end + 2 * (size_t)(spring - t->reserve.first_spring);
+    mspring_id found[2];
+    if (!ends)
+        find_ends(t, mspringi_slot_of_spring(t, spring), found);
+    ends = ends ? ends : found;
+    return ends[0] == particle ? ends[1] : ends[0];
+}
+
+mspringi_springs_between mspringi_springs_between_begin(const mspring_network *network, mspring_id a,
+                                                        mspring_id b) {
+    return (mspringi_springs_between){
+        {mspringi_incident_springs_begin(network, a), mspringi_incident_springs_begin(network, b)}, {a, b}};
+}
+
+mspring_id mspringi_springs_between_next(const mspring_network *network, mspringi_springs_between *pair) {
+    for (uint32_t i = 0;; i = 1 - i) {
+        const mspring_id spring = mspringi_incident_springs_next(network, &pair->around[i]);
+        if (spring == MSPRING_NONE || other_end(network, spring, pair->particles[i]) == pair->particles[1 - i])
+            return spring;
     }
+}
+
+mspring_id mspringi_spring_at(const mspring_network *network, mspringi_spring_slot spring_slot) {
+    mspring_id ends[2], spring;
+    find_ends(&network->topology, spring_slot, ends);
+    mspringi_springs_between pair = mspringi_springs_between_begin(network, ends[0], ends[1]);
+    do {
+        spring = mspringi_springs_between_next(network, &pair);
+        MSPRINGI_ASSERT(spring != MSPRING_NONE);
+    } while (mspringi_slot_of_spring(&network->topology, spring) != spring_slot);
     return spring;
 }

@@ -43,8 +43,18 @@ typedef struct mspringi_incident_springs {
 mspringi_incident_springs mspringi_incident_springs_begin(const mspring_network *network, mspring_id particle);
 /// Return the next existing spring, or MSPRING_NONE behind the last. It may be removed before the next call.
 mspring_id mspringi_incident_springs_next(const mspring_network *network, mspringi_incident_springs *around);
-/// Find the spring of a particle that has this spring slot.
-mspring_id mspringi_incident_springs_find(const mspring_network *network, mspring_id particle,
-                                          mspringi_spring_slot spring_slot);
+
+/// Iterator over the springs between two particles: from both ends in turn, so that it takes as long as the springs
+/// of the end that has fewer. It may return a spring twice.
+typedef struct mspringi_springs_between {
+    mspringi_incident_springs around[2];
+    mspring_id particles[2];
+} mspringi_springs_between;
+mspringi_springs_between mspringi_springs_between_begin(const mspring_network *network, mspring_id a, mspring_id b);
+/// Return the next spring, or MSPRING_NONE behind the last.
+mspring_id mspringi_springs_between_next(const mspring_network *network, mspringi_springs_between *pair);
+
+/// The existing spring in a spring slot.
+mspring_id mspringi_spring_at(const mspring_network *network, mspringi_spring_slot spring_slot);
 
 #endif

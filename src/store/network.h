@@ -102,7 +102,7 @@ typedef struct mspringi_id_pool {
     uint8_t *particles,
         *springs;        ///< [reserve.particle_end], [reserve.spring_end] MSPRINGI_THERE, ...; NULL: all ids exist
     uint32_t *first_end; ///< [reserve.particle_end] MSPRINGI_NO_END if there is none
-    uint32_t *next_end;  ///< [2 * spare springs]
+    uint32_t *next_end, *previous_end;         ///< [2 * spare springs]
     mspring_id *particle_of_end;               ///< [2 * spare springs]
     mspring_id lowest_particle, lowest_spring; ///< no id below is spare
 } mspringi_id_pool;

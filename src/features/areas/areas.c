@@ -187,12 +187,10 @@ static bool is_ringed(const mspring_network *network, const mspringi_area *area)
 
 // The one that acts both ways, if there is one, else the first.
 static mspring_id spring_between(const mspring_network *network, mspring_id a, mspring_id b) {
-    const uint32_t there = network->topology.slot_of_particle[b];
-    mspringi_incident_springs around = mspringi_incident_springs_begin(network, a);
+    mspringi_springs_between pair = mspringi_springs_between_begin(network, a, b);
     mspring_id found = MSPRING_NONE;
-    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;) {
-        const mspringi_ends ends = mspringi_spring_ends(network, s);
-        if (!mspringi_spring_is_live(network, s) || (ends.a != there && ends.b != there))
+    for (mspring_id s; (s = mspringi_springs_between_next(network, &pair)) != MSPRING_NONE;) {
+        if (!mspringi_spring_is_live(network, s))
             continue;
         if (mspringi_side_of(network, s) == 0)
             return s;
@@ -313,17 +311,32 @@ void mspringi_areas_drop(mspring_network *network, mspringi_area *area) {
     note_change(network);
 }
 
-void mspringi_areas_forget(mspring_network *network, mspring_id particle) {
+static bool has_all_corners(const mspring_network *network, const mspringi_area *area) {
+    bool has_all = true;
+    for (uint32_t i = 0; i < area->count; ++i)
+        has_all &= mspringi_particle_exists(network, network->areas->corners[area->first + i].particle);
+    return has_all;
+}
+
+void mspringi_areas_forget(mspring_network *network) {
     mspringi_areas *a = network->areas;
-    for (size_t i = a ? a->corner_count : 0; i-- > 0;) {
-        if (a->corners[i].particle != particle)
+    size_t kept = 0, corners = 0;
+    for (size_t i = 0; a && i < a->count; ++i) {
+        mspringi_area area = a->list[i];
+        if (!has_all_corners(network, &area)) {
+            a->angle_count -= area.is_angle;
             continue;
-        mspringi_area *area = a->list;
-        while (area->first + area->count <= i)
-            ++area;
-        i = area->first;
-        mspringi_areas_drop(network, area);
+        }
+        memmove(a->corners + corners, a->corners + area.first, area.count * sizeof *a->corners);
+        area.first = (uint32_t)corners;
+        corners += area.count;
+        a->list[kept++] = area;
     }
+    if (!a || kept == a->count)
+        return;
+    a->count = kept;
+    a->corner_count = corners;
+    note_change(network);
 }
 
 void mspringi_areas_clear(mspring_network *network) {

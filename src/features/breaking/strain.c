@@ -84,18 +84,15 @@ static float total_stretch(const mspring_network *network, const mspringi_spring
     return nominal == values->rest_length ? stretch : stretch_of(network, &whole);
 }
 
-static bool is_slack(const mspring_network *network, mspringi_spring_slot spring_slot,
-                     const mspringi_spring_values *values) {
+static bool is_slack(const mspring_network *network, mspringi_spring_slot spring_slot) {
     if (!network->side)
         return false;
-    const mspring_id id =
-        mspringi_incident_springs_find(network, network->topology.particle_of_slot[values->base], spring_slot);
+    const mspring_id id = mspringi_spring_at(network, spring_slot);
     return mspringi_is_slack(mspringi_side_of(network, id), (double)mspringi_spring_strain(network, id));
 }
 
 // Break, stress or relax the spring in this place, if it is time for that.
 static void look_at(mspring_network *network, mspringi_spring_slot spring_slot) {
-    const mspringi_topology *t = &network->topology;
     mspringi_strain *strain = &network->strain;
     const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     const float whole = mspringi_strain_length(values.rest_length);
@@ -103,8 +100,7 @@ static void look_at(mspring_network *network, mspringi_spring_slot spring_slot) 
     const float stress_at = strain->stress_strain ? strain->stress_strain[spring_slot] * whole : INFINITY;
     const bool is_stressed = has_bit(strain->stressed, spring_slot);
     const float nominal = nominal_of(network, spring_slot, values.rest_length);
-    const bool slack =
-        is_slack(network, spring_slot, &values); // what it does not feel neither breaks nor stresses it
+    const bool slack = is_slack(network, spring_slot); // what it does not feel neither breaks nor stresses it
     stretch = slack ? 0.0f : stretch;
     const float total = slack ? 0.0f : total_stretch(network, &values, stretch, nominal);
     mspring_event event = {.other = MSPRING_NONE};
@@ -116,7 +112,7 @@ static void look_at(mspring_network *network, mspringi_spring_slot spring_slot) 
         event.kind = MSPRING_EVENT_RELAXED;
     else
         return;
-    event.id = mspringi_incident_springs_find(network, t->particle_of_slot[values.base], spring_slot);
+    event.id = mspringi_spring_at(network, spring_slot);
     event.strain = mspringi_spring_strain(network, event.id);
     if (event.kind == MSPRING_EVENT_BROKEN)
         (void)mspringi_spring_break(network, event.id);

@@ -139,8 +139,8 @@ double mspringi_floor_distance(const mspringi_floor *floor, double x, double y);
 /// Survey: find the clearance of each strip, and the strips that stay clear for `seconds`.
 void mspringi_floor_update_clearances(mspring_network *network, double seconds);
 
-/// Lanes of a block of loose particles, of a strip near the surface, that may reach it in the same substeps: by their
-/// own motion, so that no bits depend on the other lanes.
+/// Lanes of a block of loose particles, of a strip near the surface, that may reach it in the same substeps: by
+/// their own motion, so that no bits depend on the other lanes.
 uint32_t mspringi_floor_near_lanes(const mspring_network *network, const mspringi_strip *strip, uint32_t block,
                                    const struct mspringi_sweep *sweep);
 

@@ -144,8 +144,8 @@ static double hardest_push(const mspring_network *network) {
     return (double)all;
 }
 
-// Twice the way of a particle by its speed, gravity and a push from outside, and what rounds first words, m. The first
-// kick lasts half the lag, too.
+// Twice the way of a particle by its speed, gravity and a push from outside, and what rounds first words, m. The
+// first kick lasts half the lag, too.
 static double reach_by(const mspring_network *network, float fastest, double outside, double seconds) {
     const double push =
         fabs((double)network->settings.gravity_x) + fabs((double)network->settings.gravity_y) + outside;

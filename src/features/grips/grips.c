@@ -90,9 +90,9 @@ mspring_result mspringi_grips_reserve(mspring_network *network) {
                                (unsigned)MSPRING_MAX_GRIPS);
 }
 
-void mspringi_grips_forget(mspring_network *network, mspring_id particle) {
+void mspringi_grips_forget(mspring_network *network) {
     for (uint32_t i = mspringi_grip_count(network); i-- > 0;)
-        if (network->grips->list[i].particle == particle)
+        if (!mspringi_particle_exists(network, network->grips->list[i].particle))
             remove_from_list(network->grips, &network->grips->list[i]);
 }
 

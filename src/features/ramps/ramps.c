@@ -22,9 +22,13 @@ static bool grow(mspring_network *network, size_t count) {
     if (!network->ramps)
         network->ramps = mspringi_alloc(&network->memory, 1, sizeof *network->ramps);
     mspringi_ramps *ramps = network->ramps;
+    if (ramps && !ramps->of_spring)
+        ramps->of_spring =
+            mspringi_alloc(&network->memory, network->topology.reserve.spring_end, sizeof *ramps->of_spring);
     void *list = ramps ? ramps->list : NULL;
-    const bool grown = ramps && mspringi_grow(&network->memory, &list, &ramps->capacity, ramps->count + count,
-                                              sizeof *ramps->list);
+    const bool grown =
+        ramps && ramps->of_spring &&
+        mspringi_grow(&network->memory, &list, &ramps->capacity, ramps->count + count, sizeof *ramps->list);
     if (grown)
         ramps->list = list;
     return grown;
@@ -39,8 +43,14 @@ mspring_result mspringi_ramps_reserve(mspring_network *network, size_t count) {
                                                 "no memory for the ramps of %zu springs", count);
 }
 
+// Put a ramp at a place of the list.
+static void put(const mspringi_ramps *ramps, size_t place, const mspringi_ramp *ramp) {
+    ramps->list[place] = *ramp;
+    ramps->of_spring[ramp->spring] = (uint32_t)place;
+}
+
 void mspringi_ramp_add(mspring_network *network, const mspringi_ramp *ramp) {
-    network->ramps->list[network->ramps->count++] = *ramp;
+    put(network->ramps, network->ramps->count++, ramp);
     follow(network, ramp->spring);
 }
 
@@ -61,24 +71,28 @@ void mspringi_ramp_begin(mspring_network *network, mspring_id spring, double sec
                                          (float)ramp.from);
 }
 
+// A spring's ramp, or NULL.
+static mspringi_ramp *find(const mspring_network *network, mspring_id spring) {
+    const mspringi_ramps *ramps = network->ramps;
+    if (mspringi_ramp_count(network) == 0 || ramps->of_spring[spring] >= ramps->count)
+        return NULL;
+    mspringi_ramp *ramp = &ramps->list[ramps->of_spring[spring]];
+    return ramp->spring == spring ? ramp : NULL;
+}
+
 bool mspringi_has_ramp(const mspring_network *network, mspring_id spring) {
-    for (size_t i = 0; i < mspringi_ramp_count(network); ++i)
-        if (network->ramps->list[i].spring == spring)
-            return true;
-    return false;
+    return find(network, spring) != NULL;
 }
 
 void mspringi_ramp_drop(mspring_network *network, mspring_id spring) {
     mspringi_ramps *ramps = network->ramps;
-    for (size_t i = 0; i < mspringi_ramp_count(network); ++i) {
-        if (ramps->list[i].spring != spring)
-            continue;
-        mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, spring),
-                                             ramps->list[i].to);
-        ramps->list[i] = ramps->list[--ramps->count];
-        follow(network, spring);
+    const mspringi_ramp *ramp = find(network, spring);
+    if (!ramp)
         return;
-    }
+    mspringi_spring_slot_set_rest_length(network, mspringi_slot_of_spring(&network->topology, spring), ramp->to);
+    put(ramps, (size_t)(ramp - ramps->list), &ramps->list[ramps->count - 1]);
+    ramps->count--;
+    follow(network, spring);
 }
 
 void mspringi_ramps_clear(mspring_network *network) {
@@ -112,8 +126,8 @@ static void pass(mspring_network *network, double dt) {
     for (size_t i = 0; i < count; ++i) {
         mspringi_ramp ramp = ramps->list[i];
         ramp.passed += dt;
-        ramps->list[i] = ramps->list[kept];
-        ramps->list[kept] = ramp;
+        put(ramps, i, &ramps->list[kept]);
+        put(ramps, kept, &ramp);
         kept += ramp.passed < ramp.seconds;
     }
     ramps->count = kept;
@@ -121,7 +135,8 @@ static void pass(mspring_network *network, double dt) {
         follow(network, ramps->list[i].spring);
 }
 
-static const mspringi_array_entry arrays[] = {MSPRINGI_ARRAY_ENTRY(mspringi_ramps, list, MSPRINGI_ARRAY)};
+static const mspringi_array_entry arrays[] = {MSPRINGI_ARRAY_ENTRY(mspringi_ramps, list, MSPRINGI_ARRAY),
+                                              MSPRINGI_ARRAY_ENTRY(mspringi_ramps, of_spring, MSPRINGI_ARRAY)};
 const mspringi_feature_state mspringi_state_of_ramps = {MSPRINGI_ARRAY_TABLE(arrays), NULL};
 
 bool mspringi_ramps_vary(const mspring_network *network) {

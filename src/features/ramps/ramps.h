@@ -23,6 +23,7 @@ typedef struct mspringi_ramp {
 typedef struct mspringi_ramps {
     mspringi_ramp *list;
     size_t count, capacity;
+    uint32_t *of_spring; ///< [spring ids] index of each spring's ramp, if that ramp is of the spring
 } mspringi_ramps;
 
 #define MSPRINGI_LONGEST_RAMP 1e6 // s

@@ -128,8 +128,7 @@ static bool is_slack(const mspring_network *network, mspringi_spring_slot spring
                      const mspringi_spring_values *spring, float length) {
     if (!network->side)
         return false;
-    const mspring_id id =
-        mspringi_incident_springs_find(network, network->topology.particle_of_slot[spring->base], spring_slot);
+    const mspring_id id = mspringi_spring_at(network, spring_slot);
     return mspringi_is_slack(mspringi_side_of(network, id), (double)length - (double)spring->rest_length);
 }
 
@@ -340,8 +339,7 @@ static void book(mspring_network *network, mspringi_spring_slot spring_slot) {
     const double nominal = (double)p->nominal[spring_slot];
     mspringi_events_push(network,
                          (mspring_event){.kind = MSPRING_EVENT_YIELDED,
-                                         .id = mspringi_incident_springs_find(
-                                             network, network->topology.particle_of_slot[values.base], spring_slot),
+                                         .id = mspringi_spring_at(network, spring_slot),
                                          .other = MSPRING_NONE,
                                          .strain = (float)(((double)values.rest_length - nominal) / nominal)});
 }

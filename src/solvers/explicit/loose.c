@@ -37,9 +37,9 @@ static mspringi_free_motion plan_free_motion(const mspring_network *network, con
                                   .gravity_way_y = (float)(gravity_fall * ay)};
 }
 
-// True if a hook within reach would act in substeps. Always with added springs, which act on some of a block, and with
-// groups, as contact that only others are near cuts a step. All substeps at once round differently, so bits would
-// depend on the others.
+// True if a hook within reach would act in substeps. Always with added springs, which act on some of a block, and
+// with groups, as contact that only others are near cuts a step. All substeps at once round differently, so bits
+// would depend on the others.
 static bool may_be_cut(const mspring_network *network) {
     if (network->groups.count > 0 || network->added_springs.count > 0)
         return true;

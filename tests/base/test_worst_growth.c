@@ -1,0 +1,674 @@
+/// @file test_worst_growth.c
+/// Four times as much of a hostile input costs at most eight times as much: stars, cliques, wheels, particles in one
+/// place, edits one by one. SECURITY.md lists the calls that grow faster by their nature.
+///
+/// Costs are instructions where the system counts them, and else processor time, of which the least of three runs
+/// counts. Memory is that of a counting allocator.
+///
+///     test_worst_growth        all cases
+///     test_worst_growth NAME   those whose name begins so, with more sizes and all numbers
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "costs.h"
+#include "support.h"
+
+/// Sizes of the two inputs: quadratic costs show at these, and the whole takes seconds.
+#define SMALL ROUNDS(8000u)
+#define GROWTH 4u
+
+/// Largest ratio of costs: n log n makes 4.7; caches and noise of a clock make more. A quadratic call has 16.
+#define MOST_INSTRUCTIONS 6.5
+#define MOST_TIME 11.0
+#define MOST_BYTES 6.5
+
+/// Costs that are too small to tell anything: instructions, seconds, bytes.
+#define FEW_INSTRUCTIONS 1e6
+#define SHORT_TIME 3e-3
+#define FEW_BYTES 1e6
+
+/* --------------------------------------------------------------------------------------------------- ingredients */
+
+static mspring_builder *builder_for(costs *c) {
+    mspring_builder *builder;
+    check_ok(mspring_builder_create(&c->allocator, &builder));
+    return builder;
+}
+
+static mspring_network *network_of(mspring_builder *builder, costs *c, uint32_t spares) {
+    mspring_network_def def = support_def(0, 1);
+    def.allocator = &c->allocator;
+    def.spare_particles = def.spare_springs = spares;
+    def.solver = MSPRING_SOLVER_EXPLICIT;
+    return support_network(builder, &def);
+}
+
+// A hub and n particles on a circle around it.
+static void add_circle(mspring_builder *builder, uint32_t n) {
+    support_particle(builder, 0, 0, 1e6f);
+    for (uint32_t i = 0; i < n; i++) {
+        const double turn = 6.283185307179586 * i / n;
+        support_particle(builder, cos(turn), sin(turn), 1);
+    }
+}
+
+static mspring_builder *star(costs *c, uint32_t n) {
+    mspring_builder *builder = builder_for(c);
+    add_circle(builder, n);
+    for (uint32_t i = 1; i <= n; i++) {
+        support_spring(builder, 0, i, 1, 0);
+    }
+    return builder;
+}
+
+// A star with a rim.
+static mspring_builder *wheel(costs *c, uint32_t n) {
+    mspring_builder *builder = star(c, n);
+    for (uint32_t i = 1; i <= n; i++) {
+        support_spring(builder, i, i % n + 1, 1, 0);
+    }
+    return builder;
+}
+
+// All n springs among few particles.
+static mspring_builder *clique(costs *c, uint32_t n) {
+    mspring_builder *builder = builder_for(c);
+    const uint32_t count = (uint32_t)sqrt(2.0 * n);
+    add_circle(builder, count);
+    for (uint32_t i = 1; i <= count; i++) {
+        for (uint32_t k = 1; k < i; k++) {
+            support_spring(builder, k, i, 1, 0);
+        }
+    }
+    return builder;
+}
+
+static mspring_builder *path(costs *c, uint32_t n, bool is_in_one_place) {
+    mspring_builder *builder = builder_for(c);
+    for (uint32_t i = 0; i <= n; i++) {
+        support_particle(builder, is_in_one_place ? 0 : i, 0, 1);
+    }
+    for (uint32_t i = 0; i < n; i++) { // by leaps, so that neighbours have far numbers
+        const uint32_t at = (uint32_t)((uint64_t)i * 7919 % n);
+        support_join(builder, at, at + 1, 1, 1, 0);
+    }
+    return builder;
+}
+
+static mspring_builder *loose(costs *c, uint32_t n) {
+    mspring_builder *builder = builder_for(c);
+    for (uint32_t i = 0; i < n; i++) {
+        support_particle(builder, 0, 0, 1);
+    }
+    return builder;
+}
+
+// Many equal parts: small lattices, or cliques of five.
+static mspring_builder *parts(costs *c, uint32_t n, bool are_lattices) {
+    mspring_builder *builder = builder_for(c);
+    for (uint32_t i = 0; i < n / 4; i++) {
+        const mspring_id first = support_particle(builder, 3.0 * i, 0, 1);
+        support_particle(builder, 3.0 * i + 1, 0, 1);
+        support_particle(builder, 3.0 * i, 1, 1);
+        support_particle(builder, 3.0 * i + 1, are_lattices ? 1 : 1.7, 1);
+        for (uint32_t a = 0; a < 4; a++) {
+            for (uint32_t b = 0; b < a; b++) {
+                support_spring(builder, first + b, first + a, 1, 0);
+            }
+        }
+    }
+    return builder;
+}
+
+static mspring_builder *lattice(costs *c, uint32_t n) {
+    mspring_builder *builder = builder_for(c);
+    const uint32_t width = (uint32_t)sqrt((double)n);
+    for (uint32_t i = 0; i < width * width; i++) {
+        support_particle(builder, i % width, i / width, 1);
+        for (uint32_t k = 0; k < 4; k++) {
+            static const int32_t ways[4][2] = {{-1, 0}, {0, -1}, {-1, -1}, {1, -1}};
+            const uint32_t x = i % width + (uint32_t)ways[k][0], y = i / width + (uint32_t)ways[k][1];
+            if (x < width && y < width) {
+                support_spring(builder, y * width + x, i, 1, 0);
+            }
+        }
+    }
+    return builder;
+}
+
+/* ------------------------------------------------------------------------------------------------------ creation */
+
+static void create(mspring_builder *builder, costs *c) {
+    costs_begin(c);
+    mspring_network *network = network_of(builder, c, 0);
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+static void create_star(costs *c, uint32_t n) {
+    create(star(c, n), c);
+}
+static void create_wheel(costs *c, uint32_t n) {
+    create(wheel(c, n), c);
+}
+static void create_clique(costs *c, uint32_t n) {
+    create(clique(c, n), c);
+}
+static void create_path(costs *c, uint32_t n) {
+    create(path(c, n, false), c);
+}
+static void create_in_one_place(costs *c, uint32_t n) {
+    create(path(c, n, true), c);
+}
+static void create_loose(costs *c, uint32_t n) {
+    create(loose(c, n), c);
+}
+static void create_lattices(costs *c, uint32_t n) {
+    create(parts(c, n, true), c);
+}
+static void create_cliques(costs *c, uint32_t n) {
+    create(parts(c, n, false), c);
+}
+static void create_lattice(costs *c, uint32_t n) {
+    create(lattice(c, n), c);
+}
+
+static void build_star(costs *c, uint32_t n) {
+    costs_begin(c);
+    mspring_builder *builder = star(c, n);
+    costs_end(c);
+    mspring_builder_destroy(builder);
+}
+
+// A fan of triangles around one vertex.
+static void build_mesh(costs *c, uint32_t n) {
+    double *places = malloc((2 * (size_t)n + 2) * sizeof *places);
+    uint32_t *triangles = malloc(3 * (size_t)n * sizeof *triangles);
+    assert_true(places != NULL && triangles != NULL);
+    places[0] = places[n + 1] = 0;
+    for (uint32_t i = 0; i < n; i++) {
+        places[i + 1] = cos(6.2 * i / n);
+        places[n + 2 + i] = sin(6.2 * i / n);
+        triangles[3 * i] = 0;
+        triangles[3 * i + 1] = i + 1;
+        triangles[3 * i + 2] = (i + 1) % n + 1;
+    }
+    mspring_mesh_def def;
+    check_ok(mspring_mesh_def_init(&def, sizeof def));
+    def.vertex_count = n + 1;
+    def.triangle_count = n;
+    def.x = places;
+    def.y = places + n + 1;
+    def.triangles = triangles;
+    def.stiffness = 1;
+    mspring_builder *builder = builder_for(c);
+    costs_begin(c);
+    check_ok(mspring_builder_add_mesh(builder, &def, NULL, NULL));
+    costs_end(c);
+    mspring_builder_destroy(builder);
+    free(places);
+    free(triangles);
+}
+
+// Springs between the same two, each of which is refused.
+static void create_twice(costs *c, uint32_t n) {
+    mspring_builder *builder = star(c, n);
+    for (uint32_t i = 0; i < n; i++) {
+        support_join(builder, 0, 1, 1, 1, 0);
+    }
+    mspring_network_def def = support_def(0, 1);
+    mspring_network *network;
+    def.allocator = &c->allocator;
+    costs_begin(c);
+    check_error(mspring_network_create(builder, &def, &network), MSPRING_ERROR_DUPLICATE);
+    costs_end(c);
+    mspring_builder_destroy(builder);
+}
+
+/* --------------------------------------------------------------------------------------------------------- steps */
+
+static void step(mspring_builder *builder, mspring_solver kind, costs *c) {
+    mspring_network *network = network_of(builder, c, 0);
+    mspring_solver_def solver = support_solver(network);
+    solver.solver = kind;
+    check_ok(mspring_network_set_solver(network, &solver));
+    costs_begin(c);
+    check_ok(mspring_network_step(network, 1e-4));
+    check_ok(mspring_network_step(network, 1e-4));
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+static void step_star(costs *c, uint32_t n) {
+    step(star(c, n), MSPRING_SOLVER_EXPLICIT, c);
+}
+static void step_clique(costs *c, uint32_t n) {
+    step(clique(c, n), MSPRING_SOLVER_EXPLICIT, c);
+}
+static void step_implicit_star(costs *c, uint32_t n) {
+    step(star(c, n), MSPRING_SOLVER_IMPLICIT, c);
+}
+static void step_implicit_clique(costs *c, uint32_t n) {
+    step(clique(c, n), MSPRING_SOLVER_IMPLICIT, c);
+}
+static void step_direct_star(costs *c, uint32_t n) {
+    step(star(c, n), MSPRING_SOLVER_DIRECT, c);
+}
+static void step_direct_path(costs *c, uint32_t n) {
+    step(path(c, n, false), MSPRING_SOLVER_DIRECT, c);
+}
+
+static void step_floor(costs *c, uint32_t n) {
+    float *heights = malloc(n * sizeof *heights);
+    assert_non_null(heights);
+    for (uint32_t i = 0; i < n; i++) {
+        heights[i] = (float)(i % 2);
+    }
+    mspring_network *network = network_of(loose(c, n), c, 0);
+    mspring_floor_def def;
+    check_ok(mspring_floor_def_init(&def, sizeof def));
+    def.heights_x = -1;
+    def.heights_y = -1.5;
+    def.spacing = 1;
+    def.height_count = n;
+    def.heights = heights;
+    costs_begin(c);
+    check_ok(mspring_network_set_floor(network, &def));
+    for (uint32_t i = 0; i < n; i++) { // each grazes all of them
+        const float vx = (float)n, vy = -1;
+        check_ok(mspring_network_set_velocities_at(network, &i, 1, &vx, &vy, 1));
+    }
+    check_ok(mspring_network_step(network, 1));
+    costs_end(c);
+    mspring_network_destroy(network);
+    free(heights);
+}
+
+/* --------------------------------------------------------------------------------------------------------- edits */
+
+// All springs of a star, one by one: broken, restored with a ramp, broken again and removed.
+static void break_star(costs *c, uint32_t n) {
+    mspring_network *network = network_of(star(c, n), c, 0);
+    costs_begin(c);
+    check_ok(mspring_network_reserve_events(network, 4 * n));
+    for (uint32_t turn = 0; turn < 2; turn++) {
+        for (uint32_t i = 0; i < n; i++) {
+            check_ok(mspring_network_break_springs(network, &i, 1));
+        }
+        for (uint32_t i = 0; i < n; i++) {
+            check_ok(mspring_network_restore_springs(network, &i, 1, 1));
+        }
+        check_ok(mspring_network_step(network, 1e-3));
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        mspring_event event;
+        uint32_t count;
+        check_ok(mspring_network_read_events(network, &event, 1, &count, NULL));
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        check_ok(mspring_network_remove_springs(network, &i, 1));
+    }
+    check_ok(mspring_network_compact(network));
+    check_ok(mspring_network_step(network, 1e-3));
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+// Its outer particles, and then the hub.
+static void remove_star(costs *c, uint32_t n) {
+    mspring_network *network = network_of(star(c, n), c, 0);
+    const mspring_id hub = 0;
+    costs_begin(c);
+    for (uint32_t i = n / 2; i <= n; i++) {
+        check_ok(mspring_network_remove_particles(network, &i, 1));
+    }
+    check_ok(mspring_network_detach_particles(network, &hub, 1));
+    check_ok(mspring_network_remove_particles(network, &hub, 1));
+    check_ok(mspring_network_compact(network));
+    check_ok(mspring_network_step(network, 1e-3));
+    check_ok(mspring_network_expand(network));
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+// A star that grows, spring by spring, shrinks and grows again.
+static void grow_star(costs *c, uint32_t n) {
+    mspring_builder *builder = builder_for(c);
+    add_circle(builder, 1);
+    mspring_network *network = network_of(builder, c, 2 * n);
+    mspring_id particle, *springs = malloc(n * sizeof *springs);
+    assert_non_null(springs);
+    costs_begin(c);
+    for (uint32_t turn = 0; turn < 2; turn++) {
+        for (uint32_t i = 0; i < n; i++) {
+            mspring_particle_def def;
+            mspring_spring_def spring;
+            check_ok(mspring_particle_def_init(&def, sizeof def));
+            check_ok(mspring_spring_def_init(&spring, sizeof spring));
+            def.x = i;
+            def.y = 1;
+            def.mass = 1;
+            check_ok(mspring_network_add_particles(network, &def, 1, &particle));
+            spring.a = 0;
+            spring.b = particle;
+            spring.stiffness = 1;
+            spring.rest_length = 1;
+            check_ok(mspring_network_add_springs(network, &spring, 1, &springs[i]));
+        }
+        check_ok(mspring_network_step(network, 1e-3));
+        for (uint32_t i = 0; i < n; i++) {
+            check_ok(mspring_network_remove_springs(network, &springs[i], 1));
+        }
+        check_ok(mspring_network_recycle(network));
+    }
+    costs_end(c);
+    mspring_network_destroy(network);
+    free(springs);
+}
+
+// One by one: all that has a value a particle or a spring.
+static void set_one_by_one(costs *c, uint32_t n) {
+    mspring_network *network = network_of(star(c, n), c, 0);
+    costs_begin(c);
+    for (uint32_t i = 0; i < n; i++) {
+        const double x = 1 + i, y = 2;
+        const float one = 1, high = 1e3f;
+        mspring_spring_info info = {.struct_size = sizeof info};
+        float value;
+        check_ok(mspring_network_set_positions_at(network, &i, 1, &x, &y, 1));
+        check_ok(mspring_network_set_velocities_at(network, &i, 1, &one, &one, 1));
+        check_ok(mspring_network_apply_force(network, i, 1, 1));
+        check_ok(mspring_network_apply_impulses_at(network, &i, 1, &one, &one, 1));
+        check_ok(mspring_network_set(network, MSPRING_MASS, i, 1, &one, 1));
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, i, 1, &one, 1));
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, i, 1, &one, 1));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, i, 1, &high, 1));
+        check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, i, 1, &high, 1));
+        check_ok(mspring_network_get(network, MSPRING_STIFFNESS, i, 1, &value, 1));
+        check_ok(mspring_network_get_spring(network, i, &info));
+    }
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+static void set_actuators(costs *c, uint32_t n) {
+    mspring_network *network = network_of(star(c, n), c, 0);
+    mspring_id *springs = malloc(n * sizeof *springs);
+    assert_non_null(springs);
+    for (uint32_t i = 0; i < n; i++) {
+        springs[i] = n - 1 - i;
+    }
+    costs_begin(c);
+    check_ok(mspring_network_set_actuators(network, springs, n, 4));
+    for (uint32_t i = 0; i < n; i++) {
+        const float signal = 1.1f;
+        check_ok(mspring_network_set_signals(network, i, 1, &signal, 1));
+    }
+    check_ok(mspring_network_step(network, 1e-3));
+    costs_end(c);
+    mspring_network_destroy(network);
+    free(springs);
+}
+
+/* --------------------------------------------------------------------------------------------- areas and angles */
+
+// Triangles around the hub of a wheel, one by one: added, changed, asked for and removed.
+static void areas_of_wheel(costs *c, uint32_t n) {
+    mspring_network *network = network_of(wheel(c, n), c, 0);
+    mspring_area_def def;
+    mspring_id id;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    def.stiffness = 1e-3f;
+    costs_begin(c);
+    for (uint32_t i = 1; i <= n; i++) {
+        const mspring_id corners[] = {0, i, i % n + 1};
+        check_ok(mspring_network_add_area(network, &def, corners, 3, &id));
+    }
+    check_ok(mspring_network_step(network, 1e-3));
+    for (uint32_t i = 0; i < n; i++) {
+        mspring_area_info info = {.struct_size = sizeof info};
+        check_ok(mspring_network_set_area(network, i, &def));
+        check_ok(mspring_network_get_area_info(network, i, &info));
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        check_ok(mspring_network_remove_area(network, i));
+    }
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+// Areas of a wheel go with its particles.
+static void areas_with_particles(costs *c, uint32_t n) {
+    mspring_network *network = network_of(wheel(c, n), c, 0);
+    mspring_area_def def;
+    mspring_id id;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    for (uint32_t i = 1; i <= n; i++) {
+        const mspring_id corners[] = {0, i, i % n + 1};
+        check_ok(mspring_network_add_area(network, &def, corners, 3, &id));
+    }
+    costs_begin(c);
+    for (uint32_t i = 1; i <= n; i++) {
+        check_ok(mspring_network_remove_particles(network, &i, 1));
+    }
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+static void cells_of_lattice(costs *c, uint32_t n) {
+    mspring_network *network = network_of(lattice(c, n), c, 0);
+    mspring_area_def def;
+    mspring_id first;
+    uint32_t count;
+    check_ok(mspring_area_def_init(&def, sizeof def));
+    costs_begin(c);
+    check_ok(mspring_network_add_cell_areas(network, &def, &first, &count));
+    check_ok(mspring_network_step(network, 1e-4));
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+// Angles at the hub.
+static void angles_of_star(costs *c, uint32_t n) {
+    mspring_network *network = network_of(star(c, n), c, 0);
+    mspring_angle_def def;
+    mspring_id id;
+    check_ok(mspring_angle_def_init(&def, sizeof def));
+    def.stiffness = 1e-6f;
+    costs_begin(c);
+    for (uint32_t i = 1; i <= n; i++) {
+        const mspring_id corners[] = {i, 0, (i + n / 3) % n + 1};
+        check_ok(mspring_network_add_angles(network, &def, corners, 1, &id));
+    }
+    check_ok(mspring_network_step(network, 1e-4));
+    for (uint32_t i = 0; i < n; i++) {
+        check_ok(mspring_network_set_angle(network, i, &def));
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        check_ok(mspring_network_remove_angle(network, n - 1 - i));
+    }
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+/* ------------------------------------------------------------------------------------------------------- contact */
+
+static void contact(mspring_builder *builder, costs *c) {
+    mspring_network *network = network_of(builder, c, 0);
+    mspring_contact_def def;
+    check_ok(mspring_contact_def_init(&def, sizeof def));
+    def.thickness = 0.01;
+    def.flags = 0;
+    costs_begin(c);
+    check_ok(mspring_network_set_contact(network, &def));
+    const mspring_result result = mspring_network_step(network, 1e-4);
+    assert_true(result == MSPRING_OK || result == MSPRING_ERROR_LIMIT);
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+static void contact_of_star(costs *c, uint32_t n) {
+    contact(star(c, n), c);
+}
+static void contact_of_wheel(costs *c, uint32_t n) {
+    contact(wheel(c, n), c);
+}
+static void contact_of_parts(costs *c, uint32_t n) {
+    contact(parts(c, n, true), c);
+}
+static void contact_of_loose(costs *c, uint32_t n) {
+    contact(loose(c, n), c);
+}
+
+static void colliders(costs *c, uint32_t n) {
+    mspring_network *network = network_of(parts(c, n, true), c, 0);
+    mspring_contact_def contact_def;
+    check_ok(mspring_contact_def_init(&contact_def, sizeof contact_def));
+    contact_def.thickness = 0.01;
+    check_ok(mspring_network_set_contact(network, &contact_def));
+    mspring_collider_def def;
+    mspring_id id;
+    check_ok(mspring_collider_def_init(&def, sizeof def));
+    def.kind = MSPRING_COLLIDER_CIRCLE;
+    def.radius = 0.1;
+    uint32_t made = 0;
+    costs_begin(c);
+    for (; made < n / 100; made++) {
+        def.x = 3.0 * made + 2;
+        if (mspring_network_add_collider(network, &def, &id) != MSPRING_OK) {
+            break;
+        }
+    }
+    check_ok(mspring_network_step(network, 1e-4));
+    for (uint32_t i = 0; i < made; i++) {
+        check_ok(mspring_network_place_collider(network, i, 3.0 * i + 2, 0.1, 0));
+    }
+    check_ok(mspring_network_step(network, 1e-4));
+    for (uint32_t i = 0; i < made; i++) {
+        check_ok(mspring_network_remove_collider(network, i));
+    }
+    costs_end(c);
+    mspring_network_destroy(network);
+}
+
+/* ------------------------------------------------------------------------------------------- questions and copies */
+
+static void ask(mspring_builder *builder, uint32_t n, costs *c) {
+    mspring_network *network = network_of(builder, c, 0);
+    mspring_id *ids = malloc(n * sizeof *ids), nearest;
+    double energy[4], distance;
+    uint32_t count;
+    assert_non_null(ids);
+    (void)energy;
+    costs_begin(c);
+    double stable, any_shape;
+    check_ok(mspring_network_stable_dt(network, &stable, &any_shape));
+    check_ok(mspring_network_update_components(network, &count, NULL));
+    check_ok(mspring_network_nearest_particle(network, 0.5, 0.5, 10, &nearest, &distance));
+    check_ok(mspring_network_particles_in_circle(network, 0, 0, 2, ids, n, &count));
+    check_ok(mspring_network_springs_across(network, -2, 0.1, 2, 0.1, ids, NULL, n, &count));
+    for (uint32_t i = 0; i < n / 8; i++) {
+        check_ok(mspring_network_get_ends(network, i, 1, MSPRING_ENDS_IDS, ids, ids + 1, 1));
+    }
+    size_t size;
+    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+    void *bytes = malloc(size);
+    assert_non_null(bytes);
+    check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, bytes, size, &size));
+    check_ok(mspring_network_load(network, bytes, size));
+    mspring_network *clone;
+    check_ok(mspring_network_clone(network, NULL, &clone));
+    mspring_builder *again = builder_for(c);
+    check_ok(mspring_builder_add_network(again, network, NULL, 0, NULL, NULL));
+    costs_end(c);
+    mspring_builder_destroy(again);
+    mspring_network_destroy(clone);
+    mspring_network_destroy(network);
+    free(bytes);
+    free(ids);
+}
+
+static void ask_star(costs *c, uint32_t n) {
+    ask(star(c, n), n, c);
+}
+static void ask_clique(costs *c, uint32_t n) {
+    ask(clique(c, n), n, c);
+}
+static void ask_parts(costs *c, uint32_t n) {
+    ask(parts(c, n, true), n, c);
+}
+static void ask_in_one_place(costs *c, uint32_t n) {
+    ask(path(c, n, true), n, c);
+}
+
+/* --------------------------------------------------------------------------------------------------------- cases */
+
+typedef struct hostile_case {
+    const char *name;
+    void (*run)(costs *c, uint32_t n);
+} hostile_case;
+
+#define CASE(name) {#name, name}
+static const hostile_case cases[] = {
+    CASE(build_star),       CASE(build_mesh),           CASE(create_star),        CASE(create_wheel),
+    CASE(create_clique),    CASE(create_path),          CASE(create_in_one_place), CASE(create_loose),
+    CASE(create_lattices),  CASE(create_cliques),       CASE(create_lattice),     CASE(create_twice),
+    CASE(step_star),        CASE(step_clique),          CASE(step_implicit_star), CASE(step_implicit_clique),
+    CASE(step_direct_star), CASE(step_direct_path),     CASE(step_floor),         CASE(break_star),
+    CASE(remove_star),      CASE(grow_star),            CASE(set_one_by_one),     CASE(set_actuators),
+    CASE(areas_of_wheel),   CASE(areas_with_particles), CASE(cells_of_lattice),   CASE(angles_of_star),
+    CASE(contact_of_star),  CASE(contact_of_wheel),     CASE(contact_of_parts),   CASE(contact_of_loose),
+    CASE(colliders),        CASE(ask_star),             CASE(ask_clique),         CASE(ask_parts),
+    CASE(ask_in_one_place)};
+
+static costs cost_of(const hostile_case *hostile, uint32_t n, bool is_judged) {
+    costs least = {.work = INFINITY};
+    for (int run = 0; run < (is_judged && !costs_are_instructions() ? 3 : 1); run++) {
+        costs c;
+        costs_open(&c);
+        hostile->run(&c, n);
+        assert_true(c.live == 0);
+        least = c.work < least.work ? c : least;
+    }
+    return least;
+}
+
+static const char *wanted = "";
+
+static void hostile_inputs_cost_what_they_weigh(void **state) {
+    (void)state;
+    const bool has_counter = costs_are_instructions();
+    uint32_t failed = 0;
+    print_message("%s\n", has_counter ? "instructions" : "no counter of instructions here: processor time, s");
+    for (size_t i = 0; i < COUNT_OF(cases); i++) {
+        if (strncmp(cases[i].name, wanted, strlen(wanted)) != 0) {
+            continue;
+        }
+        const costs small = cost_of(&cases[i], SMALL, true);
+        costs large = cost_of(&cases[i], GROWTH * SMALL, false);
+        const double most = has_counter ? MOST_INSTRUCTIONS : MOST_TIME;
+        if (large.work > most * small.work) { // once more, lest a neighbour was noisy
+            large = cost_of(&cases[i], GROWTH * SMALL, true);
+        }
+        const double few = has_counter ? FEW_INSTRUCTIONS : SHORT_TIME;
+        const bool is_slow = large.work > most * small.work && large.work > GROWTH * few;
+        const bool is_large = large.bytes > MOST_BYTES * small.bytes && large.bytes > FEW_BYTES;
+        if (is_slow || is_large || *wanted != '\0') {
+            print_message("%-22s %10.3g %10.3g, times %5.2f   %10.3g %10.3g bytes%s\n", cases[i].name, small.work,
+                          large.work, large.work / small.work, small.bytes, large.bytes,
+                          is_slow || is_large ? "  grows too fast" : "");
+        }
+        failed += is_slow || is_large;
+    }
+    assert_int_equal(failed, 0);
+}
+
+int main(int argc, char **argv) {
+    wanted = argc > 1 ? argv[1] : "";
+    const struct CMUnitTest tests[] = {cmocka_unit_test(hostile_inputs_cost_what_they_weigh)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
