@@ -125,6 +125,9 @@ static void look_at(mspring_network *network, mspringi_spring_slot spring_slot) 
 /// Springs that are looked at together.
 enum { BATCH = 32 };
 
+/// Springs of a particle that are read ahead: those of a lattice. A hub has any number.
+enum { MOST_PREFETCHED = 8 };
+
 // Look at some springs. What their ids are found by is read for all of them at first, as a step leaves none of it
 // in the near caches: one read waits for another, but those of different springs do not.
 static void look_at_batch(mspring_network *network, const mspringi_spring_slot *spring_slots, uint32_t count) {
@@ -137,8 +140,9 @@ static void look_at_batch(mspring_network *network, const mspringi_spring_slot *
         particles[i] = t->particle_of_slot[base];
     }
     for (uint32_t i = 0; i < count; ++i)
-        for (uint32_t at = first[particles[i]]; at < first[particles[i] + 1]; ++at)
-            MSPRINGI_PREFETCH(&t->slot_of_spring[springs[at]]);
+        for (uint32_t at = first[particles[i]], left = MOST_PREFETCHED; at < first[particles[i] + 1] && left > 0;
+             --left)
+            MSPRINGI_PREFETCH(&t->slot_of_spring[springs[at++]]);
     for (uint32_t i = 0; i < count; ++i)
         look_at(network, spring_slots[i]);
 }
