@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "costs.h"
+#include "hostile_shapes.h"
 #include "support.h"
 
 /// Sizes of the two inputs: quadratic costs show at these, and the whole takes seconds.
@@ -31,155 +32,46 @@ static uint32_t smaller = ROUNDS(8000u);
 #define SHORT_TIME 12e-3
 #define FEW_BYTES 1e6
 
-/* --------------------------------------------------------------------------------------------------- ingredients */
-
-static mspring_builder *builder_for(costs *c) {
-    mspring_builder *builder;
-    check_ok(mspring_builder_create(&c->allocator, &builder));
-    return builder;
-}
-
-static mspring_network *network_of(mspring_builder *builder, costs *c, uint32_t spares) {
-    mspring_network_def def = support_def(0, 1);
-    def.allocator = &c->allocator;
-    def.spare_particles = def.spare_springs = spares;
-    def.solver = MSPRING_SOLVER_EXPLICIT;
-    return support_network(builder, &def);
-}
-
-// A hub and n particles on a circle around it.
-static void add_circle(mspring_builder *builder, uint32_t n) {
-    support_particle(builder, 0, 0, 1e6f);
-    for (uint32_t i = 0; i < n; i++) {
-        const double turn = 6.283185307179586 * i / n;
-        support_particle(builder, cos(turn), sin(turn), 1);
-    }
-}
-
-static mspring_builder *star(costs *c, uint32_t n) {
-    mspring_builder *builder = builder_for(c);
-    add_circle(builder, n);
-    for (uint32_t i = 1; i <= n; i++) {
-        support_spring(builder, 0, i, 1, 0);
-    }
-    return builder;
-}
-
-// A star with a rim.
-static mspring_builder *wheel(costs *c, uint32_t n) {
-    mspring_builder *builder = star(c, n);
-    for (uint32_t i = 1; i <= n; i++) {
-        support_spring(builder, i, i % n + 1, 1, 0);
-    }
-    return builder;
-}
-
-// All n springs among few particles.
-static mspring_builder *clique(costs *c, uint32_t n) {
-    mspring_builder *builder = builder_for(c);
-    const uint32_t count = (uint32_t)sqrt(2.0 * n);
-    add_circle(builder, count);
-    for (uint32_t i = 1; i <= count; i++) {
-        for (uint32_t k = 1; k < i; k++) {
-            support_spring(builder, k, i, 1, 0);
-        }
-    }
-    return builder;
-}
-
-static mspring_builder *path(costs *c, uint32_t n, bool is_in_one_place) {
-    mspring_builder *builder = builder_for(c);
-    for (uint32_t i = 0; i <= n; i++) {
-        support_particle(builder, is_in_one_place ? 0 : i, 0, 1);
-    }
-    for (uint32_t i = 0; i < n; i++) { // by leaps, so that neighbours have far numbers
-        const uint32_t at = (uint32_t)((uint64_t)i * 7919 % n);
-        support_join(builder, at, at + 1, 1, 1, 0);
-    }
-    return builder;
-}
-
-static mspring_builder *loose(costs *c, uint32_t n) {
-    mspring_builder *builder = builder_for(c);
-    for (uint32_t i = 0; i < n; i++) {
-        support_particle(builder, 0, 0, 1);
-    }
-    return builder;
-}
-
-// Many equal parts: small lattices, or cliques of five.
-static mspring_builder *parts(costs *c, uint32_t n, bool are_lattices) {
-    mspring_builder *builder = builder_for(c);
-    for (uint32_t i = 0; i < n / 4; i++) {
-        const mspring_id first = support_particle(builder, 3.0 * i, 0, 1);
-        support_particle(builder, 3.0 * i + 1, 0, 1);
-        support_particle(builder, 3.0 * i, 1, 1);
-        support_particle(builder, 3.0 * i + 1, are_lattices ? 1 : 1.7, 1);
-        for (uint32_t a = 0; a < 4; a++) {
-            for (uint32_t b = 0; b < a; b++) {
-                support_spring(builder, first + b, first + a, 1, 0);
-            }
-        }
-    }
-    return builder;
-}
-
-static mspring_builder *lattice(costs *c, uint32_t n) {
-    mspring_builder *builder = builder_for(c);
-    const uint32_t width = (uint32_t)sqrt((double)n);
-    for (uint32_t i = 0; i < width * width; i++) {
-        support_particle(builder, i % width, i / width, 1);
-        for (uint32_t k = 0; k < 4; k++) {
-            static const int32_t ways[4][2] = {{-1, 0}, {0, -1}, {-1, -1}, {1, -1}};
-            const uint32_t x = i % width + (uint32_t)ways[k][0], y = i / width + (uint32_t)ways[k][1];
-            if (x < width && y < width) {
-                support_spring(builder, y * width + x, i, 1, 0);
-            }
-        }
-    }
-    return builder;
-}
-
 /* ------------------------------------------------------------------------------------------------------ creation */
 
 static void create(mspring_builder *builder, costs *c) {
     costs_begin(c);
-    mspring_network *network = network_of(builder, c, 0);
+    mspring_network *network = shapes_network_of(builder, c, 0);
     costs_end(c);
     mspring_network_destroy(network);
 }
 
 static void create_star(costs *c, uint32_t n) {
-    create(star(c, n), c);
+    create(shape_star(c, n), c);
 }
 static void create_wheel(costs *c, uint32_t n) {
-    create(wheel(c, n), c);
+    create(shape_wheel(c, n), c);
 }
 static void create_clique(costs *c, uint32_t n) {
-    create(clique(c, n), c);
+    create(shape_clique(c, n), c);
 }
 static void create_path(costs *c, uint32_t n) {
-    create(path(c, n, false), c);
+    create(shape_path(c, n, false), c);
 }
 static void create_in_one_place(costs *c, uint32_t n) {
-    create(path(c, n, true), c);
+    create(shape_path(c, n, true), c);
 }
 static void create_loose(costs *c, uint32_t n) {
-    create(loose(c, n), c);
+    create(shape_loose(c, n), c);
 }
 static void create_lattices(costs *c, uint32_t n) {
-    create(parts(c, n, true), c);
+    create(shape_parts(c, n, true), c);
 }
 static void create_cliques(costs *c, uint32_t n) {
-    create(parts(c, n, false), c);
+    create(shape_parts(c, n, false), c);
 }
 static void create_lattice(costs *c, uint32_t n) {
-    create(lattice(c, n), c);
+    create(shape_lattice(c, n), c);
 }
 
 static void build_star(costs *c, uint32_t n) {
     costs_begin(c);
-    mspring_builder *builder = star(c, n);
+    mspring_builder *builder = shape_star(c, n);
     costs_end(c);
     mspring_builder_destroy(builder);
 }
@@ -205,7 +97,7 @@ static void build_mesh(costs *c, uint32_t n) {
     def.y = places + n + 1;
     def.triangles = triangles;
     def.stiffness = 1;
-    mspring_builder *builder = builder_for(c);
+    mspring_builder *builder = shapes_builder_for(c);
     costs_begin(c);
     check_ok(mspring_builder_add_mesh(builder, &def, NULL, NULL));
     costs_end(c);
@@ -216,7 +108,7 @@ static void build_mesh(costs *c, uint32_t n) {
 
 // Springs between the same two, each of which is refused.
 static void create_twice(costs *c, uint32_t n) {
-    mspring_builder *builder = star(c, n);
+    mspring_builder *builder = shape_star(c, n);
     for (uint32_t i = 0; i < n; i++) {
         support_join(builder, 0, 1, 1, 1, 0);
     }
@@ -232,7 +124,7 @@ static void create_twice(costs *c, uint32_t n) {
 /* --------------------------------------------------------------------------------------------------------- steps */
 
 static void step(mspring_builder *builder, mspring_solver kind, costs *c) {
-    mspring_network *network = network_of(builder, c, 0);
+    mspring_network *network = shapes_network_of(builder, c, 0);
     mspring_solver_def solver = support_solver(network);
     solver.solver = kind;
     check_ok(mspring_network_set_solver(network, &solver));
@@ -244,22 +136,22 @@ static void step(mspring_builder *builder, mspring_solver kind, costs *c) {
 }
 
 static void step_star(costs *c, uint32_t n) {
-    step(star(c, n), MSPRING_SOLVER_EXPLICIT, c);
+    step(shape_star(c, n), MSPRING_SOLVER_EXPLICIT, c);
 }
 static void step_clique(costs *c, uint32_t n) {
-    step(clique(c, n), MSPRING_SOLVER_EXPLICIT, c);
+    step(shape_clique(c, n), MSPRING_SOLVER_EXPLICIT, c);
 }
 static void step_implicit_star(costs *c, uint32_t n) {
-    step(star(c, n), MSPRING_SOLVER_IMPLICIT, c);
+    step(shape_star(c, n), MSPRING_SOLVER_IMPLICIT, c);
 }
 static void step_implicit_clique(costs *c, uint32_t n) {
-    step(clique(c, n), MSPRING_SOLVER_IMPLICIT, c);
+    step(shape_clique(c, n), MSPRING_SOLVER_IMPLICIT, c);
 }
 static void step_direct_star(costs *c, uint32_t n) {
-    step(star(c, n), MSPRING_SOLVER_DIRECT, c);
+    step(shape_star(c, n), MSPRING_SOLVER_DIRECT, c);
 }
 static void step_direct_path(costs *c, uint32_t n) {
-    step(path(c, n, false), MSPRING_SOLVER_DIRECT, c);
+    step(shape_path(c, n, false), MSPRING_SOLVER_DIRECT, c);
 }
 
 static void step_floor(costs *c, uint32_t n) {
@@ -268,7 +160,7 @@ static void step_floor(costs *c, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
         heights[i] = (float)(i % 2);
     }
-    mspring_network *network = network_of(loose(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_loose(c, n), c, 0);
     mspring_floor_def def;
     check_ok(mspring_floor_def_init(&def, sizeof def));
     def.heights_x = -1;
@@ -292,7 +184,7 @@ static void step_floor(costs *c, uint32_t n) {
 
 // All springs of a star, one by one: broken, restored with a ramp, broken again and removed.
 static void break_star(costs *c, uint32_t n) {
-    mspring_network *network = network_of(star(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_star(c, n), c, 0);
     costs_begin(c);
     check_ok(mspring_network_reserve_events(network, 4 * n));
     for (uint32_t turn = 0; turn < 2; turn++) {
@@ -320,7 +212,7 @@ static void break_star(costs *c, uint32_t n) {
 
 // All springs of a star in one step.
 static void tear_star(costs *c, uint32_t n) {
-    mspring_network *network = network_of(star(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_star(c, n), c, 0);
     const double x = 0.5, y = 0;
     const float limit = 0.01f;
     const mspring_id hub = 0;
@@ -336,7 +228,7 @@ static void tear_star(costs *c, uint32_t n) {
 
 // Its outer particles, and then the hub.
 static void remove_star(costs *c, uint32_t n) {
-    mspring_network *network = network_of(star(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_star(c, n), c, 0);
     const mspring_id hub = 0;
     costs_begin(c);
     for (uint32_t i = n / 2; i <= n; i++) {
@@ -353,9 +245,8 @@ static void remove_star(costs *c, uint32_t n) {
 
 // A star that grows, spring by spring, shrinks and grows again.
 static void grow_star(costs *c, uint32_t n) {
-    mspring_builder *builder = builder_for(c);
-    add_circle(builder, 1);
-    mspring_network *network = network_of(builder, c, 2 * n);
+    mspring_builder *builder = shape_circle(c, 1);
+    mspring_network *network = shapes_network_of(builder, c, 2 * n);
     mspring_id particle, *springs = malloc(n * sizeof *springs);
     assert_non_null(springs);
     costs_begin(c);
@@ -388,7 +279,7 @@ static void grow_star(costs *c, uint32_t n) {
 
 // One by one: all that has a value a particle or a spring.
 static void set_one_by_one(costs *c, uint32_t n) {
-    mspring_network *network = network_of(star(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_star(c, n), c, 0);
     costs_begin(c);
     for (uint32_t i = 0; i < n; i++) {
         const double x = 1 + i, y = 2;
@@ -412,7 +303,7 @@ static void set_one_by_one(costs *c, uint32_t n) {
 }
 
 static void set_actuators(costs *c, uint32_t n) {
-    mspring_network *network = network_of(star(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_star(c, n), c, 0);
     mspring_id *springs = malloc(n * sizeof *springs);
     assert_non_null(springs);
     for (uint32_t i = 0; i < n; i++) {
@@ -434,7 +325,7 @@ static void set_actuators(costs *c, uint32_t n) {
 
 // Triangles around the hub of a wheel, one by one: added, changed, asked for and removed.
 static void areas_of_wheel(costs *c, uint32_t n) {
-    mspring_network *network = network_of(wheel(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_wheel(c, n), c, 0);
     mspring_area_def def;
     mspring_id id;
     check_ok(mspring_area_def_init(&def, sizeof def));
@@ -459,7 +350,7 @@ static void areas_of_wheel(costs *c, uint32_t n) {
 
 // Areas of a wheel go with its particles.
 static void areas_with_particles(costs *c, uint32_t n) {
-    mspring_network *network = network_of(wheel(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_wheel(c, n), c, 0);
     mspring_area_def def;
     mspring_id id;
     check_ok(mspring_area_def_init(&def, sizeof def));
@@ -480,7 +371,7 @@ static void areas_with_particles(costs *c, uint32_t n) {
 }
 
 static void cells_of_lattice(costs *c, uint32_t n) {
-    mspring_network *network = network_of(lattice(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_lattice(c, n), c, 0);
     mspring_area_def def;
     mspring_id first;
     uint32_t count;
@@ -494,7 +385,7 @@ static void cells_of_lattice(costs *c, uint32_t n) {
 
 // Angles at the hub.
 static void angles_of_star(costs *c, uint32_t n) {
-    mspring_network *network = network_of(star(c, n), c, 0);
+    mspring_network *network = shapes_network_of(shape_star(c, n), c, 0);
     mspring_angle_def def;
     mspring_id id;
     check_ok(mspring_angle_def_init(&def, sizeof def));
@@ -518,7 +409,7 @@ static void angles_of_star(costs *c, uint32_t n) {
 /* ------------------------------------------------------------------------------------------------------- contact */
 
 static void contact(mspring_builder *builder, costs *c) {
-    mspring_network *network = network_of(builder, c, 0);
+    mspring_network *network = shapes_network_of(builder, c, 0);
     mspring_contact_def def;
     check_ok(mspring_contact_def_init(&def, sizeof def));
     def.thickness = 0.01;
@@ -532,20 +423,20 @@ static void contact(mspring_builder *builder, costs *c) {
 }
 
 static void contact_of_star(costs *c, uint32_t n) {
-    contact(star(c, n), c);
+    contact(shape_star(c, n), c);
 }
 static void contact_of_wheel(costs *c, uint32_t n) {
-    contact(wheel(c, n), c);
+    contact(shape_wheel(c, n), c);
 }
 static void contact_of_parts(costs *c, uint32_t n) {
-    contact(parts(c, n, true), c);
+    contact(shape_parts(c, n, true), c);
 }
 static void contact_of_loose(costs *c, uint32_t n) {
-    contact(loose(c, n), c);
+    contact(shape_loose(c, n), c);
 }
 
 static void colliders(costs *c, uint32_t n) {
-    mspring_network *network = network_of(parts(c, n, true), c, 0);
+    mspring_network *network = shapes_network_of(shape_parts(c, n, true), c, 0);
     mspring_contact_def contact_def;
     check_ok(mspring_contact_def_init(&contact_def, sizeof contact_def));
     contact_def.thickness = 0.01;
@@ -578,7 +469,7 @@ static void colliders(costs *c, uint32_t n) {
 /* ------------------------------------------------------------------------------------------- questions and copies */
 
 static void ask(mspring_builder *builder, uint32_t n, costs *c) {
-    mspring_network *network = network_of(builder, c, 0);
+    mspring_network *network = shapes_network_of(builder, c, 0);
     mspring_id *ids = malloc(n * sizeof *ids), nearest;
     double energy[4], distance;
     uint32_t count;
@@ -602,7 +493,7 @@ static void ask(mspring_builder *builder, uint32_t n, costs *c) {
     check_ok(mspring_network_load(network, bytes, size));
     mspring_network *clone;
     check_ok(mspring_network_clone(network, NULL, &clone));
-    mspring_builder *again = builder_for(c);
+    mspring_builder *again = shapes_builder_for(c);
     check_ok(mspring_builder_add_network(again, network, NULL, 0, NULL, NULL));
     costs_end(c);
     mspring_builder_destroy(again);
@@ -613,16 +504,16 @@ static void ask(mspring_builder *builder, uint32_t n, costs *c) {
 }
 
 static void ask_star(costs *c, uint32_t n) {
-    ask(star(c, n), n, c);
+    ask(shape_star(c, n), n, c);
 }
 static void ask_clique(costs *c, uint32_t n) {
-    ask(clique(c, n), n, c);
+    ask(shape_clique(c, n), n, c);
 }
 static void ask_parts(costs *c, uint32_t n) {
-    ask(parts(c, n, true), n, c);
+    ask(shape_parts(c, n, true), n, c);
 }
 static void ask_in_one_place(costs *c, uint32_t n) {
-    ask(path(c, n, true), n, c);
+    ask(shape_path(c, n, true), n, c);
 }
 
 /* --------------------------------------------------------------------------------------------------------- cases */

@@ -440,8 +440,8 @@ static bool is_too_fast(const spec_network *n) {
 }
 
 /// Compare a network of a seed after each step, until the library refuses one for its speeds. Returns true if all
-/// bits are equal.
-static bool is_equal(uint64_t seed, uint32_t *refused) {
+/// bits are equal. hash: of the last state.
+static bool is_equal(uint64_t seed, uint32_t *refused, uint64_t *hash) {
     static scene made;
     static specification to;
     scene_make(&made, seed);
@@ -477,22 +477,42 @@ static bool is_equal(uint64_t seed, uint32_t *refused) {
         }
         edit(&made, library, &to);
     }
+    *hash = hash_of(&to.network);
     mspring_network_destroy(library);
     return equal;
 }
 
+/// Hashes of the last states of networks 1 to 12: what one version gives, the next one does. A change that means to
+/// alter bits renews them from what the test prints, and says why; so does one of what scene.c and actors.c draw.
+static const uint64_t record[] = {
+    0x827d634598010fcd, 0xe9f03864249a1ac3, 0x7cdf62f700d536d8, 0x2ebd487a1b9ca9e6,
+    0xde7ea7ac54de6d9f, 0x381c7b70f060ce9e, 0x38299f4e03347bd6, 0x7a238cf0164ef4fd,
+    0x2e78b4844618a82c, 0xf1e656e7aac8fadc, 0x3cc5916f9599aff7, 0x64d0b2435efe97fc};
+
+/// True if a network has the bits on record.
+static bool is_on_record(uint64_t seed, uint64_t hash) {
+    if (seed - 1 >= COUNT_OF(record) || record[seed - 1] == hash) {
+        return true;
+    }
+    print_error("network %" PRIu64 ": 0x%016" PRIx64 " is not on record\n", seed, hash);
+    return false;
+}
+
 static void networks_have_the_bits_of_the_specification(void **state) {
     (void)state;
-    uint32_t different = 0, refused = 0;
+    uint32_t different = 0, refused = 0, unrecorded = 0;
     for (uint64_t seed = first_seed; seed < first_seed + seed_count; seed++) {
-        if (!is_equal(seed, &refused)) {
+        uint64_t hash;
+        if (!is_equal(seed, &refused, &hash)) {
             print_error("seed %" PRIu64 " at %s differs\n", seed, mspring_simd_name(level));
             different++;
         }
+        unrecorded += !is_on_record(seed, hash);
     }
     print_message("%" PRIu64 " networks at %s: %u differ, %u are refused\n", seed_count, mspring_simd_name(level),
                   different, refused);
     assert_int_equal(different, 0);
+    assert_int_equal(unrecorded, 0);
     assert_true(refused <= seed_count / 100 + 1);
 }
 

@@ -1,0 +1,24 @@
+/// @file hostile_shapes.h
+/// Networks of about n springs in shapes that a careless algorithm takes long for.
+///
+/// SPDX-License-Identifier: MIT
+#ifndef TEST_HOSTILE_SHAPES_H
+#define TEST_HOSTILE_SHAPES_H
+
+#include "costs.h"
+
+mspring_builder *shapes_builder_for(costs *c);
+
+/// Make a network of a builder and destroy that. spares: particles and springs that may be added.
+mspring_network *shapes_network_of(mspring_builder *builder, costs *c, uint32_t spares);
+
+mspring_builder *shape_star(costs *c, uint32_t n);                       ///< all springs at one particle
+mspring_builder *shape_wheel(costs *c, uint32_t n);                      ///< a star with a rim
+mspring_builder *shape_clique(costs *c, uint32_t n);                     ///< few particles, each joined to each
+mspring_builder *shape_path(costs *c, uint32_t n, bool is_in_one_place); ///< neighbours have far numbers
+mspring_builder *shape_loose(costs *c, uint32_t n);                      ///< n particles in one place
+mspring_builder *shape_parts(costs *c, uint32_t n, bool are_lattices);   ///< small equal lattices or graphs
+mspring_builder *shape_lattice(costs *c, uint32_t n);                    ///< a square of n particles
+mspring_builder *shape_circle(costs *c, uint32_t n);                     ///< a hub and n particles around it
+
+#endif
