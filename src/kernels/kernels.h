@@ -79,12 +79,26 @@ typedef struct mspringi_yield_test {
     float *before;        ///< rest lengths before the step, of springs that have flowed in it
     uint16_t *has_flowed; ///< [spring slots / MSPRINGI_WIDTH] bits
     uint8_t *warmth;      ///< of the strip: MSPRINGI_WARM, ...
+    uint32_t look;        ///< number of the last look in the step
+    uint16_t *warm;       ///< [spring slots / MSPRINGI_WIDTH] bits: warm in the look look_of[word]
+    uint32_t *look_of;
 } mspringi_yield_test;
 
 /// Mark the warm springs of a word.
 static inline void mspringi_yield_mark_warm(const mspringi_yield_test *test, size_t word, uint32_t warm) {
-    if (test->looks && warm & test->live[word])
-        *test->warmth |= MSPRINGI_WARM | MSPRINGI_WAS_WARM;
+    warm &= test->live[word];
+    if (!test->looks || !warm)
+        return;
+    *test->warmth |= MSPRINGI_WARM | MSPRINGI_WAS_WARM;
+    if (!test->maps) // several workers look at a border
+        return;
+    test->warm[word] = (uint16_t)((test->look_of[word] == test->look ? test->warm[word] : 0u) | warm);
+    test->look_of[word] = test->look;
+}
+
+/// Springs of a word that were warm in the last look: these alone flow, whatever is beside them in the layout.
+static inline uint32_t mspringi_yield_warm(const mspringi_yield_test *test, size_t word) {
+    return test->look_of[word] == test->look ? test->warm[word] : 0u;
 }
 
 // Prepare a change of the rest lengths and bounds of a word.

@@ -234,7 +234,7 @@ static void yield_spring(const mspringi_yield_test *t, size_t spring_slot, float
     const float length = sqrtf(square);
     if (square > bounds.high || bounds.low > square)
         mspringi_yield_mark_warm(t, spring_slot / MSPRINGI_WIDTH, bit);
-    if (!t->maps || !(stiffness > 0.0f))
+    if (!t->maps || !(stiffness > 0.0f) || !(mspringi_yield_warm(t, spring_slot / MSPRINGI_WIDTH) & bit))
         return;
     const mspringi_yield_values values = yield_values(t, spring_slot);
     const float to = mspringi_yield_rest(values, bounds, square, length, *rest);

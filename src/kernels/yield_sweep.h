@@ -67,6 +67,11 @@ static inline void flow(const mspringi_sweep *s, size_t spring_slot, size_t base
     to = choose_positive(sub(load(t->flow_low + spring_slot), square), choose_positive(sub(rest, down), down, rest),
                          to);
     to = choose_positive(stiffness, to, rest);
+    const uint32_t warm = mspringi_yield_warm(t, spring_slot / MSPRINGI_WIDTH) >> spring_slot % MSPRINGI_WIDTH;
+    float is_warm[LANES];
+    for (uint32_t i = 0; i < LANES; ++i)
+        is_warm[i] = warm >> i & 1 ? 1.0f : 0.0f;
+    to = choose_positive(load_unaligned(is_warm), to, rest);
     const vec moved = sub(to, rest), zeros = zero();
     const uint32_t bits = bits_greater(moved, zeros) | bits_greater(zeros, moved),
                    lane = spring_slot % MSPRINGI_WIDTH;

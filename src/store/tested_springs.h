@@ -21,6 +21,9 @@ typedef struct mspringi_tested {
     mspringi_shared_records shared_records; ///< lattice blocks with the same rest lengths and bounds
     uint16_t
         *has_flowed; ///< [spring slots / MSPRINGI_WIDTH] a bit for each: its rest length has changed in the step
+    uint16_t
+        *warm; ///< [spring slots / MSPRINGI_WIDTH] a bit for each: it was warm in look number look_of of the step
+    uint32_t *look_of;         ///< [spring slots / MSPRINGI_WIDTH]
     mspringi_strain_hit *hits; ///< [spring slots / MSPRINGI_WIDTH] springs that were warm at the last look
     float *ahead;              ///< [2 slots] x and y where particles would be at the end of a substep
     uint8_t *warmth;           ///< [strips] MSPRINGI_WARM, ...

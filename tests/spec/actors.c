@@ -192,7 +192,7 @@ void actors_add(scene *s, mspring_network *library, specification *to) {
     if (!s->is_calm && scene_chance(s, 0.3)) {
         add_grips(s, library, to);
     }
-    if (!s->is_calm && s->spring_count > 0 && scene_chance(s, 0.2)) {
+    if (!s->is_calm && s->spring_count > 0 && s->ductile == 0 && scene_chance(s, 0.2)) {
         add_actuators(s, library, to);
     }
 }

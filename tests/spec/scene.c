@@ -58,8 +58,20 @@ void scene_add_spring(scene *s, uint32_t a, uint32_t b, bool is_made) {
         (spec_spring){.a = a, .b = b, .stiffness = stiffness, .damping = damping, .rest_length = (float)length};
     s->springs[s->spring_count - 1].break_strain =
         scene_chance(s, s->brittle) ? (float)scene_between(s, 0.05, 0.5) : INFINITY;
+    spec_spring *spring = &s->springs[s->spring_count - 1];
+    spring->yield_strain = INFINITY;
+    spring->hardening = MSPRING_HARDENING_DEFAULT;
+    spring->plastic_limit = MSPRING_PLASTIC_LIMIT_DEFAULT;
     if (!is_made) {
         return;
+    }
+    if (s->ductile > 0) {
+        spring->nominal = spring->rest_length;
+    }
+    if (scene_chance(s, s->ductile)) {
+        spring->yield_strain = (float)scene_between(s, 0.02, 0.2);
+        spring->hardening = scene_chance(s, 0.5) ? spring->hardening : (float)scene_between(s, 0, 0.5);
+        spring->plastic_limit = scene_chance(s, 0.5) ? spring->plastic_limit : (float)scene_between(s, 0.05, 0.5);
     }
     if (!s->is_calm && scene_chance(s, s->relative)) {
         spec_spring *made = &s->springs[s->spring_count - 1];
@@ -352,6 +364,7 @@ void scene_make(scene *s, uint64_t seed) {
     s->relative = s->one_way > 0 || scene_chance(s, 0.85) ? 0 : 0.5;
     s->brittle = scene_chance(s, 0.8) ? 0 : scene_between(s, 0, 0.5);
     s->grows = scene_chance(s, 0.3);
+    s->ductile = s->one_way > 0 || s->relative > 0 || s->grows || scene_chance(s, 0.7) ? 0 : scene_between(s, 0.1, 1);
     s->max_substeps = scene_chance(s, 0.8) ? 1000 : 1 + scene_below(s, 20);
     s->most_work = scene_chance(s, 0.7) ? 4 : scene_below(s, 3);
     s->flags = scene_chance(s, 0.4) ? MSPRING_NETWORK_PRECISE : 0;

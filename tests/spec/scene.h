@@ -39,6 +39,7 @@ typedef struct scene {
     double relative;  ///< of those that are relative
     double one_way;   ///< of those that only pull or push
     double brittle;   ///< of those that break
+    double ductile;   ///< of those that yield
     double left;      ///< where the next part begins, m
 } scene;
 

@@ -3,18 +3,18 @@
 /// instructions and for any number of workers. test_spec.c compares both.
 ///
 /// **Files.** spec.h: state and input. spec.c: a step. spec_state.c: words, edits and the origin. spec_springs.c:
-/// springs that change. spec_laws.c: areas, angles, hooks. spec_grips.c: grips. spec_floor.c and spec_flight.c: the
+/// springs that change. spec_yield.c: those that yield. spec_laws.c: areas, angles, hooks. spec_grips.c: grips. spec_floor.c and spec_flight.c: the
 /// floor. spec_pace.c: automatic substeps.
 /// arrange.c and lattices.c: which springs are summed by rows, which is input to spec.c.
 ///
 /// **Covered.** Springs, dampers and welds in lattices, chains and irregular parts; relative and one-way springs;
-/// springs that break in a step, ramps, actuators; areas, also around cells of lattices, and angle springs; grips, also
+/// springs that yield or break in a step, ramps, actuators; areas, also around cells of lattices, and angle springs; grips, also
 /// several on one particle; particles without springs; added particles and springs; pins; gravity; forces of the host
 /// and of hooks, with a period, too; global damping; floors; MSPRING_NETWORK_PRECISE; the first kick and uneven dt;
 /// MSPRING_SUBSTEPS_AUTO and _EVEN; the local origin; between steps edits of places, velocities, masses and springs,
 /// impulses and broken springs.
 ///
-/// **Not covered.** Springs that yield; silt; actuators of springs on ramps; particles with added springs alone where
+/// **Not covered.** Silt; actuators of springs that yield or are on ramps; yielding one-way and relative springs; particles with added springs alone where
 /// there is a floor; new layouts, scales of inverse masses, contact, sleep, groups, the guard, other solvers.
 ///
 /// **Arithmetic.** IEEE 754, rounded to nearest even, subnormal numbers included. An operation of floats gives a
@@ -111,6 +111,18 @@ static float precise_stretch(spec_vector high, spec_vector low, spec_vector d, f
     const float error =
         ((larger - lead_length * lead_length) + smaller) + (rest - rest_of_length * (lead_length + length));
     return length * (length - rest_length) + 0.5f * error;
+}
+
+float spec_square_of(const spec_network *network, uint32_t spring) {
+    const spec_spring *s = &network->springs[spring];
+    const spec_motion *a = &network->motions[s->a], *b = &network->motions[s->b];
+    const spec_vector d = {b->place.x - a->place.x, b->place.y - a->place.y};
+    const spec_vector low = {b->low_place.x - a->low_place.x, b->low_place.y - a->low_place.y};
+    float square = d.x * d.x + d.y * d.y;
+    if (network->is_precise) {
+        (void)precise_stretch(d, low, add(d, low), s->rest_length, &square);
+    }
+    return square;
 }
 
 // Force of a spring on one of its ends, with d from here to there:
@@ -480,6 +492,8 @@ static void take_substep(spec_network *network, const step *all, uint32_t number
     const substep now = substep_of(network, all, number);
     const step one = {all->count, number, number + 1, all->h, all->spring_lag, all->lag};
     const glide g = glide_of(network, &one);
+    spec_look(network, number);
+    spec_yield(network);
     memcpy(network->before, network->motions, network->particle_count * sizeof *network->motions);
     for (uint32_t p = 0; p < network->particle_count; p++) {
         if (has_springs(&network->sums[p])) {
@@ -547,6 +561,7 @@ uint32_t spec_step(spec_network *network, double dt) {
     spec_tidy(network);
     begin_floor(network);
     for (; all.first < count; all.first = all.end) {
+        spec_look(network, all.first);
         all.end = all.first + spec_free_substeps(network, all.first, count);
         spec_begin_substeps(network, all.first, count);
         take_together(network, &all);

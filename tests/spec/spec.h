@@ -58,6 +58,9 @@ typedef struct spec_spring {
     bool is_slack; ///< of one that has a side: it does nothing in this substep
     spec_ramp ramp;
     float break_strain; ///< or INFINITY
+    float yield_strain, hardening, plastic_limit; ///< yield_strain INFINITY: it doesn't yield
+    float nominal; ///< m, rest length before any flow; 0 in a network where none yields
+    bool is_warm;  ///< it was near to yielding at the last look
 } spec_spring;
 
 /// Place of a particle's springs in the sum of its forces. It is part of the input, as it decides the bits.
@@ -208,6 +211,12 @@ void spec_begin_ramp(const spec_network *network, spec_spring *spring, double se
 void spec_follow_ramps(const spec_network *network, double dt);
 void spec_break(spec_spring *spring);
 void spec_end_step(spec_network *network, double dt);
+
+/// Springs that yield. spec_yield.c
+void spec_look(spec_network *network, uint32_t substep);
+void spec_yield(spec_network *network);
+uint32_t spec_free_of_yield(const spec_network *network, uint32_t first, uint32_t count);
+float spec_square_of(const spec_network *network, uint32_t spring); ///< squared length as rows have it. spec.c
 
 /// Forces beside springs. spec_laws.c
 uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_t count); ///< taken together

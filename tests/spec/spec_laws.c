@@ -256,7 +256,8 @@ uint32_t spec_free_substeps(const spec_network *network, uint32_t first, uint32_
         is_cut |= network->springs[s].side != 0;
     }
     uint32_t end = first + 1;
-    while (!is_cut && end < count && end % period != 0 && spec_changes_by(network, end, count) == spec_changes_by(network, first, count)) {
+    const uint32_t most = first + spec_free_of_yield(network, first, count);
+    while (!is_cut && end < most && end < count && end % period != 0 && spec_changes_by(network, end, count) == spec_changes_by(network, first, count)) {
         end++;
     }
     return end - first;

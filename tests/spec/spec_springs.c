@@ -104,11 +104,13 @@ void spec_break(spec_spring *s) {
 }
 
 // After a step: a spring breaks whose length differs from its rest length by more than its limit, by first words. A
-// one-way spring on its slack side does not; a weld has the limit of a spring of one metre.
+// one-way spring on its slack side does not; a weld has the limit of a spring of one metre; one that has flowed is
+// compared with its rest length before any flow.
 static bool must_break(const spec_network *network, const spec_spring *s) {
     const spec_vector a = network->motions[s->a].place, b = network->motions[s->b].place;
-    const float x = b.x - a.x, y = b.y - a.y, rest_length = s->rest_length > 0.0f ? s->rest_length : SPEC_WELD;
-    const float change = sqrtf(x * x + y * y) - rest_length, whole = s->rest_length > 0.0f ? rest_length : 1.0f;
+    const float own = s->nominal > 0.0f && !(s->ramp.seconds > 0.0) ? s->nominal : s->rest_length;
+    const float x = b.x - a.x, y = b.y - a.y, rest_length = own > 0.0f ? own : SPEC_WELD;
+    const float change = sqrtf(x * x + y * y) - rest_length, whole = own > 0.0f ? rest_length : 1.0f;
     return !s->is_broken && (float)s->side * change >= 0.0f && fabsf(change) > s->break_strain * whole;
 }
 

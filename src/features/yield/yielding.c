@@ -1,8 +1,8 @@
 /// The stage in which springs yield.
 ///
 /// A look over all springs finds those that are warm: near to what they yield at. It is due before each
-/// MSPRINGI_YIELD_PERIOD-th substep of a step, counted from its first. Where it finds some, springs are tested
-/// before each substep until the next look, and those that are over their yield strain are mapped. So what a step
+/// MSPRINGI_YIELD_PERIOD-th substep of a step, counted from its first. Those that it finds are tested before each
+/// substep until the next look, and mapped where they are over their yield strain, whatever lies beside them. So what a step
 /// does follows from the state that it begins with, and nothing has to be remembered from step to step.
 ///
 /// In the explicit solver the sweeps of lattice and chain rows look and test, strip by strip: see yield_springs()
@@ -233,6 +233,14 @@ static bool irregular_part_yields(const mspring_network *network) {
     return false;
 }
 
+// Nothing is warm before the first look of a step.
+static void forget_looks(const mspring_network *network) {
+    const mspringi_tested *p = &network->tested;
+    memset(p->warmth, 0, network->topology.strip_count);
+    memset(p->warm, 0, mspringi_spring_slot_words(&network->topology) * sizeof *p->warm);
+    memset(p->look_of, 0, mspringi_spring_slot_words(&network->topology) * sizeof *p->look_of);
+}
+
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_tested *p = &network->tested;
     network->plastic->hit_count = 0;
@@ -242,7 +250,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     network->plastic->irregular_yields = p->is_swept && irregular_part_yields(network);
     if (p->is_swept)
         mspringi_shared_records_find_yielding(network);
-    memset(p->warmth, 0, network->topology.strip_count);
+    forget_looks(network);
 }
 
 static uint32_t warmth_of_all(const mspring_network *network) {
@@ -316,10 +324,9 @@ static void straighten(mspring_network *network, mspringi_spring_slot spring_slo
 }
 
 static void roll_back(mspring_network *network) {
-    mspringi_tested *p = &network->tested;
     end_flow(network, straighten);
     network->plastic->hit_count = 0;
-    memset(p->warmth, 0, network->topology.strip_count);
+    forget_looks(network);
 }
 
 // Heat is summed place by place, so that no order of rows or lanes changes the sum. Where the guard has put

@@ -77,6 +77,7 @@ void mspringi_substep_reuse(const mspring_network *network, mspringi_substep *su
     const size_t carry_slots = (size_t)t->carry_blocks * MSPRINGI_WIDTH;
     const size_t gathered_floats =
         (size_t)mspringi_gathered_values(network) * t->irregular.slice_count * MSPRINGI_WIDTH;
+    substep->look = (network->tested.substep + i) / MSPRINGI_YIELD_PERIOD;
     substep->looks = substep->tests && (network->tested.substep + i) % MSPRINGI_YIELD_PERIOD == 0;
     substep->gathered = network->gathered + i % 2 * gathered_floats;
     substep->next_gathered = i + 1 < count ? network->gathered + (i + 1) % 2 * gathered_floats : NULL;
@@ -237,7 +238,10 @@ static bool begin_test(const mspring_network *network, const mspringi_substep *s
                                   .heat = p->heat,
                                   .before = p->before,
                                   .has_flowed = p->has_flowed,
-                                  .warmth = warmth};
+                                  .warmth = warmth,
+                                  .look = substep->look,
+                                  .warm = p->warm,
+                                  .look_of = p->look_of};
     return true;
 }
 

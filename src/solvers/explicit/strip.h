@@ -14,6 +14,7 @@ typedef struct mspringi_substep {
     mspringi_field base;  ///< forces from outside; x NULL if there are none
     float *gathered;      ///< the irregular part's nodes before the substep
     float *next_gathered; ///< where those of a strip go after it; NULL if nobody will read them there
+    uint32_t look;        ///< number of the last look at warm springs in the step
     bool tests, looks;    ///< strips test warm springs, and look which are
 } mspringi_substep;
 
