@@ -9,7 +9,7 @@
 #include "recipe.h"
 #include "support.h"
 
-enum { SUBSTEPS = 40, LOOSE = 200, HEIGHTS = 48, CLOSE = 32 };
+enum { SUBSTEPS = 40, LOOSE = 200, HEIGHTS = 48, CLOSE = 37 };
 
 static const double planes[2 * 4] = {-6, 0, 1, 0.1, 0, 30, 0, -1};
 
@@ -78,7 +78,8 @@ static void check_same(const mspring_network *a, const mspring_network *b, mspri
     }
 }
 
-/// Between any two substeps of one network there is a hook, which has each taken on its own, of all particles.
+/// Between any two substeps of one network there is a hook, which has each taken on its own, of all particles. In steps
+/// this long all of them are near.
 static void near_ones_go_substep_by_substep(void **state) {
     (void)state;
     const mspring_network_def def = loose_def();
@@ -88,9 +89,9 @@ static void near_ones_go_substep_by_substep(void **state) {
     lay_floor(hooked);
     check_ok(support_add_hook(hooked, MSPRING_PHASE_AFTER_SUBSTEP, do_nothing, NULL, NULL));
     double lowest = 1;
-    for (int step = 0; step < 60; step++) {
-        support_steps(network, 1, 1.0 / 64);
-        support_steps(hooked, 1, 1.0 / 64);
+    for (int step = 0; step < 20; step++) {
+        support_steps(network, 1, 0.25);
+        support_steps(hooked, 1, 0.25);
         assert_true(hash_of(network) == hash_of(hooked));
         for (mspring_id p = 0; p < LOOSE; p++) {
             lowest = fmin(lowest, support_position(network, p).y);
@@ -101,25 +102,20 @@ static void near_ones_go_substep_by_substep(void **state) {
     mspring_network_destroy(hooked);
 }
 
-/// Those near the ground do not change how the others fall, in blocks of their own, as if there were no ground.
+/// Those near the ground do not change how the others fall, some of them beside these in memory, as if there were no
+/// ground.
 static void near_ones_leave_far_ones_alone(void **state) {
     (void)state;
     const mspring_network_def def = loose_def();
     mspring_network *network = support_network(scatter(LOOSE, CLOSE), &def);
-    mspring_network *hooked = support_network(scatter(LOOSE, CLOSE), &def);
     mspring_network *free_of_it = support_network(scatter(LOOSE, CLOSE), &def);
     lay_floor(network);
-    lay_floor(hooked);
-    check_ok(support_add_hook(hooked, MSPRING_PHASE_AFTER_SUBSTEP, do_nothing, NULL, NULL));
     for (int step = 0; step < 20; step++) {
         support_steps(network, 1, 1.0 / 64);
-        support_steps(hooked, 1, 1.0 / 64);
         support_steps(free_of_it, 1, 1.0 / 64);
-        check_same(network, hooked, 0, CLOSE);
         check_same(network, free_of_it, CLOSE, LOOSE);
     }
     mspring_network_destroy(network);
-    mspring_network_destroy(hooked);
     mspring_network_destroy(free_of_it);
 }
 
