@@ -292,6 +292,7 @@ static mspring_result keep(mspring_builder *builder, const uint8_t *bytes, size_
     if (!builder->archive)
         return mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for an archive of %zu bytes",
                              size);
+    builder->archive_calls = &mspringi_archive_resuming;
     builder->archive->head = *head;
     builder->archive->size = size;
     memcpy(builder->archive->bytes, bytes, size);

@@ -8,8 +8,8 @@
 
 /* ----------------------------------------------------------------------------------------- before the network */
 
-mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring_network_def *given,
-                                         mspring_network_def *def) {
+static mspring_result take_def(mspring_builder *builder, const mspring_network_def *given,
+                               mspring_network_def *def) {
     const mspringi_archive_head *head = &builder->archive->head;
     const mspring_network_def *own = &head->def;
     if (builder->particle_count != head->first_particle || builder->spring_count != head->first_spring ||
@@ -39,8 +39,8 @@ mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring
     return MSPRING_OK;
 }
 
-mspring_result mspringi_archive_lay_out(const mspring_builder *builder, mspringi_memory *memory,
-                                        mspringi_message *message, mspring_builder *placed) {
+static mspring_result lay_out_archived(const mspring_builder *builder, mspringi_memory *memory,
+                                       mspringi_message *message, mspring_builder *placed) {
     const uint8_t *from = mspringi_archive_find(builder->archive->bytes, mspringi_plan_tag).bytes;
     *placed = *builder;
     placed->particles = mspringi_alloc_unset(memory, builder->particle_count, sizeof *placed->particles);
@@ -57,13 +57,13 @@ mspring_result mspringi_archive_lay_out(const mspring_builder *builder, mspringi
     return MSPRING_OK;
 }
 
-bool mspringi_archive_may_have_bundles(const mspring_builder *builder) {
+static bool may_have_bundles(const mspring_builder *builder) {
     return builder->archive->head.may_have_bundles;
 }
 
 /* ----------------------------------------------------------------------------------------------------- messages */
 
-mspring_result mspringi_archive_blame(mspringi_message *message, mspring_result result, const char *chunk) {
+static mspring_result blame(mspringi_message *message, mspring_result result, const char *chunk) {
     static const char snapshot[] = "the snapshot's ";
     const mspringi_message said = *message;
     const char *text = said.text;
@@ -104,7 +104,7 @@ static mspring_result load_chunk(mspring_network *network, const mspringi_archiv
     if (result == MSPRING_OK && io.is_short)
         result = mspringi_fail(&network->message, MSPRING_ERROR_SNAPSHOT, "they take %zu bytes, which are too few",
                                found.size);
-    return mspringi_archive_blame(&network->message, result, chunk->name);
+    return blame(&network->message, result, chunk->name);
 }
 
 /* ----------------------------------------------------------------------------------------------------- sections */
@@ -159,7 +159,7 @@ static mspring_result load_sections(mspring_network *network, const mspringi_arc
         result = mspringi_sections_load(network, &header, &in);
     for (int i = 0; i < MSPRINGI_SECTIONS; ++i)
         mspringi_free(&network->memory, made[i]);
-    return mspringi_archive_blame(&network->message, result, NULL);
+    return blame(&network->message, result, NULL);
 }
 
 static mspring_result load_section(mspring_network *network, const mspringi_archive *archive,
@@ -173,7 +173,7 @@ static mspring_result load_section(mspring_network *network, const mspringi_arch
     if (result == MSPRING_OK)
         section->load(network, from, size);
     mspringi_free(&network->memory, made);
-    return mspringi_archive_blame(&network->message, result, NULL);
+    return blame(&network->message, result, NULL);
 }
 
 /* ------------------------------------------------------------------------------------------------------- layout */
@@ -222,8 +222,8 @@ static mspring_result change(mspring_network *network, const mspring_network_def
     return result == MSPRING_OK ? mspring_network_set_solver(network, &wanted) : result;
 }
 
-mspring_result mspringi_archive_resume(mspring_network *network, const mspring_builder *builder,
-                                       const mspring_network_def *given) {
+static mspring_result resume(mspring_network *network, const mspring_builder *builder,
+                             const mspring_network_def *given) {
     const mspringi_archive *archive = builder->archive;
     const mspringi_archive_head *head = &archive->head;
     const bool is_laid_out_anew = head->is_compact || head->def.solver == MSPRING_SOLVER_DIRECT;
@@ -253,3 +253,6 @@ mspring_result mspringi_archive_resume(mspring_network *network, const mspring_b
     network->next_collider = head->next_collider;
     return result == MSPRING_OK && given ? change(network, &head->def, given) : result;
 }
+
+const mspringi_archive_calls mspringi_archive_resuming = {take_def, lay_out_archived, blame, may_have_bundles,
+                                                          resume};

@@ -80,7 +80,8 @@ struct mspring_builder {
     size_t area_count, area_capacity;
     mspring_id *corners; ///< [corner_count] corners by area
     size_t corner_count, corner_capacity;
-    struct mspringi_archive *archive; ///< that it has read (archive/archive_format.h), or NULL
+    struct mspringi_archive *archive;                   ///< that it has read (archive/archive_format.h), or NULL
+    const struct mspringi_archive_calls *archive_calls; ///< with an archive
     float lag; ///< of the velocities, as in mspringi_steps: that of the networks that were added, or 0
 };
 

@@ -292,16 +292,16 @@ static mspring_result lay_out(mspring_network *network, const mspring_builder *b
     mspring_builder placed = *builder;
     mspring_result result = MSPRING_OK;
     if (builder->archive)
-        result = mspringi_archive_lay_out(builder, &network->memory, &network->message, &placed);
+        result = builder->archive_calls->lay_out(builder, &network->memory, &network->message, &placed);
     if (result == MSPRING_OK)
-        result =
-            mspringi_topology_create(&network->topology, &placed, reserve,
-                                     builder->archive ? mspringi_archive_may_have_bundles(builder) : has_bundles,
-                                     mspringi_tasks_partition_size(network->tasks), network->kernels->lanes,
-                                     &network->memory, &network->message);
+        result = mspringi_topology_create(&network->topology, &placed, reserve,
+                                          builder->archive ? builder->archive_calls->may_have_bundles(builder)
+                                                           : has_bundles,
+                                          mspringi_tasks_partition_size(network->tasks), network->kernels->lanes,
+                                          &network->memory, &network->message);
     if (builder->archive)
         mspringi_free(&network->memory, placed.particles);
-    return builder->archive ? mspringi_archive_blame(&network->message, result, "plan") : result;
+    return builder->archive ? builder->archive_calls->blame(&network->message, result, "plan") : result;
 }
 
 // Fill a network whose memory is initialised. Its message describes a failure.
@@ -393,7 +393,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     if (result == MSPRING_OK && builder->archive) {
         wanted = is_given ? def : NULL;
         def = &archived;
-        result = mspringi_archive_take_def(builder, wanted, &archived);
+        result = builder->archive_calls->take_def(builder, wanted, &archived);
     }
     if (result != MSPRING_OK)
         return result;
@@ -410,7 +410,7 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     const mspringi_fp_state before = mspringi_fp_enter();
     result = fill(created, builder, def);
     if (result == MSPRING_OK && builder->archive)
-        result = mspringi_archive_resume(created, builder, wanted);
+        result = builder->archive_calls->resume(created, builder, wanted);
     mspringi_fp_leave(before);
     if (result != MSPRING_OK) {
         *message = created->message;

@@ -62,20 +62,25 @@ static inline uint32_t mspringi_chunk_room(const mspring_network *network, uint3
     return asked < most ? asked : most;
 }
 
-/// Definition of a network from the builder's archive: as given, and what else the archive had. NULL: the
-/// archive's.
-mspring_result mspringi_archive_take_def(mspring_builder *builder, const mspring_network_def *given,
-                                         mspring_network_def *def);
-/// The builder whose particles lie where the archived layout had them. Its particles are made in this memory.
-mspring_result mspringi_archive_lay_out(const mspring_builder *builder, mspringi_memory *memory,
-                                        mspringi_message *message, mspring_builder *placed);
-/// Turn a failure into one of the archive's: what is wrong there is no wrong argument of the host's. chunk: its
-/// contents; NULL: the message is that of a section, which speaks of a snapshot.
-mspring_result mspringi_archive_blame(mspringi_message *message, mspring_result result, const char *chunk);
-/// True if the archived layout was one that may have bundles.
-bool mspringi_archive_may_have_bundles(const mspring_builder *builder);
-/// Give a new network what the archive has beside particles and springs.
-mspring_result mspringi_archive_resume(mspring_network *network, const mspring_builder *builder,
-                                       const mspring_network_def *given);
+/// Calls of mspring_network_create() for a builder that has read an archive. They are behind pointers, so that
+/// programs that read none are linked without them (41 kB).
+typedef struct mspringi_archive_calls {
+    /// Definition of a network from the builder's archive: as given, and what else the archive had. NULL: the
+    /// archive's.
+    mspring_result (*take_def)(mspring_builder *builder, const mspring_network_def *given,
+                               mspring_network_def *def);
+    /// The builder whose particles lie where the archived layout had them. Its particles are made in this memory.
+    mspring_result (*lay_out)(const mspring_builder *builder, mspringi_memory *memory, mspringi_message *message,
+                              mspring_builder *placed);
+    /// Turn a failure into one of the archive's: what is wrong there is no wrong argument of the host's. chunk: its
+    /// contents; NULL: the message is that of a section, which speaks of a snapshot.
+    mspring_result (*blame)(mspringi_message *message, mspring_result result, const char *chunk);
+    /// True if the archived layout was one that may have bundles.
+    bool (*may_have_bundles)(const mspring_builder *builder);
+    /// Give a new network what the archive has beside particles and springs.
+    mspring_result (*resume)(mspring_network *network, const mspring_builder *builder,
+                             const mspring_network_def *given);
+} mspringi_archive_calls;
+extern const mspringi_archive_calls mspringi_archive_resuming; // archive/archive_resume.c
 
 #endif

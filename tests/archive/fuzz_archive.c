@@ -1,7 +1,7 @@
 /// @file fuzz_archive.c
-/// Archives that were tampered with, and bytes that never were one: they are refused with a message, or give a network
-/// that steps, writes an archive, and has the same bytes when that is read. Most get checksums that fit, or nothing
-/// would be seen of what is behind them.
+/// Archives that were tampered with, and bytes that never were one: they are refused with a message, or give a
+/// network that steps, writes an archive, and has the same bytes when that is read. Most get checksums that fit, or
+/// nothing would be seen of what is behind them.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -23,13 +23,30 @@ static const archived *subject(int kind) {
     return &made[kind];
 }
 
+// What a builder has read can be asked for, and would be taken again.
+static void read_back(mspring_builder *builder) {
+    const mspring_id particles = mspring_builder_particle_count(builder),
+                     springs = mspring_builder_spring_count(builder);
+    mspring_particle_def particle = {.struct_size = sizeof particle};
+    mspring_spring_def spring = {.struct_size = sizeof spring};
+    mspring_network_def network = {.struct_size = sizeof network};
+    FUZZ_CHECK(mspring_builder_get_network_def(builder, &network) == MSPRING_OK);
+    if (particles > 0)
+        FUZZ_CHECK(mspring_builder_get_particles(builder, NULL, particles - 1, 1, &particle) == MSPRING_OK);
+    if (springs > 0)
+        FUZZ_CHECK(mspring_builder_get_springs(builder, NULL, springs - 1, 1, &spring) == MSPRING_OK &&
+                   spring.a < particles && spring.b < particles);
+}
+
 static mspring_network *read(const archived *from) {
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
     FUZZ_CHECK(mspring_builder_create(NULL, &builder) == MSPRING_OK);
     mspring_result result = mspring_builder_read(builder, from->bytes, from->size, NULL);
-    if (result == MSPRING_OK)
+    if (result == MSPRING_OK) {
+        read_back(builder);
         result = mspring_network_create(builder, NULL, &network);
+    }
     FUZZ_CHECK(result == MSPRING_OK ||
                (strstr(mspring_builder_error(builder), "archive") != NULL && network == NULL));
     FUZZ_CHECK(result == MSPRING_OK || result == MSPRING_ERROR_SNAPSHOT);

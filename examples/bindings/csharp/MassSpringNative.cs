@@ -330,7 +330,11 @@ namespace MassSpring {
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_add_spring(IntPtr builder, mspring_spring_def* def, uint* id);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_add_springs(IntPtr builder, mspring_spring_def* defs, uint count, uint* first_id);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_add_lattice(IntPtr builder, mspring_lattice_def* def, uint* cell_ids);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_get_particles(IntPtr builder, uint* ids, uint first, uint count, mspring_particle_def* defs);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_get_springs(IntPtr builder, uint* ids, uint first, uint count, mspring_spring_def* defs);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_read(IntPtr builder, void* archive, UIntPtr size, uint* skipped);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_create(IntPtr builder, mspring_network_def* def, IntPtr* network);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_get_network_def(IntPtr builder, mspring_network_def* def);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern void mspring_network_destroy(IntPtr network);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern byte* mspring_network_error(IntPtr network);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern uint mspring_network_particle_count(IntPtr network);
@@ -394,6 +398,7 @@ namespace MassSpring {
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_snapshot_size(IntPtr network, mspring_snapshot_contents contents, UIntPtr* size);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_save(IntPtr network, mspring_snapshot_contents contents, void* snapshot, UIntPtr capacity, UIntPtr* size);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_load(IntPtr network, void* snapshot, UIntPtr size);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_write(IntPtr network, IntPtr write, void* user);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_add_copies(IntPtr builder, IntPtr from, uint count, double* x, double* y, uint stride, uint* first_particle, uint* first_spring);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_set_groups(IntPtr network, uint* firsts, uint count);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern uint mspring_network_group_count(IntPtr network);

@@ -162,9 +162,17 @@ mspring_result mspring_builder_add_springs(
 mspring_builder *builder, const mspring_spring_def *defs, uint32_t count, mspring_id *first_id);
 mspring_result mspring_builder_add_lattice(
 mspring_builder *builder, const mspring_lattice_def *def, mspring_id *cell_ids);
+mspring_result mspring_builder_get_particles(
+mspring_builder *builder, const mspring_id *ids, mspring_id first, uint32_t count, mspring_particle_def *defs);
+mspring_result mspring_builder_get_springs(
+mspring_builder *builder, const mspring_id *ids, mspring_id first, uint32_t count, mspring_spring_def *defs);
+mspring_result mspring_builder_read(
+mspring_builder *builder, const void *archive, size_t size, uint32_t *skipped);
 typedef struct mspring_network mspring_network;
 mspring_result mspring_network_create(
 mspring_builder *builder, const mspring_network_def *def, mspring_network **network);
+mspring_result mspring_builder_get_network_def(
+mspring_builder *builder, mspring_network_def *def);
 void mspring_network_destroy(mspring_network *network);
 const char *mspring_network_error(const mspring_network *network);
 uint32_t mspring_network_particle_count(const mspring_network *network);
@@ -335,6 +343,9 @@ mspring_result mspring_network_save(
 const mspring_network *network, mspring_snapshot_contents contents, void *snapshot, size_t capacity, size_t *size);
 mspring_result mspring_network_load(
 mspring_network *network, const void *snapshot, size_t size);
+typedef mspring_result(*mspring_write_fn)(const void *bytes, size_t size, void *user);
+mspring_result mspring_network_write(
+const mspring_network *network, mspring_write_fn write, void *user);
 mspring_result mspring_builder_add_copies(mspring_builder *builder,
 const mspring_builder *from, uint32_t count, const double *x, const double *y, uint32_t stride,
 mspring_id *first_particle, mspring_id *first_spring);

@@ -99,20 +99,20 @@ static void put_lanes(const mspring_network *network, uint32_t block, const loos
 }
 
 // Take the substeps with a block of which some lanes are near a floor: these one by one, the others all at once.
-static void sweep_mixed(const mspringi_loose *l, const mspringi_span *span, uint32_t near) {
+static void sweep_mixed(const mspringi_loose *l, const mspringi_span *span, uint32_t lanes) {
     const mspring_network *network = l->network;
     const mspringi_loose_fn loose = network->kernels->loose[l->sweep->force_x != NULL];
     const uint32_t block = span->first_slot / MSPRINGI_WIDTH, all = (1u << MSPRINGI_WIDTH) - 1;
     loose_block before, after;
-    if (near != all) {
+    if (lanes != all) {
         copy_block(network, block, &before);
         loose(l->sweep, span, &l->all);
         copy_block(network, block, &after);
         put_lanes(network, block, &before, all);
     }
     sweep_one_by_one(l, span, true);
-    if (near != all)
-        put_lanes(network, block, &after, ~near & all);
+    if (lanes != all)
+        put_lanes(network, block, &after, ~lanes & all);
 }
 
 void mspringi_loose_sweep(const mspringi_loose *l, const mspringi_span *span) {
@@ -124,23 +124,23 @@ void mspringi_loose_sweep(const mspringi_loose *l, const mspringi_span *span) {
         return;
     }
     const uint32_t end = span->end_slot / MSPRINGI_WIDTH;
-    uint32_t far = span->first_slot / MSPRINGI_WIDTH; // the first block that is not taken
-    for (uint32_t block = far; block < end && is_floor_near; ++block) {
-        const uint32_t near = mspringi_floor_near_lanes(network, l->strip, block, l->sweep);
-        if (near == 0)
+    uint32_t next = span->first_slot / MSPRINGI_WIDTH; // the first block that is not taken
+    for (uint32_t block = next; block < end && is_floor_near; ++block) {
+        const uint32_t lanes = mspringi_floor_near_lanes(network, l->strip, block, l->sweep);
+        if (lanes == 0)
             continue;
         mspringi_span part = *span;
-        part.first_slot = far * MSPRINGI_WIDTH;
+        part.first_slot = next * MSPRINGI_WIDTH;
         part.end_slot = block * MSPRINGI_WIDTH;
-        if (far < block)
+        if (next < block)
             loose(l->sweep, &part, &l->all);
         part.first_slot = block * MSPRINGI_WIDTH;
         part.end_slot = (block + 1) * MSPRINGI_WIDTH;
-        sweep_mixed(l, &part, near);
-        far = block + 1;
+        sweep_mixed(l, &part, lanes);
+        next = block + 1;
     }
     mspringi_span rest = *span;
-    rest.first_slot = far * MSPRINGI_WIDTH;
+    rest.first_slot = next * MSPRINGI_WIDTH;
     if (rest.first_slot < rest.end_slot)
         loose(l->sweep, &rest, &l->all);
 }

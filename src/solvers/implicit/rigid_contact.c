@@ -66,8 +66,9 @@ static uint32_t node_of_side(const mspringi_contact_constraint *t, int i) {
 }
 static const int first_of_side[] = {0, 1, 3};
 
-static const double (*shares_of(const hold *c, bool is_along))[2] {
-    return (const double(*)[2])(is_along ? c->along : c->across);
+// Share of a constraint's impulse that a node takes, x and y.
+static const double *share_of(const hold *c, bool is_along, int i) {
+    return is_along ? c->along[i] : c->across[i];
 }
 
 static rigid_body *side_body(const mspring_network *network, const hold *c, int side) {
@@ -80,7 +81,6 @@ static rigid_body *side_body(const mspring_network *network, const hold *c, int 
 static void begin_row(const mspring_network *network, const mspringi_contact_constraint *t, hold *c,
                       bool is_along) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
-    const double(*shares)[2] = shares_of(c, is_along);
     mspringi_rigid_row *row = &c->rigid[is_along];
     double give = 0.0;
     memset(row, 0, sizeof *row);
@@ -89,13 +89,14 @@ static void begin_row(const mspring_network *network, const mspringi_contact_con
         double own = 0.0;
         for (int i = first_of_side[side]; i < first_of_side[side + 1]; ++i) {
             const uint32_t node = node_of_side(t, i);
-            own += (shares[i][0] * shares[i][0] + shares[i][1] * shares[i][1]) * k->inverse_mass[node];
+            const double *share = share_of(c, is_along, i);
+            own += (share[0] * share[0] + share[1] * share[1]) * k->inverse_mass[node];
             if (!a)
                 continue;
             const double x = k->x[node] - (a->origin[0] + a->x), y = k->y[node] - (a->origin[1] + a->y);
-            row->x[side] += shares[i][0];
-            row->y[side] += shares[i][1];
-            row->arm[side] += x * shares[i][1] - y * shares[i][0];
+            row->x[side] += share[0];
+            row->y[side] += share[1];
+            row->arm[side] += x * share[1] - y * share[0];
         }
         if (a) {
             const double x = row->x[side], y = row->y[side], arm = row->arm[side];
@@ -122,14 +123,15 @@ static double speed_of_row(const mspring_network *network, const mspringi_contac
                            bool is_along) {
     const mspringi_velocity *v = network->contacts->nodes.v;
     const mspringi_rigid_row *row = &c->rigid[is_along];
-    const double(*shares)[2] = shares_of(c, is_along);
     double speed = row->speed;
     for (int side = 0; side < 2; ++side) {
         const rigid_body *a = side_body(network, c, side);
         if (a)
             speed += row->x[side] * a->push_x + row->y[side] * a->push_y + row->arm[side] * a->push_turn;
-        for (int i = first_of_side[side]; !a && i < first_of_side[side + 1]; ++i)
-            speed += shares[i][0] * v[node_of_side(t, i)].x + shares[i][1] * v[node_of_side(t, i)].y;
+        for (int i = first_of_side[side]; !a && i < first_of_side[side + 1]; ++i) {
+            const double *share = share_of(c, is_along, i);
+            speed += share[0] * v[node_of_side(t, i)].x + share[1] * v[node_of_side(t, i)].y;
+        }
     }
     return speed;
 }
@@ -138,7 +140,6 @@ static void push_row(const mspring_network *network, const mspringi_contact_cons
                      bool is_along, double impulse) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     const mspringi_rigid_row *row = &c->rigid[is_along];
-    const double(*shares)[2] = shares_of(c, is_along);
     for (int side = 0; side < 2; ++side) {
         rigid_body *a = side_body(network, c, side);
         if (a) {
@@ -148,8 +149,9 @@ static void push_row(const mspring_network *network, const mspringi_contact_cons
         }
         for (int i = first_of_side[side]; !a && i < first_of_side[side + 1]; ++i) {
             const uint32_t node = node_of_side(t, i);
-            k->v[node].x += impulse * k->inverse_mass[node] * shares[i][0];
-            k->v[node].y += impulse * k->inverse_mass[node] * shares[i][1];
+            const double *share = share_of(c, is_along, i);
+            k->v[node].x += impulse * k->inverse_mass[node] * share[0];
+            k->v[node].y += impulse * k->inverse_mass[node] * share[1];
         }
     }
 }
@@ -180,8 +182,7 @@ bool mspringi_rigid_contact_has(const mspring_network *network, const mspringi_c
     return rigid_body_of(network, t->p) || rigid_body_of(network, t->a);
 }
 
-/* -------------------------------------------------------------------------------------------------- at the floor
- */
+/* ----------------------------------------------------------------------------------------------- at the floor */
 
 // Find the two surfaces of the floor that are nearest to a point. Return their number.
 static uint32_t find_near_surfaces(const mspringi_floor *floor, double x, double y, mspringi_line nearest[2]) {
