@@ -319,6 +319,9 @@ void mspringi_rigid_contact_find_impulses(const mspring_network *network, const 
         if (network->floor)
             again |= keep_all_out(&o);
     }
+    // The direct solver has no tiles that would turn what is predicted.
+    if (network->floor)
+        memset(mspringi_implicit_of(network)->scaled.x, 0, 2 * mspringi_slot_count(network) * sizeof(float));
 }
 
 // Shift bodies that have turned into the floor out of it, by what their deepest particle needs. The floor would
