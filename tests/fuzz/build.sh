@@ -8,7 +8,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 : "${CC:=clang}" "${CXX:=clang++}" "${CFLAGS:=-O1 -g -fsanitize=address,undefined,fuzzer-no-link}"
 : "${LIB_FUZZING_ENGINE:=-fsanitize=fuzzer}" "${OUT:?the folder to put the targets into}" "${WORK:=build-fuzz}"
-[ $# -gt 0 ] || set -- calls hosts loaders scenes snapshot
+[ $# -gt 0 ] || set -- archive calls hosts loaders scenes snapshot
 
 cmake -S . -B "$WORK" -DCMAKE_C_COMPILER="$CC" -DCMAKE_CXX_COMPILER="$CXX" -DCMAKE_BUILD_TYPE=None \
   -DCMAKE_C_FLAGS="$CFLAGS" -DCMAKE_CXX_FLAGS="${CXXFLAGS:-$CFLAGS}" -DMASSSPRING_TESTS=ON -DMASSSPRING_ASSERTS=ON -DMASSSPRING_BENCH=OFF \
