@@ -18,6 +18,7 @@
 #include "store/constraint_list.h"
 #include "store/edit_counters.h"
 #include "store/groups.h"
+#include "store/id_pool_state.h"
 #include "store/sent_values.h"
 #include "store/sleep_state.h"
 #include "store/solver.h"
@@ -85,34 +86,6 @@ typedef struct mspringi_halos {
     uint32_t *borders;    ///< [MSPRINGI_PLANNED_PASSES][workers]
     uint64_t *weights;    ///< [strips + 1] of the strips below each
 } mspringi_halos;
-
-/// State of an id.
-enum {
-    MSPRINGI_GONE = 0,  ///< it was removed
-    MSPRINGI_THERE = 1, ///< it names a particle or a spring
-    MSPRINGI_SPARE = 2  ///< the next addition may get it
-};
-
-/// No end of a spring.
-#define MSPRINGI_NO_END UINT32_MAX
-
-/// Ids that were added and removed. The spare spring number n has the ends 2 n and 2 n + 1. The ends at a particle
-/// are a linked list.
-typedef struct mspringi_id_pool {
-    uint8_t *particles,
-        *springs;        ///< [reserve.particle_end], [reserve.spring_end] MSPRINGI_THERE, ...; NULL: all ids exist
-    uint32_t *first_end; ///< [reserve.particle_end] MSPRINGI_NO_END if there is none
-    uint32_t *next_end, *previous_end;         ///< [2 * spare springs]
-    mspring_id *particle_of_end;               ///< [2 * spare springs]
-    mspring_id lowest_particle, lowest_spring; ///< no id below is spare
-} mspringi_id_pool;
-
-/// The springs of particle p are springs[first[p]] ... springs[first[p + 1] - 1], by rising id. Spare springs are
-/// in none of these lists.
-typedef struct mspringi_incidence {
-    uint32_t *first;   ///< [particles + 1], or NULL: not made yet
-    uint32_t *springs; ///< [2 * springs]
-} mspringi_incidence;
 
 /// Arrays to measure the extents of all springs; NULL before the first measurement.
 typedef struct mspringi_extents {
