@@ -390,10 +390,10 @@ typedef struct mspring_solver_def {
                             ///< 256; 0, the default: chosen by the plan
     uint32_t coarse_period; ///< substeps between factorisations of the tiles' matrix, at most 10000; more are cheaper
                             ///< if the network turns little in them; 0, the default: 1
-    uint32_t most_work;     ///< work in a step, in calm steps, up to which MSPRING_SUBSTEPS_AUTO and _EVEN take more
-        ///< substeps for violent motion, MSPRING_GUARD_RETRY repeats, and the implicit and the direct
-        ///< solver take parts again; at most MSPRING_MAX_SUBSTEPS; default 4; 0: no bound but
-        ///< max_substeps. See above
+    uint32_t most_work; ///< work in a step, in calm steps, up to which MSPRING_SUBSTEPS_AUTO and _EVEN take more
+                        ///< substeps for violent motion, MSPRING_GUARD_RETRY repeats, and the implicit and the direct
+                        ///< solver take parts again; at most MSPRING_MAX_SUBSTEPS; default 4; 0: no bound but
+                        ///< max_substeps. See above
     float residual; ///< 0 to 1; default 0.01: the implicit solver stops iterating when r . z, a square of the forces
                     ///< out of balance, has fallen to this share of its value after the first iteration. 0: exactly
                     ///< `iterations`; 1: springs hardly act. With a floor it is squared, or the iterations double;
@@ -611,9 +611,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_get_sp
     mspring_builder *builder, const mspring_id *ids, mspring_id first, uint32_t count, mspring_spring_def *defs);
 
 /// Read an archive that mspring_network_write() has written, by this or an earlier version, into an empty builder.
-/// mspring_network_create() then makes a network that goes on where the written one was, with the same ids. The builder
-/// has the particles and springs that this was created with, as they are now: removed ones, too, and none that were
-/// added. No others can be added.
+/// mspring_network_create() then makes a network that goes on where the written one was, with the same ids. Until then
+/// the builder lists the particles and springs of that network's creation, in their present state and with those that
+/// were removed; later additions come with the network. This builder takes no others.
 ///
 /// Archives may come from anywhere. This call checks the form of all chunks, and all values of particles and springs;
 /// mspring_network_create() checks the rest, and returns MSPRING_ERROR_SNAPSHOT, too. Messages name the chunk. Both use
@@ -728,9 +728,9 @@ enum {
     MSPRING_STEP_PUT_BACK = 1u << 2, ///< particles were put back into the bounds (MSPRING_GUARD_CLAMP_BOUNDS)
     MSPRING_STEP_RETRIED = 1u << 3,  ///< with more substeps than were set (MSPRING_GUARD_RETRY)
     MSPRING_STEP_ASLEEP = 1u << 4,   ///< all of the network slept: nothing was computed
-    MSPRING_STEP_FEWER = 1u << 5,    ///< with fewer substeps, or parts of these, than its violent motion needs
-                                     ///< (mspring_solver_def.most_work)
-    MSPRING_STEP_GREW = 1u << 6      ///< contact allocated room for more pairs (mspring_contact_def.max_capacity)
+    MSPRING_STEP_FEWER = 1u << 5, ///< with fewer substeps, or parts of these, than its violent motion needs
+                                  ///< (mspring_solver_def.most_work)
+    MSPRING_STEP_GREW = 1u << 6   ///< contact allocated room for more pairs (mspring_contact_def.max_capacity)
 };
 
 /// Report of the last step, and of all steps so far. Set struct_size first.
@@ -747,8 +747,8 @@ typedef struct mspring_step_info {
     double largest_speed;    ///< length of the fastest particle's velocity now, m/s
     double time_left;        ///< with MSPRING_SUBSTEPS_EVEN, dt that steps were given and have not taken yet, s; < 0:
                              ///< they are ahead
-    double work; ///< of the last step, even if it failed, in calm steps (mspring_solver_def.most_work): 1 if
-                 ///< nothing was repeated or raised; 0 if nothing was computed
+    double work;             ///< of the last step, even if it failed, in calm steps (mspring_solver_def.most_work): 1 if
+                             ///< nothing was repeated or raised; 0 if nothing was computed
 } mspring_step_info;
 
 /// Read the report of the last step. Takes a pass over the velocities; mspring_network_step_flags() does not.
