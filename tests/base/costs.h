@@ -1,5 +1,5 @@
 /// @file costs.h
-/// What a stretch of calls costs: instructions, or processor time where the system counts none, and the most memory.
+/// Cost of a stretch of calls: instructions, or processor time where the system counts none, and the most memory.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef TEST_COSTS_H

@@ -58,7 +58,7 @@ mspring_builder *shape_clique(costs *c, uint32_t n) {
     return builder;
 }
 
-mspring_builder *shape_path(costs *c, uint32_t n, bool is_in_one_place) {
+static mspring_builder *path(costs *c, uint32_t n, bool is_in_one_place) {
     mspring_builder *builder = shapes_builder_for(c);
     for (uint32_t i = 0; i <= n; i++) {
         support_particle(builder, is_in_one_place ? 0 : i, 0, 1);
@@ -70,6 +70,14 @@ mspring_builder *shape_path(costs *c, uint32_t n, bool is_in_one_place) {
     return builder;
 }
 
+mspring_builder *shape_path(costs *c, uint32_t n) {
+    return path(c, n, false);
+}
+
+mspring_builder *shape_point(costs *c, uint32_t n) {
+    return path(c, n, true);
+}
+
 mspring_builder *shape_loose(costs *c, uint32_t n) {
     mspring_builder *builder = shapes_builder_for(c);
     for (uint32_t i = 0; i < n; i++) {
@@ -78,7 +86,7 @@ mspring_builder *shape_loose(costs *c, uint32_t n) {
     return builder;
 }
 
-mspring_builder *shape_parts(costs *c, uint32_t n, bool are_lattices) {
+static mspring_builder *parts(costs *c, uint32_t n, bool are_lattices) {
     mspring_builder *builder = shapes_builder_for(c);
     for (uint32_t i = 0; i < n / 4; i++) {
         const mspring_id first = support_particle(builder, 3.0 * i, 0, 1);
@@ -92,6 +100,14 @@ mspring_builder *shape_parts(costs *c, uint32_t n, bool are_lattices) {
         }
     }
     return builder;
+}
+
+mspring_builder *shape_lattices(costs *c, uint32_t n) {
+    return parts(c, n, true);
+}
+
+mspring_builder *shape_cliques(costs *c, uint32_t n) {
+    return parts(c, n, false);
 }
 
 mspring_builder *shape_lattice(costs *c, uint32_t n) {

@@ -34,17 +34,6 @@ static mspring_network *network_with(const recipe *made, uint32_t iterations, ui
     return network;
 }
 
-/// Root mean square distance, m.
-static double apart(const mspring_network *a, const mspring_network *b) {
-    const uint32_t count = mspring_network_particle_count(a);
-    double sum = 0;
-    for (mspring_id id = 0; id < count; id++) {
-        const support_point p = support_position(a, id), q = support_position(b, id);
-        sum += (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-    }
-    return sqrt(sum / count);
-}
-
 /// A change to a network before a step.
 typedef void (*change)(mspring_network *network, int step);
 
@@ -58,7 +47,7 @@ static double play(const recipe *made, uint32_t iterations, int steps, change be
         support_steps(network, 1, DT);
         support_steps(exact, 1, DT);
     }
-    const double distance = apart(network, exact);
+    const double distance = support_distance(network, exact);
     print_message("%u iterations: %.4g mm from the direct solver\n", (unsigned)iterations, 1e3 * distance);
     mspring_network_destroy(network);
     mspring_network_destroy(exact);
@@ -266,7 +255,7 @@ static void added_springs_join_it(void **state) {
     check_ok(mspring_network_add_springs(network, &added, 1, &id));
     support_steps(network, 48, DT);
     support_steps(exact, 48, DT);
-    assert_true(apart(network, exact) < 1e-4);
+    assert_true(support_distance(network, exact) < 1e-4);
     mspring_network_destroy(network);
     mspring_network_destroy(exact);
     recipe_free(&made);

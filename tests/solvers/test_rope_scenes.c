@@ -89,17 +89,6 @@ static mspring_network *play(const recipe *made, uint32_t iterations, float resi
     return network;
 }
 
-/// Root mean square distance, m.
-static double apart(const mspring_network *a, const mspring_network *b) {
-    const uint32_t count = mspring_network_particle_count(a);
-    double sum = 0;
-    for (mspring_id id = 0; id < count; id++) {
-        const support_point p = support_position(a, id), q = support_position(b, id);
-        sum += (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-    }
-    return sqrt(sum / count);
-}
-
 /// Geometric mean of the errors, each as a share of the motion.
 static double measure(uint32_t iterations, float residual, uint32_t exact) {
     double sum = 0;
@@ -107,7 +96,7 @@ static double measure(uint32_t iterations, float residual, uint32_t exact) {
         recipe made = scene(i);
         mspring_network *start = play(&made, 1, 0, 0), *fine = play(&made, exact, 0, STEPS);
         mspring_network *network = play(&made, iterations, residual, STEPS);
-        const double error = apart(network, fine) / apart(start, fine);
+        const double error = support_distance(network, fine) / support_distance(start, fine);
         sum += log(error + 1e-7);
         print_message("scene %d: %u particles, %.4f %% of the motion\n", i, (unsigned)made.particle_count,
                       100 * error);

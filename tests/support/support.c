@@ -260,6 +260,16 @@ support_point support_position(const mspring_network *network, mspring_id partic
     return point;
 }
 
+double support_distance(const mspring_network *a, const mspring_network *b) {
+    const uint32_t count = mspring_network_particle_count(a);
+    double sum = 0;
+    for (mspring_id id = 0; id < count; id++) {
+        const support_point p = support_position(a, id), q = support_position(b, id);
+        sum += (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
+    }
+    return sqrt(sum / count);
+}
+
 support_point support_velocity(const mspring_network *network, mspring_id particle) {
     float vx = 0, vy = 0;
     check_ok(mspring_network_get_velocities(network, particle, 1, &vx, &vy, 1));

@@ -133,6 +133,8 @@ typedef struct support_point {
 } support_point;
 
 support_point support_position(const mspring_network *network, mspring_id particle);
+/// Root mean square distance of the particles of two networks, m.
+double support_distance(const mspring_network *a, const mspring_network *b);
 support_point support_velocity(const mspring_network *network, mspring_id particle);
 uint64_t support_hash(const mspring_network *network);
 
