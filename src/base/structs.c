@@ -1,8 +1,7 @@
 /// Structs of hosts that are shorter or longer than today's.
 #include "base/structs.h"
 
-/* --------------------------------------------------------------------------------------------------------- sizes
- */
+/* ---------------------------------------------------------------------------------------------------------- sizes */
 
 // A struct holds numbers of 4 and 8 bytes, so every version of it is a multiple of 4.
 static bool is_possible(const mspringi_struct *of, size_t size) {
@@ -48,8 +47,7 @@ static mspring_result check_alike(mspringi_message *message, const mspringi_stru
                                     size, of_first);
 }
 
-/* -------------------------------------------------------------------------------------------------------- inputs
- */
+/* --------------------------------------------------------------------------------------------------------- inputs */
 
 mspring_result mspringi_init_struct(const mspringi_struct *of, void *out, size_t size) {
     const uint32_t struct_size = (uint32_t)size;
@@ -96,8 +94,7 @@ mspring_result mspringi_take_struct_at(mspringi_message *message, const mspringi
     return result == MSPRING_OK ? mspringi_take_struct(message, of, mspringi_element(array, index), taken) : result;
 }
 
-/* ------------------------------------------------------------------------------------------------------- outputs
- */
+/* -------------------------------------------------------------------------------------------------------- outputs */
 
 mspring_result mspringi_check_output(mspringi_message *message, const mspringi_struct *of, const void *out) {
     return out ? check_size(message, of, size_of(out)) : refuse_null(message, of);

@@ -310,8 +310,7 @@ static void growth_load(mspring_network *network, const uint8_t *from, size_t si
     mspringi_notify_change(network, MSPRINGI_CHANGED_GRAFTS, 0);
 }
 
-/* ------------------------------------------------------------------------------------------------ other sections
- */
+/* ------------------------------------------------------------------------------------------------- other sections */
 
 bool mspringi_saved_has_particle(const mspringi_saved *saved, mspring_id particle) {
     const mspringi_topology *t = &saved->network->topology;
@@ -405,8 +404,7 @@ const mspringi_section mspringi_section_growth = {"grow",      "added and remove
                                                   growth_save, growth_check,
                                                   growth_load, growth_check_against};
 
-/* ------------------------------------------------------------------------------------------------------ archives
- */
+/* ------------------------------------------------------------------------------------------------------- archives */
 
 // Set where the spare ids in use lie.
 static void set_places(const mspring_network *network, uint8_t *section, size_t size, bool in_archive) {

@@ -30,8 +30,7 @@
 /// Scratch arrays by slot.
 enum { CHANGE_X, CHANGE_Y, RATIO = 3 };
 
-/* ---------------------------------------------------------------------------------------- springs outside kernels
- */
+/* ---------------------------------------------------------------------------------------- springs outside kernels */
 
 static float between_ends(const float *values, const mspringi_spring_values *spring) {
     return values[spring->base] - values[spring->tip];
@@ -71,8 +70,7 @@ static void clamp_irregular(const mspring_network *network, const mspringi_stabi
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- substeps
- */
+/* ------------------------------------------------------------------------------------------------------- substeps */
 
 // Largest eigenvalues of the sums at particles, over masses.
 static void find_ratios(const mspring_network *network, mspringi_stability_limit *b) {
