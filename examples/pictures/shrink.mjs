@@ -155,7 +155,7 @@ function packed(places, width, part, bits) {
   return each.reduce((best, one) => (one.length < best.length ? one : best));
 }
 
-// What has changed since the frame before, and the rest as the clear colour if that is smaller.
+// Rectangle that has changed since the frame before; unchanged pixels get the clear colour if that is smaller.
 function change(now, before, width, height, clear) {
   let left = width, right = 0, top = height, bottom = 0;
   for (let i = 0; i < now.length; i++) {

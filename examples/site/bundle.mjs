@@ -28,7 +28,7 @@ export function bundle(entry, library) {
     if (!existsSync(file)) throw new Error(`there is no ${file}`);
     const text = readFileSync(file, 'utf8');
     const pathOf = (from) => (from === 'massspring' ? resolve(library, 'open.js') : resolve(dirname(file), from));
-    // What it imports comes before it.
+    // Modules that it imports come before it.
     for (const [, from] of text.matchAll(/^(?:import|export) [^;]*? from '(.+)';$/gm)) add(pathOf(from));
     const name = `module${made.size}`;
     made.set(file, name);

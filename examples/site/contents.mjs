@@ -1,4 +1,4 @@
-// What the site's menu has, in its order.
+// Entries of the site's menu, in order.
 export const CONTENTS = [
   { title: 'Begin', links: [
     ['Playground', 'index.html'],

@@ -2,7 +2,7 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-/** What the playground shows first, by the width of the screen: a ship is heavy for a phone. */
+/** First scene of the playground, by the width of the screen: the ship is too slow for a phone. */
 export const WIDE = 'scene=ship&breaking=1&floor=1&cut=396,110,412,20';
 export const NARROW = 'scene=bridge&breaking=1&damping=0.1&limit=-2.6&cut=60.5,-60,60.5,60';
 

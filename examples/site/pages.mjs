@@ -153,7 +153,7 @@ function navigation(path) {
     .map(({ title, links }) => `<h2>${title}</h2>\n<ul>${links.filter(has).map(link).join('\n')}</ul>`).join('\n');
 }
 
-// What is above and beside the text of a page.
+// Header and menu of a page.
 function surroundings(path) {
   const root = posix.relative(posix.dirname(path), '.') || '.', home = `${root}/index.html`;
   const menu = `<input type="search" data-search placeholder="Search" aria-label="Search guides and functions">
@@ -170,7 +170,7 @@ ${hasDownload ? `<a href="${root}/download.html">Source</a>` : ''}</span>
 <script src="${root}/site.js" defer></script>`;
 }
 
-// What those see who are sent a link.
+// Title, description and picture that a shared link shows.
 function shared(path, title, body) {
   const words = wordsOf(body.match(/<p[^>]*>([^]*?)<\/p>/)?.[1] ?? ''), at = words.search(/[.:] /);
   const about = path === 'index.html' ? DESCRIPTION : (at > 40 ? words.slice(0, at + 1) : words).slice(0, 200);

@@ -1,4 +1,4 @@
-// What the site does besides figures and search: the playground in its frame, and buttons that copy code.
+// Script of all pages, without figures and search: the playground in its frame, and buttons that copy code.
 'use strict';
 (() => {
   for (const button of document.querySelectorAll('[data-copy]')) {

@@ -10,7 +10,7 @@
 #define MSPRINGI_ARCHIVE_HEAD_BYTES ((size_t)16)
 #define MSPRINGI_CHUNK_HEAD_BYTES ((size_t)24)
 
-/// What a reader needs before any other chunk.
+/// First chunk: data that a reader needs before all others.
 typedef struct mspringi_archive_head {
     uint32_t first_particle, first_spring, particle_end, spring_end; ///< as in mspringi_reserve
     uint32_t may_have_bundles, is_compact, is_compact_with_bundles, has_welds;
@@ -22,7 +22,7 @@ typedef struct mspringi_archive_head {
     mspring_network_def def;
 } mspringi_archive_head;
 
-/// Chunks that are neither in features.def: the head, and the plan.
+/// Tags of the chunks that are not in features.def: the first, the plan and the last.
 extern const char mspringi_head_tag[5], mspringi_plan_tag[5], mspringi_end_tag[5];
 
 mspringi_archive_head mspringi_archive_head_of(const mspring_network *network);
@@ -47,22 +47,22 @@ mspringi_read_chunk mspringi_archive_find(const uint8_t *archive, const char *ta
 /// Read the chunk at *at, and move on. False: it leaves the archive.
 bool mspringi_archive_next(const uint8_t *archive, size_t size, size_t *at, mspringi_read_chunk *chunk);
 
-/// What a builder keeps of an archive.
+/// Archive in a builder: its head and a copy of its bytes.
 typedef struct mspringi_archive {
     mspringi_archive_head head;
     size_t size;
     uint8_t bytes[];
 } mspringi_archive;
 
-/// How a section lies in an archive; NULL: as in a snapshot.
+/// Form of a section in archives; NULL: the same as in snapshots.
 const mspringi_by_id *mspringi_by_id_of(const mspringi_section *section);
 
-/// Bytes of a section by id (is_archived), or for this network, given those of the other kind. SIZE_MAX: they are
-/// too few or too many.
+/// Return the size of a section by id (is_archived) or for this network, given its bytes in the other form.
+/// SIZE_MAX if these are too few or too many.
 size_t mspringi_by_id_size(const mspring_network *network, const mspringi_by_id *by, bool is_archived,
                            const uint8_t *from, size_t size);
-/// Translate it into so many zeros, and as many again as the network's own section has (mspringi_by_id.enter).
-/// False: it names particles that are not there.
+/// Translate a section into the other form. `to` has that many zeros, followed by the size of the network's own
+/// section (mspringi_by_id.enter). False: the section names particles that do not exist.
 bool mspringi_by_id_translate(const mspring_network *network, const mspringi_by_id *by, bool is_archived,
                               const uint8_t *from, size_t size, uint8_t *to);
 

@@ -1,4 +1,4 @@
-/// Sections of snapshots in archives: what lies by slot there lies by id here, whatever the layout.
+/// Sections of snapshots in archives: values are ordered by id instead of by slot, so they fit any layout.
 #include <string.h>
 
 #include "archive/archive_format.h"

@@ -7,7 +7,7 @@
 ///
 /// All is little-endian. A chunk is one of these:
 ///
-///   netw   definition, counts and bounds of the network (archive/archive_head.c)
+///   netw   definition, counts and bounds of the network (archive/archive_format.c)
 ///   plan   ends and flags of the first springs, and where the layout had the first particles
 ///   a row of features.def: CHUNK, or SECTION, whose bytes are those of a snapshot, but by id (BY_ID)
 ///
@@ -32,7 +32,7 @@
 /// Flags of a chunk: without it the network would be another one.
 #define MSPRINGI_CHUNK_IS_NEEDED 1u
 
-/// What a network has beside its sections.
+/// A part of a network that has no section, but a chunk of archives.
 typedef struct mspringi_chunk {
     char tag[5];
     const char *name; ///< of its contents, for messages

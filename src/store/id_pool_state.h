@@ -1,5 +1,5 @@
 /// @file id_pool_state.h
-/// What a network keeps of ids that were added and removed, and of the springs at each particle (id_pool.h).
+/// Records of added and removed ids, and of the springs at each particle (id_pool.h).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ID_POOL_STATE_H

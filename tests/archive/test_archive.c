@@ -268,7 +268,7 @@ static void a_definition_may_change_the_rest(void **state) {
 
 /* --------------------------------------------------------------------------------------------------- read-back */
 
-// What a builder gives back adds the same again: the archive of a network of it has the same bytes.
+// Definitions read back from a builder make the same network: its archive has the same bytes.
 static void a_builder_gives_back_what_it_has(void **state) {
     (void)state;
     recipe made = recipe_mixed(3);

@@ -1,5 +1,5 @@
 /// @file costs.h
-/// Cost of a stretch of calls: instructions, or processor time where the system counts none, and the most memory.
+/// Cost of a series of calls: instructions, or processor time where the system counts none, and peak memory.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef TEST_COSTS_H

@@ -1,5 +1,5 @@
 /// @file hostile_shapes.h
-/// Networks of about n springs in shapes that a careless algorithm takes long for.
+/// Networks of about n springs in shapes that are expensive for careless algorithms.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef TEST_HOSTILE_SHAPES_H

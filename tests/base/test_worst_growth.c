@@ -529,7 +529,7 @@ static void hostile_inputs_cost_what_they_weigh(void **state) {
             continue;
         }
         const costs small = cost_of(&cases[i], smaller), large = cost_of(&cases[i], GROWTH * smaller);
-        // Caches have an end, and a clock is noisy: what is quadratic grows so once more.
+        // Caches are finite and clocks noisy, so measure slow growth again: quadratic costs grow as fast in both.
         const bool is_slow = judges_work && grows_too_fast(&small, &large) && is_slow_again(&cases[i], &large);
         const bool is_large = large.bytes > MOST_BYTES * small.bytes && large.bytes > FEW_BYTES;
         if (is_slow || is_large || *wanted != '\0') {

@@ -20,7 +20,7 @@ typedef struct call {
 
 /// calls_laws.c: add, change or remove an area or angle springs.
 mspring_result call_laws(mspring_network *network, const call *c);
-/// Whether there is an area or an angle spring.
+/// True if there is an area or an angle spring.
 bool call_has_laws(const mspring_network *network);
 /// Make groups and actuators of springs, signal, mark and reset.
 mspring_result call_batch(mspring_network *network, const call *c);

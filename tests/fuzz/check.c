@@ -1,5 +1,5 @@
 /// @file check.c
-/// What holds for every network.
+/// Invariants of every network.
 ///
 /// SPDX-License-Identifier: MIT
 #include "check.h"

@@ -1,5 +1,5 @@
 /// @file check.h
-/// What holds for every network, whatever has been done to it.
+/// Invariants of every network, after any calls.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef FUZZ_CHECK_H

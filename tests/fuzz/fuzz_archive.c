@@ -23,7 +23,7 @@ static const archived *subject(int kind) {
     return &made[kind];
 }
 
-// What a builder has read can be asked for, and would be taken again.
+// Read definitions back from a builder. Each would be accepted again.
 static void read_back(mspring_builder *builder) {
     const mspring_id particles = mspring_builder_particle_count(builder),
                      springs = mspring_builder_spring_count(builder);
@@ -54,7 +54,7 @@ static mspring_network *read(const archived *from) {
     return network;
 }
 
-// What a network that was read writes is read again, as the same bytes.
+// Write a network that was read, and read it again. Both archives have the same bytes.
 static void check(mspring_network *network) {
     const mspring_id springs = mspring_network_spring_count(network);
     const archived first = archives_write(network);

@@ -163,7 +163,7 @@ static void mix(uint64_t *hash, const void *bytes, size_t size) {
         *hash = (*hash ^ ((const uint8_t *)bytes)[i]) * UINT64_C(0x100000001b3); // FNV-1a
 }
 
-// What colliders got, as far as there are some.
+// Mix the impulses on colliders into a hash.
 static void mix_colliders(const mspring_network *network, uint64_t *look) {
     for (mspring_id id = 0; id < 8; id++) {
         double impulse[3];
@@ -379,7 +379,7 @@ static mspring_result save_and_load(mspring_network *network) {
     return result;
 }
 
-// What is read is a number, whatever the network has been through. (Energies and momenta may overflow.)
+// Measurements are numbers after any calls. (Energies and momenta may overflow.)
 static mspring_result measure(mspring_network *network) {
     double box[4];
     float strain = 0;

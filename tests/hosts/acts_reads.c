@@ -30,7 +30,7 @@ static void learn_event(game *it, plain *list, const mspring_event *event) {
         list->breaks_by_events[event->id] = false;
 }
 
-// All that wait, or some; then what events say is broken is broken, and nothing else.
+// Read all queued events, or some. Then exactly the springs that events report are broken.
 static mspring_result read_events(game *it, place *p, const call *c) {
     mspring_event events[MANY];
     uint32_t count = 0;
@@ -146,7 +146,7 @@ static mspring_result read_plan(game *it, place *p, const call *c) {
     return MSPRING_OK;
 }
 
-// What no network has to do with.
+// Calls that need no network.
 static mspring_result read_library(game *it, place *p, const call *c) {
     mspring_settings settings;
     mspring_allocator allocator;

@@ -1,6 +1,5 @@
 /// @file back.c
-/// What is taken back: a chapter that is played twice, from a snapshot or from clones, and has the same log both
-/// times.
+/// Chapters that are played twice, from a snapshot or from clones. Both times have the same log.
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /// @file draws.h
-/// Where a host takes its decisions from: a seed, or the bytes of a fuzzer. To copy it is to remember the place, so
-/// that the same decisions can be taken again.
+/// Source of a host's decisions: a seed, or the bytes of a fuzzer. A copy remembers the position, so that the same
+/// decisions can be drawn again.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef HOSTS_DRAWS_H
@@ -24,7 +24,7 @@ bool draw_chance(draws *from, uint32_t percent);
 /// True if there are decisions left to take.
 bool draws_go_on(const draws *from);
 
-/// What follows from a decision once taken, at no further byte: numbers of the seed alone.
+/// Draws for the details of a decision: numbers from the seed alone, which take no bytes of the fuzzer.
 draws draws_apart(draws *from);
 
 #endif

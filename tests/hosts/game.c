@@ -181,7 +181,7 @@ static double draw_dt(draws *from, bool is_hostile, double last) {
                         : 1e-6;
 }
 
-// What a host does when steps fail again and again: stop all motion, and then begin anew.
+// Recover from steps that fail again and again: stop all motion, then start again with a new network.
 static void recover(game *it, place *p) {
     const float none = 0;
     if (p->failed_steps % 2 == 0)

@@ -19,13 +19,13 @@
 
 enum { PLACES = 3, MOST_PARTICLES = 2048, MOST_SPRINGS = 8192, MANY = 24, MOST_HOOKS = 4 };
 
-/// What there should be in a network, as a plain list.
+/// Expected contents of a network, as plain lists.
 typedef struct plain {
     uint32_t particles, springs; ///< ids
     bool has_particle[MOST_PARTICLES], has_spring[MOST_SPRINGS];
     mspring_id ends[MOST_SPRINGS][2];
     float mass[MOST_PARTICLES], stiffness[MOST_SPRINGS];
-    bool is_broken[MOST_SPRINGS];        ///< by what has been done or seen
+    bool is_broken[MOST_SPRINGS];        ///< according to calls and reads
     bool breaks_by_events[MOST_SPRINGS]; ///< by the events that were read
     bool knows_events;                   ///< none was dropped or lost since breaks_by_events was right
 } plain;
@@ -52,7 +52,7 @@ typedef struct place {
     double dt;              ///< of the last step
 } place;
 
-/// How a game runs, which must not be seen in its log.
+/// Settings of a game, which must not change its log.
 typedef struct game_setup {
     mspring_simd level;
     uint32_t workers;
@@ -122,13 +122,13 @@ typedef struct call {
     double d[MANY];
 } call;
 
-/// Where a call may be made again after something was taken back.
+/// Chapters in which a call may be repeated after a rollback, and other flags of calls.
 enum {
     ACT_CALM = 1u << 0,   ///< after any snapshot; also ACT_WHOLE
     ACT_WHOLE = 1u << 1,  ///< after a whole one
     ACT_RARE = 1u << 2,   ///< it takes long
     ACT_INSIDE = 1u << 3, ///< it leaves the sum of momenta as it is
-    ACT_SETUP = 1u << 4,  ///< what a level has from its start
+    ACT_SETUP = 1u << 4,  ///< it belongs to the start of a level
     ACT_READS = ACT_CALM | ACT_WHOLE | ACT_INSIDE
 };
 
@@ -149,7 +149,7 @@ void game_step(game *it, place *p);
 
 /* -------------------------------------------------------------------------------------------------- judges */
 
-/// judge.c: whether all that can be read of a place is as it should be.
+/// judge.c: compare everything that can be read of a place with the plain list.
 void judge_place(game *it, place *p);
 /// Momenta before a step, and after.
 typedef struct momenta {

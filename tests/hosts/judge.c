@@ -1,5 +1,5 @@
 /// @file judge.c
-/// Whether all that can be read of a network is as it should be.
+/// Compare everything that can be read of a network with the plain lists.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -55,7 +55,7 @@ static void judge_view(game *it, const place *p) {
     JUDGE(it, isfinite(x) && isfinite(y));
 }
 
-// What is broken by edits is known at once, what breaks in steps is learnt after them.
+// Compare broken springs. Edits mark theirs immediately; breaks in steps are read after them.
 static void judge_flags(game *it, const place *p) {
     static uint32_t flags[MOST_SPRINGS];
     JUDGE(it, mspring_network_get_spring_flags(p->network, 0, p->plain->springs, flags, 1) == MSPRING_OK);
@@ -74,7 +74,7 @@ void judge_place(game *it, place *p) {
         judge_view(it, p);
         judge_flags(it, p);
     }
-    // What is asked depends on nothing that the game draws.
+    // Queries have draws of their own, so that they do not change those of the game.
     draws from = {.seed = it->frame * 977u + (uint64_t)it->name * 131u + 7};
     if (is_small || it->frame % 4 == 0)
         judge_queries(it, p, &from);

@@ -176,7 +176,7 @@ static void add_herd(yard *y) {
     y->x += count * 7.0;
 }
 
-// What another place has now.
+// Add the present network of another place.
 static void add_other(yard *y) {
     for (int i = 0; i < PLACES; i++) {
         const place *other = &y->it->places[i];

@@ -184,7 +184,7 @@ void judge_queries(game *it, place *p, draws *from) {
         a[i] = draw_between(from, low, high), b[i] = draw_between(from, low, high);
     }
     if (fabs(box[0]) + fabs(box[1]) + fabs(box[2]) + fabs(box[3]) > 1e11)
-        return; // what was thrown out of the world: sums of coordinates are no places
+        return; // particles far outside the world: sums of coordinates are too inexact
     judge_near(it, p, a, draw_between(from, 0, 4));
     judge_box(it, p, a, b);
     judge_across(it, p, a, b);

@@ -6,11 +6,11 @@
 ///   hosts [--seeds FIRST COUNT] [--frames N]    games of N frames each
 ///   hosts --minutes M [--seeds FIRST 1]         as many games as there is time for
 ///   hosts --verbose SEED FRAME                  one game up to a frame, each call on a line
-///   hosts --only LEVEL WORKERS FAILS ...        both games with this level, these workers, and memory that fails
-///   so
-///                                               often, in percent; -1: as ever. It tells what makes them differ.
+///   hosts --only LEVEL WORKERS FAILS ...        both games with this SIMD level, these workers, and memory that
+///                                               fails so often, in per cent; -1: as usual. Use it to find out
+///                                               why two games differ
 ///
-/// What is wrong ends the program, with the seed and the frame.
+/// The first error ends the program, which prints the seed and the frame.
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdio.h>
@@ -22,7 +22,7 @@
 
 static game_counts sum;
 
-/// Of both games, if not -1: what makes them differ is found by setting one after the other.
+/// Settings of both games, if not -1. Set one after the other to find out why the games differ.
 static int only_level = -1, only_workers = -1, only_fails = -1;
 
 static game_setup setup_of(uint64_t seed, bool is_first) {

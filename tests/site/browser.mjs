@@ -13,7 +13,7 @@ const [site, pictures] = process.argv.slice(2);
 const PAGES = CONTENTS.flatMap(({ links }) => links.map(([, page]) => page))
   .filter((page) => !page.includes('#') && existsSync(join(site, page)));
 const SEEN = /index|choose|troubleshooting|solvers|massspring_8h|rollback|comparison|download/; // of these a picture is kept
-// What moved after the page was there, as browsers count it: 0.1 is what they call good.
+// Layout shift after the page appeared, as browsers measure it: up to 0.1 is good.
 const WATCH = `window.shifted = 0; new PerformanceObserver((list) => { for (const entry of list.getEntries())
   if (!entry.hadRecentInput) { window.shifted += entry.value; window.shifters = [...(window.shifters ?? []),
     ...entry.sources.map(({ node }) => node?.parentElement?.outerHTML.slice(0, 120))]; } })
@@ -70,7 +70,7 @@ async function bySearch(browser) {
   assert.match(await first('zyzzyva'), /troubleshooting\.html$/);
 }
 
-// What shared links show, and stills where figures have not begun.
+// Previews of shared links, and stills in place of figures that have not started.
 async function byLink(browser) {
   const meta = (name) => browser.value(`document.querySelector('meta[property="og:${name}"], meta[name="${name}"]')?.content ?? ''`);
   assert((await meta('description')).length > 40, 'a description');

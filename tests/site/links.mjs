@@ -29,7 +29,7 @@ for (const page of pages) {
     else if (mark && !marks.get(goal)?.has(mark)) wrong.add(`${page}: ${goal} has no mark ${mark}`);
   }
 }
-// What can be searched, too.
+// Entries of the search.
 const found = JSON.parse(readFileSync(join(site, 'search_index.js'), 'utf8').match(/= (\[.*\]);/)[1]);
 for (const [words, link] of found) {
   const [path, mark] = link.split('#');

@@ -73,7 +73,7 @@ export default {
         pen.plot(graph, { x: [0, Math.max(4, trace.length / 64)], y: [1e-7, 1e3], log: true, xName: 's',
           yName: 'fastest particle, m/s', curves: [{ points: trace.map((speed, i) => [i / 64, speed]), colour: 'accent' }] });
       },
-      // What the run shows, not what the slider says.
+      // State of the run, independent of the slider.
       say() {
         const speed = trace.at(-1) ?? 0, fastest = trace.reduce((most, value) => Math.max(most, value), 0), seconds = trace.length / 64;
         const state = speed > 300 || !Number.isFinite(speed) ? `exploded after ${seconds.toFixed(1)} s`

@@ -1,4 +1,4 @@
-// What firmness costs: explicit substeps along a line, implicit ones off it.
+// Cost of stiffness: explicit substeps along a line, implicit ones off it.
 import { bar, dropAtRest, DT, heightOf, MASS, probe } from './scenes.js';
 
 const WIDTH = 80, HEIGHT = 5, SHARE = 0.9, NUMBERS = [32, 48, 64, 96, 128, 192, 256, 384, 512, 1024, 2048];

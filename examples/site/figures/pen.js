@@ -60,7 +60,7 @@ export class Pen {
     });
   }
 
-  /** What is drawn from now on fits this box of the world, in m, into that place. */
+  /** Map this box of the world, in m, to a place on the canvas, for all that is drawn from now on. */
   world(place, { minX, maxX, minY, maxY }) {
     const { context } = this;
     context.restore();

@@ -1,4 +1,4 @@
-// What bends stays bent: a bar whose springs yield beside one whose springs do not.
+// Permanent bending: a bar whose springs yield, next to an elastic one.
 import { bar, DT, heightOf, probe } from './scenes.js';
 
 const WIDTH = 40, HEIGHT = 5, TOP = HEIGHT - 1, YIELD = 0.01, HARDENING = 0.1, LOAD = 60000;

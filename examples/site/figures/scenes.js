@@ -1,4 +1,4 @@
-// What the figures show: bars of the library, and the same ones as plain arrays for the methods beside it.
+// Scenes of the figures: bars of the library, and the same bars as plain arrays for other methods.
 import { PARTICLE_PINNED } from 'massspring';
 
 /** kg of a particle, and s of a frame: those of the articles and examples. */

@@ -1,4 +1,4 @@
-// What both peers step: two jellies in a pit with a ball and crates that break. Inputs are bits.
+// World that both peers step: two jellies in a pit with a ball and crates that break. Inputs are bits.
 import { SPRING_DAMPING_RATIO } from 'massspring';
 import { makeRandom } from './session.js';
 

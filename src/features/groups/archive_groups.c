@@ -40,7 +40,7 @@ static void groups_save(const mspring_network *network, mspringi_io *io) {
         put_mark(network, &g->mark, io);
 }
 
-// What steps and resets rely on.
+// True if a mark has the properties that steps and resets rely on.
 static bool is_good(const mspring_network *network, const mspringi_mark *mark) {
     const mspringi_groups *g = &network->groups;
     const size_t values = mspringi_state_arrays(network);
