@@ -611,15 +611,15 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_get_sp
     mspring_builder *builder, const mspring_id *ids, mspring_id first, uint32_t count, mspring_spring_def *defs);
 
 /// Read an archive that mspring_network_write() has written, by this or an earlier version, into an empty builder.
-/// mspring_network_create() then makes a network that goes on where the written one was, with the same ids. Until then
-/// the builder lists the particles and springs of that network's creation, in their present state and with those that
-/// were removed; later additions come with the network. This builder takes no others.
+/// mspring_network_create() then makes a network that continues where the written one was, with the same ids. Until
+/// then the builder has the particles and springs that the written network was created with, including removed ones,
+/// in their present state. Later additions come with the network. This builder accepts no further definitions.
 ///
 /// Archives may come from anywhere. This call checks the form of all chunks, and all values of particles and springs;
-/// mspring_network_create() checks the rest, and returns MSPRING_ERROR_SNAPSHOT, too. Messages name the chunk. Both use
-/// memory in proportion to size.
+/// mspring_network_create() checks the rest, and may return MSPRING_ERROR_SNAPSHOT, too. Messages name the chunk. Both
+/// use memory in proportion to size.
 /// @param archive  [size] bytes, of any alignment; copied
-/// @param skipped  receives how many chunks were left out, because only later versions or other parts of the library
+/// @param skipped  receives the number of chunks left out, because only later versions or other parts of the library
 ///                 know them; may be NULL
 /// @threads exclusive   @allocates yes; size and 100 bytes for each particle and spring   @since 0.2
 /// @errors SNAPSHOT (the message says what is wrong), ARGUMENT also for a builder that is not empty, MEMORY
@@ -635,7 +635,7 @@ typedef struct mspring_network mspring_network;
 /// Finds lattices and chains in it, whatever the order in which they were added, and lays the state out for them. On
 /// failure the builder has the error message.
 ///
-/// With a builder that has read an archive, the network goes on where the archived one was. Then def may change the
+/// If the builder has read an archive, the network continues where the archived one was. Then def may change the
 /// settings, the solver, workers and the allocator; flags and spare room are the archive's.
 /// @param def  NULL for the defaults, or those of mspring_builder_get_network_def()
 /// @threads exclusive for builder   @allocates yes   @errors ARGUMENT also for a builder without particles;
@@ -644,8 +644,8 @@ typedef struct mspring_network mspring_network;
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_create(
     mspring_builder *builder, const mspring_network_def *def, mspring_network **network);
 
-/// Fill a network's definition with what the builder's archive has: settings, solver, flags and spare room. Without an
-/// archive: with the defaults. Set struct_size first.
+/// Fill a network's definition from the builder's archive: settings, solver, flags and spare room. Without an archive,
+/// fill in the defaults. Set struct_size first.
 /// @threads exclusive for builder   @allocates never   @since 0.2   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_get_network_def(
     mspring_builder *builder, mspring_network_def *def);
@@ -1224,16 +1224,17 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_load(
 
 /* ------------------------------------------------------------------------------------------------------ archives */
 
-/// Receives the next bytes of an archive, [size] of them. Return MSPRING_OK to go on, else an error.
+/// Receives the next bytes of an archive, [size] of them. Return MSPRING_OK to continue, else an error.
 typedef mspring_result(MSPRING_CALL *mspring_write_fn)(const void *bytes, size_t size, void *user);
 
 /// Write an archive: a file that this and all later versions read (mspring_builder_read()), on every machine.
-/// It has all but hooks, components, events that wait, and reports on the last step: ids, state, removed and broken
-/// springs, laws, ramps, sleep, settings, solver, forces for the next step, floor, contact, colliders, grips, areas,
-/// groups with their marks, and actuators. It does not depend on the machine, SIMD level or workers.
+/// It has ids, state, removed and broken springs, laws, ramps, sleep, settings, solver, forces for the next step,
+/// floor, contact, colliders, grips, areas, angles, groups with their marks, and actuators. It lacks hooks,
+/// components, unread events and reports on the last step. Its bytes depend neither on the machine nor on SIMD level
+/// or workers.
 ///
 /// The next steps of a network that was read repeat those of the written one bit for bit, if both have the same layout.
-/// They do unless a later version lays networks out otherwise; the guide examples/guides/archives.md has what holds then.
+/// Later versions and networks edited after their compaction may have another: see the guide "Archives".
 /// @param write  called with one piece after another; no call of the network's is allowed in it
 /// @param user   passed to write
 /// @threads exclusive for the allocator, otherwise shared   @allocates up to twice its largest chunk, about 16 bytes for

@@ -61,8 +61,8 @@ const mspringi_by_id *mspringi_by_id_of(const mspringi_section *section);
 /// SIZE_MAX if these are too few or too many.
 size_t mspringi_by_id_size(const mspring_network *network, const mspringi_by_id *by, bool is_archived,
                            const uint8_t *from, size_t size);
-/// Translate a section into the other form. `to` has that many zeros, followed by the size of the network's own
-/// section (mspringi_by_id.enter). False: the section names particles that do not exist.
+/// Translate a section into the other form. `to` holds zeros: that size, plus the size of the network's own section
+/// (mspringi_by_id.enter). False: the section names particles that do not exist.
 bool mspringi_by_id_translate(const mspring_network *network, const mspringi_by_id *by, bool is_archived,
                               const uint8_t *from, size_t size, uint8_t *to);
 
