@@ -613,7 +613,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_builder_get_sp
 /// Read an archive that mspring_network_write() has written, by this or an earlier version, into an empty builder.
 /// mspring_network_create() then makes a network that continues where the written one was, with the same ids. Until
 /// then the builder has the particles and springs that the written network was created with, including removed ones,
-/// in their present state. Later additions come with the network. This builder accepts no further definitions.
+/// in their present state. Later additions come with the network. Do not add to this
+/// builder: mspring_network_create() then returns MSPRING_ERROR_ARGUMENT.
 ///
 /// Archives may come from anywhere. This call checks the form of all chunks, and all values of particles and springs;
 /// mspring_network_create() checks the rest, and may return MSPRING_ERROR_SNAPSHOT, too. Messages name the chunk. Both
@@ -636,8 +637,8 @@ typedef struct mspring_network mspring_network;
 /// failure the builder has the error message.
 ///
 /// If the builder has read an archive, the network continues where the archived one was. Then def may change the
-/// settings, the solver, workers and the allocator; flags and spare room are the archive's.
-/// @param def  NULL for the defaults, or those of mspring_builder_get_network_def()
+/// settings, the solver, workers and the allocator. Flags and spare room must be the archive's.
+/// @param def  NULL for the defaults, or for the archive's definition (mspring_builder_get_network_def())
 /// @threads exclusive for builder   @allocates yes   @errors ARGUMENT also for a builder without particles;
 ///          DUPLICATE if two springs join the same two particles; THREAD if a worker cannot start; SNAPSHOT for an
 ///          archive with impossible values; STRUCT, LIMIT, MEMORY
