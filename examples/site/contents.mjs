@@ -5,7 +5,7 @@ export const CONTENTS = [
     ['Ten live figures', 'examples/guides/figures.html'],
     ['Two peers, one state', 'rollback.html'],
     ['Choose a solver', 'examples/guides/choose.html'],
-    ['Beside other engines', 'examples/site/comparison.html'],
+    ['Compared with other engines', 'examples/site/comparison.html'],
     ['Install', 'README.html#install'],
     ['Download', 'download.html'],
     ['Examples', 'examples/README.html'],

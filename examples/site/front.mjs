@@ -45,7 +45,7 @@ export function front(root, { figureOf, escape, version, download, playground, c
 <p class="scenes" hidden>${scenes.join('\n')}
 <a class="button" href="massspring.html#${escape(WIDE)}">Full screen</a></p>
 <p class="without">This needs JavaScript and WebAssembly.</p>
-<p class="try">Pull it. Then choose <em>Cut</em> and draw a line through it. Any image becomes a network: open full screen, drop yours.</p>`
+<p class="try">Pull it. Then choose <em>Cut</em> and draw a line through it. Any image becomes a network: choose full screen and drop yours.</p>`
     : '<p><img src="examples/pictures/web_ship.png" width="1200" height="660" alt="A steamer of springs, coloured by strain"></p>';
   return `<h1>Springs that bend, swing and break</h1>
 <p class="lead">A C library for 2D networks of masses, springs and dampers. A ship of 157,962 springs runs in your browser.</p>
@@ -53,8 +53,8 @@ ${play}
 <h2 id="in-your-program">In your program</h2>
 ${tabs(code)}
 <h2 id="why-this-one">Why this one</h2>
-<p><strong>Fast.</strong> Half a nanosecond a spring and substep with AVX-512: six to ten times faster than a plain loop.
-<a href="examples/site/comparison.html">Beside Box2D, Rapier, XPBD</a></p>
+<p><strong>Fast.</strong> Half a nanosecond per spring and substep with AVX-512: six to ten times faster than a plain loop.
+<a href="examples/site/comparison.html">Compared with Box2D, Rapier and XPBD</a></p>
 <p><strong>The same bits everywhere.</strong> In this page, on your server, on a phone. Replays and lockstep games rely on it.
 <a href="rollback.html">Two peers, a bad line, one state</a></p>
 <p><strong>Right.</strong> It is checked against beams, cables and buckling columns. Below, it checks itself in your browser.

@@ -1,11 +1,11 @@
-// The bar of the board beside engines of today, all in one JavaScript runtime: time of a frame and error after a second.
+// The bar of the board with other engines, all in one JavaScript runtime: time of a frame and error after a second.
 //
-//   npm install @dimforge/rapier2d-compat box2d3-wasm      # in the folder that is named last
+//   npm install @dimforge/rapier2d-compat box2d3-wasm      # in FOLDER
 //   node examples/site/peers.mjs PACKAGE FOLDER
 //
 // PACKAGE is the npm package of this library. 80 x 5 particles of iron, clamped at the left end, are let go undamped. The
-// reference is velocity Verlet in double precision; the error is the root of the mean of squares of position errors over
-// that of displacements. A frame is 1/64 s. Times are of the processor, the least of three seconds.
+// reference is velocity Verlet in double precision; the error is the RMS position error over the
+// RMS displacement. A frame is 1/64 s. Times are of the processor, the least of three seconds.
 import { createRequire } from 'node:module';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';

@@ -3,19 +3,20 @@
 /// instructions and for any number of workers. test_spec.c compares both.
 ///
 /// **Files.** spec.h: state and input. spec.c: a step. spec_state.c: words, edits and the origin. spec_springs.c:
-/// springs that change. spec_yield.c: those that yield. spec_laws.c: areas, angles, hooks. spec_grips.c: grips. spec_floor.c and spec_flight.c: the
-/// floor. spec_pace.c: automatic substeps.
-/// arrange.c and lattices.c: which springs are summed by rows, which is input to spec.c.
+/// springs that change. spec_yield.c: springs that yield. spec_laws.c: areas, angles, hooks. spec_grips.c: grips.
+/// spec_floor.c and spec_flight.c: the floor. spec_pace.c: automatic substeps. arrange.c and lattices.c: which springs
+/// are summed by rows, an input to spec.c.
 ///
 /// **Covered.** Springs, dampers and welds in lattices, chains and irregular parts; relative and one-way springs;
-/// springs that yield or break in a step, ramps, actuators; areas, also around cells of lattices, and angle springs; grips, also
-/// several on one particle; particles without springs; added particles and springs; pins; gravity; forces of the host
-/// and of hooks, with a period, too; global damping; floors; MSPRING_NETWORK_PRECISE; the first kick and uneven dt;
-/// MSPRING_SUBSTEPS_AUTO and _EVEN; the local origin; between steps edits of places, velocities, masses and springs,
-/// impulses and broken springs.
+/// springs that yield or break in a step, ramps, actuators; areas, also around cells of lattices, and angle springs;
+/// grips, also several on one particle; particles without springs; added particles and springs; pins; gravity; forces
+/// of the host and of hooks, with a period, too; global damping; floors; MSPRING_NETWORK_PRECISE; the first kick and
+/// uneven dt; MSPRING_SUBSTEPS_AUTO and _EVEN; the local origin; between steps edits of positions, velocities, masses
+/// and springs, impulses and broken springs.
 ///
-/// **Not covered.** Silt; actuators of springs that yield or are on ramps; yielding one-way and relative springs; particles with added springs alone where
-/// there is a floor; new layouts, scales of inverse masses, contact, sleep, groups, the guard, other solvers.
+/// **Not covered.** Silt; actuators of springs that yield or are on ramps; yielding one-way and relative springs; at a
+/// floor, particles whose only springs were added; new layouts, scales of inverse masses, contact, sleep, groups, the
+/// guard, other solvers.
 ///
 /// **Arithmetic.** IEEE 754, rounded to nearest even, subnormal numbers included. An operation of floats gives a
 /// float, one of doubles a double. Nothing is fused; parentheses say which operation comes first, else the left one
