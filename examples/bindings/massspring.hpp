@@ -47,7 +47,7 @@ public:
         check(mspring_builder_add_lattice(get(), &def, ids.data()));
         return ids;
     }
-    /// Read an archive: a network that is made of this builder goes on where the archived one was.
+    /// Read an archive: a network made of this builder continues where the archived one was.
     void read(const std::vector<unsigned char> &archive) {
         check(mspring_builder_read(get(), archive.data(), archive.size(), nullptr));
     }
@@ -95,7 +95,7 @@ public:
         check(mspring_network_state_hash(get(), &value));
         return value;
     }
-    /// All of the network, for a file that later versions read, too.
+    /// Return an archive of the network, for a file that this and all later versions read.
     std::vector<unsigned char> archive() const {
         std::vector<unsigned char> bytes;
         const auto append = [](const void *piece, size_t size, void *user) {

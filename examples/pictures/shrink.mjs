@@ -1,18 +1,18 @@
-// Puts a picture where it belongs, small, and only if it is another one.
+// Shrinks a picture and replaces the kept one, unless both show the same.
 //
 //   node shrink.mjs NEW.png KEPT.png
 //
-// NEW, still or moving, gets as few colours as do no harm; a moving one also fewer frames, until it has at most 300 kB.
+// NEW, still or moving, gets as few colours as look the same; an animation also gets fewer frames, until it has at most 300 kB.
 // Pixels that stay from frame to frame are left out. KEPT stays as it is if it shows the same and is not much larger.
 // Pictures with a digit of a clock in a corner show the same.
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { constants, crc32, deflateSync, inflateSync } from 'node:zlib';
 
 const MOST = 300e3; // bytes of an animation
-const HARM = 1.5; // of 255: root of the mean of squares of what fewer colours change in a still picture
-const SAME = 2.5; // of 255: likewise, between two pictures that show the same
+const HARM = 1.5; // of 255: RMS change of a still picture by fewer colours
+const SAME = 2.5; // of 255: RMS difference of two pictures that show the same
 const MUCH = 1.1; // times as large
-const TRIES = [[128, 1], [64, 1], [32, 1], [32, 2], [24, 2], [20, 2], [32, 3], [16, 3]]; // colours; each so manieth frame
+const TRIES = [[128, 1], [64, 1], [32, 1], [32, 2], [24, 2], [20, 2], [32, 3], [16, 3]]; // colours; keep every n-th frame
 
 /* --------------------------------------------------------------------------------------------------------- read */
 
@@ -82,7 +82,7 @@ function read(path) {
 
 /* ------------------------------------------------------------------------------------------------------ colours */
 
-// Rare colours count for more than their share: they are what a picture is about.
+// Rare colours get more weight: they often show the subject.
 const weightOf = (count) => count ** 0.35;
 
 // The box of colours that is spread widest is cut at its mean, until there are enough.
@@ -195,7 +195,7 @@ function write({ width, height, frames }, most) {
 
 /* ---------------------------------------------------------------------------------------------------------- all */
 
-// Each so manieth frame, and the last; times add up.
+// Every n-th frame, and the last; times add up.
 function thinned(picture, every) {
   const frames = [], last = picture.frames.length - 1;
   let time = 0;

@@ -1,4 +1,4 @@
-// The page of what can be taken away: files of the site's folder download, with their sizes and SHA-256.
+// The page of downloads: files of the site's folder download, with their sizes and SHA-256.
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';

@@ -17,7 +17,7 @@
     return asked;
   }
 
-  // Headings that begin with the words come first, then headings that have them, then texts; of these, what is short.
+  // Headings that begin with the words come first, then headings that have them, then texts; among these, short ones first.
   function rank([heading, , text = ''], words) {
     const title = heading.toLowerCase(), body = text.toLowerCase();
     const inTitle = (word) => title.includes(word);

@@ -29,7 +29,7 @@
     for (const button of buttons.querySelectorAll('button'))
       button.setAttribute('aria-pressed', String(button.dataset.scene === settings));
   }
-  // The still picture stays until something is drawn over it. What is slow gives way to something lighter, once.
+  // The still picture stays until something is drawn over it. If the scene is slow, a lighter one replaces it, once.
   let chosen = innerWidth < 700;
   addEventListener('message', ({ source, data }) => {
     if (source !== frame?.contentWindow) return;

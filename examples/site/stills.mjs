@@ -1,4 +1,4 @@
-// Still pictures of the figures, as SVG: what a page shows where they do not run, and before they do.
+// Still pictures of the figures, as SVG, for browsers that cannot run them, and until they start.
 //
 // A figure draws with the Pen of pen.js, which knows a canvas. Here it gets one that writes down what is drawn.
 const WIDTH = 780, HEIGHT = 390, FAR = 1500;
@@ -17,7 +17,7 @@ class Path {
     this.isOn = false;
   }
 
-  // Of what has exploded most is out of the picture, and left out.
+  // Most of an exploded network is outside the picture, and left out.
   lineTo(x, y) {
     if (Math.max(...[x, y, ...this.last].map(Math.abs)) < FAR) {
       this.d.push(`${this.isOn ? '' : `M${this.last.map(short).join(' ')}`}L${short(x)} ${short(y)}`);

@@ -64,8 +64,8 @@ export interface Builder {
   addMesh(options: MeshOptions): { firstParticle: number; firstSpring: number };
   addDisc(options: DiscOptions): { firstParticle: number; firstSpring: number };
   /**
-   * Read an archive of Network.write() into an empty builder. A network that is made of it goes on where that one was;
-   * the options are what is to be different. Returns how many parts only later versions know.
+   * Read an archive of Network.write() into an empty builder. A network made of it continues where the written one was;
+   * its options override the archived ones. Returns the number of chunks that were skipped as unknown.
    */
   read(archive: Uint8Array): number;
   /** Frees it now. Otherwise the garbage collector does so some time. */
@@ -237,7 +237,7 @@ export interface Network {
   /** A snapshot, for rollback and replay: the following steps repeat, bit for bit. */
   save(contents?: SnapshotContents): Uint8Array;
   load(snapshot: Uint8Array): void;
-  /** An archive, for files: all but what waits to be read. This and later versions read it, see Builder.read(). */
+  /** Return an archive, for files: all but unread events. This and later versions read it, see Builder.read(). */
   write(): Uint8Array;
   clone(): Network;
 }

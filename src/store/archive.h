@@ -2,7 +2,7 @@
 /// Archives: files that all later versions read.
 ///
 ///   head     16 bytes: magic, version of the format, 0
-///   chunks   each: tag (4 bytes), version (2), flags (2), size (8), hash (8) of all that, then so many bytes
+///   chunks   each: tag (4 bytes), version (2), flags (2), size (8), hash (8) of head and contents, then contents
 ///   the last chunk has the tag "end." and no bytes
 ///
 /// All is little-endian. A chunk is one of these:
@@ -11,8 +11,8 @@
 ///   plan   ends and flags of the first springs, and where the layout had the first particles
 ///   a row of features.def: CHUNK, or SECTION, whose bytes are those of a snapshot, but by id (BY_ID)
 ///
-/// Rules for versions. A chunk may grow at its end: readers ignore what is behind the bytes that they know, and
-/// check whether those are there. A section has the size that its check asks for: one that changes gets a version
+/// Rules for versions. A chunk may grow at its end: readers check that the bytes that they know are there, and ignore
+/// those behind. A section has the size that its check asks for: one that changes gets a version
 /// of its own instead of MSPRINGI_CHUNK_VERSION, and the reader converts the old one before mspringi_by_id.enter,
 /// as settings_enter() does for settings that were added. Chunks of unknown tag or later version are skipped and
 /// counted, unless MSPRINGI_CHUNK_IS_NEEDED. tests/archive/files has files of each version, which are never
@@ -38,7 +38,7 @@ typedef struct mspringi_chunk {
     const char *name; ///< of its contents, for messages
     /// Write it; nothing if the network has no such data.
     void (*save)(const mspring_network *network, mspringi_io *io);
-    /// Give it to a new network, of which it is the first. It may come from anywhere.
+    /// Load it into a new network, which has no such data yet. It may come from anywhere.
     mspring_result (*load)(mspring_network *network, mspringi_io *io);
     /// A section that needs it, and is loaded right after it. NULL: there is none, and it is loaded before the
     /// sections.
@@ -65,19 +65,18 @@ static inline uint32_t mspringi_chunk_room(const mspring_network *network, uint3
 /// Calls of mspring_network_create() for a builder that has read an archive. They are behind pointers, so that
 /// programs that read none are linked without them (41 kB).
 typedef struct mspringi_archive_calls {
-    /// Definition of a network from the builder's archive: as given, and what else the archive had. NULL: the
-    /// archive's.
+    /// Complete the given definition of a network from the builder's archive. NULL: take the archive's.
     mspring_result (*take_def)(mspring_builder *builder, const mspring_network_def *given,
                                mspring_network_def *def);
     /// The builder whose particles lie where the archived layout had them. Its particles are made in this memory.
     mspring_result (*lay_out)(const mspring_builder *builder, mspringi_memory *memory, mspringi_message *message,
                               mspring_builder *placed);
-    /// Turn a failure into one of the archive's: what is wrong there is no wrong argument of the host's. chunk: its
-    /// contents; NULL: the message is that of a section, which speaks of a snapshot.
+    /// Turn a failure into one of the archive, since the host's arguments are correct. chunk: name of its contents;
+    /// NULL: the message is that of a section, and names a snapshot.
     mspring_result (*blame)(mspringi_message *message, mspring_result result, const char *chunk);
     /// True if the archived layout was one that may have bundles.
     bool (*may_have_bundles)(const mspring_builder *builder);
-    /// Give a new network what the archive has beside particles and springs.
+    /// Load the rest of the archive into a new network: all but particles and springs.
     mspring_result (*resume)(mspring_network *network, const mspring_builder *builder,
                              const mspring_network_def *given);
 } mspringi_archive_calls;

@@ -14,14 +14,14 @@ typedef struct archived {
 
 archived archives_write(const mspring_network *network);
 
-/// A network that goes on, with so many workers.
+/// Read an archive. Return its network, with this number of workers.
 mspring_network *archives_read(const archived *from, uint32_t workers);
 
 /// Write, read, write: the same bytes.
 /// @return the network that was read
 mspring_network *archives_check_same(const mspring_network *network, uint32_t workers);
 
-/// Both go on for so many steps with the same bits, and end in the same snapshot.
+/// Step both networks this many times. They have the same bits after each step, and the same snapshot at the end.
 void archives_check_goes_on(mspring_network *network, mspring_network *other, uint32_t steps);
 
 /// Networks that have a bit of everything between them.

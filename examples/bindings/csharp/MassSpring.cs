@@ -9,8 +9,8 @@
 //         }
 //     }
 //
-// It wraps what most games call. The rest is in Native, under the names of the headers: network.Handle is the pointer
-// that these functions take, and MassSpringException.Check says what was wrong with a call.
+// It wraps the calls of most games. Native has all others, under the names of the headers: network.Handle is the pointer
+// for these functions, and MassSpringException.Check throws with the message of a failed call.
 //
 // SPDX-License-Identifier: MIT
 using System;
@@ -22,7 +22,7 @@ namespace MassSpring {
 
         MassSpringException(mspring_result result, string message) : base(message) { Result = result; }
 
-        /// <summary>Throws if a call has failed; message: what the object says of it.</summary>
+        /// <summary>Throws if a call has failed; message: the error message of the object.</summary>
         public static unsafe void Check(mspring_result result, byte* message = null) {
             if (result == mspring_result.MSPRING_OK) return;
             string said = message == null ? "" : ": " + Text(message);
@@ -115,7 +115,7 @@ namespace MassSpring {
         ~Builder() { Dispose(); }
     }
 
-    /// <summary>Particles and springs that move. It is no thread's own, but one thread at a time calls it.</summary>
+    /// <summary>Particles and springs that move. Any thread may call it, but only one at a time.</summary>
     public sealed unsafe class Network : IDisposable {
         public IntPtr Handle { get; private set; }
         public int ParticleCount { get { return (int)Native.mspring_network_particle_count(Handle); } }
@@ -199,7 +199,7 @@ namespace MassSpring {
 
         public void RemoveGrip(int grip) { Check(Native.mspring_network_remove_grip(Handle, (uint)grip)); }
 
-        /// <summary>All that the following steps depend on, for rollback and network play.</summary>
+        /// <summary>Saves all that the following steps depend on, for rollback and network play.</summary>
         public byte[] Save() {
             UIntPtr size;
             var contents = mspring_snapshot_contents.MSPRING_SNAPSHOT_FRAME;

@@ -3,7 +3,7 @@
 --
 --   MASSSPRING_LIBRARY=build/src/libmassspring.so love examples/bindings/love
 --
--- With --frames 600 --picture car.png it drives by itself for so many frames, says the state's hash and ends.
+-- With --frames 600 --picture car.png it drives by itself for 600 frames, prints the state's hash and ends.
 --
 -- SPDX-License-Identifier: MIT
 local World = require("world")
@@ -52,7 +52,7 @@ local function step()
   camera.x, camera.y = camera.x + 0.08 * (x + 4 - camera.x), camera.y + 0.05 * (y + 1.5 - camera.y)
 end
 
--- Ends a run that was asked for, with a picture of its last frame.
+-- Ends a run with --frames, with a picture of its last frame.
 local function finish()
   io.write(("car: x %.3f m, %d springs broken, hash %s\n"):format(world:place(), world:broken(), world.network:hash()))
   love.graphics.captureScreenshot(function(image)

@@ -7,11 +7,11 @@
 --   network:step(1 / 60)
 --   local x, y = network:positions()               -- C arrays, x[0] to x[network:particle_count() - 1]
 --
--- Every function of the headers is a method: mspring_network_set_floor(network, def) is network:set_floor(def), and one
--- that fails raises its message. ms.def("floor_def", { ... }) makes a definition with its defaults; lists become arrays.
+-- Every function of the headers is a method: mspring_network_set_floor(network, def) is network:set_floor(def). If it
+-- fails, it raises an error with its message. ms.def("floor_def", { ... }) makes a definition with its defaults; lists become arrays.
 -- ms.C has the functions as they are, and ms.NONE, ms.PARTICLE_PINNED ... the constants without MSPRING_.
 --
--- The library is looked for in the variable MASSSPRING_LIBRARY, beside the game, and where the system has libraries.
+-- It looks for the library in the variable MASSSPRING_LIBRARY, next to the game, and in the system's folders.
 --
 -- SPDX-License-Identifier: MIT
 local ffi = require("ffi")
@@ -150,14 +150,14 @@ function builder:disc(values)
   return number(particle), number(spring)
 end
 
---- Makes a network. The builder can go on.
+--- Makes a network. You can still add to the builder.
 function builder:network(values)
   local out = ffi.new("mspring_network *[1]")
   check(C.mspring_network_create(self.handle, ms.def("network_def", values), out), C.mspring_builder_error(self.handle))
   return make(Network, out[0], C.mspring_network_destroy)
 end
 
---- World positions of all particles, in two C arrays. Pass them again to have them filled anew.
+--- World positions of all particles, in two C arrays. Pass them again to reuse them.
 function network:positions(x, y)
   local count = self:particle_count()
   x, y = x or ffi.new("double[?]", count), y or ffi.new("double[?]", count)

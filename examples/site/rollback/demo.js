@@ -1,4 +1,4 @@
-// Shows both peers of a session, side by side, and lets people play and spoil the line.
+// Shows both peers of a session side by side. Visitors play, and make the line worse.
 import { open } from 'massspring';
 import { Pen } from '../figures/pen.js';
 import { Session } from './session.js';
@@ -123,7 +123,7 @@ class Demo {
     addEventListener('keyup', (event) => set(event, false));
   }
 
-  // On a phone: a finger in a player's half of the canvas leads, and above him he jumps.
+  // On a phone: a player follows the finger in his half of the canvas, and jumps if it is above him.
   bindPointer() {
     const { canvas } = this.pen;
     const lead = (event) => {

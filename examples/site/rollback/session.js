@@ -1,11 +1,11 @@
-// Rollback for two peers, as fighting games have it: each steps its own copy of the world at once, with its own input and
+// Rollback for two peers, as in fighting games: each steps its own copy of the world immediately, with its own input and
 // a guess of the other's. When the real input arrives and differs, it goes back to that frame and steps again.
 //
 // It knows nothing of the world but step(inputs), save(), load(snapshot) and hash(), and nothing of the line but that
 // packets may be late, out of order, or lost.
 
 export const WINDOW = 8; // frames that a peer may be ahead of the other's input; then it waits
-export const DELAY = 2; // frames from a key to its effect: what arrives in that time needs no guess
+export const DELAY = 2; // frames from a key to its effect: packets that arrive in that time need no guess
 
 /** The same numbers from the same seed, 0 to 1. */
 export function makeRandom(seed) {
@@ -43,7 +43,7 @@ export class Peer {
   constructor(world, me) {
     Object.assign(this, { world, me, frame: 0, received: DELAY - 1, acknowledged: DELAY - 1, wrong: Infinity, final: -1,
       hashesSeen: -1, hashesTaken: -1, comparedTo: -1, dropped: 0 });
-    // By frame: inputs of both players, what was guessed of the other, snapshots before it and hashes after it.
+    // By frame: inputs of both players, guesses of the other's input, snapshots before it and hashes after it.
     this.inputs = [[0, 0], [0, 0]];
     this.guessed = [];
     this.snapshots = new Map();
@@ -78,7 +78,7 @@ export class Peer {
     this.hashesTaken = Math.max(this.hashesTaken, hashesAck);
   }
 
-  // One frame, with what is known or guessed of the other's input: that it goes on as it was.
+  // Step a frame with the other's input. If that is unknown, guess that it has not changed.
   simulate(frame) {
     const other = this.inputs[1 - this.me], guess = other[Math.min(frame, this.received)];
     this.guessed[frame] = guess;
@@ -91,7 +91,7 @@ export class Peer {
     this.hashes.set(frame, this.world.hash());
   }
 
-  /** Goes on by a frame with that input of its own player; false: it waited for the other. */
+  /** Steps a frame with this input of its own player; false: it waited for the other. */
   tick(input) {
     if (this.wrong < this.frame) {
       this.world.load(this.snapshots.get(this.wrong));

@@ -176,7 +176,7 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     # ------------------------------------------------------------------------------------------------- archives
 
     def archive(self) -> bytes:
-        """An archive: all of the network but hooks, components and events that wait, as bytes.
+        """Return an archive as bytes: all of the network but hooks, components and unread events.
 
         This and all later versions read it, on every machine. Networks are pickled as archives.
         """
@@ -191,7 +191,7 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
         return b"".join(pieces)
 
     def write(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Write an archive to a file. Network.read() makes a network of it that goes on."""
+        """Write an archive to a file. Network.read() makes a network that continues from it."""
         archive = self.archive()
         with open(path, "wb") as file:
             file.write(archive)
@@ -199,10 +199,10 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     @classmethod
     @with_keywords("mspring_network_def")
     def read(cls, source: Union[bytes, str, os.PathLike[str]], **settings: Unpack[NetworkKeywords]) -> Network:
-        """Make a network of an archive, which goes on where the archived one was, with the same ids.
+        """Make a network of an archive. It continues where the archived one was, with the same ids.
 
         source    bytes of archive(), or the path of a file
-        settings  what is to be different, such as worker_count
+        settings  override those of the archive, such as worker_count
         """
         if isinstance(source, (str, os.PathLike)):
             with open(source, "rb") as file:
