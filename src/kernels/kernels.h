@@ -96,7 +96,7 @@ static inline void mspringi_yield_mark_warm(const mspringi_yield_test *test, siz
     test->look_of[word] = test->look;
 }
 
-/// Springs of a word that were warm in the last look: these alone flow, whatever is beside them in the layout.
+/// Springs of a word that were warm in the last look. Only these flow, so results do not depend on the layout.
 static inline uint32_t mspringi_yield_warm(const mspringi_yield_test *test, size_t word) {
     return test->look_of[word] == test->look ? test->warm[word] : 0u;
 }

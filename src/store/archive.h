@@ -11,12 +11,11 @@
 ///   plan   ends and flags of the first springs, and where the layout had the first particles
 ///   a row of features.def: CHUNK, or SECTION, whose bytes are those of a snapshot, but by id (BY_ID)
 ///
-/// Rules for versions. A chunk may grow at its end: readers check that the bytes that they know are there, and ignore
-/// those behind. A section has the size that its check asks for: one that changes gets a version
-/// of its own instead of MSPRINGI_CHUNK_VERSION, and the reader converts the old one before mspringi_by_id.enter,
-/// as settings_enter() does for settings that were added. Chunks of unknown tag or later version are skipped and
-/// counted, unless MSPRINGI_CHUNK_IS_NEEDED. tests/archive/files has files of each version, which are never
-/// renewed.
+/// Rules for versions. A chunk may grow at its end: readers check that the bytes that they know are there, and
+/// ignore those behind. A section has the size that its check asks for. A section that changes gets a version of
+/// its own instead of MSPRINGI_CHUNK_VERSION. The reader converts the old one before mspringi_by_id.enter, as
+/// settings_enter() does for settings that were added. Chunks of unknown tag or later version are skipped and
+/// counted, unless MSPRINGI_CHUNK_IS_NEEDED. tests/archive/files has files of each version, which are never renewed.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ARCHIVE_H

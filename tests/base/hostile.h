@@ -12,7 +12,7 @@
 
 enum { OUTS = 6, OUT_BYTES = 512, STRUCT_BYTES = 512, SNAPSHOT_BYTES = 8192 };
 
-/// What a function is called with: good at first, then spoilt in one place.
+/// Arguments of a call: valid at first, then one is spoilt.
 typedef struct arguments {
     mspring_network *network;
     mspring_builder *builder;

@@ -20,7 +20,7 @@ static void no_hook(const mspring_hook_args *args, void *user) {
     (void)args, (void)user;
 }
 
-/// What several calls say of one struct, which is the same.
+/// Result of two calls for one struct, which must agree.
 static mspring_result both(mspring_result one, mspring_result other) {
     assert_int_equal(one, other);
     return one;

@@ -387,7 +387,7 @@ static mspring_result expand(life *l) {
     return mspring_network_expand(l->network);
 }
 
-// What loads the snapshot lacks all that it did not need so far.
+// Destroy the network. The next one has allocated nothing on demand yet when it loads the snapshot.
 static mspring_result start_again(life *l) {
     mspring_network_destroy(l->network);
     l->network = NULL;
@@ -573,7 +573,7 @@ static void make_call(life *l, size_t number) {
         assert_int_equal(mspring_builder_particle_count(l->builder), particles);
         assert_int_equal(mspring_builder_spring_count(l->builder), springs);
         assert_int_equal(l->clone != NULL, clones);
-        // What a call has reserved before it failed it may keep, for the next time; but it counts it.
+        // A call may keep memory that it reserved before it failed, if it counts it.
         assert_true(used_by(l) >= used);
         result = calls[number].call(l);
     }

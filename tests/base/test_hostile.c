@@ -176,7 +176,7 @@ static bool spoil(arguments *a, char kind, int n) {
     }
 }
 
-/// Whether this way has to be refused.
+/// True if the call must reject an argument spoilt in this way.
 static bool has_to_be_refused(char kind, int n) {
     switch (kind) {
     case 'v':
@@ -240,7 +240,7 @@ static void begin(arguments *a) {
         a->out[i] = a->out_bytes[i];
 }
 
-/// What may not change.
+/// State that a rejected call must not change.
 typedef struct before {
     mspring_network *network;
     mspring_builder *builder;
@@ -293,14 +293,14 @@ static void end(const before *b) {
     mspring_builder_destroy(b->builder);
 }
 
-/// Whether the call leaves its message in the object that it was called on.
+/// Message in the object that the call is made on; "no place for one" if there is none.
 static const char *message_of(const arguments *a, const char *kinds) {
     if (strchr(kinds, 'B'))
         return a->builder ? mspring_builder_error(a->builder) : "no place for one";
     return strpbrk(kinds, "Nn") && a->network ? mspring_network_error(a->network) : "no place for one";
 }
 
-/// Whether an id that was never set is told as a number.
+/// True if the message prints an unset id as a number.
 static bool tells_unset_id(const char *message) {
     static const char *const words[] = {"particle ", "spring ", "grip ", "hook ", "collider ",
                                         "area ",     "group ",  "from ", "id ",   "number "};

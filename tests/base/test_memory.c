@@ -105,7 +105,7 @@ static uint64_t hash_after_steps(mspring_network *network) {
     return support_hash(network);
 }
 
-/// What comes out if nothing fails.
+/// Hash of the state if no allocation fails.
 static uint64_t expected_hash(const input *in) {
     mspring_builder *builder = support_builder();
     fill(builder, in);

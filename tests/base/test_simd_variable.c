@@ -20,8 +20,7 @@ static mspring_simd level_with(const char *variable, mspring_simd setting) {
     return level;
 }
 
-/// What is left of level under a limit. One that the machine lacks is none; scalar is the lowest that the build
-/// has.
+/// Lower a level to a limit. A limit that the machine lacks is ignored; scalar is the lowest level of the build.
 static mspring_simd lower(mspring_simd level, mspring_simd limit) {
     const bool is_scalar = limit == MSPRING_SIMD_SCALAR;
     while (is_scalar && !mspring_simd_available(limit)) {

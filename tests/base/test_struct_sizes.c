@@ -61,7 +61,7 @@ static void every_program_runs_with_every_library(void **state) {
             check_behind(given, size);
             assert_memory_equal(given, &size, sizeof size);
             assert_memory_equal(given + 4, (const char *)library->defaults + 4, shared - 4);
-            // What the program gives, and the defaults of what it does not know.
+            // Fields that the program sets, and defaults for fields that it does not know.
             ((v1 *)(void *)given)->a = 9;
             memcpy(expected, library->defaults, library->known);
             memcpy(expected, &library->known, sizeof library->known);

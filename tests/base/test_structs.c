@@ -171,7 +171,7 @@ static void check_filled(const struct output *output, uint32_t more) {
         assert_int_equal(bytes[i], 0);
     }
     check_fence(bytes);
-    // What was cut is the begin of what is given whole.
+    // A shorter struct gets the first bytes of the whole one.
     if (output->repeats) {
         set_size(whole, (uint32_t)output->size + LONGEST);
         check_ok(output->fill(&s, whole));

@@ -7,7 +7,7 @@
 #include "base/rotation.h"
 #include "support.h"
 
-/// What the header promises, and what libm may err by. (Windows has pi to 66 bits: at an angle of 1e6 that is
+/// Error that the header promises, plus the error of libm. (Windows has pi to 66 bits: at an angle of 1e6 that is
 /// 1e-14.)
 #ifdef _WIN32
 #define ERROR (2e-16 + 5e-14)

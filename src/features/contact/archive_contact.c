@@ -133,7 +133,7 @@ static mspring_result load_materials(mspring_network *network, mspringi_io *io) 
     const uint32_t particles = network->contacts->particles, count = network->topology.particle_count;
     mspringi_contact_material *values =
         mspringi_chunk_array(network, io, 2 * (size_t)particles, sizeof(float), &result);
-    // The call checks; -1 is what all have at first.
+    // The call checks the values; -1 is the default.
     for (mspring_id p = 0; result == MSPRING_OK && p < particles; ++p)
         result = mspring_network_set_contact_surface(network, p < count ? p : 0, 1, values[p].friction,
                                                      values[p].restitution);

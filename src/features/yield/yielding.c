@@ -1,9 +1,9 @@
 /// The stage in which springs yield.
 ///
 /// A look over all springs finds those that are warm: near to what they yield at. It is due before each
-/// MSPRINGI_YIELD_PERIOD-th substep of a step, counted from its first. Those that it finds are tested before each
-/// substep until the next look, and mapped where they are over their yield strain, whatever lies beside them. So what
-/// a step does follows from the state that it begins with, and nothing has to be remembered from step to step.
+/// MSPRINGI_YIELD_PERIOD-th substep of a step, counted from its first. The warm springs are tested before each
+/// substep until the next look, and mapped where they are over their yield strain. Other springs are not, in any
+/// layout. So a step follows from the state at its beginning, and nothing is remembered from step to step.
 ///
 /// In the explicit solver the sweeps of lattice and chain rows look and test, strip by strip: see yield_springs()
 /// in kernels/yield_sweep.h. With several workers they first take a step in which they only look. If any spring was
