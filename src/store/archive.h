@@ -15,7 +15,8 @@
 /// ignore those behind. A section has the size that its check asks for. A section that changes gets a version of
 /// its own instead of MSPRINGI_CHUNK_VERSION. The reader converts the old one before mspringi_by_id.enter, as
 /// settings_enter() does for settings that were added. Chunks of unknown tag or later version are skipped and
-/// counted, unless MSPRINGI_CHUNK_IS_NEEDED. tests/archive/files has files of each version, which are never renewed.
+/// counted, unless MSPRINGI_CHUNK_IS_NEEDED. tests/archive/files has files of each version, which are never
+/// renewed.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_ARCHIVE_H
