@@ -1229,8 +1229,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_load(
 typedef mspring_result(MSPRING_CALL *mspring_write_fn)(const void *bytes, size_t size, void *user);
 
 /// Write an archive: a file that this and all later versions read (mspring_builder_read()), on every machine.
-/// It has ids, state, removed and broken springs, laws, ramps, sleep, settings, solver, forces for the next step,
-/// floor, contact, colliders, grips, areas, angles, groups with their marks, and actuators. It lacks hooks,
+/// It has ids, state, removed and broken springs, laws, ramps, sleep, settings, solver, and forces for the next step.
+/// It also has floor, contact, colliders, grips, areas, angles, groups with their marks, and actuators. It lacks hooks,
 /// components, unread events and reports on the last step. Its bytes depend neither on the machine nor on SIMD level
 /// or workers.
 ///

@@ -79,13 +79,14 @@ MSPRING_API mspring_result MSPRING_CALL mspring_contact_def_init(mspring_contact
 /// a step is undone, doubles the capacity, and is made again in the same call. It has the bits that it would have had
 /// with that room from the first, and MSPRING_STEP_GREW. So a game loop need not know of this. Without memory it returns
 /// MSPRING_ERROR_MEMORY, and beyond max_capacity MSPRING_ERROR_LIMIT, with the state of before. If max_capacity is 0, at
-/// most half of the default of capacity plus 1024 may touch.
+/// most half of the default of capacity, or an eighth of capacity if that is more, plus 1024 may touch.
 ///
-/// A step returns MSPRING_ERROR_LIMIT, too, if a run of its substeps takes too much work. Work is comparisons of points
-/// of the outline with springs near them that form no pair, visits of springs at particles with over 64 of these, and
-/// visits of constraints beyond 768 for each. A run may take 3.1 million comparisons, or work that takes as long, about
-/// 75 ms. Each list of pairs adds 32 for each point. Each implicit or direct substep adds 2.6 million, and 3000 for
-/// each particle. Large scenes stay far below. The message names the particle with the most springs of the outline.
+/// A step returns MSPRING_ERROR_LIMIT, too, if a run of its substeps takes too much work. Work is comparisons of
+/// points of the outline with springs near them that form no pair. Visits of springs at particles with over 64 of
+/// these count, too, and visits of constraints beyond 768 for each. A run may take 3.1 million comparisons, or work
+/// that takes as long, about 75 ms. Each list of pairs adds 32 for each point. Each implicit or direct substep adds
+/// 2.6 million, and 3000 for each particle. Large scenes stay far below. The message names the particle with the most
+/// springs of the outline.
 ///
 /// A step that is undone and repeated has several runs, for instance with more room or other substeps. Each run counts
 /// its work from zero, so the whole step may take several times this limit.
