@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdlib.h>
+#include <string.h>
 
 #include <massspring/massspring_tools.h>
 
@@ -21,6 +22,7 @@ bool session_create(bench_network *network, session *out, scene_error *error) {
     out->x = bench_allocate(particles, sizeof *out->x, error);
     out->y = bench_allocate(particles, sizeof *out->y, error);
     out->snapshot = NULL;
+    out->builder = NULL;
     if (mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_ALL, &out->snapshot_size) == MSPRING_OK) {
         out->snapshot_size += (size_t)64 * (particles + springs); // and what edits bring
         out->snapshot = bench_allocate(out->snapshot_size, 1, error);
@@ -49,6 +51,7 @@ void session_free(session *unwanted) {
     free(unwanted->y);
     free(unwanted->list);
     free(unwanted->snapshot);
+    mspring_builder_destroy(unwanted->builder);
 }
 
 static void no_preparation(session *with) {
@@ -222,6 +225,47 @@ static mspring_result save_all(session *with) {
                                 NULL);
 }
 
+static mspring_result MSPRING_CALL append(const void *bytes, size_t size, void *user) {
+    session *with = user;
+    if (size > with->snapshot_size - with->archive_size)
+        return MSPRING_ERROR_LIMIT;
+    memcpy((char *)with->snapshot + with->archive_size, bytes, size);
+    with->archive_size += size;
+    return MSPRING_OK;
+}
+
+static mspring_result write_archive(session *with) {
+    with->archive_size = 0;
+    return mspring_network_write(with->step->network, append, with);
+}
+
+static void forget_archive(session *with) {
+    mspring_builder_destroy(with->builder);
+    with->builder = NULL;
+    (void)!mspring_builder_create(NULL, &with->builder);
+}
+
+static mspring_result read_archive(session *with) {
+    return mspring_builder_read(with->builder, with->snapshot, with->archive_size, NULL);
+}
+
+static void prepare_archive(session *with) {
+    (void)!write_archive(with);
+    forget_archive(with);
+}
+
+static void prepare_builder(session *with) {
+    prepare_archive(with);
+    (void)!read_archive(with);
+}
+
+static mspring_result create_again(session *with) {
+    mspring_network *made = NULL;
+    const mspring_result result = mspring_network_create(with->builder, NULL, &made);
+    mspring_network_destroy(made);
+    return result;
+}
+
 const session_call session_calls[] = {
     {"read all positions", no_preparation, get_positions},
     {"write all positions", prepare_positions, set_positions},
@@ -246,5 +290,8 @@ const session_call session_calls[] = {
     {"save a frame", no_preparation, save_frame},
     {"load a frame", prepare_frame, load_frame},
     {"save all", no_preparation, save_all},
+    {"write an archive", no_preparation, write_archive},
+    {"read an archive", prepare_archive, read_archive},
+    {"  create its network", prepare_builder, create_again},
     {NULL, NULL, NULL},
 };

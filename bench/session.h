@@ -17,11 +17,12 @@ typedef struct session {
     float *more_values;
     float *by_spring[4]; ///< [springs] each
     double *x, *y;       ///< [particles]
-    void *snapshot;      ///< [snapshot_size]
-    size_t snapshot_size;
-    mspring_id *list; ///< [SESSION_BURST] springs, scattered
-    uint32_t burst;   ///< of them: SESSION_BURST, or all springs if there are fewer
-    uint32_t calls;   ///< so far
+    void *snapshot;      ///< [snapshot_size] or an archive, which is smaller
+    size_t snapshot_size, archive_size;
+    mspring_builder *builder; ///< that has read the archive
+    mspring_id *list;         ///< [SESSION_BURST] springs, scattered
+    uint32_t burst;           ///< of them: SESSION_BURST, or all springs if there are fewer
+    uint32_t calls;           ///< so far
 } session;
 
 /// Give a session of a network what its calls need. On failure it has to be freed all the same.
