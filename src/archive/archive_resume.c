@@ -181,16 +181,28 @@ static mspring_result load_section(mspring_network *network, const mspringi_arch
 
 /* ------------------------------------------------------------------------------------------------------- layout */
 
+// Have a solver without bundles, if this build has one: what is compacted then has none, whatever is chosen later.
+static mspring_result leave_bundles(mspring_network *network) {
+    mspring_solver_def solver;
+    (void)mspring_solver_def_init(&solver, sizeof solver);
+    solver.solver = MSPRING_SOLVER_IMPLICIT;
+    const mspring_result result = mspring_network_set_solver(network, &solver);
+    if (result == MSPRING_ERROR_MEMORY)
+        return result;
+    mspringi_message_clear(&network->message);
+    return MSPRING_OK;
+}
+
 // Choose the archived solver where the network was created with another one, and compact it if it was.
 static mspring_result lay_out_anew(mspring_network *network, const mspringi_archive_head *head) {
     const mspring_solver_def solver = mspringi_solver_of(&head->def);
-    const bool has_bundles = head->is_compact_with_bundles;
     mspring_result result = MSPRING_OK;
-    if (head->is_compact && has_bundles)
+    if (!head->is_compact_with_bundles)
+        result = solver.solver == MSPRING_SOLVER_EXPLICIT ? leave_bundles(network)
+                                                          : mspring_network_set_solver(network, &solver);
+    if (result == MSPRING_OK && head->is_compact)
         result = mspring_network_compact(network);
-    if (result == MSPRING_OK)
-        result = mspring_network_set_solver(network, &solver);
-    return result == MSPRING_OK && head->is_compact && !has_bundles ? mspring_network_compact(network) : result;
+    return result == MSPRING_OK ? mspring_network_set_solver(network, &solver) : result;
 }
 
 // Bounds that depend on what the network was created with.

@@ -113,6 +113,24 @@ static void a_compact_network_goes_on(void **state) {
     }
 }
 
+static void a_compact_network_has_the_layout_of_its_solver_then(void **state) {
+    (void)state;
+    recipe made = recipe_mixed(8);
+    mspring_network_def def = support_def(-9.8f, 4);
+    def.solver = MSPRING_SOLVER_IMPLICIT;
+    mspring_network *network = recipe_network(&made, &def);
+    for (mspring_id spring = 0; spring < 40; spring++)
+        check_ok(mspring_network_break_springs(network, &spring, 1));
+    check_ok(mspring_network_compact(network));
+    growth_use(network, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, 0);
+    support_steps(network, 3, 1.0 / 64);
+    mspring_network *other = archives_check_same(network, 1);
+    archives_check_goes_on(network, other, 10);
+    mspring_network_destroy(other);
+    mspring_network_destroy(network);
+    recipe_free(&made);
+}
+
 /* --------------------------------------------------------------------------------------------- one by one */
 
 static void floor_and_colliders_are_as_given(void **state) {
@@ -351,6 +369,7 @@ int main(void) {
         cmocka_unit_test(a_bit_of_everything_goes_on),
         cmocka_unit_test(a_life_goes_on),
         cmocka_unit_test(a_compact_network_goes_on),
+        cmocka_unit_test(a_compact_network_has_the_layout_of_its_solver_then),
         cmocka_unit_test(floor_and_colliders_are_as_given),
         cmocka_unit_test(groups_go_back_to_their_marks),
         cmocka_unit_test(sleepers_sleep_on),
