@@ -225,6 +225,14 @@ static void add_contacts(const mspring_network *network) {
     }
 }
 
+void mspringi_budget_add_forces(const measuring *all) {
+    budget_of *budget = &mspringi_implicit_of(all->network)->budget;
+    for (size_t slot = 0; all->base.x && slot < mspringi_used_slots(all->network); ++slot)
+        if (budget->of_slot[slot] != MSPRINGI_NO_COMPONENT)
+            add_effect(all, &budget->components[budget->of_slot[slot]], slot,
+                       budget->components[budget->of_slot[slot]].sums);
+}
+
 void mspringi_budget_measure(measuring *all) {
     mspring_network *network = all->network;
     mspringi_implicit *n = mspringi_implicit_of(network);

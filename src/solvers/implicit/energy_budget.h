@@ -176,6 +176,8 @@ typedef struct mspringi_budget_sums {
 /// Compute sums, elastic and length of all components, and save the state before a substep. The work of moving pins
 /// is separate.
 void mspringi_budget_measure(mspringi_budget_sums *sums);
+/// Add the forces from outside to the sums of the state before, with its places. The next measurement begins anew.
+void mspringi_budget_add_forces(const mspringi_budget_sums *sums);
 void mspringi_budget_add_pin_work(const mspringi_budget_sums *sums);
 
 /// Motion of a component about its mass centre. Positions are from the component's origin.

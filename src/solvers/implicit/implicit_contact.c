@@ -277,7 +277,7 @@ static bool mend(const mspringi_contacts *contacts, mspringi_contact_constraint 
     return true;
 }
 
-void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, float step) {
+void mspringi_implicit_contact_fix_overlaps(mspring_network *network, mspringi_field base, float step) {
     mspringi_contacts *contacts = pairs_of(network);
     const mspringi_state *s = &network->state;
     const double h = (double)step;
@@ -295,7 +295,7 @@ void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, floa
     }
     const mspringi_motion before = mspringi_budget_motion_before(network);
     if (is_rigid)
-        mspringi_rigid_contact_find_impulses(network, &before, h, UNSEEN_SHARE * contacts->thickness);
+        mspringi_rigid_contact_find_impulses(network, &before, base, h, UNSEEN_SHARE * contacts->thickness);
     for (uint32_t sweep = 0, again = 1; sweep < MOST_MENDING_SWEEPS && again; ++sweep) {
         again = 0;
         for (uint32_t i = 0; i < contacts->constraint_count; ++i)

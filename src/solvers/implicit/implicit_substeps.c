@@ -179,7 +179,7 @@ static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
         mspringi_floor_record_impulses(network, substep->h);
     mspringi_integrator_accept(substep);
     n->age = n->age + 1 < n->coarse_period ? n->age + 1 : 0;
-    mspringi_implicit_contact_fix_overlaps(network, substep->h);
+    mspringi_implicit_contact_fix_overlaps(network, substep->base, substep->h);
     // Last: otherwise the next interval, however short, would lift particles from below the floor.
     if (network->floor)
         mspringi_floor_apply_all(network, substep->h);

@@ -64,7 +64,7 @@ void mspringi_implicit_contact_list_constraints(mspring_network *network, float 
 /// Accept the last solution: store impulses, and apply them to particles without springs.
 void mspringi_implicit_contact_store_impulses(mspring_network *network, float h);
 /// Push deep overlaps apart after a substep.
-void mspringi_implicit_contact_fix_overlaps(const mspring_network *network, float h);
+void mspringi_implicit_contact_fix_overlaps(mspring_network *network, mspringi_field base, float h);
 /// True if contact only pushed and added no energy.
 bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float h);
 /// True if springs moved a pair without a constraint into contact.
@@ -79,8 +79,8 @@ void mspringi_implicit_contact_add_impulses(const mspringi_budget_sums *all);
 /* rigid_contact.c: instead of contact in the system, after an interval of h */
 
 /// Find the motion of bodies near others, and the impulses that keep these apart by more than unseen.
-void mspringi_rigid_contact_find_impulses(const mspring_network *network, const mspringi_motion *before, double h,
-                                          double unseen);
+void mspringi_rigid_contact_find_impulses(mspring_network *network, const mspringi_motion *before,
+                                          mspringi_field base, double h, double unseen);
 /// True if a side of the constraint is of such a body.
 bool mspringi_rigid_contact_has(const mspring_network *network, const mspringi_contact_constraint *t);
 /// Move them from where they were before.

@@ -24,7 +24,7 @@ typedef mspringi_implicit_constraint hold;
 
 /// An interval, and the change of a distance that matters, m.
 typedef struct rigid_interval {
-    const mspring_network *network;
+    mspring_network *network;
     const mspringi_motion *before;
     double h, unseen;
 } rigid_interval;
@@ -56,6 +56,25 @@ static void make_rigid(const mspring_network *network, uint32_t node, double h) 
     a->rigid_vx = a->origin[2] + a->vx + h * (double)network->settings.gravity_x;
     a->rigid_vy = a->origin[3] + a->vy + h * (double)network->settings.gravity_y;
     a->rigid_turn = a->spin * a->inverse_inertia;
+}
+
+// Let forces of the host, and of systems as grips, act on rigid bodies before impulses, so that these meet them.
+static void add_forces(const rigid_interval *o, mspringi_field base) {
+    mspring_network *network = o->network;
+    mspringi_budget *budget = &mspringi_implicit_of(network)->budget;
+    const mspringi_budget_sums all = {
+        .network = network, .motion = *o->before, .before = *o->before, .base = base, .h = (float)o->h};
+    mspringi_budget_add_forces(&all);
+#define SYSTEM(name) mspringi_##name##_add_impulses(&all);
+#include "store/features.def"
+    for (rigid_body *a = budget->components; a < budget->components + budget->count; ++a) {
+        const double fx = a->sums[MSPRINGI_EFFECT_X], fy = a->sums[MSPRINGI_EFFECT_Y];
+        if (!a->is_rigid)
+            continue;
+        a->rigid_vx += o->h * fx * a->inverse_mass;
+        a->rigid_vy += o->h * fy * a->inverse_mass;
+        a->rigid_turn += o->h * (a->sums[MSPRINGI_EFFECT_TORQUE] - (a->x * fy - a->y * fx)) * a->inverse_inertia;
+    }
 }
 
 /* ------------------------------------------------------------------------------------------ between two bodies */
@@ -300,14 +319,15 @@ static bool keep_all_out(const rigid_interval *o) {
 
 /* ------------------------------------------------------------------------------------------------- the interval */
 
-void mspringi_rigid_contact_find_impulses(const mspring_network *network, const mspringi_motion *before, double h,
-                                          double unseen) {
+void mspringi_rigid_contact_find_impulses(mspring_network *network, const mspringi_motion *before,
+                                          mspringi_field base, double h, double unseen) {
     const rigid_interval o = {network, before, h, unseen};
     const mspringi_contacts *contacts = network->contacts;
     for (uint32_t i = 0; i < contacts->constraint_count; ++i) {
         make_rigid(network, contacts->constraints[i].p, h);
         make_rigid(network, contacts->constraints[i].a, h);
     }
+    add_forces(&o, base);
     for (uint32_t i = 0; i < contacts->constraint_count; ++i)
         begin_pair(network, &contacts->constraints[i], &contacts->implicit_constraints[i]);
     if (network->floor)
