@@ -196,9 +196,9 @@ static bool is_too_much(mspringi_contacts *contacts) {
 // Most intervals of a substep with such an end.
 static uint32_t most_intervals(const mspringi_contacts *contacts, mspringi_interval_end end) {
     const uint32_t by_constraints = LEAST_DEPTH_INTERVALS + DEPTH_INTERVALS / (contacts->constraint_count + 1);
-    return end == MSPRINGI_INTERVAL_SOLVED                                       ? 0
-           : end == MSPRINGI_INTERVAL_TOO_DEEP && by_constraints < MAX_INTERVALS ? by_constraints
-                                                                                 : MAX_INTERVALS;
+    if (end == MSPRINGI_INTERVAL_SOLVED)
+        return 0;
+    return end == MSPRINGI_INTERVAL_TOO_DEEP && by_constraints < MAX_INTERVALS ? by_constraints : MAX_INTERVALS;
 }
 
 // Solve intervals of equal length. Divide the remaining ones if one fails.

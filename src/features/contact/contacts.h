@@ -175,9 +175,9 @@ typedef struct mspringi_pending_constraint {
 /// Contact constraint between rigid bodies, in one direction (solvers/implicit/rigid_contact.c). Index 0 is the
 /// side of the point, 1 that of the edge.
 typedef struct mspringi_rigid_row {
-    double x[2], y[2], arm[2]; ///< impulse and torque on each body, for a unit of impulse; m
-    double speed;              ///< relative speed of the bodies without impulses, m/s
-    double mass;               ///< impulse per change of speed, kg; 0: none acts
+    double arms[2]; ///< torque on each body for a unit of impulse, m
+    double speed;   ///< relative speed of the bodies without impulses, m/s
+    double mass;    ///< impulse per change of speed, kg; 0: none acts
 } mspringi_rigid_row;
 
 /// Contact constraint in the linear system (solvers/implicit/implicit_contact.c). Index 0 is the point, 1 and 2 are

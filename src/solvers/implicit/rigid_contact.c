@@ -90,6 +90,16 @@ static const double *share_of(const hold *c, bool is_along, int i) {
     return is_along ? c->along[i] : c->across[i];
 }
 
+/// Direction of an impulse on the point, or on the edge.
+typedef struct direction {
+    double x, y;
+} direction;
+
+static direction direction_of(const mspringi_contact_constraint *t, bool is_along, int side) {
+    const double sign = side == 0 ? 1.0 : -1.0;
+    return (direction){sign * (is_along ? -t->ny : t->nx), sign * (is_along ? t->nx : t->ny)};
+}
+
 static rigid_body *side_body(const mspring_network *network, const hold *c, int side) {
     return c->bodies[side] == MSPRINGI_NO_COMPONENT
                ? NULL
@@ -113,14 +123,12 @@ static void begin_row(const mspring_network *network, const mspringi_contact_con
             if (!a)
                 continue;
             const double x = k->x[node] - (a->origin[0] + a->x), y = k->y[node] - (a->origin[1] + a->y);
-            row->x[side] += share[0];
-            row->y[side] += share[1];
-            row->arm[side] += x * share[1] - y * share[0];
+            row->arms[side] += x * share[1] - y * share[0];
         }
         if (a) {
-            const double x = row->x[side], y = row->y[side], arm = row->arm[side];
-            own = (x * x + y * y) * a->inverse_mass + arm * arm * a->inverse_inertia;
-            row->speed += x * a->rigid_vx + y * a->rigid_vy + arm * a->rigid_turn;
+            const direction to = direction_of(t, is_along, side);
+            own = a->inverse_mass + row->arms[side] * row->arms[side] * a->inverse_inertia;
+            row->speed += to.x * a->rigid_vx + to.y * a->rigid_vy + row->arms[side] * a->rigid_turn;
         }
         give += own;
     }
@@ -145,8 +153,9 @@ static double speed_of_row(const mspring_network *network, const mspringi_contac
     double speed = row->speed;
     for (int side = 0; side < 2; ++side) {
         const rigid_body *a = side_body(network, c, side);
+        const direction to = direction_of(t, is_along, side);
         if (a)
-            speed += row->x[side] * a->push_x + row->y[side] * a->push_y + row->arm[side] * a->push_turn;
+            speed += to.x * a->push_x + to.y * a->push_y + row->arms[side] * a->push_turn;
         for (int i = first_of_side[side]; !a && i < first_of_side[side + 1]; ++i) {
             const double *share = share_of(c, is_along, i);
             speed += share[0] * v[node_of_side(t, i)].x + share[1] * v[node_of_side(t, i)].y;
@@ -162,9 +171,10 @@ static void push_row(const mspring_network *network, const mspringi_contact_cons
     for (int side = 0; side < 2; ++side) {
         rigid_body *a = side_body(network, c, side);
         if (a) {
-            a->push_x += impulse * a->inverse_mass * row->x[side];
-            a->push_y += impulse * a->inverse_mass * row->y[side];
-            a->push_turn += impulse * a->inverse_inertia * row->arm[side];
+            const direction to = direction_of(t, is_along, side);
+            a->push_x += impulse * a->inverse_mass * to.x;
+            a->push_y += impulse * a->inverse_mass * to.y;
+            a->push_turn += impulse * a->inverse_inertia * row->arms[side];
         }
         for (int i = first_of_side[side]; !a && i < first_of_side[side + 1]; ++i) {
             const uint32_t node = node_of_side(t, i);
