@@ -55,19 +55,18 @@ async function byKey(browser) {
 // Words in the search field lead to their page, also words of its text; where there are none, it says so.
 async function bySearch(browser) {
   const field = '[...document.querySelectorAll("[data-search]")].at(-1)';
-  const asked = (words, value) => browser.value(`(async () => { const field = ${field}; field.value = '${words}';
-    field.dispatchEvent(new Event('input'));
-    for (let i = 0; i < 200 && !globalThis.siteIndex; i++) await new Promise((done) => setTimeout(done, 20));
-    await new Promise((done) => setTimeout(done, 50));
-    return field.nextSibling.${value}; })()`);
-  const first = (words) => asked(words, "querySelector('a')?.href");
-  assert.match(await first('yield strain'), /guides|reference/);
-  assert.match(await first('One per cent from'), /figures\.html#one-per-cent-from-exploding$/);
-  assert.match(await first('a nudge of a millionth'), /figures\.html#one-per-cent-from-exploding$/, 'text can be searched, too');
-  assert.match(await asked('a nudge of a millionth', "querySelector('mark')?.textContent"), /^a nudge of a millionth$/);
-  if (PAGES.some((page) => page.startsWith('reference/'))) assert.match(await first('network_step'), /reference\/massspring_8h\.html#/);
-  assert.match(await asked('zyzzyva', 'textContent'), /^Nothing for zyzzyva\. Try Troubleshooting or the Glossary\.$/);
-  assert.match(await first('zyzzyva'), /troubleshooting\.html$/);
+  const finds = async (words, value, expected) => {
+    await browser.value(`{ const field = ${field}; field.value = '${words}'; field.dispatchEvent(new Event('input')); }`);
+    await browser.until(`${expected}.test(${field}.nextSibling.${value})`, `${words} leads to ${expected}`);
+  };
+  const leads = (words, page) => finds(words, "querySelector('a')?.href", page);
+  await leads('yield strain', /guides|reference/);
+  await leads('One per cent from', /figures\.html#one-per-cent-from-exploding$/);
+  await leads('a nudge of a millionth', /figures\.html#one-per-cent-from-exploding$/);
+  await finds('a nudge of a millionth', "querySelector('mark')?.textContent", /^a nudge of a millionth$/);
+  if (PAGES.some((page) => page.startsWith('reference/'))) await leads('network_step', /reference\/massspring_8h\.html#/);
+  await finds('zyzzyva', 'textContent', /^Nothing for zyzzyva\. Try Troubleshooting or the Glossary\.$/);
+  await leads('zyzzyva', /troubleshooting\.html$/);
 }
 
 // Previews of shared links, and stills in place of figures that have not started.
@@ -162,9 +161,12 @@ const server = createServer((request, response) => {
 await new Promise((ready) => server.listen(0, '127.0.0.1', ready));
 const DISK = `file://${resolve(site)}`, SERVER = `http://127.0.0.1:${server.address().port}`;
 
+let where = 'without WebAssembly'; // the page that is looked at, for messages
+
 async function at(place, width, height, scheme) {
   const browser = new Browser();
   try {
+    where = `figures at ${width} px`;
     await browser.open(`${place}/examples/guides/figures.html`, width, height);
     await browser.until('document.readyState === "complete" && window.firstMotion !== undefined', 'something moves');
     await look(browser, width, scheme);
@@ -178,8 +180,9 @@ async function at(place, width, height, scheme) {
     const shifted = await browser.value('window.shifted');
     assert(shifted < 0.01, `at ${width} px the page jumps by ${shifted}: ${await browser.value('window.shifters')}`);
     for (const page of PAGES) {
+      where = `${page} at ${width} px`;
       await browser.send('Page.navigate', { url: `${place}/${page}` });
-      await browser.until(`location.href.endsWith(${JSON.stringify(page)}) && document.readyState === 'complete'`, `${page} is there`);
+      await browser.until(`location.href.endsWith(${JSON.stringify(page)}) && document.readyState === 'complete'`, 'the page is there');
       await look(browser, width, scheme);
       if (!page.startsWith('reference/')) await byLink(browser);
       if (page === 'index.html') await byPlay(browser, width);
@@ -206,7 +209,7 @@ try {
   }
   assert(first < 1000, `first motion only after ${first} ms`);
 } catch (problem) {
-  console.error(problem);
+  console.error(`${where}:`, problem);
   process.exit(1);
 }
 server.close();

@@ -69,9 +69,11 @@ class Browser {
     return answer.result.value;
   }
 
+  // Waits until an expression holds. While the page changes, the browser may have no place to evaluate it.
   async until(expression, what) {
+    const gone = /context was destroyed|Cannot find (default )?(execution )?context|target navigated or closed/i;
     for (const end = Date.now() + PATIENCE; Date.now() < end; await new Promise((done) => setTimeout(done, 50)))
-      if (await this.value(expression)) return;
+      if (await this.value(expression).catch((error) => { if (!gone.test(error.message)) throw error; })) return;
     throw new Error(`never: ${what}`);
   }
 
