@@ -102,9 +102,12 @@ async function byRollback(browser, width) {
   assert.match(await browser.value(`document.querySelector('[data-verdict]').textContent`), /hashes compared, all equal$/);
 }
 
-// A particle of the jelly follows the pointer, and is let go.
+// A particle of the jelly, stopped so that it stays where it is read, is held by the pointer, and let go.
 async function byHand(browser) {
   await browser.value(`document.querySelector('[data-figure=jelly]').scrollIntoView({ block: 'center' })`);
+  await browser.until('window.figureStages.jelly.playing', 'the jelly plays');
+  await browser.value(`document.querySelector('[data-figure=jelly] [data-play]').click()`);
+  await browser.until('!window.figureStages.jelly.playing', 'the jelly stops');
   const corner = await browser.value(`(() => { const { pen, canvas, running } = window.figureStages.jelly;
     const [x, y] = running.grips[1].positions({ ids: [12] }), { scale, left, base } = pen.places[1];
     const box = canvas.getBoundingClientRect();
