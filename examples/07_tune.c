@@ -161,6 +161,12 @@ static void print_rows(const subject *about, const mspring_tune_row *rows, uint3
            "at rest, m");
     for (uint32_t i = 0; i < count; i++)
         print_row(&rows[i]);
+    for (uint32_t i = 0; i < count; i++)
+        if (rows[i].flags & MSPRING_TUNE_CHAOTIC) {
+            printf("\nThe motion is chaotic: fine runs that start a rounding apart differ by %.2g %% of it.\n",
+                   100 * (double)rows[i].trajectory_spread);
+            break;
+        }
 }
 
 // How a setting is called in a plot.

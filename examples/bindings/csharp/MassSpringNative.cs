@@ -205,7 +205,7 @@ namespace MassSpring {
 
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct mspring_tune_row {
-        public uint struct_size; public uint flags; public uint setting; public mspring_solver solver; public mspring_integrator integrator; public uint substeps; public uint iterations; public uint tile_size; public uint coarse_period; public uint step_count; public double min_cost; public double median_cost; public double trajectory_error; public double trajectory_share; public double energy_drift; public double bending; public double rest_error; public double rest_share; public double duration; public double moving_cost; public double resting_cost; public uint scene_starts; public uint fine_substeps; public double scene_cost; public double scene_distance; public fixed double scene_mean[3]; public fixed double scene_spread[3]; public fixed double fine_mean[3]; public fixed double fine_spread[3]; public float residual; public uint reserved;
+        public uint struct_size; public uint flags; public uint setting; public mspring_solver solver; public mspring_integrator integrator; public uint substeps; public uint iterations; public uint tile_size; public uint coarse_period; public uint step_count; public double min_cost; public double median_cost; public double trajectory_error; public double trajectory_share; public double energy_drift; public double bending; public double rest_error; public double rest_share; public double duration; public double moving_cost; public double resting_cost; public uint scene_starts; public uint fine_substeps; public double scene_cost; public double scene_distance; public fixed double scene_mean[3]; public fixed double scene_spread[3]; public fixed double fine_mean[3]; public fixed double fine_spread[3]; public float residual; public float trajectory_spread;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -302,6 +302,7 @@ namespace MassSpring {
         public const uint MSPRING_TUNE_PARETO = 16u;
         public const uint MSPRING_TUNE_RECOMMENDED = 32u;
         public const uint MSPRING_TUNE_HAS_SCENE = 64u;
+        public const uint MSPRING_TUNE_CHAOTIC = 128u;
         public const uint MSPRING_TUNE_BROKEN = 0u;
         public const uint MSPRING_TUNE_ENERGY = 1u;
         public const uint MSPRING_TUNE_EXTENT = 2u;

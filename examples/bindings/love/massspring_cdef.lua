@@ -779,7 +779,7 @@ void *user;
 const mspring_tune_scene *scene;
 void *reserved_pointer;
 } mspring_tune_def;
-enum { MSPRING_TUNE_HAS_COST = 1u << 0, MSPRING_TUNE_HAS_TRAJECTORY = 1u << 1, MSPRING_TUNE_HAS_REST = 1u << 2, MSPRING_TUNE_REJECTED = 1u << 3, MSPRING_TUNE_PARETO = 1u << 4, MSPRING_TUNE_RECOMMENDED = 1u << 5, MSPRING_TUNE_HAS_SCENE = 1u << 6
+enum { MSPRING_TUNE_HAS_COST = 1u << 0, MSPRING_TUNE_HAS_TRAJECTORY = 1u << 1, MSPRING_TUNE_HAS_REST = 1u << 2, MSPRING_TUNE_REJECTED = 1u << 3, MSPRING_TUNE_PARETO = 1u << 4, MSPRING_TUNE_RECOMMENDED = 1u << 5, MSPRING_TUNE_HAS_SCENE = 1u << 6, MSPRING_TUNE_CHAOTIC = 1u << 7
 };
 enum { MSPRING_TUNE_BROKEN = 0, MSPRING_TUNE_ENERGY = 1, MSPRING_TUNE_EXTENT = 2
 };
@@ -811,7 +811,7 @@ double scene_spread[3];
 double fine_mean[3];
 double fine_spread[3];
 float residual;
-uint32_t reserved;
+float trajectory_spread;
 } mspring_tune_row;
 mspring_result mspring_tune_def_init(mspring_tune_def *def, size_t size);
 mspring_result mspring_tune_settings(

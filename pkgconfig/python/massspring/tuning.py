@@ -12,7 +12,7 @@ from . import _header
 class TuneTable(List[Dict[str, Any]]):
     """Rows of a tuning as dicts, with the names and units of mspring_tune_row: costs in s, errors in m or as shares.
 
-    Numbers that were not measured are None. is_recommended, is_pareto and is_rejected say what the flags say.
+    Numbers that were not measured are None. is_recommended, is_pareto, is_rejected and is_chaotic are the flags.
     """
 
     _NEEDS = {"cost": _header.TUNE_HAS_COST, "trajectory": _header.TUNE_HAS_TRAJECTORY, "rest": _header.TUNE_HAS_REST,
@@ -34,6 +34,7 @@ class TuneTable(List[Dict[str, Any]]):
         row["is_recommended"] = bool(flags & _header.TUNE_RECOMMENDED)
         row["is_pareto"] = bool(flags & _header.TUNE_PARETO)
         row["is_rejected"] = bool(flags & _header.TUNE_REJECTED)
+        row["is_chaotic"] = bool(flags & _header.TUNE_CHAOTIC)
         return row
 
     @property

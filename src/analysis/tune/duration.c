@@ -76,7 +76,7 @@ static mspring_result count_affordable(mspringi_tuning *tuning, double *steps) {
         const mspring_result result = mspringi_tune_time_fine_step(tuning, trial->relative_h, &fine);
         if (result != MSPRING_OK)
             return result;
-        seconds += fine;
+        seconds += 2.0 * fine; // the fine run is made twice
     }
     const double left = PART_FOR_STEPS * def->budget - (begun - tuning->begun);
     *steps = seconds > 0.0 ? fmax(left, 0.0) / seconds : MSPRINGI_TUNE_MAX_STEPS;

@@ -6,6 +6,7 @@
 #include "analysis/tune/reference.h"
 #include "analysis/tune/tuning.h"
 #include "base/cpu.h"
+#include "base/hash.h"
 #include "store/springs.h"
 
 /// Springs times fine substeps between two looks at the clock.
@@ -16,6 +17,9 @@
 
 /// Smallest scale of errors, relative to the network's size.
 #define MIN_SCALE 1e-6
+
+/// Rounding of single precision, relative to the network's size.
+#define ROUNDING 0x1p-24
 
 /* ------------------------------------------------------------------------------------------------------- clones */
 
@@ -155,7 +159,7 @@ typedef struct comparison {
     double motion;          ///< m, largest RMS distance from the start over the steps of the reference run
     double internal, total; ///< J: largest kinetic plus elastic energy, and total energy at the end
     uint32_t free_count;    ///< particles that are not pinned
-    double squares;         ///< m^2, sum over a trial
+    double squares;         ///< m^2, sum over a trial or the second reference run
 } comparison;
 
 // Moment of comparison at this step, or MSPRINGI_TUNE_MOMENTS if none.
@@ -205,12 +209,19 @@ static double fine_substeps(const mspringi_tuning *tuning, const mspringi_refere
     return fmin(fmax(stable, FINE_TIMES_EXPLICIT * most), 1e9);
 }
 
-// Run the reference. False if the time ran out.
-static bool make_fine_run(mspringi_tuning *tuning, comparison *c, float relative_h) {
+// Add the distances of the reference's particles from those of the fine run at this moment.
+static void add_distances(const mspringi_tuning *tuning, uint32_t moment, comparison *c) {
+    const mspringi_reference *r = &c->reference;
+    const double *x = positions_at(tuning, moment), *y = x + r->particle_count;
+    for (uint32_t p = 0; p < r->particle_count; ++p)
+        if (r->inverse_mass[p] > 0.0)
+            c->squares += (r->x[p] - x[p]) * (r->x[p] - x[p]) + (r->y[p] - y[p]) * (r->y[p] - y[p]);
+}
+
+// Run the reference. False if the time ran out. A second run is compared with the first.
+static bool make_fine_run(mspringi_tuning *tuning, comparison *c, float relative_h, bool is_second) {
     const double substeps = fine_substeps(tuning, &c->reference, relative_h), h = tuning->def.dt / substeps;
     const uint32_t batch = 1 + SPRINGS_IN_BATCH / (c->reference.spring_count + 1);
-    for (uint32_t p = 0; p < c->reference.particle_count; ++p)
-        c->free_count += c->reference.inverse_mass[p] > 0.0;
     for (uint32_t step = 1; step <= tuning->step_count; ++step) {
         for (uint32_t left = (uint32_t)substeps; left > 0;) {
             const uint32_t count = batch < left ? batch : left;
@@ -221,9 +232,12 @@ static bool make_fine_run(mspringi_tuning *tuning, comparison *c, float relative
         }
         if (step == 1)
             mspringi_reference_clear_forces(&c->reference);
-        measure_motion(tuning, c);
+        if (!is_second)
+            measure_motion(tuning, c);
         const uint32_t moment = moment_of(tuning, step);
-        if (moment < MSPRINGI_TUNE_MOMENTS)
+        if (moment < MSPRINGI_TUNE_MOMENTS && is_second)
+            add_distances(tuning, moment, c);
+        else if (moment < MSPRINGI_TUNE_MOMENTS)
             save_moment(tuning, c, moment);
     }
     return true;
@@ -236,18 +250,19 @@ static void compare(mspringi_tuning *tuning, const mspring_network *clone, uint3
         return;
     const double shift_x = clone->origin_x - tuning->base->origin_x,
                  shift_y = clone->origin_y - tuning->base->origin_y;
-    mspringi_reference *r = &c->reference;
-    const double *x = positions_at(tuning, moment), *y = x + r->particle_count;
-    mspringi_reference_set_motion(r, clone, shift_x, shift_y);
-    mspringi_reference_kick(r, 0.5 * (double)clone->steps.lag);
-    for (uint32_t p = 0; p < r->particle_count; ++p)
-        if (r->inverse_mass[p] > 0.0)
-            c->squares += (r->x[p] - x[p]) * (r->x[p] - x[p]) + (r->y[p] - y[p]) * (r->y[p] - y[p]);
+    mspringi_reference_set_motion(&c->reference, clone, shift_x, shift_y);
+    mspringi_reference_kick(&c->reference, 0.5 * (double)clone->steps.lag);
+    add_distances(tuning, moment, c);
 }
 
 static double at_least(const mspringi_tuning *tuning, double scale) {
     const double least = MIN_SCALE * tuning->size;
     return scale > least ? scale : least > 0.0 ? least : 1.0;
+}
+
+// Root mean square distance over the moments, m.
+static double mean_distance(const comparison *c) {
+    return sqrt(c->squares / (double)c->free_count / MSPRINGI_TUNE_MOMENTS);
 }
 
 static mspring_result run_trajectory(mspringi_tuning *tuning, mspringi_trial *trial, comparison *c) {
@@ -259,7 +274,7 @@ static mspring_result run_trajectory(mspringi_tuning *tuning, mspringi_trial *tr
     const mspringi_reference_energy energy = mspringi_reference_measure(&c->reference);
     row->flags |= MSPRING_TUNE_HAS_TRAJECTORY;
     row->duration = tuning->step_count * tuning->def.dt;
-    row->trajectory_error = sqrt(c->squares / (double)c->free_count / MSPRINGI_TUNE_MOMENTS);
+    row->trajectory_error = mean_distance(c);
     row->trajectory_share = row->trajectory_error / at_least(tuning, c->motion);
     row->energy_drift = c->internal > 0.0 ? (energy.internal + energy.potential - c->total) / c->internal : 0.0;
     return MSPRING_OK;
@@ -292,6 +307,40 @@ static mspring_result run_groups(mspringi_tuning *tuning, group_fn fn) {
     return result;
 }
 
+// Disturb each coordinate by what a float of the network's size rounds away: no setting starts more exactly.
+static void disturb(const mspringi_tuning *tuning, mspringi_reference *r) {
+    const double step = ROUNDING * tuning->size;
+    for (uint32_t p = 0; p < r->particle_count; ++p) {
+        const uint64_t bits = mspringi_mix(p);
+        if (!(r->inverse_mass[p] > 0.0))
+            continue;
+        r->x[p] += bits & 1 ? step : -step;
+        r->y[p] += bits & 2 ? step : -step;
+    }
+}
+
+// Run the reference once more from a disturbed start, and report how far it comes from the first run.
+static mspring_result run_second(mspringi_tuning *tuning, mspring_network *fine, comparison *c, float relative_h) {
+    mspringi_reference_destroy(&c->reference, fine);
+    const mspring_result result = mspringi_reference_create(&c->reference, fine);
+    if (result != MSPRING_OK)
+        return forward_error(tuning, NULL, fine, result);
+    disturb(tuning, &c->reference);
+    c->squares = 0.0;
+    if (!make_fine_run(tuning, c, relative_h, true))
+        return MSPRING_OK;
+    const double share = mean_distance(c) / at_least(tuning, c->motion);
+    for (uint32_t i = 0; i < tuning->trial_count; ++i) {
+        mspringi_trial *trial = &tuning->trials[i];
+        if (trial->relative_h != relative_h || !(trial->row.flags & MSPRING_TUNE_HAS_TRAJECTORY))
+            continue;
+        trial->row.trajectory_spread = (float)share;
+        if (share > tuning->def.max_error)
+            trial->row.flags |= MSPRING_TUNE_CHAOTIC;
+    }
+    return MSPRING_OK;
+}
+
 static mspring_result trajectories_of_group(mspringi_tuning *tuning, float relative_h) {
     mspring_network *fine = NULL;
     comparison c = {.motion = 0.0};
@@ -303,10 +352,17 @@ static mspring_result trajectories_of_group(mspringi_tuning *tuning, float relat
     result = mspringi_reference_create(&c.reference, fine);
     if (result != MSPRING_OK) {
         result = forward_error(tuning, NULL, fine, result);
-    } else if (make_fine_run(tuning, &c, relative_h)) {
+        mspringi_tune_destroy_clone(fine);
+        return result;
+    }
+    for (uint32_t p = 0; p < c.reference.particle_count; ++p)
+        c.free_count += c.reference.inverse_mass[p] > 0.0;
+    if (make_fine_run(tuning, &c, relative_h, false)) {
         for (uint32_t i = 0; result == MSPRING_OK && i < tuning->trial_count; ++i)
             if (is_pending(&tuning->trials[i], relative_h))
                 result = run_trajectory(tuning, &tuning->trials[i], &c);
+        if (result == MSPRING_OK && c.free_count > 0)
+            result = run_second(tuning, fine, &c, relative_h);
     }
     mspringi_tune_destroy_clone(fine); // frees the reference's memory, too
     return result;

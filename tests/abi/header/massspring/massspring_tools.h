@@ -584,7 +584,8 @@ enum {
     MSPRING_TUNE_REJECTED = 1u << 3,       ///< a step was rejected as unstable, or the solver rejects the network
     MSPRING_TUNE_PARETO = 1u << 4,         ///< no other row has both less cost and less error
     MSPRING_TUNE_RECOMMENDED = 1u << 5,    ///< the recommended row
-    MSPRING_TUNE_HAS_SCENE = 1u << 6       ///< the numbers of the scene are measured, from at least four starts
+    MSPRING_TUNE_HAS_SCENE = 1u << 6,      ///< the numbers of the scene are measured, from at least four starts
+    MSPRING_TUNE_CHAOTIC = 1u << 7         ///< trajectory_spread is above max_error: measure by scene instead
 };
 
 /// Quantities at the end of each run of a scene.
@@ -628,8 +629,10 @@ typedef struct mspring_tune_row {
     double scene_spread[MSPRING_TUNE_QUANTITIES]; ///< standard deviations
     double fine_mean[MSPRING_TUNE_QUANTITIES];    ///< the same of the fine runs from the same starts
     double fine_spread[MSPRING_TUNE_QUANTITIES];
-    float residual;    ///< as in mspring_solver_def
-    uint32_t reserved; ///< 0
+    float residual; ///< as in mspring_solver_def
+    /// trajectory_share of a second fine run. Its start differs by a rounding in single precision: each coordinate by
+    /// 2^-24 of the network's size. Differences between rows that are smaller say nothing.
+    float trajectory_spread;
 } mspring_tune_row;
 
 /// Fill a definition with its defaults, as mspring_network_def_init().
@@ -656,7 +659,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_tune_settings(
 /// will simulate: just made and falling, or moving.
 ///
 ///   cost        time of every step with a setting, by the clock, with the network's workers
-///   trajectory  distance from a fine run in double precision (symplectic, of second order)
+///   trajectory  distance from a fine run in double precision (symplectic, of second order); the fine run is made
+///               twice, to tell if the motion itself is chaotic (MSPRING_TUNE_CHAOTIC)
 ///   rest        equilibrium (mspring_network_settle()), and motion from there on; not for networks without one
 ///   scene       comparison with many fine runs, with the floor, breaking and hooks of mspring_tune_def.scene
 ///
