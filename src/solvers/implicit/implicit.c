@@ -11,11 +11,10 @@
 #define MOST_ITERATIONS_BY_DEFAULT 30
 #define ITERATIONS_BY_DEFAULT 8
 
-/// Most multiply-adds that factoring the coarse matrix may take, for each slot but spare ones: about as long as one
-/// product with A takes.
-#define COARSE_COST_PER_SLOT 20.0
+/// Multiply-adds that take about as long as a product with A, for each slot but spare ones.
+#define PRODUCT_COST_PER_SLOT 20.0
 
-/// Most that it may take at all, a few seconds.
+/// Most multiply-adds that factoring the coarse matrix may take, a few seconds.
 #define MOST_COARSE_COST 0x1p34
 
 /* ----------------------------------------------------------------------------------------------------- creation */
@@ -27,6 +26,8 @@ typedef struct mspringi_implicit_builder {
     mspringi_cursor cursor;
     uint32_t tile_size; ///< asked for; 0: by plan
     mspringi_tile_builder tiling;
+    mspringi_tiles best; ///< of the sizes tried so far
+    double best_score;
     mspringi_direct_builder direct;
     mspringi_path_builder finding;
 } making;
@@ -244,12 +245,22 @@ static mspring_result choose_tiles(making *m) {
     return MSPRING_OK;
 }
 
-// Cut into tiles of the size asked for or else, beginning at the default, of the first whose coarse matrix is cheap
-// to factor.
+// Products that a substep takes with these tiles, less a constant. Factoring the coarse matrix costs as much as
+// some. Twice as large tiles have a smaller matrix, but take more iterations: one more for each 8 rows on lattices,
+// 0.01 of the residual being asked for. (Where ropes hang on thin structures larger tiles do not make the matrix
+// smaller, and each doubling doubles the iterations.)
+static double score_of(const making *m) {
+    const mspringi_topology *t = &m->network->topology;
+    const double slots = MSPRINGI_WIDTH * (double)(t->block_count - t->spare_blocks);
+    const double cost = mspringi_coarse_cost(&m->made->tiles);
+    return cost > MOST_COARSE_COST ? INFINITY
+                                   : cost / (PRODUCT_COST_PER_SLOT * slots) +
+                                         (double)m->made->tiles.cells.size / MSPRINGI_LEAST_TILE_SIZE;
+}
+
+// Cut into tiles of the size asked for or else of each size, until larger ones cannot be better. Keep the best.
 static mspring_result cut_tiles(making *m) {
     mspringi_tiles *tiles = &m->made->tiles;
-    const mspringi_topology *t = &m->network->topology;
-    const double most = COARSE_COST_PER_SLOT * MSPRINGI_WIDTH * (double)(t->block_count - t->spare_blocks);
     const uint32_t size = tiles->cells.size;
     bool is_done;
     mspring_result result = mspringi_tiles_run(&m->tiling, &is_done);
@@ -257,10 +268,20 @@ static mspring_result cut_tiles(making *m) {
     if (result != MSPRING_OK || !is_done)
         return result;
     mspringi_tiles_end(&m->tiling);
-    m->cursor.again = m->tile_size == 0 && size < MSPRINGI_LARGEST_TILE_SIZE && mspringi_coarse_cost(tiles) > most;
+    const double score = score_of(m);
+    const bool is_better = score <= m->best_score;
+    mspringi_tiles_destroy(is_better ? &m->best : tiles, &m->network->memory);
+    if (is_better) {
+        m->best = *tiles;
+        m->best_score = score;
+    }
+    m->cursor.again = m->tile_size == 0 && size < MSPRINGI_LARGEST_TILE_SIZE &&
+                      2.0 * size / MSPRINGI_LEAST_TILE_SIZE < m->best_score;
     if (m->cursor.again) {
-        mspringi_tiles_destroy(tiles, &m->network->memory);
         begin_tiles(m, 2 * size);
+    } else {
+        *tiles = m->best;
+        m->best = (mspringi_tiles){0};
     }
     return MSPRING_OK;
 }
@@ -334,6 +355,7 @@ static void end_making(mspringi_implicit *n, mspringi_memory *memory) {
     if (!n->making)
         return;
     mspringi_tiles_end(&n->making->tiling);
+    mspringi_tiles_destroy(&n->making->best, memory);
     mspringi_direct_end(&n->making->direct);
     mspringi_paths_end(&n->making->finding);
     mspringi_free(memory, n->making);
@@ -372,7 +394,10 @@ mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_s
         mspringi_free(&network->memory, m);
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for an implicit solver");
     }
-    *m = (making){.network = network, .made = n, .tile_size = def->tile_size > 0 ? def->tile_size : tile_size};
+    *m = (making){.network = network,
+                  .made = n,
+                  .tile_size = def->tile_size > 0 ? def->tile_size : tile_size,
+                  .best_score = INFINITY};
     m->tiling.memory = m->tiling.cutting.memory = &network->memory;
     m->finding =
         (mspringi_path_builder){.network = network, .memory = &network->memory, .message = &network->message};
