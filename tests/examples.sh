@@ -381,7 +381,7 @@ programs() {
   folder=$(cd "$(dirname "$bending")" && pwd)
   mkdir "$scratch/work"
   cd "$scratch/work"
-  for program in 01_spring 02_square 03_bar 04_explosion 06_game 09_jelly 10_bridge 11_wheel 12_cloth 14_collide 15_torpedo 16_ships 18_jellies 20_dent; do
+  for program in 01_spring 02_square 03_bar 04_explosion 06_game 09_jelly 10_bridge 11_wheel 12_cloth 14_collide 15_torpedo 16_ships 18_jellies 20_dent 21_cart; do
     bending=$folder/$program
     succeed
     sed -n 's/^written //p' "$scratch/out" >written
