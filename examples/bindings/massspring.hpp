@@ -90,6 +90,16 @@ public:
         check(mspring_network_get_positions(get(), particle, 1, &p.x, &p.y, 1));
         return p;
     }
+    /// Measure the particles first ... first + count - 1 as one body.
+    mspring_body body(mspring_id first, std::uint32_t count) const {
+        mspring_body measured{};
+        measured.struct_size = sizeof measured;
+        check(mspring_network_get_body(get(), nullptr, first, count, &measured));
+        return measured;
+    }
+    void apply_torque(mspring_id first, std::uint32_t count, float torque) {
+        check(mspring_network_apply_torque(get(), nullptr, first, count, torque));
+    }
     std::uint64_t hash() const {
         std::uint64_t value = 0;
         check(mspring_network_state_hash(get(), &value));

@@ -6,7 +6,7 @@
  * mspring_network_get_positions is network.positions here, and a field rest_length is restLength.
  */
 import type {
-  AngleInfo, AngleOptions, AreaInfo, AreaOptions, ColliderOptions, Component, ContactEvent, ContactInfo,
+  AngleInfo, AngleOptions, AreaInfo, AreaOptions, Body, ColliderOptions, Component, ContactEvent, ContactInfo,
   ContactOptions, DiscOptions, FloorOptions, GripOptions, LatticeOptions, Material, MeshOptions, NetworkEvent,
   NetworkOptions, Numbering, ParticleOptions, Plan, Plasticity, Preset, Property, Result, RopeOptions, Settings,
   SettleOptions, SettleResult, SnapshotContents, SolverOptions, SpringOptions, StepInfo,
@@ -130,6 +130,8 @@ export interface Network {
   applyForces(values: Numbers, where?: Selection): void;
   /** Changes velocities at once, by impulse / mass. */
   applyImpulses(values: Numbers, where?: Selection): void;
+  /** Forces around the centre of mass during the next step, N m. */
+  applyTorque(torque: number, where?: Selection): void;
   /** Equal states have equal hashes on every machine, in every language. */
   stateHash(): bigint;
 
@@ -170,6 +172,8 @@ export interface Network {
 
   energy(): { kinetic: number; elastic: number; potential: number };
   momentum(): { x: number; y: number; angular: number };
+  /** Particles as one body. The angle is 0 without NETWORK_POSES. */
+  body(where?: Selection): Body;
   bounds(): { minX: number; minY: number; maxX: number; maxY: number };
   /** The longest stable explicit substep, s, in the present shape and in any shape. */
   stableDt(): { now: number; anyShape: number };

@@ -75,6 +75,7 @@ static mspring_network_def def_of(const mspring_network *network) {
     def.tile_size = solver.tile_size;
     def.coarse_period = solver.coarse_period;
     def.flags = (network->is_precise ? (uint32_t)MSPRING_NETWORK_PRECISE : 0) |
+                (network->keeps_poses ? (uint32_t)MSPRING_NETWORK_POSES : 0) |
                 (network->parts > MSPRINGI_DAMPING ? (uint32_t)MSPRING_NETWORK_RESERVE_DAMPING : 0) |
                 (network->fractions.values ? (uint32_t)MSPRING_NETWORK_RESERVE_RELATIVE : 0);
     def.spare_particles = network->topology.reserve.particle_end - network->topology.reserve.first_particle;

@@ -113,8 +113,8 @@ static mspring_result check_head(mspring_builder *builder, const mspringi_archiv
     const bool has_counts = head->first_particle >= 1 && head->first_particle <= head->particle_end &&
                             head->particle_end <= MSPRING_MAX_PARTICLES && head->first_spring <= head->spring_end &&
                             head->spring_end <= MSPRING_MAX_SPRINGS;
-    const uint32_t flags =
-        MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE | MSPRING_NETWORK_PRECISE;
+    const uint32_t flags = MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE |
+                           MSPRING_NETWORK_PRECISE | MSPRING_NETWORK_POSES;
     if (is_short || !has_counts || head->def.flags & ~flags || head->may_have_bundles > 1 || head->is_compact > 1 ||
         head->is_compact_with_bundles > 1 || head->has_welds > 1 || !is_length(head->shortest) ||
         !is_length((double)head->shortest_set) || !(head->grid >= 0.0f && head->grid <= MSPRINGI_MAX_LENGTH) ||

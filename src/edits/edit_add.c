@@ -7,6 +7,7 @@
 #include "features/breaking/breaking.h"
 #include "features/contact/contacts.h"
 #include "features/contact/floor.h"
+#include "features/poses/poses.h"
 #include "features/ramps/ramps.h"
 #include "layout/emit/spare.h"
 #include "step/origin.h"
@@ -83,6 +84,7 @@ static void put_particle(mspring_network *network, mspring_id p, const mspring_p
     network->state.vx[slot] = def->vx;
     network->state.vy[slot] = def->vy;
     mspringi_set_position(network, p, def->x, def->y);
+    mspringi_pose_keep(network, p);
     if (network->contacts)
         mspringi_outline_take_in(network, &network->contacts->outline, p);
     mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_PARTICLE, p);

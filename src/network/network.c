@@ -74,8 +74,8 @@ static mspring_result check_def(const mspring_network_def **given, mspring_netwo
     if (def->simd_level < MSPRING_SIMD_AUTO || def->simd_level > MSPRING_SIMD_WASM)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "simd_level is %d, which is unknown",
                              (int)def->simd_level);
-    if (def->flags &
-        ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE | MSPRING_NETWORK_PRECISE))
+    if (def->flags & ~(uint32_t)(MSPRING_NETWORK_RESERVE_DAMPING | MSPRING_NETWORK_RESERVE_RELATIVE |
+                                 MSPRING_NETWORK_PRECISE | MSPRING_NETWORK_POSES))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
     const mspring_settings settings = mspringi_settings_of(def);
@@ -331,6 +331,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     relative = relative || (def->flags & MSPRING_NETWORK_RESERVE_RELATIVE);
     network->parts = damped ? MSPRINGI_DAMPING + 1 : MSPRINGI_STIFFNESS + 1;
     network->is_precise = def->flags & MSPRING_NETWORK_PRECISE;
+    network->keeps_poses = def->flags & MSPRING_NETWORK_POSES;
     result = allocate(network);
     if (result == MSPRING_OK && relative)
         result = mspringi_fractions_create(&network->fractions, builder, reserve.spring_end, &network->memory,

@@ -136,6 +136,7 @@ struct mspring_network {
     bool is_scaled, is_reweighed;       ///< the host has set scales, or masses: it needs these two arrays
     uint32_t parts;                     ///< values per spring in the records: 2, or 3 with damping
     bool is_precise;                    ///< low words count in the lengths of springs
+    bool keeps_poses;                   ///< places at creation are kept
     mspringi_rest_lengths rest_lengths; ///< of lattice_springs, whose records have only stiffness and damping
     float *lattice_springs, *chain_springs;
     mspringi_shared_records shared_records; ///< lattice blocks with equal stiffness and damping

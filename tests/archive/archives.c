@@ -220,7 +220,7 @@ mspring_network *archives_make(int kind) {
     def.spare_particles = def.spare_springs = kind % 3 == 0 ? 4 : 0;
     def.sleep_speed = kind % 2 == 0 ? 1e-3f : 0;
     def.sleep_time = 0;
-    def.flags = kind == 9 ? MSPRING_NETWORK_PRECISE : 0;
+    def.flags = kind == 9 ? MSPRING_NETWORK_PRECISE : kind == 10 ? MSPRING_NETWORK_POSES : 0;
     check_ok(mspring_solver_def_init(&solver, sizeof solver));
     solver.substeps = kind == 4 ? MSPRING_SUBSTEPS_EVEN : 4;
     solver.solver = kind == 10                 ? MSPRING_SOLVER_DIRECT

@@ -509,6 +509,8 @@ static void add_hook(arguments *a) {
       mspring_network_apply_impulses(a->network, a->first, a->count, a->f, a->g, 1))                               \
     X(mspring_network_apply_impulses_at, "NAFG", NOTHING,                                                          \
       mspring_network_apply_impulses_at(a->network, a->ids, a->count, a->f, a->g, 1))                              \
+    X(mspring_network_apply_torque, "NRX", NOTHING,                                                                \
+      mspring_network_apply_torque(a->network, NULL, a->first, a->count, a->x))                                    \
     X(mspring_network_set_positions_float_at, "NAFG", NOTHING,                                                     \
       mspring_network_set_positions_float_at(a->network, a->ids, a->count, a->f, a->g, 1))                         \
     X(mspring_network_add_hook, "NSo", make_hook(a), mspring_network_add_hook(a->network, a->given, a->out[0]))    \
@@ -611,6 +613,8 @@ static void add_hook(arguments *a) {
       mspring_network_momentum(a->network, a->out[0], a->out[1], a->out[2]))                                       \
     X(mspring_network_bounds, "n0123", NOTHING,                                                                    \
       mspring_network_bounds(a->network, a->out[0], a->out[1], a->out[2], a->out[3]))                              \
+    X(mspring_network_get_body, "nRP", OUT_STRUCT(0, body),                                                        \
+      mspring_network_get_body(a->network, NULL, a->first, a->count, a->out[0]))                                   \
     X(mspring_network_nearest_particle, "nXY0", NOTHING,                                                           \
       mspring_network_nearest_particle(a->network, a->x, a->y, 10, a->out[0], a->out[1]))                          \
     X(mspring_network_particles_in_circle, "nXY01", NOTHING,                                                       \

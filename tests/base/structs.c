@@ -416,6 +416,9 @@ static mspring_result fill_step_info(subject *s, void *out) {
 static mspring_result fill_spring_info(subject *s, void *out) {
     return mspring_network_get_spring(s->network, 0, out);
 }
+static mspring_result fill_body(subject *s, void *out) {
+    return mspring_network_get_body(s->network, NULL, 0, 2, out);
+}
 static mspring_result fill_plan(subject *s, void *out) {
     return mspring_network_get_plan(s->network, out);
 }
@@ -465,6 +468,7 @@ const struct output outputs[] = {
     {"step_info", sizeof(mspring_step_info), 16, fill_step_info, true}, // time_left, work
     OUTPUT(plasticity, fill_plasticity),
     OUTPUT(spring_info, fill_spring_info),
+    OUTPUT(body, fill_body),
     OUTPUT(plan, fill_plan),
     OUTPUT_ONCE(settle_result, fill_settled),
     OUTPUT(component, fill_component),

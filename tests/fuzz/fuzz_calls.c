@@ -388,6 +388,11 @@ static mspring_result measure(mspring_network *network) {
     FUZZ_CHECK(isfinite(box[0]) && isfinite(box[1]) && box[0] <= box[2] && box[1] <= box[3]);
     FUZZ_CHECK(mspring_network_max_strain(network, &strain, &spring) == MSPRING_OK);
     FUZZ_CHECK(!isnan(strain));
+    mspring_body body = {.struct_size = sizeof body};
+    const uint32_t count = mspring_network_particle_count(network);
+    FUZZ_CHECK(mspring_network_get_body(network, NULL, 0, count, &body) == MSPRING_OK);
+    FUZZ_CHECK(body.particle_count <= count && body.angle >= -4 && body.angle <= 4);
+    FUZZ_CHECK(body.particle_count == 0 || (body.min_x == box[0] && body.max_y == box[3]));
     return mspring_network_get_extents(network, NULL, NULL, NULL, NULL);
 }
 
@@ -537,7 +542,8 @@ static mspring_result make_call(mspring_network *network, const call *c) {
     case 35:
         return mspring_network_apply_impulses_at(network, twice, c->count, pair, other, 1);
     case 36:
-        return mspring_network_apply_forces_at(network, twice, c->count, pair, other, 0);
+        return c->spring % 2 ? mspring_network_apply_forces_at(network, twice, c->count, pair, other, 0)
+                             : mspring_network_apply_torque(network, NULL, c->particle, c->count, *pair);
     case 37:
         return write_view(network, c);
     case 38:

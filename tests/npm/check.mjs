@@ -70,6 +70,7 @@ function reading(ms) {
   const strains = network.strains(), { strain, spring } = network.maxStrain();
   assert.strictEqual(Math.abs(strains[spring]), strain);
   assert.strictEqual(network.stepInfo().stepCount, 64);
+  assert(network.body().mass > network.body({ ids: [0, 1] }).mass && network.body({ first: 0, count: 2 }).particleCount === 2);
   assert(network.bounds().maxX < 20 && network.momentum().y !== 0 && network.stableDt().now > network.stableDt().anyShape);
   assert(network.suggestSubsteps(1 / 64) > 1 && network.memoryUsed > 1000);
   assert.strictEqual(network.plan().latticeCount, 1);

@@ -99,6 +99,18 @@ class Calls(unittest.TestCase):
         self.assertIs(network.get_positions(out=out), out)
         self.assertEqual(network.momentum().y, 0)
 
+    def test_bodies_and_torques(self):
+        network = bar(20, 5, flags=massspring.NETWORK_POSES, gravity=(0, 0))
+        body = network.get_body()
+        self.assertEqual((body.particle_count, body.head, body.angle), (network.particle_count, 0, 0))
+        self.assertEqual(network.get_body([3, 4]).mass, network.get_body(slice(3, 5)).mass)
+        for _ in range(10):
+            network.apply_torque(2.0, range(network.particle_count))
+            network.apply_torque(1.0, [7, 8])
+            network.step(1 / 64)
+        self.assertGreater(network.get_body().spin, 0)
+        self.assertGreater(network.get_body().angle, 0)
+
     def test_edits_and_events(self):
         network = bar(20, 5, spare_particles=2, spare_springs=4)
         network.reserve_events(100)

@@ -94,6 +94,11 @@ namespace MassSpring {
     }
 
     [StructLayout(LayoutKind.Sequential)]
+    public unsafe struct mspring_body {
+        public uint struct_size; public uint particle_count; public uint head; public uint reserved; public double mass; public double x; public double y; public double vx; public double vy; public double inertia; public double angle; public double spin; public double px; public double py; public double angular; public double min_x; public double min_y; public double max_x; public double max_y;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
     public unsafe struct mspring_contact_def {
         public uint struct_size; public uint flags; public double thickness; public float friction; public float restitution; public float push_speed; public uint sweeps; public uint capacity; public uint max_capacity;
     }
@@ -264,6 +269,7 @@ namespace MassSpring {
         public const uint MSPRING_NETWORK_RESERVE_DAMPING = 1u;
         public const uint MSPRING_NETWORK_RESERVE_RELATIVE = 2u;
         public const uint MSPRING_NETWORK_PRECISE = 4u;
+        public const uint MSPRING_NETWORK_POSES = 8u;
         public const uint MSPRING_STEP_FALLBACK = 1u;
         public const uint MSPRING_STEP_CLAMPED = 2u;
         public const uint MSPRING_STEP_PUT_BACK = 4u;
@@ -354,6 +360,7 @@ namespace MassSpring {
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_apply_forces_at(IntPtr network, uint* particles, uint count, float* x, float* y, uint stride);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_apply_impulses(IntPtr network, uint first, uint count, float* x, float* y, uint stride);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_apply_impulses_at(IntPtr network, uint* particles, uint count, float* x, float* y, uint stride);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_apply_torque(IntPtr network, uint* ids, uint first, uint count, float torque);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_set_floor(IntPtr network, mspring_floor_def* def);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_get_floor(IntPtr network, mspring_floor_def* def);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_get_floor_impulses(IntPtr network, uint first, uint count, float* x, float* y, uint stride);
@@ -396,6 +403,7 @@ namespace MassSpring {
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_energy(IntPtr network, double* kinetic, double* elastic, double* potential);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_momentum(IntPtr network, double* px, double* py, double* angular);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_bounds(IntPtr network, double* min_x, double* min_y, double* max_x, double* max_y);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_get_body(IntPtr network, uint* ids, uint first, uint count, mspring_body* body);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_snapshot_size(IntPtr network, mspring_snapshot_contents contents, UIntPtr* size);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_save(IntPtr network, mspring_snapshot_contents contents, void* snapshot, UIntPtr capacity, UIntPtr* size);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_load(IntPtr network, void* snapshot, UIntPtr size);

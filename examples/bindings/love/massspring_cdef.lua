@@ -87,7 +87,7 @@ float residual;
 } mspring_solver_def;
 typedef enum mspring_simd { MSPRING_SIMD_AUTO = 0, MSPRING_SIMD_SCALAR = 1, MSPRING_SIMD_SSE2 = 2, MSPRING_SIMD_AVX2 = 3, MSPRING_SIMD_AVX512 = 4, MSPRING_SIMD_NEON = 5, MSPRING_SIMD_WASM = 6, MSPRING_SIMD_INT = -2147483648
 } mspring_simd;
-enum { MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0, MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1, MSPRING_NETWORK_PRECISE = 1u << 2
+enum { MSPRING_NETWORK_RESERVE_DAMPING = 1u << 0, MSPRING_NETWORK_RESERVE_RELATIVE = 1u << 1, MSPRING_NETWORK_PRECISE = 1u << 2, MSPRING_NETWORK_POSES = 1u << 3
 };
 typedef enum mspring_guard { MSPRING_GUARD_GROWTH = 0, MSPRING_GUARD_RETRY = 1, MSPRING_GUARD_BOUNDS = 2, MSPRING_GUARD_IMPLICIT = 3, MSPRING_GUARD_CLAMP = 4, MSPRING_GUARD_CLAMP_BOUNDS = 5, MSPRING_GUARD_INT = -2147483648
 } mspring_guard;
@@ -217,6 +217,8 @@ mspring_result mspring_network_apply_impulses(
 mspring_network *network, mspring_id first, uint32_t count, const float *x, const float *y, uint32_t stride);
 mspring_result mspring_network_apply_impulses_at(mspring_network *network,
 const mspring_id *particles, uint32_t count, const float *x, const float *y, uint32_t stride);
+mspring_result mspring_network_apply_torque(
+mspring_network *network, const mspring_id *ids, mspring_id first, uint32_t count, float torque);
 mspring_result mspring_network_set_floor(
 mspring_network *network, const mspring_floor_def *def);
 mspring_result mspring_network_get_floor(
@@ -335,6 +337,23 @@ mspring_result mspring_network_momentum(
 const mspring_network *network, double *px, double *py, double *angular);
 mspring_result mspring_network_bounds(
 const mspring_network *network, double *min_x, double *min_y, double *max_x, double *max_y);
+typedef struct mspring_body {
+uint32_t struct_size;
+uint32_t particle_count;
+mspring_id head;
+uint32_t reserved;
+double mass;
+double x, y;
+double vx, vy;
+double inertia;
+double angle;
+double spin;
+double px, py;
+double angular;
+double min_x, min_y, max_x, max_y;
+} mspring_body;
+mspring_result mspring_network_get_body(
+const mspring_network *network, const mspring_id *ids, mspring_id first, uint32_t count, mspring_body *body);
 typedef enum mspring_snapshot_contents { MSPRING_SNAPSHOT_ALL = 0, MSPRING_SNAPSHOT_FRAME = 1, MSPRING_SNAPSHOT_CONTENTS_INT = -2147483648
 } mspring_snapshot_contents;
 mspring_result mspring_network_snapshot_size(

@@ -215,6 +215,13 @@ export class Network extends Laws {
     return { minX, minY, maxX, maxY };
   }
 
+  body(where) {
+    return this.report('body', (exports, pointer, found) => {
+      const { ids = 0, first = 0, count } = this.range(where, this.particleCount);
+      return exports.mspring_network_get_body(pointer, ids, first, count, found);
+    });
+  }
+
   stableDt() {
     const [now, anyShape] = this.numbers('f64', 2, (exports, pointer, ...found) =>
       exports.mspring_network_stable_dt(pointer, ...found));

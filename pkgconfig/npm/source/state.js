@@ -160,6 +160,13 @@ export class State extends Handle {
     this.pairs('f32', values, where, exports.mspring_network_apply_impulses_at, exports.mspring_network_apply_impulses);
   }
 
+  applyTorque(torque, where) {
+    this.core.call(() => {
+      const { ids = 0, first = 0, count } = this.range(where, this.particleCount);
+      this.check(this.core.exports.mspring_network_apply_torque(this.pointer, ids, first, count, number(torque, 'torque')));
+    });
+  }
+
   stateHash() {
     const { core } = this;
     this.check(core.exports.mspring_network_state_hash(this.pointer, core.word));

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, Iterable, NamedTuple, Optional, Tuple
 import numpy as np
 
 from . import _header
-from ._calls import NetworkCalls
-from ._core import bad_argument, empty, ffi, filled, lib, pointer, text_of, with_keywords
+from ._calls import NetworkCalls, Span
+from ._core import Ids, bad_argument, empty, ffi, filled, lib, pointer, text_of, with_keywords
 from .tuning import TuneTable
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._header import Plan, SettleKeywords, SettleResult, SpringInfo, TuneKeywords
+    from ._header import Body, Plan, SettleKeywords, SettleResult, SpringInfo, TuneKeywords
 
 
 class Energy(NamedTuple):
@@ -67,6 +67,16 @@ class MeasureCalls(NetworkCalls):
     def bounds(self) -> Bounds:
         """The smallest box around all particles, m."""
         return Bounds(*self._doubles(lib.mspring_network_bounds, 4))
+
+    def get_body(self, ids: Ids = None) -> Body:
+        """Particles as one body: mass, centre, angle, motion and box.
+
+        ids  None for all, an id, a range, a slice, a list of ids or a mask
+        The angle is 0 unless the network was created with flags=massspring.NETWORK_POSES.
+        """
+        span = Span(ids, self.particle_count)
+        listed = ffi.NULL if span.ids is None else pointer("mspring_id", span.ids)
+        return self._report(_header.Body, "mspring_body", lib.mspring_network_get_body, listed, span.first, span.count)
 
     def max_strain(self) -> Tuple[float, Optional[int]]:
         """The largest absolute value of a strain, and the spring that has it."""

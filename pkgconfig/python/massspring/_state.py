@@ -142,6 +142,12 @@ class StateCalls(NetworkCalls):
         self._set_pairs(lib.mspring_network_apply_impulses, lib.mspring_network_apply_impulses_at,
                         Span(ids, self.particle_count), "float", "impulses", impulses)
 
+    def apply_torque(self, torque: float, ids: Ids = None) -> None:
+        """Add a torque during the next step, N m: forces around the centre of mass, whose sum is 0."""
+        span = Span(ids, self.particle_count)
+        listed = ffi.NULL if span.ids is None else pointer("mspring_id", span.ids)
+        self._change(lib.mspring_network_apply_torque, listed, span.first, span.count, torque)
+
     # --------------------------------------------------------------------------------------------- properties
 
     def _property(self, name: Union[Property, str, int], ids: Ids) -> Tuple[int, Span]:

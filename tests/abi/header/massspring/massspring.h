@@ -34,7 +34,7 @@
 ///     network     network_create, _destroy, _error, _particle_count, _spring_count
 ///     settings    network_set_settings, _get_settings, _set_solver, _get_solver
 ///     step        network_step, _get_step_info, _step_flags; sleep: _is_asleep, _wake
-///     forces      network_apply_force, _apply_forces(_at), _apply_impulses(_at)
+///     forces      network_apply_force, _apply_forces(_at), _apply_impulses(_at), _apply_torque
 ///     floor       network_set_floor, _get_floor, _get_floor_impulses
 ///     state       network_view, _get_positions(_float)(_at), _get_velocities(_at), _set_positions(_float)(_at),
 ///                 _set_velocities(_at), _state_hash
@@ -43,7 +43,7 @@
 ///                 _remove_particles, _remove_springs, _recycle, _has_particle, _has_spring
 ///     events      network_reserve_events, _read_events; components: _update_components, _get_component_numbers,
 ///                 _get_components
-///     measure     network_energy, _momentum, _bounds
+///     measure     network_energy, _momentum, _bounds, _get_body
 ///     snapshots   network_snapshot_size, _save, _load
 ///     archives    network_write, builder_read, _get_network_def
 ///
@@ -422,7 +422,10 @@ enum {
     /// from the local origin do not tremble. An explicit step takes 1.7 to 2.2 times as long; each particle takes 17
     /// bytes more. In implicit and direct steps second words of positions always count. Strains for breaking and stress
     /// use the first words.
-    MSPRING_NETWORK_PRECISE = 1u << 2
+    MSPRING_NETWORK_PRECISE = 1u << 2,
+    /// Places of particles at creation, or when they were added, are kept for the angle of mspring_body. Takes 16 bytes
+    /// a particle, also in whole snapshots and archives.
+    MSPRING_NETWORK_POSES = 1u << 3
 };
 
 /// What a step does to keep motion bounded. A step always rejects coordinates and speeds that are not finite or out
@@ -804,6 +807,18 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_impulses_at(mspring_network *network,
     const mspring_id *particles, uint32_t count, const float *x, const float *y, uint32_t stride);
 
+/// Add a torque (N m) to a body during the next step: forces around its centre of mass, whose sum is 0.
+/// The force on a particle is in proportion to its mass and to its distance from the centre. So it turns a rigid body
+/// without bending it. Pinned particles get none, and do not count in the centre. For a motor, give the opposite torque
+/// to another body.
+/// @param ids     [count] the particles; one that repeats counts as often; NULL: first ... first + count - 1
+/// @param first   not used if ids is given
+/// @param torque  counterclockwise
+/// @threads exclusive   @allocates at the first force given to a network   @since 0.2   @errors ID; ARGUMENT also for
+///          free particles that are all in one place, or if a sum of forces is not finite; MEMORY, BUSY
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_torque(
+    mspring_network *network, const mspring_id *ids, mspring_id first, uint32_t count, float torque);
+
 /* --------------------------------------------------------------------------------------------------------- floor */
 
 /// Set the floor, instead of the one that the network has.
@@ -1184,6 +1199,35 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_moment
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_bounds(
     const mspring_network *network, double *min_x, double *min_y, double *max_x, double *max_y);
+
+/// Particles as one body, with pinned ones unless it says otherwise. Set struct_size first.
+typedef struct mspring_body {
+    uint32_t struct_size;
+    uint32_t particle_count;
+    mspring_id head;   ///< its lowest particle, or MSPRING_NONE
+    uint32_t reserved; ///< 0
+    double mass;       ///< kg
+    double x, y;       ///< centre of mass, m, world coordinates
+    double vx, vy;     ///< its velocity, m/s
+    double inertia;    ///< moment of inertia about it, kg m^2
+    double angle;      ///< rad, -pi to pi, counterclockwise: the turn that takes the places at creation nearest to
+                       ///< those of now, by squares of distances times masses; 0 without MSPRING_NETWORK_POSES
+    double spin;       ///< rad/s, counterclockwise: angular momentum about the centre over inertia; 0 if that is 0
+    double px, py;     ///< momentum, kg m/s, of particles that are not pinned
+    double angular;    ///< angular momentum of these about the world's origin, kg m^2/s
+    double min_x, min_y, max_x, max_y; ///< smallest box around the particles, m, world coordinates
+} mspring_body;
+
+/// Measure particles as one body: for a sprite's place and turn, a camera's box, or momentum.
+/// Sums are in double precision about the centre of mass: a body far from the world's origin has the digits of one at
+/// it. Velocities are those that you read: after explicit steps half a substep old. Without particles all is 0, and the
+/// place that of the local origin. The angle is a fit without reflection or scale (Kabsch 1976).
+/// @param ids    [count] the particles; one that repeats counts as often; NULL: first ... first + count - 1, without
+///               removed ones
+/// @param first  not used if ids is given
+/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT, STRUCT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_get_body(
+    const mspring_network *network, const mspring_id *ids, mspring_id first, uint32_t count, mspring_body *body);
 
 /* ----------------------------------------------------------------------------------------------------- snapshots */
 

@@ -1,0 +1,128 @@
+/// A set of particles as one body: place, turn, motion and box.
+#include <math.h>
+
+#include "base/cpu.h"
+#include "base/rotation.h"
+#include "features/poses/poses.h"
+#include "step/origin.h"
+#include "store/centre.h"
+
+// Second moments about the centre of mass.
+typedef struct second_moments {
+    double inertia, spin;  ///< kg m^2, kg m^2/s
+    double cosine, sine;   ///< of the best rigid turn, times a number
+    double px, py, moment; ///< of free particles; moment of momentum about the local origin
+} second_moments;
+
+// Centre of the places at creation.
+static mspringi_posed posed_centre(const mspring_network *network, const mspringi_selection *at, double mass) {
+    mspringi_posed from = {0}, sum = {0};
+    bool any = false;
+    for (uint32_t i = 0; network->poses && i < at->count; ++i) {
+        const mspring_id p = mspringi_selected(at, i);
+        const mspringi_posed pose = network->poses->of_particle[p];
+        if (!mspringi_particle_exists(network, p))
+            continue;
+        from = any ? from : pose;
+        any = true;
+        sum.x += (double)network->mass[p] * (pose.x - from.x);
+        sum.y += (double)network->mass[p] * (pose.y - from.y);
+    }
+    return any ? (mspringi_posed){from.x + sum.x / mass, from.y + sum.y / mass} : from;
+}
+
+// The turn that takes places at creation nearest to those of now has this cosine and sine (Kabsch 1976; in two
+// dimensions they are sums of products).
+static second_moments second_moments_of(const mspring_network *network, const mspringi_selection *at,
+                                        const mspringi_selection_centre *c) {
+    const mspringi_state *s = &network->state;
+    const mspringi_posed before = posed_centre(network, at, c->mass);
+    second_moments m = {0};
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id p = mspringi_selected(at, i);
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        if (!mspringi_particle_exists(network, p))
+            continue;
+        const double mass = (double)network->mass[p];
+        const double x = mspringi_x_of(s, slot), y = mspringi_y_of(s, slot), dx = x - c->x, dy = y - c->y;
+        const double vx = mspringi_vx_of(s, slot), vy = mspringi_vy_of(s, slot);
+        m.inertia += mass * (dx * dx + dy * dy);
+        m.spin += mass * (dx * (vy - c->vy) - dy * (vx - c->vx));
+        if (mspringi_is_free(network, p)) {
+            m.px += mass * vx;
+            m.py += mass * vy;
+            m.moment += mass * (x * vy - y * vx);
+        }
+        if (network->poses) {
+            const mspringi_posed pose = network->poses->of_particle[p];
+            m.cosine += mass * ((pose.x - before.x) * dx + (pose.y - before.y) * dy);
+            m.sine += mass * ((pose.x - before.x) * dy - (pose.y - before.y) * dx);
+        }
+    }
+    return m;
+}
+
+static double angle_of(const second_moments *m) {
+    const double size = fmax(fabs(m->cosine), fabs(m->sine));
+    if (!(size > 0.0))
+        return 0.0;
+    const double cosine = m->cosine / size, sine = m->sine / size, length = sqrt(cosine * cosine + sine * sine);
+    return mspringi_angle_of((mspringi_rotation){cosine / length, sine / length});
+}
+
+static void add_box(const mspring_network *network, const mspringi_selection *at, mspring_body *to) {
+    mspringi_box box = mspringi_box_empty();
+    mspring_id head = MSPRING_NONE;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id p = mspringi_selected(at, i);
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        if (!mspringi_particle_exists(network, p))
+            continue;
+        mspringi_box_include(&box, mspringi_x_of(&network->state, slot), mspringi_y_of(&network->state, slot));
+        head = p < head ? p : head;
+    }
+    if (head == MSPRING_NONE)
+        box = (mspringi_box){0};
+    to->head = head;
+    to->min_x = network->origin_x + box.min_x;
+    to->min_y = network->origin_y + box.min_y;
+    to->max_x = network->origin_x + box.max_x;
+    to->max_y = network->origin_y + box.max_y;
+}
+
+static MSPRINGI_NOINLINE mspring_body body_of(const mspring_network *network, const mspringi_selection *at) {
+    const mspringi_selection_centre c = mspringi_selection_centre_of(network, at, true);
+    const second_moments m = second_moments_of(network, at, &c);
+    mspring_body made = {
+        .particle_count = c.count,
+        .mass = c.mass,
+        .x = network->origin_x + c.x,
+        .y = network->origin_y + c.y,
+        .vx = c.vx,
+        .vy = c.vy,
+        .inertia = m.inertia,
+        .angle = angle_of(&m),
+        .spin = m.inertia > 0.0 ? m.spin / m.inertia : 0.0,
+        .px = m.px,
+        .py = m.py,
+        .angular = m.moment + (network->origin_x * m.py - network->origin_y * m.px),
+    };
+    add_box(network, at, &made);
+    return made;
+}
+
+mspring_result mspring_network_get_body(const mspring_network *network, const mspring_id *ids, mspring_id first,
+                                        uint32_t count, mspring_body *body) {
+    mspringi_selection at;
+    mspring_result result = mspringi_check_report(network, &mspringi_struct_body, body);
+    if (result == MSPRING_OK)
+        result = ids ? mspringi_look_up_list(network, MSPRINGI_PARTICLES, ids, count, body, body, 1, &at)
+                     : mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, body, body, 1, &at);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    const mspring_body made = body_of(network, &at);
+    mspringi_fp_leave(before);
+    mspringi_put_body(body, &made);
+    return MSPRING_OK;
+}
