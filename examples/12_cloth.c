@@ -30,7 +30,9 @@ int main(int count, char **arguments) {
     result = result ? result : mspring_network_set_velocities(network, LAST_ROW, COLUMNS, &vx, &vy, 0);
     mspring_id slit[CUT];
     uint32_t cut = 0;
-    result = result ? result : mspring_network_springs_across(network, -1, 0.45, 0.45, 0.45, slit, NULL, CUT, &cut);
+    result = result ? result
+                    : mspring_network_springs_across(network, -1, 0.45, 0.45, 0.45, MSPRING_FIND_WHOLE, slit, NULL,
+                                                     CUT, &cut);
     result = result ? result : mspring_network_break_springs(network, slit, cut < CUT ? cut : CUT);
     show shown;
     show_begin(&shown, count, arguments, "12_cloth", "A slit in a cloth runs on, 3 times slower.", network, 0.25);

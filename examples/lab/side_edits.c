@@ -67,8 +67,8 @@ bool side_cut(lab_side *side, double x, double y, double x2, double y2) {
     mspring_id *list = malloc((stage->spring_count ? stage->spring_count : 1) * sizeof *list);
     uint32_t count = 0;
     const bool ok = list &&
-                    accepted(side, mspring_network_springs_across(side->network, x, y, x2, y2, list, NULL,
-                                                                  stage->spring_count, &count)) &&
+                    accepted(side, mspring_network_springs_across(side->network, x, y, x2, y2, MSPRING_FIND_WHOLE,
+                                                                  list, NULL, stage->spring_count, &count)) &&
                     break_listed(side, list, count);
     free(list);
     return ok;

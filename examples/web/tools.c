@@ -128,8 +128,8 @@ mspring_result page_pin(double x, double y, double radius) {
 // Those that are restored or broken are told as events, which are read behind the next step.
 mspring_result page_cut(double x, double y, double x2, double y2) {
     uint32_t count = 0;
-    const mspring_result result =
-        mspring_network_springs_across(page.network, x, y, x2, y2, page.list, NULL, page.list_capacity, &count);
+    const mspring_result result = mspring_network_springs_across(page.network, x, y, x2, y2, MSPRING_FIND_WHOLE,
+                                                                 page.list, NULL, page.list_capacity, &count);
     if (result != MSPRING_OK)
         return page_done(result);
     return page_done(mspring_network_break_springs(page.network, page.list, count));

@@ -185,7 +185,10 @@ export interface Network {
   nearestParticle(x: number, y: number, within?: number): { particle: number; distance: number } | null;
   particlesInCircle(x: number, y: number, radius: number): Uint32Array;
   particlesInBox(minX: number, minY: number, maxX: number, maxY: number): Uint32Array;
-  springsAcross(fromX: number, fromY: number, toX: number, toY: number): Uint32Array;
+  /** flags: FIND_WHOLE, the default, FIND_BROKEN or both. */
+  nearestSpring(x: number, y: number, within?: number, flags?: number): { spring: number; fraction: number; distance: number } | null;
+  springsInCircle(x: number, y: number, radius: number, flags?: number): Uint32Array;
+  springsAcross(fromX: number, fromY: number, toX: number, toY: number, flags?: number): Uint32Array;
 
   /** null: no floor. */
   setFloor(options: FloorOptions | null): void;

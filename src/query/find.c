@@ -1,5 +1,6 @@
-/// Searches by position: the nearest particle, those in a circle or a box, springs across a line. All visit ids in
-/// order and compare in double precision, with the low words of positions.
+/// Searches by position: the nearest particle or spring, those in a circle, particles in a box, springs across a
+/// line. All visit ids in order and compare in double precision, with the low words of positions. A pass over all
+/// is the bound of their time, however springs are joined.
 #include <math.h>
 
 #include "store/springs.h"
@@ -54,14 +55,25 @@ static mspring_result check_room(const mspring_network *network, const mspring_i
                                       count ? "the ids" : "their count");
 }
 
+static mspring_result check_within(const mspring_network *network, double within) {
+    return within >= 0.0 ? MSPRING_OK
+                         : mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                                "within is %g m, it must be at least 0", within);
+}
+
+static mspring_result check_radius(const mspring_network *network, double radius) {
+    return radius >= 0.0 ? MSPRING_OK
+                         : mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                                "the radius is %g m, it must be at least 0", radius);
+}
+
 mspring_result mspring_network_nearest_particle(const mspring_network *network, double x, double y, double within,
                                                 mspring_id *particle, double *distance) {
     mspring_result result = check_room(network, particle, 1, &(uint32_t){0});
     if (result == MSPRING_OK)
         result = check_point(network, x, y);
-    if (result == MSPRING_OK && !(within >= 0.0))
-        result = mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
-                                      "within is %g m, it must be at least 0", within);
+    if (result == MSPRING_OK)
+        result = check_within(network, within);
     if (result != MSPRING_OK)
         return result;
     const point centre = local_point(network, x, y);
@@ -87,9 +99,8 @@ mspring_result mspring_network_particles_in_circle(const mspring_network *networ
     mspring_result result = check_room(network, particles, capacity, count);
     if (result == MSPRING_OK)
         result = check_point(network, x, y);
-    if (result == MSPRING_OK && !(radius >= 0.0))
-        result = mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
-                                      "the radius is %g m, it must be at least 0", radius);
+    if (result == MSPRING_OK)
+        result = check_radius(network, radius);
     if (result != MSPRING_OK)
         return result;
     const point centre = local_point(network, x, y);
@@ -155,25 +166,108 @@ static bool is_across(point a, point b, point c, point d, double *fraction) {
     return true;
 }
 
+static mspring_result check_flags(const mspring_network *network, uint32_t flags) {
+    return flags != 0 && !(flags & ~(uint32_t)(MSPRING_FIND_WHOLE | MSPRING_FIND_BROKEN))
+               ? MSPRING_OK
+               : mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
+                                      "flags are %#x, they must be MSPRING_FIND_WHOLE, _BROKEN or both",
+                                      (unsigned)flags);
+}
+
+static bool is_wanted(const mspring_network *network, mspring_id spring, uint32_t flags) {
+    return mspringi_spring_exists(network, spring) &&
+           (flags & (mspringi_spring_is_live(network, spring) ? MSPRING_FIND_WHOLE : MSPRING_FIND_BROKEN));
+}
+
 mspring_result mspring_network_springs_across(const mspring_network *network, double from_x, double from_y,
-                                              double to_x, double to_y, mspring_id *springs, double *fractions,
-                                              uint32_t capacity, uint32_t *count) {
+                                              double to_x, double to_y, uint32_t flags, mspring_id *springs,
+                                              double *fractions, uint32_t capacity, uint32_t *count) {
     mspring_result result = check_room(network, springs, capacity, count);
     if (result == MSPRING_OK)
         result = check_point(network, from_x, from_y);
     if (result == MSPRING_OK)
         result = check_point(network, to_x, to_y);
+    if (result == MSPRING_OK)
+        result = check_flags(network, flags);
     if (result != MSPRING_OK)
         return result;
     const point from = local_point(network, from_x, from_y), end = local_point(network, to_x, to_y);
     found to = {springs, fractions, capacity, 0};
     for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
-        if (!mspringi_spring_exists(network, i) || !mspringi_spring_is_live(network, i))
+        if (!is_wanted(network, i, flags))
             continue;
-        const mspringi_spring_values spring = mspringi_spring_get(network, i);
+        const mspringi_ends ends = mspringi_spring_ends(network, i);
         double fraction;
-        if (is_across(from, end, point_of(network, spring.base), point_of(network, spring.tip), &fraction))
+        if (is_across(from, end, point_of(network, ends.a), point_of(network, ends.b), &fraction))
             add_found(&to, i, fraction);
+    }
+    *count = to.count;
+    return MSPRING_OK;
+}
+
+// Square of the distance from a point to a spring. fraction: position of the nearest place on it. Where that is an
+// end, all springs at it have the same distance.
+static double square_to_spring(const mspring_network *network, mspring_id spring, point at, double *fraction) {
+    const mspringi_ends ends = mspringi_spring_ends(network, spring);
+    const point a = point_of(network, ends.a), b = point_of(network, ends.b);
+    const double t = *fraction = fraction_of(a, b, at);
+    const double dx = t == 1.0 ? b.x - at.x : a.x - at.x + t * (b.x - a.x);
+    const double dy = t == 1.0 ? b.y - at.y : a.y - at.y + t * (b.y - a.y);
+    return dx * dx + dy * dy;
+}
+
+mspring_result mspring_network_nearest_spring(const mspring_network *network, double x, double y, double within,
+                                              uint32_t flags, mspring_id *spring, double *fraction,
+                                              double *distance) {
+    mspring_result result = check_room(network, spring, 1, &(uint32_t){0});
+    if (result == MSPRING_OK)
+        result = check_point(network, x, y);
+    if (result == MSPRING_OK)
+        result = check_within(network, within);
+    if (result == MSPRING_OK)
+        result = check_flags(network, flags);
+    if (result != MSPRING_OK)
+        return result;
+    const point centre = local_point(network, x, y);
+    mspring_id nearest = MSPRING_NONE;
+    double least = within * within, on_nearest = 0.0;
+    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
+        if (!is_wanted(network, i, flags))
+            continue;
+        double on;
+        const double square = square_to_spring(network, i, centre, &on);
+        if (nearest == MSPRING_NONE ? square <= least : square < least) {
+            nearest = i;
+            least = square;
+            on_nearest = on;
+        }
+    }
+    *spring = nearest;
+    if (fraction)
+        *fraction = on_nearest;
+    if (distance)
+        *distance = nearest == MSPRING_NONE ? INFINITY : sqrt(least);
+    return MSPRING_OK;
+}
+
+mspring_result mspring_network_springs_in_circle(const mspring_network *network, double x, double y, double radius,
+                                                 uint32_t flags, mspring_id *springs, uint32_t capacity,
+                                                 uint32_t *count) {
+    mspring_result result = check_room(network, springs, capacity, count);
+    if (result == MSPRING_OK)
+        result = check_point(network, x, y);
+    if (result == MSPRING_OK)
+        result = check_radius(network, radius);
+    if (result == MSPRING_OK)
+        result = check_flags(network, flags);
+    if (result != MSPRING_OK)
+        return result;
+    const point centre = local_point(network, x, y);
+    found to = {springs, NULL, capacity, 0};
+    for (mspring_id i = 0; i < network->topology.spring_count; ++i) {
+        double on;
+        if (is_wanted(network, i, flags) && square_to_spring(network, i, centre, &on) <= radius * radius)
+            add_found(&to, i, 0.0);
     }
     *count = to.count;
     return MSPRING_OK;

@@ -621,8 +621,12 @@ static void add_hook(arguments *a) {
       mspring_network_particles_in_circle(a->network, a->x, a->y, 10, a->out[0], 8, a->out[1]))                    \
     X(mspring_network_particles_in_box, "n01", NOTHING,                                                            \
       mspring_network_particles_in_box(a->network, -1, -1, 1, 1, a->out[0], 8, a->out[1]))                         \
+    X(mspring_network_nearest_spring, "nXY0", NOTHING,                                                             \
+      mspring_network_nearest_spring(a->network, a->x, a->y, 10, 3, a->out[0], a->out[1], a->out[2]))              \
+    X(mspring_network_springs_in_circle, "nXY01", NOTHING,                                                         \
+      mspring_network_springs_in_circle(a->network, a->x, a->y, 10, 3, a->out[0], 8, a->out[1]))                   \
     X(mspring_network_springs_across, "nXY01", NOTHING,                                                            \
-      mspring_network_springs_across(a->network, -1, -1, a->x, a->y, a->out[0], NULL, 8, a->out[1]))               \
+      mspring_network_springs_across(a->network, -1, -1, a->x, a->y, 1, a->out[0], NULL, 8, a->out[1]))            \
     X(mspring_network_get_ends, "nRK01", a->kind = MSPRING_ENDS_SLOTS,                                             \
       mspring_network_get_ends(a->network, a->first, a->count, a->kind, a->out[0], a->out[1], sizeof(uint32_t)))   \
     X(mspring_network_get_spring_flags, "nR0", NOTHING,                                                            \

@@ -45,7 +45,8 @@ static mspring_result cut(game *it, place *p, const call *c) {
     uint32_t count = 0;
     JUDGE(it, mspring_network_bounds(p->network, &box[0], &box[1], &box[2], &box[3]) == MSPRING_OK);
     const double x = box[0] + (box[2] - box[0]) * (c->pick / 256) / 256, y = box[3] - (c->pick % 4);
-    (void)!mspring_network_springs_across(p->network, x, box[3] + 1, x, y - 2, ids, fractions, 64, &count);
+    (void)!mspring_network_springs_across(p->network, x, box[3] + 1, x, y - 2, MSPRING_FIND_WHOLE, ids, fractions,
+                                          64, &count);
     count = count < 64 ? count : 64;
     const mspring_result result = mspring_network_break_springs(p->network, ids, count);
     for (uint32_t i = 0; i < count && result == MSPRING_OK; i++)

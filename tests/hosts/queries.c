@@ -85,8 +85,8 @@ static void judge_across(game *it, const place *p, const double a[2], const doub
     static double fractions[MOST_SPRINGS];
     uint32_t count = 0, next = 0;
     const double margin = 1e-5 * (1 + fabs(a[0]) + fabs(a[1]) + fabs(b[0]));
-    JUDGE(it, mspring_network_springs_across(p->network, a[0], a[1], b[0], b[1], found, fractions, MOST_SPRINGS,
-                                             &count) == MSPRING_OK);
+    JUDGE(it, mspring_network_springs_across(p->network, a[0], a[1], b[0], b[1], MSPRING_FIND_WHOLE, found,
+                                             fractions, MOST_SPRINGS, &count) == MSPRING_OK);
     for (mspring_id i = 0; i < p->plain->springs; i++) {
         const bool is_found = next < count && found[next] == i;
         next += is_found;
@@ -101,6 +101,40 @@ static void judge_across(game *it, const place *p, const double a[2], const doub
         JUDGE(it, !is_found || (fractions[next - 1] >= 0 && fractions[next - 1] <= 1));
     }
     JUDGE(it, next == count);
+}
+
+static double distance_to(const mspring_id *ends, const double at[2]) {
+    const double c[2] = {x[ends[0]], y[ends[0]]}, d[2] = {x[ends[1]] - c[0], y[ends[1]] - c[1]};
+    const double square = d[0] * d[0] + d[1] * d[1];
+    const double t = square > 0 ? ((at[0] - c[0]) * d[0] + (at[1] - c[1]) * d[1]) / square : 0;
+    const double on = fmin(fmax(t, 0), 1);
+    return hypot(c[0] + on * d[0] - at[0], c[1] + on * d[1] - at[1]);
+}
+
+// Springs about a point, whole or broken.
+static void judge_springs_near(game *it, const place *p, const double at[2], double radius, uint32_t flags) {
+    uint32_t count = 0, next = 0;
+    mspring_id nearest = 0;
+    double distance = 0, least = INFINITY;
+    const double margin = 1e-5 * (1 + fabs(at[0]) + fabs(at[1]));
+    JUDGE(it, mspring_network_springs_in_circle(p->network, at[0], at[1], radius, flags, found, MOST_SPRINGS,
+                                                &count) == MSPRING_OK);
+    JUDGE(it, mspring_network_nearest_spring(p->network, at[0], at[1], radius, flags, &nearest, NULL, &distance) ==
+                  MSPRING_OK);
+    for (mspring_id i = 0; i < p->plain->springs; i++) {
+        const bool is_found = next < count && found[next] == i;
+        next += is_found;
+        if (!p->plain->has_spring[i] ||
+            !(flags & (p->plain->is_broken[i] ? MSPRING_FIND_BROKEN : MSPRING_FIND_WHOLE))) {
+            JUDGE(it, !is_found);
+            continue;
+        }
+        const double d = distance_to(p->plain->ends[i], at);
+        least = fmin(least, d);
+        JUDGE(it, is_found ? d <= radius + margin : d >= radius - margin);
+    }
+    JUDGE(it, next == count);
+    JUDGE(it, nearest == MSPRING_NONE ? least >= radius - margin : fabs(distance - least) <= margin);
 }
 
 /* ----------------------------------------------------------------------------------------------- springs */
@@ -186,6 +220,8 @@ void judge_queries(game *it, place *p, draws *from) {
     if (fabs(box[0]) + fabs(box[1]) + fabs(box[2]) + fabs(box[3]) > 1e11)
         return; // particles far outside the world: sums of coordinates are too inexact
     judge_near(it, p, a, draw_between(from, 0, 4));
+    for (uint32_t flags = MSPRING_FIND_WHOLE; flags <= (MSPRING_FIND_WHOLE | MSPRING_FIND_BROKEN); flags++)
+        judge_springs_near(it, p, b, fabs(b[0] - a[0]), flags);
     judge_box(it, p, a, b);
     judge_across(it, p, a, b);
     judge_strains(it, p);

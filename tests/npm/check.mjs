@@ -6,7 +6,7 @@ import assert from 'node:assert';
 import * as massspring from 'massspring';
 import { goldenBars } from './golden.mjs';
 
-const { load, MassSpringError, CELL_EMPTY, PARTICLE_PINNED, SPRING_PULL_ONLY } = massspring;
+const { load, MassSpringError, CELL_EMPTY, FIND_BROKEN, PARTICLE_PINNED, SPRING_PULL_ONLY } = massspring;
 
 const refused = (body, result, words) => assert.throws(body, (error) => {
   assert(error instanceof MassSpringError, `${error.stack}`);
@@ -78,6 +78,9 @@ function reading(ms) {
   assert.deepStrictEqual(network.nearestParticle(x, y), { particle: 10, distance: 0 });
   assert.strictEqual(network.nearestParticle(x, y + 1e6, 1), null);
   assert.deepStrictEqual([...network.particlesInCircle(x, y, 0.1)], [10]);
+  assert.strictEqual(network.nearestSpring(x, y).distance, 0);
+  assert.strictEqual(network.nearestSpring(x, y, 1, FIND_BROKEN), null);
+  assert(network.springsInCircle(x, y, 0.1).length > 2 && network.springsInCircle(x, y, 0.1, FIND_BROKEN).length === 0);
   assert.strictEqual(network.particlesInBox(-Infinity, -Infinity, Infinity, Infinity).length, count);
   assert.strictEqual(network.settle().isStable, 1);
   network.free();

@@ -1,6 +1,6 @@
 /// @file test_find.c
-/// What lies where: particles near a point, in a circle or a box, and springs across a line, against a search by
-/// the public getters in long double.
+/// What lies where: particles and springs near a point, in a circle or a box, and springs across a line, against a
+/// search by the public getters in long double.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -141,8 +141,8 @@ static uint32_t check_across(const mspring_network *network, const double way[4]
     mspring_plan plan = {.struct_size = sizeof plan};
     uint32_t count = 0, at = 0;
     check_ok(mspring_network_get_plan(network, &plan));
-    check_ok(
-        mspring_network_springs_across(network, way[0], way[1], way[2], way[3], found, fractions, MOST, &count));
+    check_ok(mspring_network_springs_across(network, way[0], way[1], way[2], way[3], MSPRING_FIND_WHOLE, found,
+                                            fractions, MOST, &count));
     for (mspring_id i = 0; i < plan.spring_count; i++) {
         mspring_spring_info info = {.struct_size = sizeof info};
         if (mspring_network_get_spring(network, i, &info) != MSPRING_OK || (info.flags & MSPRING_SPRING_BROKEN))
@@ -156,7 +156,8 @@ static uint32_t check_across(const mspring_network *network, const double way[4]
     }
     assert_int_equal(at, count);
     uint32_t again = 0;
-    check_ok(mspring_network_springs_across(network, way[0], way[1], way[2], way[3], found, NULL, 1, &again));
+    check_ok(mspring_network_springs_across(network, way[0], way[1], way[2], way[3], MSPRING_FIND_WHOLE, found,
+                                            NULL, 1, &again));
     assert_int_equal(again, count);
     return count;
 }
@@ -203,12 +204,156 @@ static void touching_counts(void **state) {
         mspring_id found = MSPRING_NONE;
         double fraction = 0;
         uint32_t count = 7;
-        check_ok(
-            mspring_network_springs_across(network, way[0], way[1], way[2], way[3], &found, &fraction, 1, &count));
+        check_ok(mspring_network_springs_across(network, way[0], way[1], way[2], way[3], MSPRING_FIND_WHOLE, &found,
+                                                &fraction, 1, &count));
         assert_int_equal(count, cases[i].count);
         check_near(fraction, cases[i].fraction, 1e-12);
     }
     mspring_network_destroy(network);
+}
+
+/// Distance from a point to the line between two others, and the nearest place on it.
+static long double distance_to_spring(support_point a, support_point b, double x, double y, long double *on) {
+    const long double dx = (long double)b.x - a.x, dy = (long double)b.y - a.y, square = dx * dx + dy * dy;
+    *on = square > 0 ? ((x - a.x) * dx + (y - a.y) * dy) / square : 0;
+    *on = *on < 0 ? 0 : *on > 1 ? 1 : *on;
+    return hypotl(a.x + *on * dx - x, a.y + *on * dy - y);
+}
+
+static bool is_wanted(const mspring_network *network, mspring_id spring, uint32_t flags,
+                      mspring_spring_info *info) {
+    *info = (mspring_spring_info){.struct_size = sizeof *info};
+    return mspring_network_get_spring(network, spring, info) == MSPRING_OK &&
+           (flags & (info->flags & MSPRING_SPRING_BROKEN ? MSPRING_FIND_BROKEN : MSPRING_FIND_WHOLE));
+}
+
+/// Both queries about a point. Return how many springs the circle has.
+static uint32_t check_springs_at(const mspring_network *network, double x, double y, double radius,
+                                 uint32_t flags) {
+    static mspring_id found[MOST];
+    uint32_t count = 0, at = 0, some = 0;
+    long double least = INFINITY, on, on_nearest = 0;
+    mspring_id expected = MSPRING_NONE, nearest = 7, few[2] = {77, 77};
+    double distance = -1, fraction = -1;
+    check_ok(mspring_network_springs_in_circle(network, x, y, radius, flags, found, MOST, &count));
+    for (mspring_id i = 0; i < mspring_network_spring_count(network); i++) {
+        mspring_spring_info info;
+        if (!is_wanted(network, i, flags, &info))
+            continue;
+        const long double d =
+            distance_to_spring(support_position(network, info.a), support_position(network, info.b), x, y, &on);
+        // Springs at one particle have the same distance, but for rounding at 1e5 m; the first of them is named.
+        if (d < least - 1e-9L) {
+            least = d, on_nearest = on, expected = i;
+        }
+        const bool is_found = at < count && found[at] == i;
+        at += is_found;
+        assert_true(is_found == (d <= radius) || fabsl(d - radius) < 1e-9L);
+    }
+    assert_int_equal(at, count);
+    check_ok(mspring_network_springs_in_circle(network, x, y, radius, flags, few, 1, &some));
+    assert_int_equal(some, count);
+    assert_true(few[1] == 77 && few[0] == (count > 0 ? found[0] : 77));
+    check_ok(mspring_network_springs_in_circle(network, x, y, radius, flags, NULL, 0, &some));
+    assert_int_equal(some, count);
+    check_ok(mspring_network_nearest_spring(network, x, y, INFINITY, flags, &nearest, &fraction, &distance));
+    assert_int_equal(nearest, expected);
+    if (expected != MSPRING_NONE) {
+        check_near(distance, (double)least, 1e-9);
+        check_near(fraction, (double)on_nearest, 1e-6);
+        check_ok(mspring_network_nearest_spring(network, x, y, distance * 0.999, flags, &nearest, NULL, NULL));
+    }
+    assert_int_equal(distance > 0 ? nearest : MSPRING_NONE, MSPRING_NONE);
+    return count;
+}
+
+static void springs_near_a_point_are_found(void **state) {
+    (void)state;
+    static const double ways[] = {0, 1e5};
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        mspring_network *network = eventful(ways[i]);
+        double box[4];
+        uint64_t seed = 21;
+        uint32_t met[4] = {0};
+        check_ok(mspring_network_bounds(network, &box[0], &box[1], &box[2], &box[3]));
+        for (int round = 0; round < 2; round++) {
+            for (int n = 0; n < 30; n++) {
+                const double x = support_random_between(&seed, box[0] - 1, box[2] + 1);
+                const double y = support_random_between(&seed, box[1] - 1, box[3] + 1);
+                const double radius = support_random_between(&seed, 0, 3);
+                for (uint32_t flags = 1; flags < 4; flags++) {
+                    met[flags] += check_springs_at(network, x, y, radius, flags);
+                }
+            }
+            check_ok(mspring_network_compact(network)); // the layout has no broken springs from here on
+        }
+        assert_true(met[1] > 100 && met[2] > 10 && met[1] + met[2] == met[3]);
+        mspring_network_destroy(network);
+    }
+}
+
+/// A line finds broken springs as it found them when they were whole.
+static void broken_springs_are_found_as_whole_ones(void **state) {
+    (void)state;
+    mspring_network *network = eventful(0);
+    static mspring_id whole[MOST], broken[MOST];
+    uint32_t count = 0, before = 0, again = 0;
+    double box[4];
+    check_ok(mspring_network_bounds(network, &box[0], &box[1], &box[2], &box[3]));
+    const double y = support_position(network, 10).y + 0.01, far = box[2] + 1, near = box[0] - 1;
+    check_ok(
+        mspring_network_springs_across(network, near, y, far, y, MSPRING_FIND_BROKEN, broken, NULL, MOST, &before));
+    check_ok(
+        mspring_network_springs_across(network, near, y, far, y, MSPRING_FIND_WHOLE, whole, NULL, MOST, &count));
+    assert_true(count > 3);
+    check_ok(mspring_network_break_springs(network, whole, count));
+    check_ok(
+        mspring_network_springs_across(network, near, y, far, y, MSPRING_FIND_BROKEN, broken, NULL, MOST, &again));
+    assert_int_equal(again, before + count);
+    check_ok(
+        mspring_network_springs_across(network, near, y, far, y, MSPRING_FIND_WHOLE, whole, NULL, MOST, &again));
+    assert_int_equal(again, 0);
+    check_ok(mspring_network_restore_springs(network, broken, before + count, 0)); // repair
+    check_ok(mspring_network_springs_across(network, near, y, far, y, 3, whole, NULL, MOST, &again));
+    assert_int_equal(again, before + count);
+    assert_memory_equal(whole, broken, again * sizeof *whole);
+    mspring_network_destroy(network);
+}
+
+/// All springs of a star come from one particle, those of a clique join all: each is looked at once.
+static void stars_and_cliques_are_found(void **state) {
+    (void)state;
+    enum { RAYS = 300, CORNERS = 40 };
+    for (int is_clique = 0; is_clique < 2; is_clique++) {
+        mspring_builder *builder = support_builder();
+        const int corners = is_clique ? CORNERS : RAYS;
+        for (int i = 0; i < corners; i++) {
+            const double angle = 6.283 * i / corners;
+            support_particle(builder, 10 * cos(angle), 10 * sin(angle), 1);
+        }
+        const mspring_id hub = support_particle(builder, 0, 0, 1);
+        for (int i = 0; i < corners; i++) {
+            for (int k = is_clique ? i + 1 : corners; k < corners + !is_clique; k++) {
+                support_spring(builder, (mspring_id)i, is_clique ? (mspring_id)k : hub, 1, 0);
+            }
+        }
+        const mspring_network_def def = support_def(0, 1);
+        mspring_network *network = support_network(builder, &def);
+        uint64_t seed = 3;
+        for (int n = 0; n < 10; n++) {
+            const double x = support_random_between(&seed, -11, 11), y = support_random_between(&seed, -11, 11);
+            check_springs_at(network, x, y, 1, MSPRING_FIND_WHOLE);
+        }
+        if (!is_clique) { // all are at the hub: the first of them is the nearest, by its end
+            double fraction = -1;
+            mspring_id first = 7;
+            check_ok(mspring_network_nearest_spring(network, 0, 0, 0, MSPRING_FIND_WHOLE, &first, &fraction, NULL));
+            assert_int_equal(first, 0);
+            assert_true(fraction == 1);
+            assert_int_equal(check_springs_at(network, 0, 0, 0, MSPRING_FIND_WHOLE), RAYS);
+        }
+        mspring_network_destroy(network);
+    }
 }
 
 static void nonsense_is_refused(void **state) {
@@ -223,8 +368,21 @@ static void nonsense_is_refused(void **state) {
     check_error(mspring_network_particles_in_circle(network, 0, 0, 1, NULL, 1, &count), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_particles_in_box(network, 0, NAN, 1, 1, &id, 1, &count), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_particles_in_box(network, 2, 0, 1, 1, &id, 1, &count), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_springs_across(network, 0, 0, INFINITY, 1, &id, NULL, 1, &count),
+    check_error(
+        mspring_network_springs_across(network, 0, 0, INFINITY, 1, MSPRING_FIND_WHOLE, &id, NULL, 1, &count),
+        MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_springs_across(network, 0, 0, 1, 1, 0, &id, NULL, 1, &count),
                 MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_springs_across(network, 0, 0, 1, 1, 4, &id, NULL, 1, &count),
+                MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_springs_in_circle(network, 0, 0, 1, 8, &id, 1, &count), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_springs_in_circle(network, 0, 0, NAN, 1, &id, 1, &count), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_springs_in_circle(network, 0, NAN, 1, 1, &id, 1, &count), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_springs_in_circle(network, 0, 0, 1, 1, &id, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_nearest_spring(network, 0, 0, 1, 0, &id, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_nearest_spring(network, 0, 0, -1, 1, &id, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_nearest_spring(network, -2e12, 0, 1, 1, &id, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_nearest_spring(network, 0, 0, 1, 1, NULL, NULL, NULL), MSPRING_ERROR_ARGUMENT);
     assert_int_equal(id, 4711);
     assert_int_equal(count, 4711);
     mspring_network_destroy(network);
@@ -234,6 +392,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(particles_are_found),
         cmocka_unit_test(springs_are_found),
+        cmocka_unit_test(springs_near_a_point_are_found),
+        cmocka_unit_test(broken_springs_are_found_as_whole_ones),
+        cmocka_unit_test(stars_and_cliques_are_found),
         cmocka_unit_test(touching_counts),
         cmocka_unit_test(nonsense_is_refused),
     };

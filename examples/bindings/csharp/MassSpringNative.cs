@@ -296,6 +296,8 @@ namespace MassSpring {
         public const uint MSPRING_CLONE_HOOKS = 1u;
         public const uint MSPRING_HOOK_CONCURRENT = 1u;
         public const uint MSPRING_HOOK_BELOW = 2u;
+        public const uint MSPRING_FIND_WHOLE = 1u;
+        public const uint MSPRING_FIND_BROKEN = 2u;
         public const uint MSPRING_SETTLE_LEAVE_FLOATING = 1u;
         public const uint MSPRING_TUNE_NOTHING_ELSE = 1u;
         public const uint MSPRING_TUNE_SCENE_FLOOR = 1u;
@@ -475,7 +477,9 @@ namespace MassSpring {
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_nearest_particle(IntPtr network, double x, double y, double within, uint* particle, double* distance);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_particles_in_circle(IntPtr network, double x, double y, double radius, uint* particles, uint capacity, uint* count);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_particles_in_box(IntPtr network, double min_x, double min_y, double max_x, double max_y, uint* particles, uint capacity, uint* count);
-        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_springs_across(IntPtr network, double from_x, double from_y, double to_x, double to_y, uint* springs, double* fractions, uint capacity, uint* count);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_nearest_spring(IntPtr network, double x, double y, double within, uint flags, uint* spring, double* fraction, double* distance);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_springs_in_circle(IntPtr network, double x, double y, double radius, uint flags, uint* springs, uint capacity, uint* count);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_springs_across(IntPtr network, double from_x, double from_y, double to_x, double to_y, uint flags, uint* springs, double* fractions, uint capacity, uint* count);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_view_mutable(IntPtr network, mspring_mutable_view* view);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_get_spring(IntPtr network, uint spring, mspring_spring_info* info);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_get_extents(IntPtr network, float* length, float* direction_x, float* direction_y, float* strain);

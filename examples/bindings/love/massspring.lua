@@ -203,7 +203,7 @@ end
 function network:crossed(from_x, from_y, to_x, to_y)
   local count, all = ffi.new("uint32_t[1]"), self:spring_count()
   local found = ffi.new("mspring_id[?]", all)
-  self:springs_across(from_x, from_y, to_x, to_y, found, nil, all, count)
+  self:springs_across(from_x, from_y, to_x, to_y, ms.FIND_WHOLE, found, nil, all, count)
   return found, number(count)
 end
 

@@ -691,9 +691,16 @@ uint32_t *count);
 mspring_result mspring_network_particles_in_box(
 const mspring_network *network, double min_x, double min_y, double max_x, double max_y, mspring_id *particles,
 uint32_t capacity, uint32_t *count);
+enum { MSPRING_FIND_WHOLE = 1u << 0, MSPRING_FIND_BROKEN = 1u << 1
+};
+mspring_result mspring_network_nearest_spring(const mspring_network *network,
+double x, double y, double within, uint32_t flags, mspring_id *spring, double *fraction, double *distance);
+mspring_result mspring_network_springs_in_circle(
+const mspring_network *network, double x, double y, double radius, uint32_t flags, mspring_id *springs,
+uint32_t capacity, uint32_t *count);
 mspring_result mspring_network_springs_across(const mspring_network *network,
-double from_x, double from_y, double to_x, double to_y, mspring_id *springs, double *fractions, uint32_t capacity,
-uint32_t *count);
+double from_x, double from_y, double to_x, double to_y, uint32_t flags, mspring_id *springs, double *fractions,
+uint32_t capacity, uint32_t *count);
 typedef struct mspring_mutable_view {
 uint32_t struct_size;
 uint32_t slot_count, particle_count, reserved;

@@ -2,7 +2,7 @@
 import { array, choice, fail, MassSpringError, number, whole } from './core.js';
 import { Builder } from './builder.js';
 import { Laws } from './laws.js';
-import { NONE, STRUCTS } from './tables.js';
+import { FIND_WHOLE, NONE, STRUCTS } from './tables.js';
 
 /** A network that exists already. */
 export class Made {
@@ -276,10 +276,27 @@ export class Network extends Laws {
       this.pointer, number(minX, 'minX'), number(minY, 'minY'), number(maxX, 'maxX'), number(maxY, 'maxY'), ...found));
   }
 
-  springsAcross(fromX, fromY, toX, toY) {
+  nearestSpring(x, y, within = Infinity, flags = FIND_WHOLE) {
+    const { core } = this;
+    return core.call(() => {
+      const found = core.take(24);
+      this.check(core.exports.mspring_network_nearest_spring(this.pointer, number(x, 'x'), number(y, 'y'),
+        number(within, 'within'), whole(flags, 'flags'), found, found + 8, found + 16));
+      const spring = core.data.getUint32(found, true);
+      return spring === NONE ? null
+        : { spring, fraction: core.data.getFloat64(found + 8, true), distance: core.data.getFloat64(found + 16, true) };
+    });
+  }
+
+  springsInCircle(x, y, radius, flags = FIND_WHOLE) {
+    return this.#found(this.springCount, (...found) => this.core.exports.mspring_network_springs_in_circle(
+      this.pointer, number(x, 'x'), number(y, 'y'), number(radius, 'radius'), whole(flags, 'flags'), ...found));
+  }
+
+  springsAcross(fromX, fromY, toX, toY, flags = FIND_WHOLE) {
     return this.#found(this.springCount, (ids, capacity, count) => this.core.exports.mspring_network_springs_across(
-      this.pointer, number(fromX, 'fromX'), number(fromY, 'fromY'), number(toX, 'toX'), number(toY, 'toY'), ids, 0,
-      capacity, count));
+      this.pointer, number(fromX, 'fromX'), number(fromY, 'fromY'), number(toX, 'toX'), number(toY, 'toY'),
+      whole(flags, 'flags'), ids, 0, capacity, count));
   }
 
   /* ------------------------------------------------------------------------------------------ snapshots, clones */

@@ -109,11 +109,29 @@ class MeasureCalls(NetworkCalls):
         """Ids of the particles in a box, its edges included, m."""
         return self._found(lib.mspring_network_particles_in_box, self.particle_count, min_x, min_y, max_x, max_y)
 
-    def springs_across(self, from_: Tuple[float, float], to: Tuple[float, float]) -> Tuple[np.ndarray, np.ndarray]:
-        """Ids of the springs that a straight line meets, and where: from 0 at its start to 1 at its end."""
+    def nearest_spring(self, x: float, y: float, within: float = float("inf"),
+                       flags: int = _header.FIND_WHOLE) -> Tuple[Optional[int], float, float]:
+        """The spring nearest to a point (m), or None; where on it the nearest place is, from 0 to 1; its distance (m).
+
+        flags  massspring.FIND_WHOLE, massspring.FIND_BROKEN or both
+        """
+        spring, made = ffi.new("mspring_id *"), ffi.new("double[2]")
+        self._read(lib.mspring_network_nearest_spring, x, y, within, flags, spring, made, made + 1)
+        return None if spring[0] == _header.NONE else spring[0], made[0], made[1]
+
+    def springs_in_circle(self, x: float, y: float, radius: float, flags: int = _header.FIND_WHOLE) -> np.ndarray:
+        """Ids of the springs that come into a circle, its edge included, m. flags: as of nearest_spring()"""
+        return self._found(lib.mspring_network_springs_in_circle, self.spring_count, x, y, radius, flags)
+
+    def springs_across(self, from_: Tuple[float, float], to: Tuple[float, float],
+                       flags: int = _header.FIND_WHOLE) -> Tuple[np.ndarray, np.ndarray]:
+        """Ids of the springs that a straight line meets, and where: from 0 at its start to 1 at its end.
+
+        flags  as of nearest_spring()
+        """
         total, count = self.spring_count, ffi.new("uint32_t *")
         ids, fractions = np.empty(total, np.uint32), np.empty(total, np.float64)
-        self._read(lib.mspring_network_springs_across, *from_, *to, pointer("mspring_id", ids),
+        self._read(lib.mspring_network_springs_across, *from_, *to, flags, pointer("mspring_id", ids),
                    pointer("double", fractions), total, count)
         return ids[:count[0]].astype(np.int64), fractions[:count[0]].copy()
 

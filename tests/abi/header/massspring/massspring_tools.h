@@ -5,7 +5,8 @@
 ///                 disc_def_init
 ///     copy        network_clone; clone_def_init
 ///     hooks       network_add_hook, _remove_hook; hook_def_init
-///     find        network_nearest_particle, _particles_in_circle, _particles_in_box, _springs_across
+///     find        network_nearest_particle, _particles_in_circle, _particles_in_box, _nearest_spring,
+///                 _springs_in_circle, _springs_across
 ///     write       network_view_mutable
 ///     inspect     network_get_spring, _get_extents, _get_sleepers, _renew_relative_springs, _get_plan,
 ///                 _memory_used, _worker_count, _simd_level; simd_supported, simd_available, simd_name
@@ -297,16 +298,45 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_partic
     const mspring_network *network, double min_x, double min_y, double max_x, double max_y, mspring_id *particles,
     uint32_t capacity, uint32_t *count);
 
+/// Springs to find.
+enum {
+    MSPRING_FIND_WHOLE = 1u << 0, ///< those that are not broken
+    MSPRING_FIND_BROKEN = 1u << 1 ///< broken ones, as for repair; removed ones are never found
+};
+
+/// Find the spring nearest to a point: of all places on springs. Takes a pass over all springs.
+/// @param x, y      world position, m, at most MSPRING_MAX_COORDINATE in size
+/// @param within    largest distance, m, >= 0; INFINITY for any
+/// @param flags     bits of MSPRING_FIND_, at least one
+/// @param spring    receives its id, the lowest of several, or MSPRING_NONE
+/// @param fraction  receives where on it the nearest place is, from 0 at end a to 1 at end b; may be NULL
+/// @param distance  receives its distance, m, or INFINITY; may be NULL
+/// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_nearest_spring(const mspring_network *network,
+    double x, double y, double within, uint32_t flags, mspring_id *spring, double *fraction, double *distance);
+
+/// Find the springs that come into a circle, its edge included: to burn, cut or repair them.
+/// Takes a pass over all springs.
+/// @param x, y, radius  world position and radius, m; radius >= 0
+/// @param flags         bits of MSPRING_FIND_, at least one
+/// @param springs       [capacity] receives as many ids as fit, in order; may be NULL if capacity is 0
+/// @param count         receives how many there are, which may be more than fit
+/// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT
+MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_springs_in_circle(
+    const mspring_network *network, double x, double y, double radius, uint32_t flags, mspring_id *springs,
+    uint32_t capacity, uint32_t *count);
+
 /// Find the springs that a straight line meets, to cut them or to cast a ray.
-/// Takes a pass over all springs. Broken ones are left out. A spring that the line only touches counts.
+/// Takes a pass over all springs. A spring that the line only touches counts.
 /// @param from_x, from_y, to_x, to_y  the line's ends, world positions, m
+/// @param flags      bits of MSPRING_FIND_, at least one
 /// @param springs    [capacity] receives as many ids as fit, in order; may be NULL if capacity is 0
 /// @param fractions  [capacity] receives where each is met, from 0 at the line's start to 1 at its end; may be NULL
 /// @param count      receives how many there are, which may be more than fit
 /// @threads shared   @allocates never   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_springs_across(const mspring_network *network,
-    double from_x, double from_y, double to_x, double to_y, mspring_id *springs, double *fractions, uint32_t capacity,
-    uint32_t *count);
+    double from_x, double from_y, double to_x, double to_y, uint32_t flags, mspring_id *springs, double *fractions,
+    uint32_t capacity, uint32_t *count);
 
 /* ------------------------------------------------------------------------------------------------ a view to write */
 
