@@ -234,6 +234,7 @@ static mspring_result change(mspring_network *network, const mspring_network_def
     result = mspring_network_get_solver(network, &now);
     wanted.most_work = now.most_work;
     wanted.residual = now.residual;
+    wanted.substep_length = now.substep_length;
     return result == MSPRING_OK ? mspring_network_set_solver(network, &wanted) : result;
 }
 

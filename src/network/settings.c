@@ -1,4 +1,5 @@
 /// Solver and settings: all that may change between steps.
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -54,6 +55,9 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
     if (def->max_substeps < 1 || def->max_substeps > MSPRING_MAX_SUBSTEPS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "max_substeps is %u, it must be 1 to %u",
                              (unsigned)def->max_substeps, (unsigned)MSPRING_MAX_SUBSTEPS);
+    if (def->substep_length != 0.0 && !(def->substep_length >= (double)FLT_MIN && def->substep_length <= 1e30))
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "substep_length is %g s, it must be 0 or 1.2e-38 to 1e30", def->substep_length);
     return def->solver != MSPRING_SOLVER_EXPLICIT ? check_implicit(def, message) : MSPRING_OK;
 }
 
@@ -68,6 +72,7 @@ static mspring_solver_def def_of(const mspring_network *network) {
                                                                       : network->substeps;
     def.max_substeps = network->max_substeps;
     def.most_work = network->most_work;
+    def.substep_length = network->substep_length;
     return def;
 }
 
@@ -109,6 +114,9 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
         result = mspringi_held_groups->check_solver(network, def);
     if (result != MSPRING_OK)
         return result;
+    if (def->substep_length > 0.0)
+        taken.substeps = MSPRING_SUBSTEPS_AUTO;
+    taken.substep_length = (double)(float)def->substep_length;
     const mspring_solver_def before = def_of(network);
     const void *object = network->solver.object;
     result = change_solver(network, def);
@@ -117,13 +125,14 @@ mspring_result mspring_network_set_solver(mspring_network *network, const msprin
     const mspring_solver_def now = def_of(network);
     const bool is_same = object == network->solver.object && memcmp(&before, &now, sizeof now) == 0;
     if (is_same && def->substeps == now.substeps && def->max_substeps == now.max_substeps &&
-        def->most_work == now.most_work)
+        def->most_work == now.most_work && def->substep_length == now.substep_length)
         return MSPRING_OK;
     mspringi_notify_change(network, MSPRINGI_CHANGED_SOLVER, 0);
     network->auto_substeps = auto_of(def->substeps);
     network->substeps = network->auto_substeps ? 1 : def->substeps;
     network->max_substeps = def->max_substeps;
     network->most_work = def->most_work;
+    network->substep_length = def->substep_length;
     network->guard.fallback_steps = 0;
     return MSPRING_OK;
 }

@@ -37,8 +37,10 @@ static bool prepare(mspring_network *network, mspringi_attempt *attempt, mspring
 // Set the substeps of the host's solver for this step, if they are left to the library. *calm: those of calm
 // motion; max_substeps if more would be needed, which is an error.
 static mspring_result choose_substeps(mspring_network *network, double dt, bool may_raise, uint32_t *calm) {
+    if (network->substep_length > 0.0)
+        mspringi_pace_keep_length(network, dt);
     *calm = network->substeps;
-    if (!mspringi_can_choose_substeps(network))
+    if (network->substep_length > 0.0 || !mspringi_can_choose_substeps(network))
         return MSPRING_OK;
     const mspring_result result = mspringi_pace_choose(network, dt, may_raise, calm);
     *calm = result == MSPRING_OK ? *calm : network->max_substeps;

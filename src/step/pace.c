@@ -106,6 +106,33 @@ static uint32_t even_substeps(mspring_network *network, choice *made) {
     return flagged(network, (uint32_t)whole, made->need);
 }
 
+/* -------------------------------------------------------------------------------------------- substep_length */
+
+// Substeps of the given length in dt and what earlier steps have left.
+static double whole_substeps(const mspring_network *network, double dt) {
+    return floor((dt + network->steps.pace.left) / network->substep_length + 0.5);
+}
+
+mspring_result mspringi_pace_defer(mspring_network *network, double dt, bool *is_deferred) {
+    const double whole = network->substep_length > 0.0 && dt > 0.0 ? whole_substeps(network, dt) : 1.0;
+    *is_deferred = whole < 1.0;
+    if (*is_deferred)
+        network->steps.pace.left += dt;
+    return whole <= (double)MSPRING_MAX_SUBSTEPS
+               ? MSPRING_OK
+               : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                               "dt is %g s: that is more than %u substeps of substep_length, %g s", dt,
+                               (unsigned)MSPRING_MAX_SUBSTEPS, network->substep_length);
+}
+
+void mspringi_pace_keep_length(mspring_network *network, double dt) {
+    const double whole = whole_substeps(network, dt);
+    network->substeps = (uint32_t)whole;
+    network->step_time = whole * network->substep_length;
+    network->next_pace = network->steps.pace;
+    network->next_pace.left = dt + network->steps.pace.left - network->step_time;
+}
+
 /* ------------------------------------------------------------------------------------------------------ both */
 
 static uint32_t preferred_substeps(mspring_network *network, choice *made) {

@@ -1,5 +1,5 @@
 /// @file pace.h
-/// Substeps of a step where they are left to the library: MSPRING_SUBSTEPS_AUTO and MSPRING_SUBSTEPS_EVEN.
+/// Substeps of a step where the library counts them: MSPRING_SUBSTEPS_AUTO, MSPRING_SUBSTEPS_EVEN, substep_length.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_PACE_H
@@ -11,6 +11,13 @@
 /// length (network->step_time), too. *calm: the substeps for calm motion. UNSTABLE if they are more than
 /// max_substeps.
 mspring_result mspringi_pace_choose(mspring_network *network, double dt, bool may_raise, uint32_t *calm);
+
+/// With substep_length: true if a dt is too short for a substep. Then it is left to the next step. ARGUMENT if it
+/// has too many.
+mspring_result mspringi_pace_defer(mspring_network *network, double dt, bool *is_deferred);
+
+/// With substep_length: set the substeps of a step that takes some, its length and what it leaves.
+void mspringi_pace_keep_length(mspring_network *network, double dt);
 
 /// Note that a step of dt has succeeded.
 void mspringi_pace_note(mspring_network *network, double dt);

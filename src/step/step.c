@@ -116,6 +116,12 @@ static MSPRINGI_NOINLINE void note(mspring_network *network, double dt, mspring_
     mspringi_message_clear(&network->message); // of a failed attempt
 }
 
+// A call that took no substep is no step: it has succeeded, and nothing was to blame.
+static void note_deferred(mspring_network *network) {
+    network->steps.result = MSPRING_OK;
+    network->steps.outcome = network->outcome;
+}
+
 mspring_result mspring_network_step(mspring_network *network, double dt) {
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
@@ -123,11 +129,17 @@ mspring_result mspring_network_step(mspring_network *network, double dt) {
     network->outcome = mspringi_outcome_none();
     network->added_substeps = 0;
     const size_t used = network->memory.used;
+    bool is_deferred = false;
     const mspringi_fp_state before = mspringi_fp_enter();
     result = mspringi_tasks_restart_after_fork(network->tasks, &network->message);
     if (result == MSPRING_OK)
+        result = mspringi_pace_defer(network, dt, &is_deferred);
+    if (result == MSPRING_OK && !is_deferred)
         result = step(network, dt);
-    note(network, dt, result);
+    if (is_deferred)
+        note_deferred(network);
+    else
+        note(network, dt, result);
     mspringi_fp_leave(before);
     MSPRINGI_ASSERT(network->memory.used == used || network->outcome.flags & MSPRING_STEP_GREW);
     (void)used;

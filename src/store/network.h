@@ -120,7 +120,7 @@ struct mspring_network {
     uint32_t first_substep;    ///< number in the step of the first substep that is now taken
     float lag;                 ///< lag at that substep, s: steps.lag, or less if springs would be unstable with it
     float full_lag;            ///< lag for gravity, s: without that limit
-    double step_time;          ///< length of the present step, s: dt, or near it with MSPRING_SUBSTEPS_EVEN
+    double step_time;          ///< length of the present step, s: dt, or near it with MSPRING_SUBSTEPS_EVEN or substep_length
     mspringi_pace next_pace;   ///< becomes steps.pace if the step succeeds
     bool backup_is_start;      ///< only the solver has written to the state since the backup was written
     bool is_to_repeat;         ///< an assumption failed: the substeps that are undone are taken again
@@ -165,6 +165,7 @@ struct mspring_network {
     uint32_t max_substeps;          ///< see mspring_solver_def
     uint32_t most_work;             ///< see mspring_solver_def
     uint32_t auto_substeps;         ///< each step chooses them, if its solver can: MSPRINGI_SUBSTEPS_AUTO, _EVEN
+    double substep_length;          ///< see mspring_solver_def; 0: none is given
     mspringi_solver solver;         ///< the one that the host chose
     mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
     const mspringi_solver *running; ///< the one that takes the present attempt; else NULL

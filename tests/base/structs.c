@@ -278,7 +278,8 @@ const struct input inputs[] = {
     INPUT(disc_def, NO_FIELD, give_disc),
     INPUT(network_def, NO_FIELD, give_network_def),
     INPUT(clone_def, offsetof(mspring_clone_def, reserved), give_clone_def),
-    {"solver_def", sizeof(mspring_solver_def), 8, init_solver_def, give_solver, NO_FIELD}, // most_work, residual
+    {"solver_def", sizeof(mspring_solver_def), 16, init_solver_def, give_solver,
+     NO_FIELD}, // most_work, residual, substep_length
     INPUT(settings, NO_FIELD, give_settings),
     INPUT(hook_def, offsetof(mspring_hook_def, reserved), give_hook),
     INPUT(floor_def, offsetof(mspring_floor_def, reserved), give_floor),
@@ -453,7 +454,7 @@ static mspring_result fill_row_solver(subject *s, void *out) {
 const struct output outputs[] = {
     OUTPUT(view, fill_view),
     OUTPUT(mutable_view, fill_mutable_view),
-    {"solver_def", sizeof(mspring_solver_def), 8, fill_solver, true}, // most_work, residual
+    {"solver_def", sizeof(mspring_solver_def), 16, fill_solver, true}, // most_work, residual, substep_length
     OUTPUT(settings, fill_settings),
     OUTPUT(floor_def, fill_floor),
     OUTPUT(contact_def, fill_contact),
@@ -473,6 +474,6 @@ const struct output outputs[] = {
     OUTPUT_ONCE(settle_result, fill_settled),
     OUTPUT(component, fill_component),
     {"tune_row", sizeof(mspring_tune_row), 8, fill_row, false}, // residual
-    {"solver_def", sizeof(mspring_solver_def), 8, fill_row_solver, true},
+    {"solver_def", sizeof(mspring_solver_def), 16, fill_row_solver, true},
 };
 const size_t output_count = COUNT_OF(outputs);

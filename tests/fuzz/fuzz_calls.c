@@ -493,6 +493,7 @@ static mspring_result make_call(mspring_network *network, const call *c) {
         solver.substeps = c->count == 0 ? MSPRING_SUBSTEPS_AUTO : 1 + c->particle % 33;
         solver.max_substeps = 64;
         solver.solver = c->solver;
+        solver.substep_length = c->spring % 4 == 3 ? fabs((double)c->a) : 0.0;
         return mspring_network_set_solver(network, &solver);
     case 44: // one value for all, or what is no stride of the array's
         return mspring_network_set(network, (int32_t)(c->particle % 12), c->spring, c->count, pair, 0);

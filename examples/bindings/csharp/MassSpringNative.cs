@@ -55,7 +55,7 @@ namespace MassSpring {
 
     [StructLayout(LayoutKind.Sequential)]
     public unsafe struct mspring_solver_def {
-        public uint struct_size; public mspring_solver solver; public uint substeps; public uint max_substeps; public mspring_integrator integrator; public uint iterations; public uint tile_size; public uint coarse_period; public uint most_work; public float residual;
+        public uint struct_size; public mspring_solver solver; public uint substeps; public uint max_substeps; public mspring_integrator integrator; public uint iterations; public uint tile_size; public uint coarse_period; public uint most_work; public float residual; public double substep_length;
     }
 
     [StructLayout(LayoutKind.Sequential)]

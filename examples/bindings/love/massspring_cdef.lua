@@ -84,6 +84,7 @@ uint32_t tile_size;
 uint32_t coarse_period;
 uint32_t most_work;
 float residual;
+double substep_length;
 } mspring_solver_def;
 typedef enum mspring_simd { MSPRING_SIMD_AUTO = 0, MSPRING_SIMD_SCALAR = 1, MSPRING_SIMD_SSE2 = 2, MSPRING_SIMD_AVX2 = 3, MSPRING_SIMD_AVX512 = 4, MSPRING_SIMD_NEON = 5, MSPRING_SIMD_WASM = 6, MSPRING_SIMD_INT = -2147483648
 } mspring_simd;

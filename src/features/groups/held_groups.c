@@ -25,7 +25,8 @@ static mspring_result check_settings(mspring_network *network, const mspring_set
 static mspring_result check_solver(mspring_network *network, const mspring_solver_def *def) {
     if (def->solver != MSPRING_SOLVER_EXPLICIT)
         return refuse(network, "the explicit solver: others solve for all of the network");
-    return def->substeps == MSPRING_SUBSTEPS_AUTO || def->substeps == MSPRING_SUBSTEPS_EVEN
+    return def->substeps == MSPRING_SUBSTEPS_AUTO || def->substeps == MSPRING_SUBSTEPS_EVEN ||
+                   def->substep_length > 0.0
                ? refuse(network, "a number of substeps: automatic ones follow the stiffest of them")
                : MSPRING_OK;
 }

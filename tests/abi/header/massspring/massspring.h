@@ -398,6 +398,13 @@ typedef struct mspring_solver_def {
                     ///< out of balance, has fallen to this share of its value after the first iteration. 0: exactly
                     ///< `iterations`; 1: springs hardly act. With a floor it is squared, or the iterations double;
                     ///< bodies that touch have a tolerance of their own
+    /// Length of all substeps, s, rounded to a float, instead of `substeps`, which reads back as MSPRING_SUBSTEPS_AUTO;
+    /// 1.2e-38 to 1e30, or 0, the default. A step takes the nearest whole number of them, and the rest of dt is left to
+    /// the next (mspring_step_info.time_left, at most half a substep). So what nothing damps keeps its
+    /// energy, and a fixed tick stays what it is, whatever dt does. A dt that is too short for a substep takes
+    /// none: it only adds to time_left, and is not counted as a step. Forces and signals given for it stay for the next.
+    /// MSPRING_SUBSTEPS_EVEN chooses a length by itself, and changes it where it has to.
+    double substep_length;
 } mspring_solver_def;
 
 /// Instruction sets. All give the same bits. Levels of one kind of CPU stand in order: scalar < SSE2 < AVX2 < AVX-512
@@ -476,8 +483,8 @@ typedef struct mspring_settings {
 
 /// A network at the start. Fill with mspring_network_def_init() first.
 ///
-/// It has the fields of mspring_settings and of mspring_solver_def, with the same meanings and defaults. Of most_work
-/// and residual the network has the defaults; mspring_network_set_solver() sets them.
+/// It has the fields of mspring_settings and of mspring_solver_def, with the same meanings and defaults. Of most_work,
+/// residual and substep_length the network has the defaults; mspring_network_set_solver() sets them.
 typedef struct mspring_network_def {
     uint32_t struct_size;
     mspring_simd simd_level; ///< highest level to use; default MSPRING_SIMD_AUTO. A level that this machine lacks is no
@@ -749,7 +756,7 @@ typedef struct mspring_step_info {
     uint64_t fallback_count; ///< of these with MSPRING_STEP_FALLBACK or MSPRING_STEP_CLAMPED
     double time;             ///< simulated time of these, s: that of the state
     double largest_speed;    ///< length of the fastest particle's velocity now, m/s
-    double time_left;        ///< with MSPRING_SUBSTEPS_EVEN, dt that steps were given and have not taken yet, s; < 0:
+    double time_left;        ///< with MSPRING_SUBSTEPS_EVEN or substep_length, dt that steps were given and have not taken yet, s; < 0:
                              ///< they are ahead
     double work;             ///< of the last step, even if it failed, in calm steps (mspring_solver_def.most_work): 1 if
                              ///< nothing was repeated or raised; 0 if nothing was computed
