@@ -429,7 +429,12 @@ static void ask(costs *c, uint32_t n, const hostile_case *of) {
     check_ok(mspring_network_update_components(network, &count, NULL));
     check_ok(mspring_network_nearest_particle(network, 0.5, 0.5, 10, &nearest, &distance));
     check_ok(mspring_network_particles_in_circle(network, 0, 0, 2, ids, n, &count));
-    check_ok(mspring_network_springs_across(network, -2, 0.1, 2, 0.1, ids, NULL, n, &count));
+    const uint32_t all = MSPRING_FIND_WHOLE | MSPRING_FIND_BROKEN;
+    check_ok(mspring_network_springs_across(network, -2, 0.1, 2, 0.1, all, ids, NULL, n, &count));
+    check_ok(mspring_network_springs_in_circle(network, 0, 0, 2, all, ids, n, &count));
+    check_ok(mspring_network_nearest_spring(network, 0.5, 0.5, 10, all, &nearest, NULL, &distance));
+    mspring_body body = {.struct_size = sizeof body};
+    check_ok(mspring_network_get_body(network, NULL, 0, mspring_network_particle_count(network), &body));
     for (uint32_t i = 0; i < n / 8; i++) {
         check_ok(mspring_network_get_ends(network, i, 1, MSPRING_ENDS_IDS, ids, ids + 1, 1));
     }

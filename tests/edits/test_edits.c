@@ -269,7 +269,7 @@ static void damping_needs_room(void **state) {
     assert_true(info.damping == 3 && info.nominal_damping == 3);
     mspring_network_destroy(network);
 
-    def.flags = MSPRING_NETWORK_PRECISE << 1;
+    def.flags = MSPRING_NETWORK_POSES << 1;
     mspring_builder *builder = recipe_builder(&made, NULL);
     check_error(mspring_network_create(builder, &def, &network), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_builder_error(builder), "flags");
