@@ -213,6 +213,7 @@ static void copies_stand_in_herds_at_once(void **state) {
     mspring_network_destroy(network);
     recipe_free(&made);
     check_robots(65, 4, 4 * SIDE * SIDE, 0);
+    check_robots(71, 4, 4 * SIDE * SIDE, 0); // the rest, too, where there are no others
     check_robots(63, 4, 0, 63 * SIDE * SIDE);
     check_robots(80, 1, 0, 80 * SIDE * SIDE);
 }

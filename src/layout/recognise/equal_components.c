@@ -217,8 +217,9 @@ static mspring_result choose_bundles(mspringi_layout_builder *a, uint32_t begin,
     const uint32_t bundles = count / MSPRINGI_WIDTH, springs = springs_of(equal, &a->graph, model);
     const mspring_result result = bundles > 0 ? count_irregular_springs(a, model, &irregular) : MSPRING_OK;
     if (is_worth_bundling(count, springs, irregular)) {
-        for (uint32_t i = bundles * MSPRINGI_WIDTH; i < count; ++i)
-            equal->chosen[equal->count - ++equal->rest_count] = chosen[i];
+        // Backwards: chosen ends where the rest begins if the network has this shape only.
+        for (uint32_t i = count; i > bundles * MSPRINGI_WIDTH; --i)
+            equal->chosen[equal->count - ++equal->rest_count] = chosen[i - 1];
         equal->chosen_count += bundles * MSPRINGI_WIDTH;
         equal->slice_count += bundles * size_of(equal, model);
         a->bundles.spring_count += bundles * springs;
