@@ -335,10 +335,25 @@ static bool has_overflowed(float coordinate, float speed) {
     return !(coordinate <= (float)MSPRING_MAX_SPEED && speed <= (float)MSPRING_MAX_SPEED);
 }
 
+// True if the guard takes no step whose solver has left repetitions undone: the others have a fallback, or ask for
+// none.
+static bool needs_all_work(mspring_guard policy) {
+    return policy == MSPRING_GUARD_GROWTH || policy == MSPRING_GUARD_RETRY;
+}
+
+static mspring_result report_spent(mspring_network *network, const mspringi_attempt *attempt) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                         "unstable: substeps of %g s need more solutions than most_work, %u, allows. Use a larger "
+                         "most_work, more substeps or a shorter dt.",
+                         (double)attempt->h, (unsigned)network->most_work);
+}
+
 mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt,
                                   mspringi_extrema extrema) {
     const float h = attempt->h;
     mspringi_guard *guard = &network->guard;
+    if (attempt->is_spent && needs_all_work(network->settings.guard))
+        return report_spent(network, attempt);
     const mspringi_extrema bounds = mspringi_guard_bound(network, h, extrema);
     float speed = bounds.speed, coordinate = bounds.coordinate;
     const bool is_out = !(coordinate <= (float)MSPRING_MAX_COORDINATE && speed <= network->settings.max_speed);

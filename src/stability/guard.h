@@ -34,7 +34,8 @@ void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *
 /// Extrema of both sets of slots. The order of joining does not matter.
 mspringi_extrema mspringi_extrema_join(mspringi_extrema a, mspringi_extrema b);
 
-/// Check the state after the substeps by the extrema of all slots. The backup has the state before the step.
+/// Check the state after the substeps by the extrema of all slots, and if their solver had the work that it needed.
+/// The backup has the state before the step.
 mspring_result mspringi_guard_end(mspring_network *network, const mspringi_attempt *attempt,
                                   mspringi_extrema extrema);
 

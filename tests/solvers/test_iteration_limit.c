@@ -96,6 +96,7 @@ static mspring_network *network_of(scene kind, mspring_solver solver, uint32_t s
     draw(&made, kind, &seed);
     mspring_network_def def = support_def(kind == PRESS ? 0 : -9.8f, substeps);
     def.solver = solver;
+    def.guard = MSPRING_GUARD_CLAMP;
     def.worker_count = workers;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
@@ -217,6 +218,7 @@ static mspring_network *pressed_beams(mspring_solver solver, bool has_grip, mspr
     }
     mspring_network_def def = support_def(-9.8f, 1);
     def.solver = solver;
+    def.guard = MSPRING_GUARD_CLAMP;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     mspring_solver_def settings = support_solver(network);
@@ -296,6 +298,54 @@ static void the_bound_is_what_ends_the_work(void **state) {
     assert_true(play(network_of(IN_WALL, MSPRING_SOLVER_IMPLICIT, 1, 4, 1, 7), 2).spent == 2);
 }
 
+typedef struct guarded {
+    uint32_t refused, spent, substeps; ///< steps; steps; of the last one
+    bool is_taken;                     ///< the last step was
+} guarded;
+
+/// Steps of a scene of which each that is refused must leave all as it was but, for a retry, twice the substeps.
+static guarded play_with(mspring_guard guard, scene kind, mspring_solver solver, int steps) {
+    mspring_network *network = network_of(kind, solver, 1, 4, 1, 7);
+    check_ok(support_set_guard(network, guard));
+    guarded all = {.substeps = 1};
+    for (int step = 0; step < steps; step++) {
+        const uint64_t before = support_hash(network);
+        const mspring_result result = mspring_network_step(network, DT);
+        const mspring_step_info info = support_step_info(network);
+        all.is_taken = result == MSPRING_OK;
+        all.spent += (info.flags & MSPRING_STEP_FEWER) != 0;
+        all.refused += !all.is_taken;
+        if (!all.is_taken) {
+            check_error(result, MSPRING_ERROR_UNSTABLE);
+            check_contains(mspring_network_error(network), "most_work, 4");
+            assert_true(support_hash(network) == before && info.flags == 0 && info.work > 4);
+            all.substeps *= guard == MSPRING_GUARD_RETRY ? 2 : 1;
+        }
+        assert_int_equal(support_solver(network).substeps, all.substeps);
+    }
+    mspring_network_destroy(network);
+    return all;
+}
+
+/// With MSPRING_GUARD_GROWTH and _RETRY a step that spends its work fails. The next one of a retry has twice the
+/// substeps, each of which has as much work. Other guards take the step, and flag it.
+static void guards_decide_on_what_is_left_undone(void **state) {
+    (void)state;
+    for (mspring_solver solver = MSPRING_SOLVER_IMPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
+        for (mspring_guard guard = MSPRING_GUARD_GROWTH; guard <= MSPRING_GUARD_CLAMP_BOUNDS; guard++) {
+            const bool retries = guard == MSPRING_GUARD_RETRY, refuses = guard == MSPRING_GUARD_GROWTH || retries;
+            const guarded across = play_with(guard, ACROSS, solver, 6), press = play_with(guard, PRESS, solver, 12);
+            print_message("solver %d, guard %d: %u and %u refused, %u and %u spent, %u and %u substeps\n",
+                          (int)solver, (int)guard, (unsigned)across.refused, (unsigned)press.refused,
+                          (unsigned)across.spent, (unsigned)press.spent, (unsigned)across.substeps,
+                          (unsigned)press.substeps);
+            assert_true(refuses ? across.refused > 0 && across.spent + press.spent == 0
+                                : across.refused + press.refused == 0 && across.spent > 0 && press.spent > 0);
+            assert_int_equal(press.is_taken, !refuses || retries);
+        }
+    }
+}
+
 static void workers_share_the_bound(void **state) {
     (void)state;
     for (scene kind = TANGLE; kind < SCENES; kind++) {
@@ -338,6 +388,7 @@ int main(void) {
         cmocka_unit_test(no_body_passes_another),
         cmocka_unit_test(forces_press_no_body_through_another),
         cmocka_unit_test(the_bound_is_what_ends_the_work),
+        cmocka_unit_test(guards_decide_on_what_is_left_undone),
         cmocka_unit_test(workers_share_the_bound),
         cmocka_unit_test(a_push_is_no_gain),
     };

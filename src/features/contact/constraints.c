@@ -325,7 +325,7 @@ static void queue_constraint(const mspring_network *network, mspringi_contacts *
         belongs_to_other_edge(network, contacts, pair, at.fraction <= 0.0 ? 0 : 1))
         return;
     if (contacts->constraint_count + contacts->pending_count == contacts->constraint_capacity) {
-        contacts->is_out_of_room = contacts->lacks_room = true;
+        mspringi_contact_reject(contacts, MSPRINGI_CONTACT_LACKS_CONSTRAINTS);
         return;
     }
     const double inverse_mass = inverse_mass_of(k, c, at.fraction);
@@ -386,20 +386,20 @@ static uint32_t filter_fast(const mspringi_contacts *contacts, uint32_t first, u
 // Queue constraints of candidates: of all, or only of fast ones without a constraint.
 static void queue_constraints(const mspring_network *network, mspringi_contacts *contacts, double h, double given,
                               bool only_fast, double *fastest) {
-    for (uint32_t first = 0; first < contacts->candidate_count && !contacts->is_out_of_room;
+    for (uint32_t first = 0; first < contacts->candidate_count && !mspringi_contact_is_rejected(contacts);
          first += FILTER_BATCH) {
         uint32_t kept[FILTER_BATCH];
         const uint32_t count =
             only_fast ? filter_fast(contacts, first, kept) : filter_candidates(contacts, first, h, given, kept);
-        for (uint32_t i = 0; i < count && !contacts->is_out_of_room; ++i)
+        for (uint32_t i = 0; i < count && !mspringi_contact_is_rejected(contacts); ++i)
             queue_constraint(network, contacts, kept[i], h, given, fastest);
     }
 }
 
-// Make the pending constraints. If there was no room, the step will be rejected, so drop them all.
+// Make the pending constraints. If the step will be rejected, drop them all.
 static void flush_or_end(mspringi_contacts *contacts, double h) {
     flush_pending(contacts, h);
-    if (contacts->is_out_of_room)
+    if (mspringi_contact_is_rejected(contacts))
         contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
 }
 

@@ -116,11 +116,18 @@ static void free_lists(const mspringi_contacts *contacts, mspringi_memory *memor
     mspringi_free(memory, contacts->implicit_constraints);
 }
 
+// True if the step was rejected for lack of room that there may be.
+static bool may_grow(const mspringi_contacts *contacts) {
+    if (contacts->def.capacity >= mspringi_contacts_most_pairs(contacts))
+        return false;
+    return contacts->rejection == MSPRINGI_CONTACT_LACKS_PAIRS ||
+           (contacts->rejection == MSPRINGI_CONTACT_LACKS_CONSTRAINTS &&
+            contacts->constraint_capacity < constraints_for(contacts, UINT32_MAX));
+}
+
 mspring_result mspringi_contact_grow(mspring_network *network) {
     mspringi_contacts *contacts = network->contacts;
-    if (!contacts || !contacts->lacks_room || contacts->def.capacity >= mspringi_contacts_most_pairs(contacts))
-        return MSPRING_ERROR_LIMIT;
-    if (!contacts->is_pair_list_full && contacts->constraint_capacity >= constraints_for(contacts, UINT32_MAX))
+    if (!contacts || !may_grow(contacts))
         return MSPRING_ERROR_LIMIT;
     mspringi_memory *memory = &network->memory;
     mspringi_contacts grown = *contacts;
@@ -137,7 +144,7 @@ mspring_result mspringi_contact_grow(mspring_network *network) {
     free_lists(contacts, memory);
     *contacts = grown;
     contacts->count = contacts->candidate_count = 0;
-    contacts->is_listed = contacts->is_fresh = contacts->lacks_room = false;
+    contacts->is_listed = contacts->is_fresh = false;
     return MSPRING_OK;
 }
 

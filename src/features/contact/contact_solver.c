@@ -184,11 +184,11 @@ static void move_nodes(const mspring_network *network, mspringi_contacts *contac
         mspringi_relaxation_finish(contacts);
 }
 
-// True if the step has taken too much work. Then it will be rejected, and nothing more is done for it.
+// True if the step has taken too much work. Then nothing more is done for it.
 static bool is_too_much(mspringi_contacts *contacts) {
     if (contacts->work <= contacts->most_work)
         return false;
-    contacts->is_out_of_room = true;
+    mspringi_contact_check_work(contacts);
     contacts->candidate_count = contacts->constraint_count = contacts->near_miss_count = 0;
     return true;
 }

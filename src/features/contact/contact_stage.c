@@ -137,7 +137,8 @@ static void share_stillness(mspring_network *network, const mspringi_contacts *c
 // Begin the substeps of an attempt, or their repetition. Return true if all pairs have room.
 static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     mspringi_contacts *contacts = network->contacts;
-    contacts->is_missed = contacts->is_pair_list_full = contacts->is_out_of_room = contacts->lacks_room = false;
+    contacts->is_missed = false;
+    contacts->rejection = MSPRINGI_CONTACT_SOUND;
     contacts->substeps_done = contacts->touching = 0;
     contacts->substeps_since_scan = 0;
     contacts->deepest = 0.0;
@@ -152,11 +153,6 @@ static void clear_extra_speeds(mspringi_contacts *contacts) {
         memset(contacts->extra_speed, 0,
                (contacts->particles + (size_t)contacts->colliders.point_capacity) * sizeof *contacts->extra_speed);
     contacts->has_extra_speed = false;
-}
-
-// True if the step will be rejected.
-static bool has_failed(const mspringi_contacts *contacts) {
-    return contacts->is_pair_list_full || contacts->is_out_of_room;
 }
 
 static void before_step(mspring_network *network, const mspringi_attempt *attempt) {
@@ -209,7 +205,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
     mspringi_contacts *contacts = network->contacts;
     const uint32_t count = substep + 1 - contacts->first_substep;
     contacts->substeps_done += count;
-    if (has_failed(contacts))
+    if (mspringi_contact_is_rejected(contacts))
         return;
     contacts->is_fresh = false;
     if (contacts->quiet_substeps > 0) {
@@ -234,9 +230,9 @@ static bool must_repeat(mspring_network *network, const mspringi_attempt *attemp
     mspringi_contacts *contacts = network->contacts;
     const uint32_t count = contacts->substeps_done == 0 ? attempt->substeps : contacts->substeps_since_scan;
     contacts->substeps_done = attempt->substeps;
-    if (count > 0 && !has_failed(contacts))
+    if (count > 0 && !mspringi_contact_is_rejected(contacts))
         check_quiet_substeps(network, contacts, count);
-    if (!contacts->is_missed || contacts->is_second_try || has_failed(contacts))
+    if (!contacts->is_missed || contacts->is_second_try || mspringi_contact_is_rejected(contacts))
         return false;
     contacts->is_second_try = true;
     return true;
@@ -267,16 +263,16 @@ static mspring_result report_work(mspring_network *network) {
 
 static mspring_result verify(mspring_network *network) {
     const mspringi_contacts *contacts = network->contacts;
-    if (!has_failed(contacts))
+    const bool lacks_pairs = contacts->rejection == MSPRINGI_CONTACT_LACKS_PAIRS;
+    if (contacts->rejection == MSPRINGI_CONTACT_SOUND)
         return MSPRING_OK;
-    if (contacts->work > contacts->most_work)
+    if (contacts->rejection == MSPRINGI_CONTACT_LACKS_WORK)
         return report_work(network);
-    return mspringi_fail(
-        &network->message, MSPRING_ERROR_LIMIT,
-        "more than %u pairs of an outline point and an outline edge %s each other: set "
-        "contact with a larger max_capacity, or less thickness",
-        (unsigned)(contacts->is_pair_list_full ? contacts->capacity : contacts->constraint_capacity),
-        contacts->is_pair_list_full ? "are near" : "may touch");
+    return mspringi_fail(&network->message, MSPRING_ERROR_LIMIT,
+                         "more than %u pairs of an outline point and an outline edge %s each other: set "
+                         "contact with a larger max_capacity, or less thickness",
+                         (unsigned)(lacks_pairs ? contacts->capacity : contacts->constraint_capacity),
+                         lacks_pairs ? "are near" : "may touch");
 }
 
 // The state is that before the step. If the step is repeated, perhaps for another stage, it begins with a scan,
@@ -285,7 +281,7 @@ static void roll_back(mspring_network *network) {
     mspringi_contacts *contacts = network->contacts;
     contacts->is_fresh = false;
     mspringi_contact_events_discard_step(contacts);
-    if (network->is_to_repeat || !has_failed(contacts)) // else the next step scans
+    if (network->is_to_repeat || !mspringi_contact_is_rejected(contacts)) // else the next step scans
         (void)begin_substeps(network, contacts->colliders.substeps);
 }
 

@@ -267,6 +267,14 @@ typedef struct mspringi_contact_material {
 /// Remembered edges that a point never touches: neighbours on a straight outline.
 #define MSPRINGI_EXCLUDED_EDGES 6u
 
+/// Why contact will reject the step. Then nothing more is done for it.
+typedef enum mspringi_contact_rejection {
+    MSPRINGI_CONTACT_SOUND,             ///< it will not
+    MSPRINGI_CONTACT_LACKS_PAIRS,       ///< the list has no room for a pair
+    MSPRINGI_CONTACT_LACKS_CONSTRAINTS, ///< an interval has none for a constraint
+    MSPRINGI_CONTACT_LACKS_WORK         ///< it took more than most_work
+} mspringi_contact_rejection;
+
 struct mspringi_contacts {
     mspring_contact_def def;
     double thickness, push; ///< m; largest speed of push-out, m/s
@@ -285,7 +293,7 @@ struct mspringi_contacts {
     uint32_t count, capacity;
     mspringi_candidate *candidates; ///< [capacity] pairs that may touch before the next scan
     uint32_t candidate_count;
-    bool is_listed, is_pair_list_full;
+    bool is_listed;
     mspringi_inner_points inner;
     uint64_t work, most_work; ///< comparisons of points with edges in this step, or what takes as long; their limit
     double *margin;          ///< [nodes] the list held all pairs nearer than thickness and both margins when it was
@@ -328,8 +336,9 @@ struct mspringi_contacts {
     double least_gap;             ///< gap of the nearest pair at the last scan, m
     double *extra_speed;          ///< [nodes] speed from contact beyond the scan's assumption, m/s; else 0
     bool has_extra_speed;         ///< some are not 0
-    bool is_missed;               ///< pairs could touch in a quiet substep: repeat the step
-    bool is_second_try;           ///< repeated step: scan after each substep
+    mspringi_contact_rejection rejection;
+    bool is_missed;     ///< pairs could touch in a quiet substep: repeat the step
+    bool is_second_try; ///< repeated step: scan after each substep
 
     // An interval.
     mspringi_contact_nodes nodes;
@@ -341,8 +350,6 @@ struct mspringi_contacts {
     uint32_t constraint_count, near_miss_count, constraint_capacity;
     mspringi_pending_constraint pending[MSPRINGI_MAX_PENDING];
     uint32_t pending_count, max_pending;
-    bool lacks_room;     ///< the step will be rejected because capacity is too small
-    bool is_out_of_room; ///< constraint_capacity or most_work was exceeded: the step will be rejected
     mspringi_implicit_constraint *implicit_constraints; ///< [constraint_capacity] the same constraints in a linear
                                                         ///< system; NULL unless a solver has one
     double passed;                                      ///< time taken in intervals of an implicit substep, s
@@ -359,6 +366,22 @@ struct mspringi_contacts {
 
 typedef struct mspringi_contacts mspringi_contacts;
 
+static inline bool mspringi_contact_is_rejected(const mspringi_contacts *contacts) {
+    return contacts->rejection != MSPRINGI_CONTACT_SOUND;
+}
+
+/// Reject the step, for the first reason that is found.
+static inline void mspringi_contact_reject(mspringi_contacts *contacts, mspringi_contact_rejection why) {
+    if (contacts->rejection == MSPRINGI_CONTACT_SOUND)
+        contacts->rejection = why;
+}
+
+/// Reject the step if it has taken too much work.
+static inline void mspringi_contact_check_work(mspringi_contacts *contacts) {
+    if (contacts->work > contacts->most_work)
+        mspringi_contact_reject(contacts, MSPRINGI_CONTACT_LACKS_WORK);
+}
+
 /// Edges at a particle that cost nothing to visit. More count as comparisons: hubs of thousands would take their
 /// square.
 #define MSPRINGI_FREE_EDGES 64u
@@ -373,7 +396,7 @@ static inline void mspringi_contact_count_visits(mspringi_contacts *contacts, ui
     if (visits <= MSPRINGI_FREE_EDGES)
         return;
     contacts->work += visits;
-    contacts->is_out_of_room |= contacts->work > contacts->most_work;
+    mspringi_contact_check_work(contacts);
 }
 
 /* outline.c */
@@ -439,7 +462,7 @@ static inline double mspringi_margin_of_edge(const mspringi_contacts *contacts, 
 /* pair_list.c */
 
 /// Make a new list if pairs may be missing, and collect the candidates. is_missed becomes true if a pair could have
-/// touched in the last `quiet` substeps, which had no constraints. False: no room, or too much work.
+/// touched in the last `quiet` substeps, which had no constraints. False: the step is rejected.
 bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);
 /// Refresh the list unless nothing moved since the last scan, and count the quiet substeps. False: as above.
 bool mspringi_pair_list_scan(const mspring_network *network, mspringi_contacts *contacts, uint32_t quiet);

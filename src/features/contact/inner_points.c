@@ -89,7 +89,7 @@ static void add_pairs(const mspring_network *network, mspringi_contacts *contact
             !mspringi_may_touch(network, p, a))
             continue;
         if (contacts->count + contacts->inner.pair_count == contacts->capacity) {
-            contacts->is_pair_list_full = contacts->lacks_room = true;
+            mspringi_contact_reject(contacts, MSPRINGI_CONTACT_LACKS_PAIRS);
             return;
         }
         *pair_at(contacts, contacts->inner.pair_count++) = (mspringi_pair){.point = p, .edge = edge};
@@ -159,9 +159,9 @@ static void begin_at(const mspring_network *network, mspringi_contacts *contacts
 }
 
 static void find_behind(const mspring_network *network, mspringi_contacts *contacts) {
-    for (uint32_t i = 0; i < contacts->candidate_count && !contacts->is_pair_list_full; ++i)
+    for (uint32_t i = 0; i < contacts->candidate_count && !mspringi_contact_is_rejected(contacts); ++i)
         begin_at(network, contacts, &contacts->list[contacts->candidates[i].pair]);
-    for (uint32_t i = 0; i < contacts->inner.pair_count && !contacts->is_pair_list_full; ++i)
+    for (uint32_t i = 0; i < contacts->inner.pair_count && !mspringi_contact_is_rejected(contacts); ++i)
         go_inward(network, contacts, pair_at(contacts, i)->point, pair_at(contacts, i)->edge);
 }
 
@@ -244,7 +244,7 @@ static void sort_pairs(const mspringi_contacts *contacts) {
 // Add the pairs of particles that are watched.
 static void add_watched(const mspring_network *network, mspringi_contacts *contacts) {
     begin_visit(contacts);
-    for (uint32_t i = 0; i < contacts->inner.watched_count && !contacts->is_pair_list_full; ++i) {
+    for (uint32_t i = 0; i < contacts->inner.watched_count && !mspringi_contact_is_rejected(contacts); ++i) {
         const mspring_id p = contacts->inner.watched[i];
         contacts->inner.visited[p] = contacts->inner.visit;
         load(network, contacts, p);
@@ -268,7 +268,7 @@ void mspringi_inner_points_add(const mspring_network *network, mspringi_contacts
     if (begins || is_fast)
         find_behind(network, contacts);
     sort_pairs(contacts);
-    for (uint32_t i = 0; i < contacts->inner.pair_count && !contacts->is_pair_list_full; ++i)
+    for (uint32_t i = 0; i < contacts->inner.pair_count && !mspringi_contact_is_rejected(contacts); ++i)
         contacts->candidates[contacts->candidate_count++].pair =
             contacts->capacity - contacts->inner.pair_count + i;
 }

@@ -20,7 +20,7 @@ typedef struct mspringi_inner_points {
     double way_x, way_y;      ///< mean displacement of points since the list was made, m
 } mspringi_inner_points;
 
-/// Add the candidates of inner particles. If there is no room, is_pair_list_full becomes true.
+/// Add the candidates of inner particles. If there is no room, the step is rejected.
 void mspringi_inner_points_add(const mspring_network *network, struct mspringi_contacts *contacts);
 
 /* pair_list.c */

@@ -116,8 +116,9 @@ static void sort(uint32_t *numbers, uint32_t count) {
     }
 }
 
-// Add the pairs of a point, by rising edges. False: there is no room for them, or they take too long to find.
-static bool list_pairs_of_point(const mspring_network *network, mspringi_contacts *contacts, mspring_id p) {
+// Add the pairs of a point, by rising edges, if there is room for them and they do not take too long to find.
+static mspringi_contact_rejection list_pairs_of_point(const mspring_network *network, mspringi_contacts *contacts,
+                                                      mspring_id p) {
     mspringi_edge_grid *grid = &contacts->grid;
     const uint32_t found = mspringi_edge_grid_search(network, contacts, p),
                    room = contacts->capacity - contacts->count;
@@ -127,13 +128,14 @@ static bool list_pairs_of_point(const mspring_network *network, mspringi_contact
         close_count += are_near(network, contacts, p, grid->found[k]);
     }
     contacts->work += found - close_count;
-    const bool has_room = close_count <= room, is_done = contacts->work <= contacts->most_work;
+    const bool has_room = close_count <= room;
     close_count = has_room ? close_count : room;
     sort(grid->found, close_count);
     for (uint32_t k = 0; k < close_count; ++k)
         contacts->list[contacts->count++] = (mspringi_pair){.point = p, .edge = grid->found[k]};
-    contacts->lacks_room = !has_room;
-    return has_room && is_done;
+    return !has_room                               ? MSPRINGI_CONTACT_LACKS_PAIRS
+           : contacts->work <= contacts->most_work ? MSPRINGI_CONTACT_SOUND
+                                                   : MSPRINGI_CONTACT_LACKS_WORK;
 }
 
 // Give a node a dense number, unless it has one.
@@ -162,7 +164,7 @@ static void activate_below(mspringi_contacts *contacts, mspring_id end) {
     mspringi_contact_nodes *active = &contacts->nodes;
     const mspringi_outline *o = &contacts->outline;
     mspring_id last[2] = {MSPRING_NONE, MSPRING_NONE}; // corners; consecutive candidates share a hub
-    for (uint32_t i = 0; i < contacts->candidate_count && !contacts->is_out_of_room; ++i) {
+    for (uint32_t i = 0; i < contacts->candidate_count && !mspringi_contact_is_rejected(contacts); ++i) {
         const mspringi_pair *pair = &contacts->list[contacts->candidates[i].pair];
         const mspring_id ends[] = {o->a[pair->edge], o->b[pair->edge]};
         if (pair->point < end)
@@ -185,7 +187,7 @@ static void activate_all(mspringi_contacts *contacts) {
     active->particle_count = active->count;
     if (contacts->colliders.count > 0)
         activate_below(contacts, MSPRING_NONE);
-    if (contacts->is_out_of_room)
+    if (mspringi_contact_is_rejected(contacts))
         contacts->candidate_count = 0;
     for (uint32_t i = 0; i < contacts->candidate_count; ++i) {
         mspringi_candidate *c = &contacts->candidates[i];
@@ -196,8 +198,8 @@ static void activate_all(mspringi_contacts *contacts) {
     }
 }
 
-// List all pairs within the margins. False: there is no room for them, or they take too long to find.
-static bool make_list(const mspring_network *network, mspringi_contacts *contacts) {
+// List all pairs within the margins, if there is room for them and they do not take too long to find.
+static mspringi_contact_rejection make_list(const mspring_network *network, mspringi_contacts *contacts) {
     const mspringi_outline *o = &contacts->outline;
     contacts->count = 0;
     contacts->inner.way_x = contacts->inner.way_y = 0.0;
@@ -210,16 +212,17 @@ static bool make_list(const mspring_network *network, mspringi_contacts *contact
             contacts->seen_x[p] = contacts->x[p];
             contacts->seen_y[p] = contacts->y[p];
             contacts->square_moved[p] = 0.0;
-            if (!list_pairs_of_point(network, contacts, p))
-                return false;
+            const mspringi_contact_rejection why = list_pairs_of_point(network, contacts, p);
+            if (why != MSPRINGI_CONTACT_SOUND)
+                return why;
         }
     }
-    return true;
+    return MSPRINGI_CONTACT_SOUND;
 }
 
-// List all pairs within `ratio` times the margins that points of such speeds need. False: as make_list().
-static bool make_list_for(const mspring_network *network, mspringi_contacts *contacts, const double *speed,
-                          double ratio) {
+// List all pairs within `ratio` times the margins that points of such speeds need.
+static mspringi_contact_rejection make_list_for(const mspring_network *network, mspringi_contacts *contacts,
+                                                const double *speed, double ratio) {
     const mspringi_outline *o = &contacts->outline;
     for (uint32_t i = 0; i < o->point_count; ++i)
         contacts->margin[o->points[i]] = ratio * mspringi_point_margin(contacts, speed[o->points[i]]);
@@ -241,14 +244,15 @@ static bool is_complete(const mspringi_contacts *contacts, const double *speed) 
 
 // Make a new list if this one may lack pairs: with larger margins than needed, if there is room.
 static void complete_list(const mspring_network *network, mspringi_contacts *contacts, const double *speed) {
-    if (contacts->is_out_of_room || (contacts->is_listed && is_complete(contacts, speed)))
+    if (mspringi_contact_is_rejected(contacts) || (contacts->is_listed && is_complete(contacts, speed)))
         return;
     const bool is_sparse =
         contacts->is_listed && SPARSE * (uint64_t)contacts->candidate_count < contacts->outline.point_count;
-    contacts->is_listed = make_list_for(network, contacts, speed, is_sparse ? SPARSE_REACH : REACH) ||
-                          make_list_for(network, contacts, speed, 1.0);
-    contacts->is_pair_list_full = !contacts->is_listed;
-    contacts->lacks_room &= contacts->is_pair_list_full;
+    mspringi_contact_rejection why = make_list_for(network, contacts, speed, is_sparse ? SPARSE_REACH : REACH);
+    if (why != MSPRINGI_CONTACT_SOUND)
+        why = make_list_for(network, contacts, speed, 1.0);
+    contacts->is_listed = why == MSPRINGI_CONTACT_SOUND;
+    mspringi_contact_reject(contacts, why);
 }
 
 /* --------------------------------------------------------------------------------------------------- candidates */
@@ -401,19 +405,18 @@ bool mspringi_pair_list_refresh(const mspring_network *network, mspringi_contact
             measure_pairs(contacts);
         }
     }
-    bool has_failed = contacts->is_pair_list_full || contacts->is_out_of_room;
-    if (!has_failed) {
+    if (!mspringi_contact_is_rejected(contacts)) {
         if (contacts->is_uniform)
             collect_uniform(contacts);
         else
             collect_by_speed(contacts);
         mspringi_inner_points_add(network, contacts);
-        has_failed = contacts->is_pair_list_full || contacts->is_out_of_room;
     }
-    if (has_failed) // The step will be rejected. Its other substeps have no candidates: these were of another list.
+    const bool is_rejected = mspringi_contact_is_rejected(contacts);
+    if (is_rejected) // The other substeps of the step have no candidates: these were of another list.
         contacts->candidate_count = 0;
     activate_all(contacts);
-    if (has_failed)
+    if (is_rejected)
         return false;
     contacts->substeps_to_refresh = (uint32_t)contacts->candidate_substeps;
     return true;
@@ -444,7 +447,7 @@ void mspringi_near_list(const mspring_network *network, mspringi_contacts *conta
     mspringi_points_measure(network, contacts);
     for (uint32_t i = 0; i < o->point_count; ++i)
         contacts->margin[o->points[i]] = 0.5 * (reach - contacts->thickness);
-    if (!make_list(network, contacts))
+    if (make_list(network, contacts) != MSPRINGI_CONTACT_SOUND)
         contacts->count = 0;
     contacts->candidate_count = 0;
     activate_all(contacts);

@@ -120,7 +120,7 @@ static void begin_constraint(const mspring_network *network, const mspringi_cont
 
 void mspringi_implicit_contact_allow_work(const mspring_network *network) {
     mspringi_contacts *contacts = pairs_of(network);
-    if (contacts && !contacts->is_out_of_room)
+    if (contacts && !mspringi_contact_is_rejected(contacts))
         contacts->most_work += WORK_OF_SUBSTEP + WORK_OF_PARTICLE * (uint64_t)network->topology.particle_count;
 }
 

@@ -187,17 +187,12 @@ static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
 
 static void take_halves(mspringi_implicit_substep *substep, uint32_t halvings);
 
-// True if contact has no room for its constraints. The step will be rejected, so nothing more is done for it.
-static bool is_out_of_room(const mspring_network *network) {
-    return network->contacts && network->contacts->is_out_of_room;
-}
-
 // Take a substep of substep->h. If it exceeds the energy budget, repeat it by implicit Euler and with more
 // iterations, then in halves.
 static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
-    if (is_out_of_room(network))
+    if (network->contacts && mspringi_contact_is_rejected(network->contacts))
         return;
     const bool are_near = mspringi_implicit_contact_is_near(network), watches = substep->watches || are_near;
     const bool may_repeat = mspringi_implicit_may_repeat(n);
