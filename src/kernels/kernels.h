@@ -351,10 +351,9 @@ typedef uint32_t (*mspringi_violence_fn)(const mspringi_violence_sweep *sweep, u
 /// Arguments of the stability limit's passes: see limit_kernel.h. Arrays by slot, and springs as in mspringi_sweep.
 typedef struct mspringi_stability_limit {
     const float *x, *y, *inverse_mass;
+    const mspringi_topology *topology;
     const float *lattice_springs, *rest_lengths, *chain_springs;
     const uint32_t *springs_of_block, *rests_of_block;
-    const uint32_t *up_of_block; ///< [lattice blocks] block above each
-    uint32_t lattice_first, lattice_blocks, chain_first, chain_blocks;
     bool is_damped;           ///< springs have damping
     float stiffness, damping; ///< factors on a spring's at the substep
     const float *in[3];       ///< operand at both ends: weights; a displacement; velocities and ratios
@@ -402,8 +401,7 @@ typedef struct mspringi_kernels {
     mspringi_strain_fn lattice_strain, chain_strain;
     mspringi_yield_fn lattice_yield, chain_yield;
     mspringi_violence_fn lattice_violence;
-    mspringi_stability_limit_fn bound_lattice, bound_chain, image_lattice, image_chain;
-    mspringi_stability_limit_fn clamp_lattice, clamp_chain;
+    mspringi_stability_limit_fn bound_rows, image_rows, clamp_rows;
     mspringi_checksum_fn checksum;
     mspringi_system_kernels system;
 } mspringi_kernels;

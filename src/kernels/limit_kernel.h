@@ -132,11 +132,13 @@ MSPRINGI_INLINE void add_slots(const mspringi_stability_limit *b, size_t slot, s
 }
 
 MSPRINGI_INLINE void limit_lattice(const mspringi_stability_limit *limit, bool damped, limit_pass pass) {
-    const mspringi_stability_limit copy = *limit, *const b = &copy; // a local copy, which no store can alias
+    const mspringi_stability_limit copy = *limit, *const b = &copy; // local copies, which no store can alias
+    const uint32_t *const up_of_block = b->topology->up_of_block;
+    const size_t first = b->topology->lattice_first, blocks = b->topology->lattice_blocks;
     limit_terms before[2] = {{{zero(), zero(), zero()}}, {{zero(), zero(), zero()}}};
-    for (size_t block = 0; block < b->lattice_blocks; ++block) {
-        const size_t here = (b->lattice_first + block) * MSPRINGI_WIDTH;
-        const size_t up = (size_t)b->up_of_block[block] * MSPRINGI_WIDTH;
+    for (size_t block = 0; block < blocks; ++block) {
+        const size_t here = (first + block) * MSPRINGI_WIDTH;
+        const size_t up = (size_t)up_of_block[block] * MSPRINGI_WIDTH;
         const float *rests =
             b->rest_lengths + (size_t)b->rests_of_block[block] * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
         const float *records = b->lattice_springs + (size_t)b->springs_of_block[block] * MSPRINGI_DIRECTIONS *
@@ -148,10 +150,11 @@ MSPRINGI_INLINE void limit_lattice(const mspringi_stability_limit *limit, bool d
 
 MSPRINGI_INLINE void limit_chain(const mspringi_stability_limit *limit, bool damped, limit_pass pass) {
     const mspringi_stability_limit copy = *limit, *const b = &copy;
+    const size_t first = b->topology->chain_first, blocks = b->topology->chain_blocks;
     const size_t parts = damped ? 3 : 2;
     limit_terms before = {{zero(), zero(), zero()}};
-    for (size_t i = 0; i < (size_t)b->chain_blocks * MSPRINGI_WIDTH; i += LANES) {
-        const size_t slot = b->chain_first * MSPRINGI_WIDTH + i;
+    for (size_t i = 0; i < blocks * MSPRINGI_WIDTH; i += LANES) {
+        const size_t slot = first * MSPRINGI_WIDTH + i;
         const float *record = b->chain_springs + i / MSPRINGI_WIDTH * parts * MSPRINGI_WIDTH + i % MSPRINGI_WIDTH;
         const limit_terms east =
             terms_of_springs(b, load_spring_end(b, slot, pass), load_spring_end(b, slot + 1, pass),
@@ -164,13 +167,11 @@ MSPRINGI_INLINE void limit_chain(const mspringi_stability_limit *limit, bool dam
 }
 
 #define LIMIT_PASS(name, pass)                                                                                     \
-    static void name##_lattice(const mspringi_stability_limit *limit) {                                            \
+    static void name##_rows(const mspringi_stability_limit *limit) {                                               \
         if (limit->is_damped)                                                                                      \
             limit_lattice(limit, true, pass);                                                                      \
         else                                                                                                       \
             limit_lattice(limit, false, pass);                                                                     \
-    }                                                                                                              \
-    static void name##_chain(const mspringi_stability_limit *limit) {                                              \
         limit_chain(limit, limit->is_damped, pass);                                                                \
     }
 

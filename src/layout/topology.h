@@ -36,8 +36,8 @@ typedef enum mspringi_direction {
 } mspringi_direction;
 
 /// Index of a spring in the records. Below lattice_spring_slots: (block * MSPRINGI_DIRECTIONS + direction) *
-/// MSPRINGI_WIDTH + lane. Below chain_spring_slots: lattice_spring_slots + block * MSPRINGI_WIDTH + lane. From
-/// there on: chain_spring_slots + index of an irregular spring; spare springs (layout/emit/spare.h) and then
+/// MSPRINGI_WIDTH + lane. Below row_spring_slots: lattice_spring_slots + block * MSPRINGI_WIDTH + lane. From
+/// there on: row_spring_slots + index of an irregular spring; spare springs (layout/emit/spare.h) and then
 /// inactive ones follow. Blocks count from the first of their kind.
 typedef uint32_t mspringi_spring_slot;
 
@@ -104,7 +104,8 @@ typedef struct mspringi_topology {
     mspringi_empty_run *empty_runs; ///< slots without a particle, spare ones excluded
     uint32_t empty_run_count;
 
-    mspringi_spring_slot lattice_spring_slots, chain_spring_slots;
+    mspringi_spring_slot lattice_spring_slots;      ///< spring slots of lattices, which come first
+    mspringi_spring_slot row_spring_slots;          ///< of lattices and, behind these, chains
     uint32_t irregular_count;                       ///< irregular springs, and the spare ids in use
     uint32_t laid_out_count;                        ///< irregular springs
     uint32_t irregular_capacity;                    ///< laid_out_count, and a spring slot for each spare spring
@@ -145,7 +146,7 @@ typedef struct mspringi_topology {
 
 /// Words of MSPRINGI_WIDTH bits, with one bit for each spring slot.
 static inline size_t mspringi_spring_slot_words(const mspringi_topology *topology) {
-    return ((size_t)topology->chain_spring_slots + topology->irregular_capacity + topology->inactive_count +
+    return ((size_t)topology->row_spring_slots + topology->irregular_capacity + topology->inactive_count +
             MSPRINGI_WIDTH - 1) /
            MSPRINGI_WIDTH;
 }
@@ -156,17 +157,34 @@ static inline mspringi_spring_slot mspringi_slot_of_spring(const mspringi_topolo
     return topology->slot_of_spring[spring];
 }
 
+/// End of the spring slots that are swept: of rows, irregular springs and spare ids in use.
+static inline mspringi_spring_slot mspringi_swept_end(const mspringi_topology *topology) {
+    return topology->row_spring_slots + topology->irregular_count;
+}
+
+/// Find the first word of spring slots of a row's block, and their number: one for each direction. False: the block
+/// lies in no row with springs.
+static inline bool mspringi_words_of_block(const mspringi_topology *topology, size_t block, size_t *word,
+                                           size_t *words) {
+    const size_t in_lattice = block - topology->lattice_first, in_chain = block - topology->chain_first;
+    const bool is_lattice = in_lattice < topology->lattice_blocks;
+    *word =
+        is_lattice ? in_lattice * MSPRINGI_DIRECTIONS : topology->lattice_spring_slots / MSPRINGI_WIDTH + in_chain;
+    *words = is_lattice ? MSPRINGI_DIRECTIONS : 1;
+    return is_lattice || in_chain < topology->chain_blocks;
+}
+
 /// True if the spring in this slot is inactive.
 static inline bool mspringi_spring_slot_is_inactive(const mspringi_topology *topology,
                                                     mspringi_spring_slot spring_slot) {
-    return spring_slot - topology->chain_spring_slots >= topology->irregular_capacity &&
-           spring_slot >= topology->chain_spring_slots;
+    return spring_slot - topology->row_spring_slots >= topology->irregular_capacity &&
+           spring_slot >= topology->row_spring_slots;
 }
 
 /// True if the spring in this slot is part of the layout: neither spare nor inactive.
 static inline bool mspringi_spring_slot_is_laid_out(const mspringi_topology *topology,
                                                     mspringi_spring_slot spring_slot) {
-    return spring_slot < topology->chain_spring_slots + topology->laid_out_count;
+    return spring_slot < topology->row_spring_slots + topology->laid_out_count;
 }
 
 /// Springs in the layout or in spare slots.
@@ -207,6 +225,14 @@ static inline void mspringi_lattice_ends(const mspringi_topology *topology, mspr
     *base = direction == MSPRINGI_SOUTH_EAST ? up : here;
     *tip = (((direction == MSPRINGI_NORTH) | (direction == MSPRINGI_NORTH_EAST)) ? up : here) +
            (direction != MSPRINGI_NORTH);
+}
+
+/// Set both slots of a spring outside lattices and chains.
+static inline void mspringi_topology_set_ends(const mspringi_topology *topology, mspringi_spring_slot spring_slot,
+                                              uint32_t base, uint32_t tip) {
+    MSPRINGI_ASSERT(spring_slot >= topology->row_spring_slots);
+    topology->irregular_a[spring_slot - topology->row_spring_slots] = base;
+    topology->irregular_b[spring_slot - topology->row_spring_slots] = tip;
 }
 
 /// Find both slots of a spring, in its direction if it has one.

@@ -288,7 +288,7 @@ static mspring_result set_limits(mspring_network *network, const mspring_builder
 
 // Lay out the builder's particles, which in an archive's network lie where the archived layout had them.
 static mspring_result lay_out(mspring_network *network, const mspring_builder *builder,
-                              const mspringi_reserve *reserve, bool has_bundles) {
+                              const mspringi_reserve *reserve, const mspringi_solver_ops *solver) {
     mspring_builder placed = *builder;
     mspring_result result = MSPRING_OK;
     if (builder->archive)
@@ -296,7 +296,7 @@ static mspring_result lay_out(mspring_network *network, const mspring_builder *b
     if (result == MSPRING_OK)
         result = mspringi_topology_create(&network->topology, &placed, reserve,
                                           builder->archive ? builder->archive_calls->may_have_bundles(builder)
-                                                           : has_bundles,
+                                                           : solver && solver->has_bundles,
                                           mspringi_tasks_partition_size(network->tasks), network->kernels->lanes,
                                           &network->memory, &network->message);
     if (builder->archive)
@@ -309,8 +309,6 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                              const mspring_network_def *def) {
     bool damped, relative;
     mspringi_reserve reserve = {0};
-    const mspringi_solver_ops *const solver_ops = mspringi_solver_ops_of(def->solver); // NULL: rejected below
-    const bool has_bundles = solver_ops && solver_ops->has_bundles;
     network->solver.ops = mspringi_solver_ops_of(MSPRING_SOLVER_EXPLICIT);
     network->kernels = mspringi_kernels_of(mspringi_cpu_choose(def->simd_level));
     mspring_result result = mspringi_shared_reserve(network);
@@ -321,7 +319,7 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
-        result = lay_out(network, builder, &reserve, has_bundles);
+        result = lay_out(network, builder, &reserve, mspringi_solver_ops_of(def->solver)); // NULL: rejected below
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level == MSPRING_SIMD_AUTO)

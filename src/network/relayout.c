@@ -5,11 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "features/contact/floor.h"
-#include "features/hooks/hooks.h"
 #include "network/job.h"
 #include "stability/stability_limit.h"
 #include "store/changed.h"
+#include "store/feature.h"
 #include "store/sleepers.h"
 #include "store/spring_limits.h"
 #include "store/springs.h"
@@ -135,13 +134,6 @@ static mspring_result adopt_solver(mspring_network *to, mspringi_solver *solver,
     return ops && ops->create ? mspringi_solver_make(solver, to, &def, tile_size) : MSPRING_OK;
 }
 
-static mspring_result make_floor(mspring_network *to, const mspring_network *from) {
-    if (!from->floor)
-        return MSPRING_OK;
-    to->floor = mspringi_floor_move(to, from);
-    return to->floor ? MSPRING_OK : mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for a floor");
-}
-
 // Make what the network has and the job has not made: recent or small things.
 static mspring_result make_others(mspring_network *to, const mspring_network *from, mspring_job *job) {
     mspring_result result = MSPRING_OK;
@@ -155,10 +147,8 @@ static mspring_result make_others(mspring_network *to, const mspring_network *fr
         result = no_memory_to_move(to);
     if (result == MSPRING_OK)
         result = mspringi_carry_reserve(to);
-    if (result == MSPRING_OK)
-        result = mspringi_hooks_move(to, from);
-    if (result == MSPRING_OK)
-        result = make_floor(to, from);
+#define MOVES(make, drop) result = result == MSPRING_OK ? make(to, from) : result;
+#include "store/features.def"
     if (result == MSPRING_OK)
         copy_changed(to, from, job);
     return result;
@@ -175,9 +165,9 @@ static void move_values(const float *from, float *to, const mspring_network *old
 
 // Free all arrays by slot or spring slot.
 static void free_layout(mspring_network *network, mspringi_memory *memory) {
-    mspringi_hooks_destroy(network->hooks, memory);
+#define MOVES(make, drop) drop(network, memory);
+#include "store/features.def"
     mspringi_store_free_layout(network, memory);
-    mspringi_floor_free_layout(network->floor, memory);
     mspringi_solver_destroy(&network->solver, memory);
     mspringi_solver_destroy(&network->fallback, memory);
 }

@@ -103,11 +103,10 @@ mspring_result mspringi_survivors_list(mspring_job *job, uint32_t first, uint32_
 // Bundles suit the explicit solver only. The implicit one takes irregular springs one by one, and so takes twice as
 // long for a wreck that is mostly bundles.
 mspring_result mspringi_survivors_begin_layout(mspring_job *job) {
-    const bool has_bundles = job->from.solver.ops->has_bundles;
     const mspringi_topology *t = mspringi_job_initial_topology(job);
-    return mspringi_topology_begin(&job->left, &t->reserve, t->parallel_count == 0, has_bundles, job->workers,
-                                   job->from.kernels->lanes, &job->to.memory, &job->to.message,
-                                   &job->layout_builder);
+    return mspringi_topology_begin(&job->left, &t->reserve, t->parallel_count == 0,
+                                   job->from.solver.ops->has_bundles, job->workers, job->from.kernels->lanes,
+                                   &job->to.memory, &job->to.message, &job->layout_builder);
 }
 
 mspring_result mspringi_survivors_lay_out(mspring_job *job) {
@@ -142,7 +141,7 @@ mspring_result mspringi_survivors_finish_layout(mspring_job *job) {
     if (!t->slot_of_spring)
         return mspringi_job_no_memory(job);
     t->spring_count = mspringi_job_initial_topology(job)->spring_count;
-    job->next_inactive = t->chain_spring_slots + t->laid_out_count + mspringi_spare_springs(t);
+    job->next_inactive = t->row_spring_slots + t->laid_out_count + mspringi_spare_springs(t);
     job->listed = 0;
     mspring_result result = mspringi_spare_reserve(t, inactive, &job->to.memory, &job->to.message);
     if (result == MSPRING_OK)
@@ -176,8 +175,8 @@ mspring_result mspringi_survivors_save_ends(mspring_job *job, uint32_t first, ui
         if (mspringi_spring_slot_is_laid_out(t, spring_slot) || !mspringi_spring_exists(&job->from, s))
             continue;
         mspringi_topology_ends(initial, initial_spring_slot, &base, &tip);
-        t->irregular_a[spring_slot - t->chain_spring_slots] = t->slot_of_particle[initial->particle_of_slot[base]];
-        t->irregular_b[spring_slot - t->chain_spring_slots] = t->slot_of_particle[initial->particle_of_slot[tip]];
+        mspringi_topology_set_ends(t, spring_slot, t->slot_of_particle[initial->particle_of_slot[base]],
+                                   t->slot_of_particle[initial->particle_of_slot[tip]]);
     }
     return MSPRING_OK;
 }

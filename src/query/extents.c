@@ -103,40 +103,36 @@ static inline void compute_irregular_springs(const mspring_network *network, mea
         float x[2 * MSPRINGI_WIDTH] = {0}, y[2 * MSPRINGI_WIDTH] = {0}, rest_lengths[MSPRINGI_WIDTH] = {0};
         for (uint32_t lane = 0; lane < MSPRINGI_WIDTH && first + lane < count; ++lane) {
             const mspringi_spring_values values =
-                mspringi_spring_slot_get(network, t->chain_spring_slots + first + lane);
+                mspringi_spring_slot_get(network, t->row_spring_slots + first + lane);
             x[lane] = s->x[values.base];
             y[lane] = s->y[values.base];
             x[MSPRINGI_WIDTH + lane] = s->x[values.tip];
             y[MSPRINGI_WIDTH + lane] = s->y[values.tip];
             rest_lengths[lane] = values.rest_length;
         }
-        compute_word(network, (t->chain_spring_slots + first) / MSPRINGI_WIDTH, x, y, 0, MSPRINGI_WIDTH,
-                     rest_lengths, what);
+        compute_word(network, (t->row_spring_slots + first) / MSPRINGI_WIDTH, x, y, 0, MSPRINGI_WIDTH, rest_lengths,
+                     what);
     }
 }
 
 static inline void compute(const mspring_network *network, measure what) {
     const mspringi_topology *t = &network->topology;
     const float *x = network->state.x, *y = network->state.y;
-    const size_t record = (size_t)network->parts * MSPRINGI_WIDTH; // values of a chain block
-    size_t word = 0;
-    for (size_t block = 0; block < t->lattice_blocks; ++block, word += MSPRINGI_DIRECTIONS) {
-        const size_t here = (t->lattice_first + block) * MSPRINGI_WIDTH;
-        const size_t up = (size_t)t->up_of_block[block] * MSPRINGI_WIDTH;
-        const float *rest_lengths = network->rest_lengths.lengths + (size_t)network->rest_lengths.of_block[block] *
-                                                                        MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
-        compute_word(network, word + MSPRINGI_EAST, x, y, here, here + 1,
-                     rest_lengths + MSPRINGI_EAST * MSPRINGI_WIDTH, what);
-        compute_word(network, word + MSPRINGI_NORTH, x, y, here, up, rest_lengths + MSPRINGI_NORTH * MSPRINGI_WIDTH,
-                     what);
+    size_t word, words;
+    for (size_t block = 0; block < t->block_count; ++block) {
+        if (!mspringi_words_of_block(t, block, &word, &words))
+            continue;
+        const size_t here = block * MSPRINGI_WIDTH;
+        const float *rests = mspringi_row_rest_lengths(network, word);
+        compute_word(network, word, x, y, here, here + 1, rests, what); // to the east, or to the next of a chain
+        if (words == 1)
+            continue;
+        const size_t up = (size_t)t->up_of_block[block - t->lattice_first] * MSPRINGI_WIDTH;
+        compute_word(network, word + MSPRINGI_NORTH, x, y, here, up, rests + MSPRINGI_NORTH * MSPRINGI_WIDTH, what);
         compute_word(network, word + MSPRINGI_NORTH_EAST, x, y, here, up + 1,
-                     rest_lengths + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH, what);
+                     rests + MSPRINGI_NORTH_EAST * MSPRINGI_WIDTH, what);
         compute_word(network, word + MSPRINGI_SOUTH_EAST, x, y, up, here + 1,
-                     rest_lengths + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH, what);
-    }
-    for (size_t block = 0; block < t->chain_blocks; ++block, ++word) {
-        const size_t here = (t->chain_first + block) * MSPRINGI_WIDTH;
-        compute_word(network, word, x, y, here, here + 1, network->chain_springs + block * record, what);
+                     rests + MSPRINGI_SOUTH_EAST * MSPRINGI_WIDTH, what);
     }
     compute_irregular_springs(network, what);
 }

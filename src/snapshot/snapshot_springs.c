@@ -50,7 +50,7 @@ static mspring_result broken_check(mspring_network *network, const uint8_t *from
         return MSPRING_OK;
     mspring_result result = mspringi_section_check_size(network, section, size, words_size(network));
     for (uint32_t i = 0; result == MSPRING_OK && i < t->inactive_count; ++i)
-        if (bit_at(from, t->chain_spring_slots + t->irregular_capacity + i))
+        if (bit_at(from, t->row_spring_slots + t->irregular_capacity + i))
             result = mspringi_section_fail(network, section, "a spring that the plan leaves out is whole");
     return result == MSPRING_OK ? mspringi_breaking_reserve(network) : result;
 }

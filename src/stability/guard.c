@@ -129,16 +129,20 @@ static mspringi_extrema put_back(mspring_network *network) {
 
 /* --------------------------------------------------------------------------------------------- stability limit */
 
+static mspring_result report_elements(mspring_network *network, const mspringi_attempt *attempt) {
+    return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
+                         "unstable: the substep of %g s exceeds the stability limit of areas and angles (%g s "
+                         "by themselves). Use a "
+                         "shorter dt, more substeps, or less stiffness or pressure.",
+                         (double)attempt->h, mspringi_stability_elements_longest(network));
+}
+
 // Report the tightest spring, and the lighter of its ends.
 static mspring_result report_limit(mspring_network *network, const mspringi_attempt *attempt) {
     const mspringi_topology *t = &network->topology;
     const mspring_id spring = mspringi_tightest_spring(network, (double)attempt->h);
     if (spring == MSPRING_NONE)
-        return mspringi_fail(
-            &network->message, MSPRING_ERROR_UNSTABLE,
-            "unstable: the substep of %g s exceeds the stability limit of areas and angles. Use a shorter "
-            "dt, more substeps, or less stiffness or pressure.",
-            (double)attempt->h);
+        return report_elements(network, attempt);
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
     const float at_base = network->inverse_mass[base], at_tip = network->inverse_mass[tip];
@@ -200,15 +204,10 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
 // Check elements that linear systems do not have in them. In solvers without a stability limit, their forces are
 // those at the start of a substep. The clamped solver takes any step.
 static mspring_result check_elements(mspring_network *network, const mspringi_attempt *attempt) {
-    const double longest = mspringi_stability_elements_longest(network);
-    if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS || (double)attempt->h <= longest ||
-        attempt->solver == &mspringi_clamped)
+    if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS || attempt->solver == &mspringi_clamped ||
+        (double)attempt->h <= mspringi_stability_elements_longest(network))
         return MSPRING_OK;
-    return mspringi_fail(
-        &network->message, MSPRING_ERROR_UNSTABLE,
-        "unstable: the substep of %g s exceeds the stability limit of areas and angles, %g s. Use a shorter "
-        "dt, more substeps, or less stiffness or pressure.",
-        (double)attempt->h, longest);
+    return report_elements(network, attempt);
 }
 
 mspring_result mspringi_guard_begin(mspring_network *network, const mspringi_attempt *attempt) {

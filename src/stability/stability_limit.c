@@ -36,19 +36,14 @@ static single_spring linearise_surcharge(const mspring_network *network, const m
 }
 
 mspringi_stability_limit mspringi_stability_limit_at(const mspring_network *network, double h) {
-    const mspringi_topology *t = &network->topology;
-    return (mspringi_stability_limit){.x = network->state.x,
+    return (mspringi_stability_limit){.topology = &network->topology,
+                                      .x = network->state.x,
                                       .y = network->state.y,
                                       .lattice_springs = network->lattice_springs,
                                       .rest_lengths = network->rest_lengths.lengths,
                                       .chain_springs = network->chain_springs,
                                       .springs_of_block = network->shared_records.of_block,
                                       .rests_of_block = network->rest_lengths.of_block,
-                                      .up_of_block = t->up_of_block,
-                                      .lattice_first = t->lattice_first,
-                                      .lattice_blocks = t->lattice_blocks,
-                                      .chain_first = t->chain_first,
-                                      .chain_blocks = t->chain_blocks,
                                       .is_damped = network->parts > MSPRINGI_DAMPING,
                                       .stiffness = (float)(h * h),
                                       .damping = (float)(2.0 * h)};
@@ -92,15 +87,13 @@ static void visit_others(const mspring_network *network, const mspringi_stabilit
 }
 
 void mspringi_stability_limit_bound(const mspring_network *network, const mspringi_stability_limit *b) {
-    network->kernels->bound_lattice(b);
-    network->kernels->bound_chain(b);
+    network->kernels->bound_rows(b);
     visit_others(network, b, add_bound);
     mspringi_stability_elements_bound(network, b);
 }
 
 void mspringi_stability_limit_image(const mspring_network *network, const mspringi_stability_limit *b) {
-    network->kernels->image_lattice(b);
-    network->kernels->image_chain(b);
+    network->kernels->image_rows(b);
     visit_others(network, b, add_image);
     mspringi_stability_elements_image(network, b, (double)b->stiffness);
 }

@@ -29,20 +29,6 @@ mspringi_stability_limit mspringi_stability_limit_at(const mspring_network *netw
 void mspringi_stability_limit_bound(const mspring_network *network, const mspringi_stability_limit *limit);
 void mspringi_stability_limit_image(const mspring_network *network, const mspringi_stability_limit *limit);
 
-/// Values of a spring outside lattices and chains.
-static inline mspringi_spring_values mspringi_irregular_spring(const mspring_network *network, uint32_t irregular) {
-    const mspringi_topology *t = &network->topology;
-    const uint32_t at = t->irregular.entry[2 * (size_t)irregular], parts = network->parts;
-    const float *record =
-        network->irregular_springs + (size_t)(at / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts + at % MSPRINGI_WIDTH;
-    return (mspringi_spring_values){.base = t->irregular_a[irregular],
-                                    .tip = t->irregular_b[irregular],
-                                    .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
-                                    .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
-                                    .damping = parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH]
-                                                                        : 0.0f};
-}
-
 /// Number of scratch arrays, by slot.
 #define MSPRINGI_STABILITY_LIMIT_SCRATCH 4
 

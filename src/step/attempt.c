@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "base/cpu.h"
-#include "features/hooks/hooks.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
 #include "store/group_ops.h"
@@ -245,8 +244,7 @@ static mspring_result begin(mspring_network *network, mspringi_attempt *attempt)
 static mspring_result take(mspring_network *network, mspringi_attempt *attempt) {
     attempt->is_cut = mspringi_stages_must_cut_step(network, attempt);
     const mspringi_extrema extrema = run(network, attempt);
-    if (mspringi_hook_count(network) > 0)
-        network->seen = mspringi_guard_bound(network, attempt->h, extrema);
+    network->seen = extrema;
     attempt->has_missed =
         mspringi_stages_must_repeat(network, attempt) && attempt->missed_count < attempt->stages->count;
     network->is_to_repeat = attempt->has_missed;

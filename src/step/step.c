@@ -42,7 +42,7 @@ static mspring_result check_given_speeds(mspring_network *network, double dt) {
 // Accept a step: let stages and sleepers follow it.
 static void accept(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_attempt_accept(network, attempt);
-    network->is_open = network->was_in_hook;
+    network->is_open = network->was_opened;
     network->has_host_view = false;
     if (attempt->is_idle) {
         network->outcome.flags |= MSPRING_STEP_ASLEEP;
@@ -77,7 +77,7 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
     const uint32_t substeps = network->substeps;
     const mspringi_any_shape any_shape = network->any_shape;
     const mspringi_stages stages = mspringi_stages_of(network);
-    network->sleep.has_kept = network->was_in_hook = false;
+    network->sleep.has_kept = network->was_opened = false;
     network->step_time = dt;
     network->next_pace = network->steps.pace;
     mspringi_attempt attempt;

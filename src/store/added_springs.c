@@ -33,8 +33,8 @@ static void list_nodes(mspring_network *network) {
         if (spring_slot != mspringi_spare_spring_slot(t, s) || !mspringi_spring_is_live(network, s))
             continue;
         const uint32_t end = 2 * (s - t->reserve.first_spring);
-        graft->keys[count++] = (uint64_t)t->irregular_a[spring_slot - t->chain_spring_slots] << 32 | end;
-        graft->keys[count++] = (uint64_t)t->irregular_b[spring_slot - t->chain_spring_slots] << 32 | (end + 1);
+        graft->keys[count++] = (uint64_t)t->irregular_a[spring_slot - t->row_spring_slots] << 32 | end;
+        graft->keys[count++] = (uint64_t)t->irregular_b[spring_slot - t->row_spring_slots] << 32 | (end + 1);
     }
     mspringi_sort_keys(graft->keys, graft->scratch, count);
     graft->count = count;

@@ -13,7 +13,7 @@
 /// Counters of edits, which only grow. Whoever caches something derived (a solver its history or tiles, a
 /// measurement its components) stores the counters that it used, and compares them later.
 /// mspringi_edits_have_link() and mspringi_edits_link() tell which springs broke or were restored since. Writing
-/// through a view counts as no edit, nor does what relative springs derive from a new substep.
+/// through a view counts as no edit.
 typedef struct mspringi_edits {
     uint64_t state;         ///< calls that set positions or velocities
     uint64_t motion;        ///< calls that set the positions of all particles at once: a new motion begins
@@ -25,7 +25,7 @@ typedef struct mspringi_edits {
     uint64_t sleep_changes; ///< times that islands fell asleep or woke (MSPRINGI_CHANGED_NAPS)
     uint64_t layouts;       ///< times that all slots changed
     uint64_t origins;       ///< times that the local origin moved
-    uint64_t flows;         ///< times that rest lengths changed within a step
+    uint64_t flows;         ///< times that rest lengths changed within a step, or stiffness with its substep
     mspring_id
         *link_log; ///< the last of these springs: change n, counted from 0, is at n & link_mask; NULL before any
     uint32_t link_mask;

@@ -28,6 +28,9 @@ typedef struct mspringi_feature_state {
 #define LOADS(function) void function(mspring_network *network);
 #define LOADED(function) void function(mspring_network *network);
 #define DISCARDS(function) void function(mspring_network *network);
+#define MOVES(make, drop)                                                                                          \
+    mspring_result make(mspring_network *to, const mspring_network *from);                                         \
+    void drop(const mspring_network *from, mspringi_memory *memory);
 #define FORGETS(function) void function(mspring_network *network);
 #define ACTS(function) bool function(const mspring_network *network);
 #define FINITE(function) bool function(const mspring_network *network);

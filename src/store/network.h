@@ -199,8 +199,8 @@ struct mspring_network {
     mspringi_forces forces;
     mspring_id next_collider; ///< id of the next collider that is added
     mspringi_in_hook in_hook;
-    bool was_in_hook;      ///< a hook was called in this step
-    mspringi_extrema seen; ///< extrema after the substeps, or bounds on them, for hooks
+    bool was_opened;       ///< it became open in this step
+    mspringi_extrema seen; ///< extrema after the substeps of the last attempt
     bool is_open; ///< somebody outside may write to the state's arrays, or has done since the last step: a hook, or
                   ///< the host through a view
     bool has_host_view; ///< the host through a view: then unused slots may be written, too

@@ -68,7 +68,7 @@ void mspringi_find_roots(const mspring_network *network, uint32_t *root) {
     for (uint32_t block = 0; block < t->lattice_blocks; ++block)
         join_rows(network, root, block);
     for (uint32_t i = 0; i < t->irregular_count; ++i) {
-        const mspringi_spring_slot spring_slot = t->chain_spring_slots + i;
+        const mspringi_spring_slot spring_slot = t->row_spring_slots + i;
         if (network->live[spring_slot / MSPRINGI_WIDTH] >> spring_slot % MSPRINGI_WIDTH & 1)
             mspringi_union_find_join(root, t->irregular_a[i], t->irregular_b[i]);
     }

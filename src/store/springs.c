@@ -40,11 +40,11 @@ static spring_records find_records(const mspring_network *network, mspringi_spri
     const uint32_t parts = network->parts;
     if (spring_slot < t->lattice_spring_slots)
         return (spring_records){{lattice_record(network, spring_slot), {NULL, NULL, NULL}}, 1};
-    if (spring_slot < t->chain_spring_slots)
+    if (spring_slot < t->row_spring_slots)
         return (spring_records){
             {record_in(network->chain_springs, spring_slot - t->lattice_spring_slots, parts), {NULL, NULL, NULL}},
             1};
-    const uint32_t *entry = t->irregular.entry + 2 * (size_t)(spring_slot - t->chain_spring_slots);
+    const uint32_t *entry = t->irregular.entry + 2 * (size_t)(spring_slot - t->row_spring_slots);
     return (spring_records){{record_in(network->irregular_springs, entry[0], parts),
                              record_in(network->irregular_springs, entry[1], parts)},
                             2};
@@ -269,6 +269,7 @@ void mspringi_derive_relative(mspring_network *network, float h) {
     if (!network->fractions.values || network->relative_h == h)
         return;
     network->relative_h = h;
+    network->edits.flows++;
     mspringi_renew_relative(network);
 }
 

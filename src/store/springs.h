@@ -123,4 +123,31 @@ void mspringi_derive_relative(mspring_network *network, float h);
 /// Derive them again, with other masses.
 void mspringi_renew_relative(mspring_network *network);
 
+/// Values of a spring outside lattices and chains: as mspringi_spring_slot_get(), without a search for its record.
+static inline mspringi_spring_values mspringi_irregular_spring(const mspring_network *network, uint32_t irregular) {
+    const mspringi_topology *t = &network->topology;
+    const uint32_t at = t->irregular.entry[2 * (size_t)irregular], parts = network->parts;
+    const float *record =
+        network->irregular_springs + (size_t)(at / MSPRINGI_WIDTH) * MSPRINGI_WIDTH * parts + at % MSPRINGI_WIDTH;
+    return (mspringi_spring_values){.base = t->irregular_a[irregular],
+                                    .tip = t->irregular_b[irregular],
+                                    .rest_length = record[MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH],
+                                    .stiffness = record[MSPRINGI_STIFFNESS * MSPRINGI_WIDTH],
+                                    .damping = parts > MSPRINGI_DAMPING ? record[MSPRINGI_DAMPING * MSPRINGI_WIDTH]
+                                                                        : 0.0f};
+}
+
+/// Rest lengths of a word of spring slots in a row, sixteen side by side; those of a lattice block follow each
+/// other.
+static inline const float *mspringi_row_rest_lengths(const mspring_network *network, size_t word) {
+    const size_t lattice_words = network->topology.lattice_spring_slots / MSPRINGI_WIDTH;
+    return word < lattice_words
+               ? network->rest_lengths.lengths +
+                     ((size_t)network->rest_lengths.of_block[word / MSPRINGI_DIRECTIONS] * MSPRINGI_DIRECTIONS +
+                      word % MSPRINGI_DIRECTIONS) *
+                         MSPRINGI_WIDTH
+               : network->chain_springs +
+                     ((word - lattice_words) * network->parts + MSPRINGI_REST_LENGTH) * MSPRINGI_WIDTH;
+}
+
 #endif

@@ -211,7 +211,7 @@ static void edit(mspring_network *network, int kind) {
 }
 
 mspring_network *archives_make(int kind) {
-    static const mspring_guard guards[4] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_GROWTH,
+    static const mspring_guard guards[4] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_CLAMP,
                                             MSPRING_GUARD_GROWTH};
     recipe from = make_recipe(kind);
     mspring_network_def def = support_def(-9.8f, 4);

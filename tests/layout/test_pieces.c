@@ -47,7 +47,7 @@ static laid_out lay_out_for(const mspring_builder *builder, uint32_t workers, ui
 static void check_same(const laid_out *a, const laid_out *b) {
     const mspringi_topology *s = &a->topology, *t = &b->topology;
     assert_int_equal(s->block_count, t->block_count);
-    assert_int_equal(s->chain_spring_slots, t->chain_spring_slots);
+    assert_int_equal(s->row_spring_slots, t->row_spring_slots);
     assert_int_equal(s->irregular_count, t->irregular_count);
     assert_int_equal(s->span_count, t->span_count);
     assert_int_equal(s->row_count, t->row_count);

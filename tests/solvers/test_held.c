@@ -22,7 +22,8 @@ static recipe lattice(double height, double stiffness) {
 }
 
 static mspring_network *network_of(const recipe *made, mspring_solver which, mspring_integrator integrator) {
-    const mspring_network_def def = support_def((float)-g, 1);
+    mspring_network_def def = support_def((float)-g, 1);
+    def.guard = support_guard_of(which);
     return recipe_solved(made, &def, which, integrator);
 }
 

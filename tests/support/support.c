@@ -142,6 +142,10 @@ mspring_network_def support_def(float gravity_y, uint32_t substeps) {
     return def;
 }
 
+mspring_guard support_guard_of(mspring_solver solver) {
+    return solver == MSPRING_SOLVER_EXPLICIT ? MSPRING_GUARD_GROWTH : MSPRING_GUARD_CLAMP;
+}
+
 mspring_network *support_network(mspring_builder *builder, const mspring_network_def *def) {
     mspring_network *network = NULL;
     mspring_result result = mspring_network_create(builder, def, &network);

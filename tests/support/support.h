@@ -91,6 +91,8 @@ mspring_id support_join(mspring_builder *builder, mspring_id a, mspring_id b, fl
 /// Defaults with this gravity along y and this number of substeps, and the guard that rejects steps which would
 /// grow.
 mspring_network_def support_def(float gravity_y, uint32_t substeps);
+/// The same guard, but one that takes steps of an implicit or direct solver which spend most_work.
+mspring_guard support_guard_of(mspring_solver solver);
 
 /// Make a network of a builder and destroy the builder.
 mspring_network *support_network(mspring_builder *builder, const mspring_network_def *def);

@@ -110,7 +110,7 @@ mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning) {
         return MSPRING_OK;
     mspring_result result = count_affordable(tuning, &affordable);
     if (result == MSPRING_OK)
-        result = mspringi_tune_clone(tuning, tuning->base, &clone);
+        result = mspringi_tune_clone(tuning, tuning->base, 0, &clone);
     if (result != MSPRING_OK)
         return result;
     (void)mspring_solver_def_init(&solver, sizeof solver);

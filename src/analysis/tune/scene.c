@@ -46,9 +46,8 @@ static void perturb(mspring_network *network, uint32_t start, double most) {
 static mspring_result make_start(mspringi_tuning *tuning, uint32_t start, mspring_network **made) {
     const mspring_tune_scene *scene = &tuning->scene;
     *made = NULL;
-    mspring_result result = scene->flags & MSPRING_TUNE_SCENE_HOOKS
-                                ? mspringi_tune_clone_with_hooks(tuning, tuning->network, made)
-                                : mspringi_tune_clone(tuning, tuning->network, made);
+    const uint32_t kept = scene->flags & MSPRING_TUNE_SCENE_HOOKS ? MSPRING_CLONE_HOOKS : 0;
+    mspring_result result = mspringi_tune_clone(tuning, tuning->network, kept, made);
     if (result != MSPRING_OK)
         return result;
     mspringi_tune_disable_fallbacks(*made);
@@ -128,7 +127,7 @@ static mspring_result run_solver(mspringi_tuning *tuning, mspring_network *from,
     mspring_network *clone = NULL;
     bool set = false;
     *end = REJECTED;
-    mspring_result result = mspringi_tune_clone_with_hooks(tuning, from, &clone);
+    mspring_result result = mspringi_tune_clone(tuning, from, MSPRING_CLONE_HOOKS, &clone);
     if (result == MSPRING_OK)
         result = prepare(tuning, clone, solver, start, &set);
     if (result == MSPRING_OK && set)

@@ -32,8 +32,8 @@ static mspring_result forward_error(mspringi_tuning *tuning, const mspringi_tria
     return result;
 }
 
-static mspring_result clone_network(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
-                                    mspring_network **clone) {
+mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
+                                   mspring_network **clone) {
     mspring_clone_def def;
     (void)mspring_clone_def_init(&def, sizeof def);
     def.flags = flags;
@@ -42,15 +42,6 @@ static mspring_result clone_network(mspringi_tuning *tuning, mspring_network *fr
         return mspringi_fail(&tuning->network->message, result, "no memory for a clone of the network");
     (*clone)->tasks = from->tasks;
     return mspring_network_set_contact(*clone, NULL);
-}
-
-mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone) {
-    return clone_network(tuning, from, 0, clone);
-}
-
-mspring_result mspringi_tune_clone_with_hooks(mspringi_tuning *tuning, mspring_network *from,
-                                              mspring_network **clone) {
-    return clone_network(tuning, from, MSPRING_CLONE_HOOKS, clone);
 }
 
 void mspringi_tune_destroy_clone(mspring_network *clone) {
@@ -64,7 +55,7 @@ static mspring_result make_clone(mspringi_tuning *tuning, mspringi_trial *trial,
                                  mspring_network **clone) {
     *clone = NULL;
     mspring_network *made = NULL;
-    mspring_result result = mspringi_tune_clone(tuning, from, &made);
+    mspring_result result = mspringi_tune_clone(tuning, from, 0, &made);
     if (result != MSPRING_OK)
         return result;
     result = mspring_network_set_solver(made, &trial->setting);
@@ -344,7 +335,7 @@ static mspring_result run_second(mspringi_tuning *tuning, mspring_network *fine,
 static mspring_result trajectories_of_group(mspringi_tuning *tuning, float relative_h) {
     mspring_network *fine = NULL;
     comparison c = {.motion = 0.0};
-    mspring_result result = mspringi_tune_clone(tuning, tuning->base, &fine);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->base, 0, &fine);
     if (result != MSPRING_OK)
         return result;
     if (relative_h > 0.0f)
@@ -372,7 +363,7 @@ mspring_result mspringi_tune_time_fine_step(mspringi_tuning *tuning, float relat
     const mspring_tune_def *def = &tuning->def;
     mspring_network *fine = NULL;
     mspringi_reference r;
-    mspring_result result = mspringi_tune_clone(tuning, tuning->base, &fine);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->base, 0, &fine);
     if (result != MSPRING_OK)
         return result;
     if (relative_h > 0.0f)
@@ -446,7 +437,7 @@ static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) 
     mspring_network *settled = NULL;
     mspring_settle_def def;
     mspring_settle_result rest = {.struct_size = sizeof rest};
-    mspring_result result = mspringi_tune_clone(tuning, tuning->base, &settled);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->base, 0, &settled);
     if (result != MSPRING_OK)
         return result;
     (void)mspring_settle_def_init(&def, sizeof def);

@@ -175,7 +175,7 @@ static mspring_result end_lag(mspring_network *base) {
 
 // Make a clone with springs, gravity and external forces only: without ramps, breaking or a floor.
 static mspring_result make_base(mspringi_tuning *tuning) {
-    mspring_result result = mspringi_tune_clone(tuning, tuning->network, &tuning->base);
+    mspring_result result = mspringi_tune_clone(tuning, tuning->network, 0, &tuning->base);
     if (result != MSPRING_OK)
         return result;
     mspring_network *base = tuning->base;

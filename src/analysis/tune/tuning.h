@@ -84,12 +84,10 @@ double mspringi_tune_median(double *values, uint32_t count);
 /// Mark the rows on the Pareto front and the recommended one. Call it after all measurements.
 void mspringi_tune_rank(const mspringi_tuning *tuning);
 
-/// Clone a network. The clone shares its workers, so do not step the original meanwhile. Errors go to the host's
-/// message.
-mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, mspring_network **clone);
-/// Clone it with its hooks.
-mspring_result mspringi_tune_clone_with_hooks(mspringi_tuning *tuning, mspring_network *from,
-                                              mspring_network **clone);
+/// Clone a network, with MSPRING_CLONE_HOOKS or 0. The clone shares its workers, so do not step the original
+/// meanwhile. Errors go to the host's message.
+mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
+                                   mspring_network **clone);
 void mspringi_tune_destroy_clone(mspring_network *clone);
 
 /// Wake a clone for good, and disable all fallbacks of its solver.

@@ -42,10 +42,10 @@ static uint32_t irregular_strain(const mspring_network *network, mspringi_strain
     const mspringi_strain *strain = &network->strain;
     uint32_t count = 0;
     for (uint32_t first = 0; first < t->irregular_count; first += MSPRINGI_WIDTH) {
-        const uint32_t word = (t->chain_spring_slots + first) / MSPRINGI_WIDTH;
+        const uint32_t word = (t->row_spring_slots + first) / MSPRINGI_WIDTH;
         uint32_t bits = strain->stressed[word];
         for (uint32_t i = first; i < first + MSPRINGI_WIDTH && i < t->irregular_count; ++i) {
-            const mspringi_spring_slot spring_slot = t->chain_spring_slots + i;
+            const mspringi_spring_slot spring_slot = t->row_spring_slots + i;
             if (mspringi_slot_is_asleep(network, t->irregular_a[i]))
                 continue;
             const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);

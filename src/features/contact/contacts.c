@@ -469,7 +469,17 @@ mspring_result mspring_network_get_contact_info(const mspring_network *network, 
     return MSPRING_OK;
 }
 
+// Pairs are found anew: their particles may have moved to different groups, or to the same.
+static void look_for_pairs_anew(mspring_network *network) {
+    if (!network->contacts)
+        return;
+    network->contacts->is_listed = network->contacts->is_fresh = false;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
+}
+
 void mspringi_contact_react(mspring_network *network, mspringi_change change, uint32_t index) {
+    if (change == MSPRINGI_CHANGED_GROUPS)
+        look_for_pairs_anew(network);
     if (change != MSPRINGI_CHANGED_SLOT)
         return;
     if (network->floor)

@@ -207,7 +207,8 @@ static bool copy_floor(mspringi_floor *to, const mspring_floor_def *def, mspring
 
 /* ------------------------------------------------------------------------------------------------------ layout */
 
-void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory) {
+// Free a floor that shares its definition with another. NULL is allowed.
+static void free_floor_layout(mspringi_floor *floor, mspringi_memory *memory) {
     if (!floor)
         return;
     mspringi_free(memory, floor->clearances);
@@ -227,7 +228,7 @@ static void destroy_floor(mspringi_floor *floor, mspringi_memory *memory) {
     mspringi_free(memory, floor->heights.restitutions);
     mspringi_free(memory, floor->plane_frictions);
     mspringi_free(memory, floor->plane_restitutions);
-    mspringi_floor_free_layout(floor, memory);
+    free_floor_layout(floor, memory);
 }
 
 static bool reserve_field(mspringi_field *field, size_t slots, mspringi_memory *memory) {
@@ -265,21 +266,28 @@ static bool reserve_layout(mspringi_floor *floor, mspring_network *network) {
            reserve_field(&floor->start, floor->slot_count, memory);
 }
 
-mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *from) {
+// Both floors share the definition.
+mspring_result mspringi_floor_move(mspring_network *to, const mspring_network *from) {
+    if (!from->floor)
+        return MSPRING_OK;
     mspringi_floor *made = mspringi_alloc(&to->memory, 1, sizeof *made);
-    if (!made)
-        return NULL;
-    *made = *from->floor;
-    if (!reserve_layout(made, to)) {
-        mspringi_floor_free_layout(made, &to->memory);
-        return NULL;
+    if (made)
+        *made = *from->floor;
+    if (!made || !reserve_layout(made, to)) {
+        free_floor_layout(made, &to->memory);
+        return mspringi_fail(&to->message, MSPRING_ERROR_MEMORY, "no memory for a floor");
     }
     for (mspring_id p = 0; p < to->topology.particle_count; ++p) {
         const uint32_t before = from->topology.slot_of_particle[p], now = to->topology.slot_of_particle[p];
         made->impulse.x[now] = from->floor->impulse.x[before];
         made->impulse.y[now] = from->floor->impulse.y[before];
     }
-    return made;
+    to->floor = made;
+    return MSPRING_OK;
+}
+
+void mspringi_floor_drop_layout(const mspring_network *from, mspringi_memory *memory) {
+    free_floor_layout(from->floor, memory);
 }
 
 static bool has_friction(const mspringi_floor *floor) {

@@ -90,12 +90,6 @@ typedef struct mspringi_moved_particle {
     double start_x, start_y, x, y, vx, vy;
 } mspringi_moved_particle;
 
-/// Make the floor of another layout of the same particles. Both share the definition. NULL: no memory.
-mspringi_floor *mspringi_floor_move(mspring_network *to, const mspring_network *from);
-
-/// Free a floor that shares its definition with another. NULL is allowed.
-void mspringi_floor_free_layout(mspringi_floor *floor, mspringi_memory *memory);
-
 /// Restore the impulses of the previous step. NULL is allowed.
 void mspringi_floor_roll_back(mspringi_floor *floor);
 /// Clear the impulses of a slot, because another particle takes it.

@@ -1,7 +1,6 @@
 /// Division of particles into groups.
 #include "features/groups/edit_groups.h"
 
-#include "features/contact/contacts.h"
 #include "store/changed.h"
 #include "store/feature.h"
 #include "store/group_ops.h"
@@ -142,14 +141,6 @@ static mspring_result list_springs(mspring_network *network, mspringi_groups *g)
     return MSPRING_OK;
 }
 
-// Pairs may have moved to different groups, or to the same: find them again.
-static void look_for_pairs_anew(mspring_network *network) {
-    if (!network->contacts)
-        return;
-    network->contacts->is_listed = network->contacts->is_fresh = false;
-    mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
-}
-
 mspring_result mspring_network_set_groups(mspring_network *network, const mspring_id *firsts, uint32_t count) {
     mspring_result result = mspringi_check_call(network);
     mspringi_groups made = {.count = count};
@@ -174,7 +165,7 @@ mspring_result mspring_network_set_groups(mspring_network *network, const msprin
     network->groups = made;
     for (uint32_t group = 0; group < count; ++group)
         mspringi_mark_take(network, &network->groups.start, group);
-    look_for_pairs_anew(network);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_GROUPS, 0);
     return MSPRING_OK;
 }
 

@@ -121,7 +121,8 @@ mspring_result mspringi_hooks_move(mspring_network *to, const mspring_network *f
     return result;
 }
 
-void mspringi_hooks_destroy(mspringi_hooks *hooks, mspringi_memory *memory) {
+void mspringi_hooks_drop(const mspring_network *from, mspringi_memory *memory) {
+    mspringi_hooks *hooks = from->hooks;
     if (!hooks)
         return;
     for (size_t i = 0; i < hooks->count; ++i)
@@ -208,7 +209,7 @@ static void call_hook(mspring_network *network, const mspringi_attempt *attempt,
     mspringi_slot_run lowest;
     if (mspringi_has_reach(def) && !mspringi_next_below(network, def, 0, slot_count, &lowest))
         return;
-    network->is_open = network->was_in_hook = true;
+    network->is_open = network->was_opened = true;
     network->guard.knows_speed = network->guard.knows_coordinate = false;
     hook_call call = {
         .network = network,
@@ -366,7 +367,7 @@ static bool must_repeat(mspring_network *network, const mspringi_attempt *attemp
     bool any = false;
     for (size_t i = 0; i < mspringi_hook_count(network); ++i)
         any |= network->hooks->list[i].def.phase != MSPRING_PHASE_BEFORE_STEP &&
-               mspringi_hook_must_repeat(network, &network->hooks->list[i], attempt->dt);
+               mspringi_hook_must_repeat(network, &network->hooks->list[i], attempt);
     return any;
 }
 

@@ -29,10 +29,6 @@ static inline size_t mspringi_hook_count(const mspring_network *network) {
     return network->hooks ? network->hooks->count : 0;
 }
 
-/// Make the hooks of another layout of the same particles.
-mspring_result mspringi_hooks_move(mspring_network *to, const mspring_network *from);
-/// Free hooks; NULL is allowed.
-void mspringi_hooks_destroy(mspringi_hooks *hooks, mspringi_memory *memory);
 /// Remove all hooks.
 void mspringi_hooks_clear(mspring_network *network);
 

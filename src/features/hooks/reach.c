@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "features/contact/floor.h"
+#include "stability/guard.h"
 
 /// What rounding may do to a local height, as a part of it and of what it is the difference of.
 #define ROUNDING 0x1p-21
@@ -40,7 +41,10 @@ bool mspringi_hook_is_away(const mspring_network *network, mspringi_hook *hook, 
     return hook->distance == MSPRINGI_AWAY;
 }
 
-bool mspringi_hook_must_repeat(const mspring_network *network, const mspringi_hook *hook, double seconds) {
-    return hook->distance == MSPRINGI_AWAY &&
-           !mspringi_safe_box_sufficed(network, &hook->safe, seconds * (double)network->seen.speed, network->seen);
+bool mspringi_hook_must_repeat(const mspring_network *network, const mspringi_hook *hook,
+                               const mspringi_attempt *attempt) {
+    if (hook->distance != MSPRINGI_AWAY)
+        return false;
+    const mspringi_extrema seen = mspringi_guard_bound(network, attempt->h, network->seen);
+    return !mspringi_safe_box_sufficed(network, &hook->safe, attempt->dt * (double)seen.speed, seen);
 }

@@ -26,6 +26,7 @@ bool mspringi_next_below(const mspring_network *network, const mspring_hook_def 
 bool mspringi_hook_is_away(const mspring_network *network, mspringi_hook *hook, double seconds);
 
 /// After the substeps: whether something may have, by what they have led to.
-bool mspringi_hook_must_repeat(const mspring_network *network, const mspringi_hook *hook, double seconds);
+bool mspringi_hook_must_repeat(const mspring_network *network, const mspringi_hook *hook,
+                               const mspringi_attempt *attempt);
 
 #endif

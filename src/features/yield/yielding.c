@@ -50,10 +50,10 @@ static uint32_t look_at_irregular(const mspring_network *network, const float *x
     const mspringi_tested *p = &network->tested;
     uint32_t count = 0;
     for (uint32_t first = 0; first < t->irregular_count; first += MSPRINGI_WIDTH) {
-        const uint32_t word = (t->chain_spring_slots + first) / MSPRINGI_WIDTH;
+        const uint32_t word = (t->row_spring_slots + first) / MSPRINGI_WIDTH;
         uint32_t bits = 0;
         for (uint32_t i = first; i < first + MSPRINGI_WIDTH && i < t->irregular_count; ++i) {
-            const mspringi_spring_slot spring_slot = t->chain_spring_slots + i;
+            const mspringi_spring_slot spring_slot = t->row_spring_slots + i;
             const float dx = x[t->irregular_b[i]] - x[t->irregular_a[i]];
             const float dy = y[t->irregular_b[i]] - y[t->irregular_a[i]], square = dx * dx + dy * dy;
             const bool is_out = square > p->high[spring_slot] || p->low[spring_slot] > square;
@@ -226,7 +226,7 @@ static uint32_t max_parts(mspring_network *network, const mspringi_attempt *atte
 static bool irregular_part_yields(const mspring_network *network) {
     const mspringi_topology *t = &network->topology;
     const mspringi_tested *p = &network->tested;
-    for (mspringi_spring_slot spring_slot = t->chain_spring_slots, end = spring_slot + t->irregular_count;
+    for (mspringi_spring_slot spring_slot = t->row_spring_slots, end = spring_slot + t->irregular_count;
          spring_slot < end; ++spring_slot)
         if (p->high[spring_slot] < INFINITY || p->low[spring_slot] >= 0.0f)
             return true;

@@ -72,7 +72,7 @@ void mspringi_layout_builder_assign_spring_slots(mspringi_layout_builder *a, uin
         if (spring_slots[s] != MSPRING_NONE)
             continue;
         if (!mspringi_graph_locate_spring(&a->graph, &a->grids, s, &found)) {
-            spring_slots[s] = t->chain_spring_slots + t->irregular_count++;
+            spring_slots[s] = t->row_spring_slots + t->irregular_count++;
             continue;
         }
         // The spring's first particle is in this block, or in the one to the right, above, or both.
@@ -93,9 +93,9 @@ mspring_result mspringi_layout_builder_save_ends(mspringi_layout_builder *a) {
     if (!t->irregular_a || !t->irregular_b)
         return mspringi_layout_builder_fail(a);
     for (uint32_t s = 0; s < t->spring_count; ++s) {
-        if (t->slot_of_spring[s] < t->chain_spring_slots)
+        if (t->slot_of_spring[s] < t->row_spring_slots)
             continue;
-        const uint32_t i = t->slot_of_spring[s] - t->chain_spring_slots;
+        const uint32_t i = t->slot_of_spring[s] - t->row_spring_slots;
         t->irregular_a[i] = t->slot_of_particle[a->builder->springs[s].a];
         t->irregular_b[i] = t->slot_of_particle[a->builder->springs[s].b];
     }
@@ -105,9 +105,9 @@ mspring_result mspringi_layout_builder_save_ends(mspringi_layout_builder *a) {
 void mspringi_topology_ends(const mspringi_topology *topology, mspringi_spring_slot spring_slot, uint32_t *base,
                             uint32_t *tip) {
     const uint32_t lane = spring_slot % MSPRINGI_WIDTH;
-    if (spring_slot >= topology->chain_spring_slots) {
-        *base = topology->irregular_a[spring_slot - topology->chain_spring_slots];
-        *tip = topology->irregular_b[spring_slot - topology->chain_spring_slots];
+    if (spring_slot >= topology->row_spring_slots) {
+        *base = topology->irregular_a[spring_slot - topology->row_spring_slots];
+        *tip = topology->irregular_b[spring_slot - topology->row_spring_slots];
     } else if (spring_slot >= topology->lattice_spring_slots) {
         *base = topology->chain_first * MSPRINGI_WIDTH + (spring_slot - topology->lattice_spring_slots);
         *tip = *base + 1;

@@ -142,7 +142,7 @@ mspring_result mspringi_layout_builder_number_other_blocks(mspringi_layout_build
         return mspringi_fail(a->message, MSPRING_ERROR_LIMIT, "%u lattice blocks exceed the limit of the layout",
                              (unsigned)t->lattice_blocks);
     t->lattice_spring_slots = t->lattice_blocks * MSPRINGI_DIRECTIONS * MSPRINGI_WIDTH;
-    t->chain_spring_slots = t->lattice_spring_slots + t->chain_blocks * MSPRINGI_WIDTH;
+    t->row_spring_slots = t->lattice_spring_slots + t->chain_blocks * MSPRINGI_WIDTH;
     return MSPRING_OK;
 }
 

@@ -34,7 +34,7 @@ mspring_result mspringi_spare_reserve(mspringi_topology *t, uint32_t inactive, m
     const size_t count = (size_t)laid_out + springs + inactive;
     const uint32_t slice_columns =
         t->irregular.slice_count > 0 ? t->irregular.first_slice_column[t->irregular.slice_count] : 0;
-    if ((uint64_t)t->chain_spring_slots + count >= MSPRING_NONE ||
+    if ((uint64_t)t->row_spring_slots + count >= MSPRING_NONE ||
         (uint64_t)slice_columns * MSPRINGI_WIDTH + springs + inactive >= MSPRING_NONE)
         return mspringi_fail(message, MSPRING_ERROR_LIMIT, "%u springs exceed the limit of the layout",
                              (unsigned)t->spring_count);
@@ -82,8 +82,8 @@ void mspringi_spare_remove_particle(mspringi_topology *t, mspring_id particle) {
 void mspringi_spare_add_spring(mspringi_topology *t, mspring_id spring, mspring_id a, mspring_id b) {
     const mspringi_spring_slot spring_slot = mspringi_spare_spring_slot(t, spring);
     t->slot_of_spring[spring] = spring_slot;
-    t->irregular_a[spring_slot - t->chain_spring_slots] = t->slot_of_particle[a];
-    t->irregular_b[spring_slot - t->chain_spring_slots] = t->slot_of_particle[b];
+    t->irregular_a[spring_slot - t->row_spring_slots] = t->slot_of_particle[a];
+    t->irregular_b[spring_slot - t->row_spring_slots] = t->slot_of_particle[b];
 }
 
 void mspringi_spare_set_counts(mspringi_topology *t, uint32_t particle_count, uint32_t spring_count) {

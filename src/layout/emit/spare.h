@@ -26,7 +26,7 @@ static inline uint32_t mspringi_spare_slot(const mspringi_topology *t, mspring_i
     return t->spare_first * MSPRINGI_WIDTH + (particle - t->reserve.first_particle);
 }
 static inline mspringi_spring_slot mspringi_spare_spring_slot(const mspringi_topology *t, mspring_id spring) {
-    return t->chain_spring_slots + t->laid_out_count + (spring - t->reserve.first_spring);
+    return t->row_spring_slots + t->laid_out_count + (spring - t->reserve.first_spring);
 }
 
 static inline bool mspringi_slot_is_spare(const mspringi_topology *t, uint32_t slot) {

@@ -30,7 +30,8 @@
 /// Scratch arrays by slot.
 enum { CHANGE_X, CHANGE_Y, RATIO = 3 };
 
-/* ---------------------------------------------------------------------------------------- springs outside kernels */
+/* ---------------------------------------------------------------------------------------- springs outside kernels
+ */
 
 static float between_ends(const float *values, const mspringi_spring_values *spring) {
     return values[spring->base] - values[spring->tip];
@@ -70,7 +71,8 @@ static void clamp_irregular(const mspring_network *network, const mspringi_stabi
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- substeps */
+/* ------------------------------------------------------------------------------------------------------- substeps
+ */
 
 // Largest eigenvalues of the sums at particles, over masses.
 static void find_ratios(const mspring_network *network, mspringi_stability_limit *b) {
@@ -98,8 +100,7 @@ static void find_changes(const mspring_network *network, mspringi_stability_limi
     b->out[0] = mspringi_stability_limit_scratch(network, CHANGE_X);
     b->out[1] = mspringi_stability_limit_scratch(network, CHANGE_Y);
     memset(b->out[0], 0, 2 * mspringi_slot_count(network) * sizeof *b->out[0]);
-    network->kernels->clamp_lattice(b);
-    network->kernels->clamp_chain(b);
+    network->kernels->clamp_rows(b);
     clamp_irregular(network, b);
 }
 

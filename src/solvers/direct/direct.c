@@ -80,7 +80,7 @@ static mspring_result begin_places(making *m) {
     mspringi_memory *memory = &m->network->memory;
     mspringi_direct *d = m->direct;
     const size_t nodes = mspringi_slot_count(m->network) + 1;
-    *d = (mspringi_direct){.place_count = t->chain_spring_slots + t->irregular_count,
+    *d = (mspringi_direct){.place_count = t->row_spring_slots + t->irregular_count,
                            .fingerprint = MSPRINGI_HASH_START};
     d->end_a = mspringi_alloc(memory, d->place_count, sizeof *d->end_a);
     d->end_b = mspringi_alloc(memory, d->place_count, sizeof *d->end_b);

@@ -158,7 +158,7 @@ static void assemble_irregular(const mspring_network *network, mspringi_slots ow
         const bool has_base = mspringi_slots_have(own, base), has_tip = mspringi_slots_have(own, tip);
         if ((!has_base && !has_tip) || sleeps(network, i))
             continue;
-        const mspringi_spring_values values = mspringi_spring_slot_get(network, t->chain_spring_slots + i);
+        const mspringi_spring_values values = mspringi_spring_slot_get(network, t->row_spring_slots + i);
         const irregular_spring l = compute_irregular(s, base, tip, &values);
         if (has_base) {
             float *factors = irregular_factors(mspringi_implicit_of(network), i);

@@ -174,17 +174,6 @@ static void add_spring(const measuring *all, mspringi_spring_slot spring_slot) {
     a->length += k * (x * x + y * y);
 }
 
-// Find the first word of spring slots of a row's block, and their number. False: the block lies in no row with
-// springs.
-static bool find_places(const mspringi_topology *t, size_t block, size_t *word, size_t *words) {
-    const bool is_lattice = block >= t->lattice_first && block < (size_t)t->lattice_first + t->lattice_blocks;
-    const bool is_chain = block >= t->chain_first && block < (size_t)t->chain_first + t->chain_blocks;
-    *word = is_lattice ? (block - t->lattice_first) * MSPRINGI_DIRECTIONS
-                       : t->lattice_spring_slots / MSPRINGI_WIDTH + (block - t->chain_first);
-    *words = is_lattice ? MSPRINGI_DIRECTIONS : 1;
-    return is_lattice || is_chain;
-}
-
 static bool is_live(const mspring_network *network, mspringi_spring_slot spring_slot) {
     return network->live[spring_slot / MSPRINGI_WIDTH] >> spring_slot % MSPRINGI_WIDTH & 1;
 }
@@ -196,7 +185,7 @@ static void add_springs(const measuring *all) {
     size_t word, words;
     for (size_t block = 0; block < t->block_count; ++block) {
         const uint32_t number = budget->of_springs[block];
-        if (number == MSPRINGI_NO_COMPONENT || !find_places(t, block, &word, &words))
+        if (number == MSPRINGI_NO_COMPONENT || !mspringi_words_of_block(t, block, &word, &words))
             continue;
         if (number != MSPRINGI_SEVERAL_COMPONENTS) {
             budget->components[number].elastic += budget->elastic[block].energy;
@@ -208,8 +197,7 @@ static void add_springs(const measuring *all) {
             if (is_live(network, (mspringi_spring_slot)spring_slot))
                 add_spring(all, (mspringi_spring_slot)spring_slot);
     }
-    for (mspringi_spring_slot spring_slot = t->chain_spring_slots;
-         spring_slot < t->chain_spring_slots + t->irregular_count; ++spring_slot)
+    for (mspringi_spring_slot spring_slot = t->row_spring_slots; spring_slot < mspringi_swept_end(t); ++spring_slot)
         if (is_live(network, spring_slot))
             add_spring(all, spring_slot);
 }
@@ -308,7 +296,7 @@ void mspringi_budget_add_pin_work(const measuring *all) {
     for (uint32_t i = 0; i < budget->count; ++i)
         budget->components[i].given = 0.0;
     for (size_t block = 0; budget->is_driven && block < t->block_count; ++block) {
-        if (!find_places(t, block, &word, &words))
+        if (!mspringi_words_of_block(t, block, &word, &words))
             continue;
         const size_t up = words > 1 ? t->up_of_block[block - t->lattice_first] : block;
         if (!has_pin(network, block) && (up == block || !has_pin(network, up)))
@@ -319,10 +307,11 @@ void mspringi_budget_add_pin_work(const measuring *all) {
                 add_given(all, (mspringi_spring_slot)spring_slot);
     }
     const float *inverse_mass = network->inverse_mass;
-    for (uint32_t i = 0; budget->is_driven && i < t->irregular_count; ++i) {
-        const mspringi_spring_slot spring_slot = t->chain_spring_slots + i;
-        if (is_live(network, spring_slot) &&
-            !(inverse_mass[t->irregular_a[i]] > 0.0f && inverse_mass[t->irregular_b[i]] > 0.0f))
+    for (mspringi_spring_slot spring_slot = t->row_spring_slots;
+         budget->is_driven && spring_slot < mspringi_swept_end(t); ++spring_slot) {
+        uint32_t base, tip;
+        mspringi_topology_ends(t, spring_slot, &base, &tip);
+        if (is_live(network, spring_slot) && !(inverse_mass[base] > 0.0f && inverse_mass[tip] > 0.0f))
             add_given(all, spring_slot);
     }
 }

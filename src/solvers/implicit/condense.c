@@ -36,7 +36,7 @@ static void mark_nodes(const mspring_network *network, mspringi_paths *p) {
     }
     p->has_marks = t->irregular_count > t->laid_out_count || all->active_count > 0;
     for (uint32_t i = t->laid_out_count; i < t->irregular_count; ++i) {
-        if (!mspringi_spring_slot_is_live(network, t->chain_spring_slots + i))
+        if (!mspringi_spring_slot_is_live(network, t->row_spring_slots + i))
             continue;
         mark_joined(p, t->irregular_a[i]);
         mark_joined(p, t->irregular_b[i]);

@@ -126,9 +126,8 @@ static bool knows_elastic(const mspring_network *network) {
     uint64_t now[MSPRINGI_BUDGET_EDITS];
     count_edits(network, now);
     return budget->knows_elastic && !network->is_open && !mspringi_features_vary(network) &&
-           !mspringi_elements_forget_energy(network) && budget->relative_h == network->relative_h &&
-           budget->origin_x == network->origin_x && budget->origin_y == network->origin_y &&
-           memcmp(now, budget->seen, sizeof now) == 0;
+           !mspringi_elements_forget_energy(network) && budget->origin_x == network->origin_x &&
+           budget->origin_y == network->origin_y && memcmp(now, budget->seen, sizeof now) == 0;
 }
 
 void mspringi_budget_begin(mspring_network *network) {
@@ -551,7 +550,6 @@ static void remember_elastic(const mspring_network *network) {
     for (uint32_t i = 0; i < budget->count; ++i)
         budget->knows_elastic &= budget->components[i].shift_x == 0.0 && budget->components[i].shift_y == 0.0;
     count_edits(network, budget->seen);
-    budget->relative_h = network->relative_h;
     budget->origin_x = network->origin_x;
     budget->origin_y = network->origin_y;
 }

@@ -117,7 +117,6 @@ typedef struct mspringi_budget {
     uint64_t seen[MSPRINGI_BUDGET_EDITS]; ///< edits after the last substep, and the origin then
     double origin_x, origin_y;
     bool knows_elastic;               ///< elastic and length of all accounts are still those of after it
-    float relative_h;                 ///< what relative springs were derived for then
     bool is_in_backup;                ///< the state before the substep is that of before the step
     float *state;                     ///< [6][slots] before the substep, if it is not
     mspringi_field impulse;           ///< of the floor before it

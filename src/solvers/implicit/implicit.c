@@ -135,7 +135,7 @@ static uint32_t components_of(const making *m) {
 static mspring_result allocate_factors(making *m) {
     const mspringi_topology *t = &m->network->topology;
     const size_t irregular = ((size_t)t->irregular_capacity + MSPRINGI_WIDTH - 1) / MSPRINGI_WIDTH * MSPRINGI_WIDTH;
-    m->made->factors = mspringi_alloc(&m->network->memory, (t->chain_spring_slots + irregular) * MSPRINGI_FACTORS,
+    m->made->factors = mspringi_alloc(&m->network->memory, (t->row_spring_slots + irregular) * MSPRINGI_FACTORS,
                                       sizeof *m->made->factors);
     return m->made->factors ? MSPRING_OK : no_memory(m->network);
 }
@@ -161,7 +161,7 @@ static void wire(mspringi_implicit *n, const mspring_network *network) {
     mspringi_system *s = &n->system;
     n->y = n->x + slots;
     n->tiles.paths = &n->paths;
-    n->irregular_factors = n->factors + (size_t)t->chain_spring_slots * MSPRINGI_FACTORS;
+    n->irregular_factors = n->factors + (size_t)t->row_spring_slots * MSPRINGI_FACTORS;
     n->seen.link_log = network->edits.link_log;
     s->x = n->x;
     s->y = n->y;

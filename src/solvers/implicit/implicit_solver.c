@@ -152,7 +152,7 @@ static void rest_slot(const mspring_network *network, void *object, size_t slot)
 // Clear the factors of an irregular spring slot that no spring uses any more.
 static void clear_spring(const mspring_network *network, void *object, mspringi_spring_slot spring_slot) {
     const mspringi_implicit *n = object;
-    for (uint32_t factor = 0; spring_slot >= network->topology.chain_spring_slots && factor < MSPRINGI_FACTORS;
+    for (uint32_t factor = 0; spring_slot >= network->topology.row_spring_slots && factor < MSPRINGI_FACTORS;
          ++factor)
         n->factors[mspringi_factors_of_spring_slot(spring_slot) + factor * MSPRINGI_WIDTH] = 0.0f;
 }

@@ -14,6 +14,7 @@ static const mspring_solver linear_solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING
 static mspring_network_def def_of(int i, uint32_t substeps) {
     mspring_network_def def = support_def(0, substeps);
     def.solver = linear_solvers[i % 2];
+    def.guard = support_guard_of(def.solver);
     def.integrator = (mspring_integrator)(i / 2 % 3);
     return def;
 }

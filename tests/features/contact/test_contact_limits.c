@@ -212,6 +212,7 @@ static void heaps_of_rods_are_not_refused(void **state) {
         }
         mspring_network_def def = support_def(-9.8f, 1);
         def.solver = (mspring_solver)solver;
+        def.guard = support_guard_of(def.solver);
         mspring_network *network = support_network(builder, &def);
         check_ok(touch(network, 0.2));
         check_ok(mspring_network_step(network, 1.0 / 60));
@@ -254,6 +255,7 @@ static void refused_steps_end_their_work(void **state) {
         }
         mspring_network_def def = support_def(0, 4);
         def.solver = (mspring_solver)solver;
+        def.guard = support_guard_of(def.solver);
         mspring_network *network = support_network(builder, &def);
         mspring_contact_def contact;
         check_ok(mspring_contact_def_init(&contact, sizeof contact));

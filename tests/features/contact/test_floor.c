@@ -27,6 +27,7 @@ static void set_way(mspring_network *network, const way *to) {
     def.integrator = to->integrator;
     def.substeps = to->substeps;
     check_ok(mspring_network_set_solver(network, &def));
+    check_ok(support_set_guard(network, support_guard_of(to->solver)));
 }
 
 static mspring_floor_def floor_def(void) {

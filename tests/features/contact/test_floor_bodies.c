@@ -39,6 +39,7 @@ static mspring_network *thrown(mspring_solver solver, uint64_t *seed) {
     }
     mspring_network_def def = support_def(-9.8f, 1 + (uint32_t)support_random_between(seed, 0, 4));
     def.solver = solver;
+    def.guard = support_guard_of(def.solver);
     mspring_network *network = support_network(builder, &def);
     for (uint32_t i = 0; i < bodies; i++) {
         const float vx = (float)support_random_between(seed, -9, 9),
@@ -98,6 +99,7 @@ static mspring_network *chain_in_slit(mspring_solver solver, uint32_t count, dou
     }
     mspring_network_def def = support_def(-9.8f, 2);
     def.solver = solver;
+    def.guard = support_guard_of(def.solver);
     mspring_network *network = support_network(builder, &def);
     const double planes[][4] = {{0, 0, 0, 1}, {0, width, 0, -1}, {-1, 0, 1, 0}};
     mspring_floor_def floor;

@@ -34,6 +34,7 @@ static mspring_network *stack(bodies *b, mspring_solver solver, uint32_t bars, f
                                               .f = 0.5});
     mspring_network_def def = support_def(-9.8f, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 2);
     def.solver = solver;
+    def.guard = support_guard_of(def.solver);
     def.global_damping = 0.5f;
     def.sleep_speed = sleep_speed;
     def.sleep_time = 0.5f;
@@ -175,6 +176,7 @@ static void slide(mspring_solver solver, double share, double *way, double *spee
         b, &(bodies_lattice){.width = 8, .height = 3, .x = -15.3, .y = 1, .spacing = 1, .mass = 73.4, .f = 0.5});
     mspring_network_def def = support_def(0, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 4);
     def.solver = solver;
+    def.guard = support_guard_of(def.solver);
     mspring_network *network = bodies_network(b, &def);
     check_ok(support_set_gravity(network, (float)(9.8 * sin(angle)), (float)(-9.8 * cos(angle))));
     check_ok(bodies_touch(network, THICKNESS, (float)friction, 0));
@@ -226,6 +228,7 @@ static void check_bounce(mspring_solver solver, uint32_t substeps, float restitu
         bodies_add(b, &(bodies_lattice){.width = 1, .height = 1, .x = 0.2, .y = 5, .spacing = 1, .mass = 3});
     mspring_network_def def = support_def(-9.8f, substeps);
     def.solver = solver;
+    def.guard = support_guard_of(def.solver);
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.5f, restitution));
     double low = 5, high = 0;

@@ -54,6 +54,7 @@ static mspring_network *pair_of(uint32_t trial, beside what) {
     }
     mspring_network_def def = support_def(0, 1 + trial % 4);
     def.solver = trial % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+    def.guard = support_guard_of(def.solver);
     mspring_network *network = recipe_network(&made, &def);
     const mspring_contact_def contact = bodies_contact(0.5, trial % 3 ? 0 : 0.5f, trial % 5 ? 0 : 0.6f);
     check_ok(mspring_network_set_contact(network, &contact));

@@ -39,6 +39,7 @@ static mspring_network *crowd_network_by(mspring_solver solver, double apart, do
     bodies *b = crowd(apart, speed);
     mspring_network_def def = support_def(gravity, solver == MSPRING_SOLVER_EXPLICIT ? SUBSTEPS : 2);
     def.solver = solver;
+    def.guard = support_guard_of(solver);
     def.simd_level = level;
     def.worker_count = workers;
     mspring_network *network = bodies_network(b, &def);

@@ -79,6 +79,7 @@ static press make_press(uint32_t trial, place where) {
     add_body(builder, &p, 4, 3, right, 0.1, ratio, k);
     mspring_network_def def = support_def(0, 1 + trial % 4);
     def.solver = trial % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+    def.guard = support_guard_of(def.solver);
     p.network = support_network(builder, &def);
     mspring_contact_def contact;
     check_ok(mspring_contact_def_init(&contact, sizeof contact));
