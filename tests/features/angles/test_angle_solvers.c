@@ -189,7 +189,8 @@ static void others_are_forces(void **state) {
     (void)state;
     for (int i = 0; i < 2; i++) {
         const beam b = {1, 10, 2, 10, 1e5f};
-        const mspring_network_def def = def_of(i, 1);
+        mspring_network_def def = def_of(i, 1);
+        def.guard = MSPRING_GUARD_GROWTH;
         static const mspring_id far[] = {2, 6, 11};
         mspring_network *network = beam_network(&b, &def);
         mspring_angle_def angle;
