@@ -143,23 +143,23 @@ typedef struct mspringi_pending_constraint {
 
 /// Contact constraint between rigid bodies, in one direction (solvers/implicit/rigid_contact.c). Index 0 is the
 /// side of the point, 1 that of the edge.
-typedef struct mspringi_rigid_row {
+typedef struct mspringi_rigid_direction {
     double arms[2]; ///< torque on each body for a unit of impulse, m
     double speed;   ///< relative speed of the bodies without impulses, m/s
     double mass;    ///< impulse per change of speed, kg; 0: none acts
-} mspringi_rigid_row;
+} mspringi_rigid_direction;
 
 /// Contact constraint in the linear system (solvers/implicit/implicit_contact.c). Index 0 is the point, 1 and 2 are
 /// the ends of the edge.
 typedef struct mspringi_implicit_constraint {
-    uint32_t slots[3];                ///< MSPRING_NONE: not an unknown of the system
-    uint32_t listed;                  ///< index of its push in network->constraints; MSPRING_NONE: impulses only
-    double across[3][2], along[3][2]; ///< Jacobians of the normal and the tangential displacement
-    double spare;                     ///< slack before a bouncing constraint becomes active, m
-    double friction;                  ///< 0: it has no friction in the system
-    bool is_active;                   ///< in the active set at the prediction
-    uint32_t bodies[2];               ///< of point and edge, if contact moves rigid bodies; MSPRINGI_NO_COMPONENT
-    mspringi_rigid_row rigid[2];      ///< across and along
+    uint32_t slots[3];                 ///< MSPRING_NONE: not an unknown of the system
+    uint32_t listed;                   ///< index of its push in network->constraints; MSPRING_NONE: impulses only
+    double across[3][2], along[3][2];  ///< Jacobians of the normal and the tangential displacement
+    double spare;                      ///< slack before a bouncing constraint becomes active, m
+    double friction;                   ///< 0: it has no friction in the system
+    bool is_active;                    ///< in the active set at the prediction
+    uint32_t bodies[2];                ///< of point and edge, if contact moves rigid bodies; MSPRINGI_NO_COMPONENT
+    mspringi_rigid_direction rigid[2]; ///< across and along
 } mspringi_implicit_constraint;
 
 /// Pose of a collider, world coordinates.

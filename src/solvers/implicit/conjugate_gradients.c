@@ -26,8 +26,8 @@ typedef mspringi_implicit_substep substep_of;
 #define NO_PRODUCT ((double)FLT_MIN)
 
 /// The same with constraints between bodies, and their factor on the iterations.
-#define LEAST_PRODUCT_WITH_ROWS 1e-9
-#define TIMES_WITH_ROWS 16
+#define LEAST_PRODUCT_WITH_CONTACT 1e-9
+#define TIMES_WITH_CONTACT 16
 
 /// Factor on the iterations with the floor, and in halves.
 #define TIMES_OF_MORE 2
@@ -169,8 +169,8 @@ static double begin_anew(const substep_of *substep, mspringi_team_member *member
 // a factor in each, so that takes twice as many.
 static double least_share(const mspringi_implicit *n, uint32_t times) {
     const double residual = (double)n->residual_share;
-    if (times == TIMES_WITH_ROWS)
-        return LEAST_PRODUCT_WITH_ROWS;
+    if (times == TIMES_WITH_CONTACT)
+        return LEAST_PRODUCT_WITH_CONTACT;
     if (residual == 0.0)
         return LEAST_PRODUCT;
     return fmax(times == TIMES_OF_MORE ? residual * residual : residual, LEAST_PRODUCT);
@@ -193,7 +193,7 @@ static float solve_without_paths(const substep_of *substep, mspringi_team_member
     const bool has_contacts = mspringi_next_floor_push(&network->constraints, NULL) != NULL;
     // The coarse matrix may lack entries for the tiles of bodies that touch.
     const bool has_rows = mspringi_contact_constraint_is_active(&network->constraints);
-    const uint32_t times = has_rows ? TIMES_WITH_ROWS : has_contacts || n->is_piece ? TIMES_OF_MORE : 1;
+    const uint32_t times = has_rows ? TIMES_WITH_CONTACT : has_contacts || n->is_half ? TIMES_OF_MORE : 1;
     uint32_t left = mspringi_implicit_most_iterations(n, times);
     invert(network, mspringi_slots_of(network, member));
     assemble_coarse(network, member);

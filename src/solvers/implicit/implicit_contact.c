@@ -37,25 +37,22 @@
 /// Most sweeps over all constraints against deep overlaps.
 #define MOST_MENDING_SWEEPS 32
 
-/// Longest move of a constraint in an interval, as a share of the thickness, and most intervals of a substep.
-#define PIECE_SHARE 1.0
-#define MOST_PIECES 40u
-
 /// Comparisons of points with edges that a substep is allowed, as its intervals find constraints anew, and for each
 /// particle.
 #define WORK_OF_SUBSTEP 2621440u
 #define WORK_OF_PARTICLE 3000u
 
-typedef mspringi_implicit_constraint hold;
+typedef mspringi_implicit_constraint implicit_constraint;
 
-static mspringi_contacts *pairs_of(const mspring_network *network) {
+// NULL unless bodies may touch in this substep.
+static mspringi_contacts *contacts_near(const mspring_network *network) {
     return network->contacts && network->contacts->quiet_substeps == 0 ? network->contacts : NULL;
 }
 
 // Number of constraints of the present substep; 0 without contact.
 static uint32_t count_of(const mspring_network *network) {
-    const mspringi_contacts *contacts = network->contacts;
-    return contacts && contacts->quiet_substeps == 0 ? contacts->constraint_count : 0;
+    const mspringi_contacts *contacts = contacts_near(network);
+    return contacts ? contacts->constraint_count : 0;
 }
 
 static uint32_t node_of(const mspringi_contact_constraint *t, int i) {
@@ -72,9 +69,10 @@ static bool flies(const mspring_network *network, size_t slot) {
            !mspringi_is_coupled(network, mspringi_implicit_of(network), slot);
 }
 
-/* -------------------------------------------------------------------------------------------------------- rows */
+/* -------------------------------------------------------------------------------------------------- Jacobians */
 
-static void split_forces(const mspring_network *network, const mspringi_contact_constraint *t, hold *to) {
+static void split_forces(const mspring_network *network, const mspringi_contact_constraint *t,
+                         implicit_constraint *to) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     const double shares[] = {1.0, -t->bary_a, -t->bary_b};
     const double along[3][2] = {{-t->ny, t->nx},
@@ -100,13 +98,13 @@ static double product(double (*shares)[2], double (*vectors)[2]) {
 // Begin with a constraint. It is active if its gap would close at the end of the substep without springs and
 // contact.
 static void begin_constraint(const mspring_network *network, const mspringi_contact_constraint *t, double h,
-                             hold *to) {
+                             implicit_constraint *to) {
     const mspringi_contacts *contacts = network->contacts;
     const mspringi_contact_nodes *k = &contacts->nodes;
     double way[3][2];
     const bool is_slick =
         t->tangent_mass == 0.0 || mspringi_implicit_of(network)->contact_mode != MSPRINGI_CONTACT_WITH_FRICTION;
-    *to = (hold){.listed = MSPRING_NONE, .friction = is_slick ? 0.0 : (double)t->friction};
+    *to = (implicit_constraint){.listed = MSPRING_NONE, .friction = is_slick ? 0.0 : (double)t->friction};
     split_forces(network, t, to);
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i);
@@ -119,13 +117,13 @@ static void begin_constraint(const mspring_network *network, const mspringi_cont
 }
 
 void mspringi_implicit_contact_allow_work(const mspring_network *network) {
-    mspringi_contacts *contacts = pairs_of(network);
+    mspringi_contacts *contacts = contacts_near(network);
     if (contacts && !mspringi_contact_is_rejected(contacts))
         contacts->most_work += WORK_OF_SUBSTEP + WORK_OF_PARTICLE * (uint64_t)network->topology.particle_count;
 }
 
 bool mspringi_implicit_contact_begin(mspring_network *network, float h) {
-    mspringi_contacts *contacts = pairs_of(network);
+    mspringi_contacts *contacts = contacts_near(network);
     bool any = false;
     if (!contacts)
         return false;
@@ -144,21 +142,21 @@ bool mspringi_implicit_contact_begin(mspring_network *network, float h) {
     return any;
 }
 
+// In an interval nodes move by no more than the thickness.
 uint32_t mspringi_implicit_contact_count_intervals(mspring_network *network, float h) {
-    mspringi_contacts *contacts = pairs_of(network);
+    mspringi_contacts *contacts = contacts_near(network);
     if (!contacts)
         return 1;
     mspringi_contact_load_nodes(network, contacts);
     const double fastest = mspringi_contact_prepare_implicit(network, contacts, (double)h);
-    const double pieces = 1.0 + (double)h * fastest / (PIECE_SHARE * contacts->thickness);
-    return pieces < (double)MOST_PIECES ? (uint32_t)pieces : MOST_PIECES;
+    return mspringi_intervals_of(1.0 + (double)h * fastest / contacts->thickness);
 }
 
 /* -------------------------------------------------------------------------------------------- the constraints */
 
 // How far a node comes without its springs.
-static void predict(const mspring_network *network, hold *c, const mspringi_contact_constraint *t, int i, double h,
-                    double way[2]) {
+static void predict(const mspring_network *network, implicit_constraint *c, const mspringi_contact_constraint *t,
+                    int i, double h, double way[2]) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     const uint32_t node = node_of(t, i), slot = c->slots[i];
@@ -176,7 +174,7 @@ static void predict(const mspring_network *network, hold *c, const mspringi_cont
 }
 
 // Stiffness of a constraint: in series with the network's at each end.
-static double stiffness_of(const mspring_network *network, hold *c, double (*shares)[2]) {
+static double stiffness_of(const mspring_network *network, implicit_constraint *c, double (*shares)[2]) {
     const mspringi_implicit *n = mspringi_implicit_of(network);
     double give = 0.0;
     for (int i = 0; i < 3; ++i) {
@@ -191,8 +189,8 @@ static double stiffness_of(const mspring_network *network, hold *c, double (*sha
     return give > 0.0 ? 1.0 / give : 0.0;
 }
 
-static mspringi_constraint *add_constraint(mspring_network *network, uint32_t number, hold *c, double (*shares)[2],
-                                           double way) {
+static mspringi_constraint *add_constraint(mspring_network *network, uint32_t number, implicit_constraint *c,
+                                           double (*shares)[2], double way) {
     mspringi_constraints *all = &network->constraints;
     mspringi_constraint *added = mspringi_constraint_add(all, MSPRINGI_CONTACT_CONSTRAINT, number, 3);
     for (int i = 0; i < 3; ++i)
@@ -207,7 +205,7 @@ static mspringi_constraint *add_constraint(mspring_network *network, uint32_t nu
 static void list_constraint(mspring_network *network, uint32_t number, double h) {
     const mspringi_contacts *contacts = network->contacts;
     const mspringi_contact_constraint *t = &contacts->constraints[number];
-    hold *c = &contacts->implicit_constraints[number];
+    implicit_constraint *c = &contacts->implicit_constraints[number];
     double way[3][2];
     for (int i = 0; i < 3; ++i)
         predict(network, c, t, i, h, way[i]);
@@ -238,7 +236,7 @@ void mspringi_implicit_contact_store_impulses(mspring_network *network, float h)
     mspringi_implicit *n = mspringi_implicit_of(network);
     const double per_force = (double)h / n->system.force_scale;
     for (uint32_t i = 0; i < count; ++i) {
-        hold *c = &contacts->implicit_constraints[i];
+        implicit_constraint *c = &contacts->implicit_constraints[i];
         mspringi_contact_constraint *t = &contacts->constraints[i];
         const mspringi_constraint *push = c->listed == MSPRING_NONE ? NULL : &network->constraints.list[c->listed];
         const double across = push ? push->force : 0.0;
@@ -278,7 +276,7 @@ static bool mend(const mspringi_contacts *contacts, mspringi_contact_constraint 
 }
 
 void mspringi_implicit_contact_fix_overlaps(mspring_network *network, mspringi_field base, float step) {
-    mspringi_contacts *contacts = pairs_of(network);
+    mspringi_contacts *contacts = contacts_near(network);
     const mspringi_state *s = &network->state;
     const double h = (double)step;
     bool any = false;
@@ -332,7 +330,7 @@ static double speed_before(const mspringi_contacts *contacts, const mspringi_con
 }
 
 // Speed of a constraint along some shares, from the displacement in the substep.
-static double speed_of(const mspring_network *network, const mspringi_contact_constraint *t, hold *c,
+static double speed_of(const mspring_network *network, const mspringi_contact_constraint *t, implicit_constraint *c,
                        double (*shares)[2], double h) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     const mspringi_state *s = &network->state;
@@ -354,7 +352,7 @@ bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float
     double given = 0.0, taken = 0.0, most = 0.0, least = 0.0;
     for (uint32_t i = 0; i < count; ++i) {
         const mspringi_contact_constraint *t = &contacts->constraints[i];
-        hold *c = &contacts->implicit_constraints[i];
+        implicit_constraint *c = &contacts->implicit_constraints[i];
         if (t->normal_impulse == 0.0 && t->tangent_impulse == 0.0)
             continue;
         const double before = speed_before(contacts, t);
@@ -370,7 +368,7 @@ bool mspringi_implicit_contact_kept_energy(const mspring_network *network, float
     return given <= GIVEN_SHARE * taken && -least <= GIVEN_SHARE * most;
 }
 
-/* ------------------------------------------------------------------------------------------- what has no row */
+/* --------------------------------------------------------------------------------- pairs without a constraint */
 
 // Find the position of a node at the end of a substep.
 static void end_of_node(const mspring_network *network, uint32_t node, double h, double *x, double *y) {
@@ -407,7 +405,7 @@ static bool is_thrown(const mspring_network *network, const mspringi_candidate *
 }
 
 bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, float h) {
-    const mspringi_contacts *contacts = pairs_of(network);
+    const mspringi_contacts *contacts = contacts_near(network);
     if (!contacts)
         return false;
     memset(contacts->is_seen, 0, contacts->candidate_count);
@@ -422,7 +420,7 @@ bool mspringi_implicit_contact_missed_pairs(const mspring_network *network, floa
 /* --------------------------------------------------------------------------------------------- once it is taken */
 
 // Add the impulses of a constraint to isolated particles, which move past the floor by themselves.
-static void gain(const mspring_network *network, const mspringi_contact_constraint *t, hold *c) {
+static void gain(const mspring_network *network, const mspringi_contact_constraint *t, implicit_constraint *c) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     for (int i = 0; i < 3; ++i) {
         const uint32_t node = node_of(t, i);
@@ -436,7 +434,7 @@ static void gain(const mspring_network *network, const mspringi_contact_constrai
 }
 
 void mspringi_implicit_contact_count_impulses(mspring_network *network, float h) {
-    mspringi_contacts *contacts = pairs_of(network);
+    mspringi_contacts *contacts = contacts_near(network);
     if (!contacts)
         return;
     contacts->passed += (double)h;
@@ -454,7 +452,7 @@ void mspringi_implicit_contact_count_impulses(mspring_network *network, float h)
 }
 
 void mspringi_implicit_contact_push_free_particles(const mspring_network *network) {
-    const mspringi_contacts *contacts = pairs_of(network);
+    const mspringi_contacts *contacts = contacts_near(network);
     const mspringi_state *s = &network->state;
     for (uint32_t i = 0; contacts && i < contacts->nodes.particle_count; ++i) {
         const mspringi_contact_nodes *k = &contacts->nodes;
@@ -472,7 +470,8 @@ void mspringi_implicit_contact_push_free_particles(const mspring_network *networ
 
 // Moments of a component's forces are told from half the way of its mass centre. Those of contact act at the
 // beginning of the way, where bodies that touch have the same lever arms.
-static void account(const mspringi_budget_sums *all, const mspringi_contact_constraint *t, hold *c, int i) {
+static void account(const mspringi_budget_sums *all, const mspringi_contact_constraint *t, implicit_constraint *c,
+                    int i) {
     const mspring_network *network = all->network;
     const mspringi_contact_nodes *k = &network->contacts->nodes;
     mspringi_budget *budget = &mspringi_implicit_of(network)->budget;

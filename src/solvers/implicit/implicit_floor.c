@@ -17,10 +17,9 @@
 #define PENALTY_DIRECT 1e3
 #define PENALTY_ITERATED 30.0
 
-/// Depth of a particle, as a share of the shortest spring, that divides a substep into intervals, and most
-/// intervals. Springs that turn by more differ from their linearisation, so an impact adds energy.
+/// Depth of a particle, as a share of the shortest spring, that divides a substep into intervals. Springs that turn
+/// by more differ from their linearisation, so an impact adds energy.
 #define DEEPEST_SHARE 0.2
-#define MOST_PIECES 40u
 
 /* ------------------------------------------------------------------------------------------------ what is near */
 
@@ -167,8 +166,7 @@ uint32_t mspringi_floor_count_intervals(const mspring_network *network, float h)
         const double before = fmin(mspringi_floor_distance(floor, m.start_x, m.start_y), 0.0);
         deepest = fmax(deepest, before - mspringi_floor_distance(floor, m.straight_x, m.straight_y));
     }
-    const double pieces = 1.0 + deepest / (DEEPEST_SHARE * network->shortest);
-    return pieces < (double)MOST_PIECES ? (uint32_t)pieces : MOST_PIECES;
+    return mspringi_intervals_of(1.0 + deepest / (DEEPEST_SHARE * network->shortest));
 }
 
 /* ------------------------------------------------------------------------------------------------ the impulses */

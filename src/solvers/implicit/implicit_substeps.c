@@ -158,12 +158,12 @@ static void run_team(mspringi_implicit_substep *substep) {
 }
 
 // Solve a substep, by implicit Euler for a half of another, and apply the floor.
-static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
+static void run_substep(mspringi_implicit_substep *substep, bool is_half) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
     const uint32_t sleeps = mspringi_tasks_sleeps(network->tasks), products = n->product_count;
     choose_team(substep);
-    n->is_piece = is_piece;
+    n->is_half = is_half;
     n->uses_euler =
         mspringi_implicit_contact_begin(network, substep->h) || n->contact_mode == MSPRINGI_CONTACT_BY_IMPULSES;
     n->restarts_with_euler = n->is_cut_off = false;
@@ -185,10 +185,12 @@ static void run_substep(mspringi_implicit_substep *substep, bool is_piece) {
         mspringi_floor_apply_all(network, substep->h);
 }
 
-static void take_halves(mspringi_implicit_substep *substep, uint32_t halvings);
+static void take_halves(mspringi_implicit_substep *substep, uint32_t tries);
 
-// Take a substep of substep->h. If it exceeds the energy budget, repeat it by implicit Euler and with more
-// iterations, then in halves.
+// Take a substep of substep->h. If it exceeds the energy budget, or contact was not sound, undo it and take it
+// again: once whole, by implicit Euler, then in halves. tries: 0 at first, 1 then, and one more with each halving.
+// Contact that was not sound has no friction in the next try. In the shortest halves, and once no work is left, it
+// acts by impulses, which are always sound.
 static void take_substep(mspringi_implicit_substep *substep, uint32_t tries) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
@@ -245,7 +247,7 @@ static void take_halves(mspringi_implicit_substep *substep, uint32_t tries) {
 }
 
 // Divide a substep into intervals before hard impacts on the floor or between bodies.
-static void take_pieces(mspringi_implicit_substep *substep) {
+static void take_intervals(mspringi_implicit_substep *substep) {
     mspring_network *network = substep->network;
     mspringi_implicit *n = mspringi_implicit_of(network);
     const float h = substep->h;
@@ -254,12 +256,12 @@ static void take_pieces(mspringi_implicit_substep *substep) {
         mspringi_floor_save_positions(network, h);
     const uint32_t by_floor = has_floor ? mspringi_floor_count_intervals(network, h) : 1;
     const uint32_t by_bodies = mspringi_implicit_contact_count_intervals(network, h);
-    const uint32_t pieces = mspringi_implicit_limit_intervals(n, by_floor > by_bodies ? by_floor : by_bodies);
-    substep->h = h / (float)pieces;
-    for (uint32_t i = 0; i < pieces; ++i) {
-        if (pieces > 1 && has_floor)
+    const uint32_t intervals = mspringi_implicit_limit_intervals(n, by_floor > by_bodies ? by_floor : by_bodies);
+    substep->h = h / (float)intervals;
+    for (uint32_t i = 0; i < intervals; ++i) {
+        if (intervals > 1 && has_floor)
             mspringi_floor_save_positions(network, substep->h);
-        n->intervals_left = pieces - 1 - i;
+        n->intervals_left = intervals - 1 - i;
         take_substep(substep, 0);
         if (has_floor)
             mspringi_floor_apply_silt(network, substep->h);
@@ -280,7 +282,7 @@ void mspringi_implicit_run_substeps(mspring_network *network, float h, mspringi_
         mspringi_implicit_of(network)->most_work += mspringi_implicit_of(network)->work_rate * (double)h;
         mspringi_implicit_contact_allow_work(network);
         if (network->floor || mspringi_implicit_contact_is_near(network))
-            take_pieces(&substep);
+            take_intervals(&substep);
         else
             take_substep(&substep, 0);
     }

@@ -20,6 +20,12 @@
 #include "solvers/implicit/energy_budget.h"
 #include "solvers/implicit/implicit.h"
 
+/// Most intervals of a substep; so many that are at least 1, or the most if that is no number.
+#define MSPRINGI_MOST_INTERVALS 40u
+static inline uint32_t mspringi_intervals_of(double count) {
+    return count < (double)MSPRINGI_MOST_INTERVALS ? (uint32_t)count : MSPRINGI_MOST_INTERVALS;
+}
+
 /// Intervals that an implicit substep of h should have for the floor, which there must be. Call
 /// mspringi_floor_save_positions() first.
 uint32_t mspringi_floor_count_intervals(const mspring_network *network, float h);

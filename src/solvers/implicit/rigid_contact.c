@@ -110,7 +110,7 @@ static rigid_body *side_body(const mspring_network *network, const hold *c, int 
 static void begin_row(const mspring_network *network, const mspringi_contact_constraint *t, hold *c,
                       bool is_along) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
-    mspringi_rigid_row *row = &c->rigid[is_along];
+    mspringi_rigid_direction *row = &c->rigid[is_along];
     double give = 0.0;
     memset(row, 0, sizeof *row);
     for (int side = 0; side < 2; ++side) {
@@ -149,7 +149,7 @@ static void begin_pair(const mspring_network *network, const mspringi_contact_co
 static double speed_of_row(const mspring_network *network, const mspringi_contact_constraint *t, const hold *c,
                            bool is_along) {
     const mspringi_velocity *v = network->contacts->nodes.v;
-    const mspringi_rigid_row *row = &c->rigid[is_along];
+    const mspringi_rigid_direction *row = &c->rigid[is_along];
     double speed = row->speed;
     for (int side = 0; side < 2; ++side) {
         const rigid_body *a = side_body(network, c, side);
@@ -167,7 +167,7 @@ static double speed_of_row(const mspring_network *network, const mspringi_contac
 static void push_row(const mspring_network *network, const mspringi_contact_constraint *t, const hold *c,
                      bool is_along, double impulse) {
     const mspringi_contact_nodes *k = &network->contacts->nodes;
-    const mspringi_rigid_row *row = &c->rigid[is_along];
+    const mspringi_rigid_direction *row = &c->rigid[is_along];
     for (int side = 0; side < 2; ++side) {
         rigid_body *a = side_body(network, c, side);
         if (a) {
