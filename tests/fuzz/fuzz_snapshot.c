@@ -169,7 +169,7 @@ static subject make_subject(int kind) {
     subject made = {.network = NULL};
     recipe from = make_recipe(kind);
     mspring_network_def def = support_def(-9.8f, 2);
-    static const mspring_guard guards[PLAIN] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_GROWTH,
+    static const mspring_guard guards[PLAIN] = {MSPRING_GUARD_CLAMP, MSPRING_GUARD_IMPLICIT, MSPRING_GUARD_CLAMP,
                                                 MSPRING_GUARD_GROWTH};
     def.guard = guards[kind % PLAIN];
     def.spare_particles = def.spare_springs = kind % 3 == 0 ? 3 : 0;
