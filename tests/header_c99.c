@@ -2,6 +2,7 @@
 // them. SPDX-License-Identifier: MIT
 #include <massspring/massspring_batch.h>
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_gradient.h>
 #include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 

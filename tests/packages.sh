@@ -68,7 +68,7 @@ archive)
     echo "these are in the wrong place"
     exit 1
   fi
-  for file in include/massspring/massspring.h include/massspring/massspring_batch.h include/massspring/massspring_contact.h include/massspring/massspring_laws.h include/massspring/massspring_tools.h include/massspring/export.h share/doc/massspring/LICENSE share/doc/massspring/CHANGELOG.md; do
+  for file in include/massspring/massspring.h include/massspring/massspring_batch.h include/massspring/massspring_contact.h include/massspring/massspring_gradient.h include/massspring/massspring_laws.h include/massspring/massspring_tools.h include/massspring/export.h share/doc/massspring/LICENSE share/doc/massspring/CHANGELOG.md; do
     grep -q "^massspring-[^/]*/$file\$" "$work/files"
   done
   mkdir "$work/root"

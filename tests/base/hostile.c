@@ -350,6 +350,11 @@ static void make_floor(arguments *a) {
     memcpy(a->given_bytes, &made, sizeof made);
 }
 
+// Networks of most kinds have no gradient; tests/gradient has those that do.
+static mspring_result no_gradient(mspring_result result) {
+    return result == MSPRING_ERROR_ARGUMENT ? MSPRING_OK : MSPRING_ERROR_ARGUMENT;
+}
+
 static mspring_result begin_job(arguments *a) {
     mspring_job *job = NULL;
     mspring_result result = mspring_job_begin(a->network, (mspring_layout)a->kind, a->out[0] ? &job : NULL);
@@ -705,6 +710,17 @@ static void add_hook(arguments *a) {
     X(mspring_job_finish, "N", NOTHING, finish_job(a))                                                             \
     X(mspring_job_error, "", NOTHING, note_text(mspring_job_error(NULL)))                                          \
     X(mspring_job_destroy, "", NOTHING, (mspring_job_destroy(NULL), MSPRING_OK))                                   \
+    X(mspring_gradient_create, "", NOTHING, no_gradient(mspring_gradient_create(NULL, 1, NULL, 0, NULL)))          \
+    X(mspring_gradient_step, "", NOTHING, no_gradient(mspring_gradient_step(NULL, 1, NULL, NULL)))                 \
+    X(mspring_gradient_add_seeds, "", NOTHING,                                                                     \
+      no_gradient(mspring_gradient_add_seeds(NULL, NULL, 0, 0, NULL, NULL)))                                       \
+    X(mspring_gradient_reverse, "", NOTHING, no_gradient(mspring_gradient_reverse(NULL, 0)))                       \
+    X(mspring_gradient_get, "", NOTHING,                                                                           \
+      no_gradient(mspring_gradient_get(NULL, MSPRING_GRADIENT_X, NULL, 0, 0, NULL, 1)))                            \
+    X(mspring_gradient_get_signals, "", NOTHING, no_gradient(mspring_gradient_get_signals(NULL, 0, NULL)))         \
+    X(mspring_gradient_get_forces, "", NOTHING, no_gradient(mspring_gradient_get_forces(NULL, 0, NULL)))           \
+    X(mspring_gradient_error, "", NOTHING, note_text(mspring_gradient_error(NULL)))                                \
+    X(mspring_gradient_destroy, "", NOTHING, (mspring_gradient_destroy(NULL), MSPRING_OK))                         \
     X(mspring_network_get_plan, "nP", OUT_STRUCT(0, plan), mspring_network_get_plan(a->network, a->out[0]))
 
 #define DEFINE(name, kinds, prepare, call)                                                                         \

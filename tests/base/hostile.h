@@ -7,6 +7,7 @@
 
 #include <massspring/massspring_batch.h>
 #include <massspring/massspring_contact.h>
+#include <massspring/massspring_gradient.h>
 #include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 

@@ -459,7 +459,7 @@ static char *read_headers(void) {
     enum { MOST = 1 << 20 };
     static const char *const paths[] = {HOSTILE_HEADERS "massspring.h", HOSTILE_HEADERS "massspring_batch.h",
                                         HOSTILE_HEADERS "massspring_contact.h", HOSTILE_HEADERS "massspring_laws.h",
-                                        HOSTILE_HEADERS "massspring_tools.h"};
+                                        HOSTILE_HEADERS "massspring_tools.h", HOSTILE_HEADERS "massspring_gradient.h"};
     char *text = test_malloc(MOST);
     size_t size = 0;
     for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {

@@ -12,6 +12,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include <massspring/massspring_gradient.h>
+
 #include "calls.h"
 #include "check.h"
 #include "recipe.h"
@@ -358,8 +360,36 @@ static mspring_result change_layout(mspring_network *network, const call *c) {
     return left > 0 && result == MSPRING_ERROR_BUSY ? MSPRING_OK : result;
 }
 
+// Some steps of a clone and back, if it has a gradient. What was recorded is computed again with the same bits.
+static void go_back(const mspring_network *network) {
+    mspring_network *clone = NULL;
+    mspring_gradient *gradient = NULL;
+    const double seed[2] = {1, -1};
+    double values[2];
+    uint32_t steps = 0;
+    if (mspring_network_clone(network, NULL, &clone) != MSPRING_OK)
+        return;
+    if (mspring_gradient_create(clone, 3, NULL, 0, &gradient) != MSPRING_OK)
+        FUZZ_CHECK(mspring_network_error(clone)[0] != 0);
+    while (gradient && steps < 3 && mspring_gradient_step(gradient, 0.01, NULL, NULL) == MSPRING_OK)
+        steps++;
+    if (gradient) {
+        mspring_result result = mspring_gradient_add_seeds(gradient, NULL, 0, 1, seed, seed);
+        if (result == MSPRING_OK)
+            result = mspring_gradient_reverse(gradient, steps);
+        FUZZ_CHECK(result != MSPRING_ERROR_ARGUMENT || strstr(mspring_gradient_error(gradient), "corner"));
+        FUZZ_CHECK(mspring_gradient_get(gradient, MSPRING_GRADIENT_VY, NULL, 0, 1, values, 1) == MSPRING_OK);
+        FUZZ_CHECK(mspring_gradient_get_signals(gradient, steps, values) == MSPRING_ERROR_ID);
+        FUZZ_CHECK(mspring_gradient_get_forces(gradient, steps, values) == MSPRING_ERROR_ID);
+        (void)mspring_gradient_error(gradient);
+    }
+    mspring_gradient_destroy(gradient);
+    mspring_network_destroy(clone);
+}
+
 static mspring_result settle(mspring_network *network) {
     mspring_settle_def def;
+    go_back(network);
     FUZZ_CHECK(mspring_settle_def_init(&def, sizeof def) == MSPRING_OK);
     def.flags = MSPRING_SETTLE_LEAVE_FLOATING;
     def.max_iterations = 20;

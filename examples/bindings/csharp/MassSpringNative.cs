@@ -17,6 +17,7 @@ namespace MassSpring {
     public enum mspring_reset : int { MSPRING_RESET_START = 0, MSPRING_RESET_MARK = 1 }
     public enum mspring_contact_event_kind : int { MSPRING_CONTACT_BEGAN = 0, MSPRING_CONTACT_ENDED = 1 }
     public enum mspring_collider_kind : int { MSPRING_COLLIDER_CHAIN = 0, MSPRING_COLLIDER_BOX = 1, MSPRING_COLLIDER_CIRCLE = 2 }
+    public enum mspring_gradient_of : int { MSPRING_GRADIENT_STIFFNESS = 0, MSPRING_GRADIENT_DAMPING = 1, MSPRING_GRADIENT_REST_LENGTH = 2, MSPRING_GRADIENT_X = 3, MSPRING_GRADIENT_Y = 4, MSPRING_GRADIENT_VX = 5, MSPRING_GRADIENT_VY = 6 }
     public enum mspring_area_kind : int { MSPRING_AREA_ELASTIC = 0, MSPRING_AREA_GAS = 1 }
     public enum mspring_preset : int { MSPRING_PRESET_STEEL = 0, MSPRING_PRESET_WOOD = 1, MSPRING_PRESET_RUBBER = 2, MSPRING_PRESET_JELLY = 3 }
     public enum mspring_phase : int { MSPRING_PHASE_BEFORE_STEP = 0, MSPRING_PHASE_BEFORE_SUBSTEP = 1, MSPRING_PHASE_AFTER_SUBSTEP = 2 }
@@ -246,6 +247,7 @@ namespace MassSpring {
         public const uint MSPRING_MAX_HEIGHTS = 67108864u;
         public const uint MSPRING_MAX_COLLIDER_POINTS = 65536u;
         public const uint MSPRING_MAX_GRIPS = 16u;
+        public const uint MSPRING_MAX_GRADIENT_STEPS = 16777216u;
         public const float MSPRING_HARDENING_DEFAULT = 0.1f;
         public const float MSPRING_PLASTIC_LIMIT_DEFAULT = 0.5f;
         public const uint MSPRING_MAX_AREA_PARTICLES = 4096u;
@@ -442,6 +444,15 @@ namespace MassSpring {
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_move_grip(IntPtr network, uint grip, double x, double y);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_get_grip(IntPtr network, uint grip, mspring_grip_def* def);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_get_grip_impulse(IntPtr network, uint grip, double* x, double* y);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_gradient_create(IntPtr network, uint step_count, uint* forced, uint forced_count, IntPtr* gradient);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern void mspring_gradient_destroy(IntPtr gradient);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern byte* mspring_gradient_error(IntPtr gradient);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_gradient_step(IntPtr gradient, double dt, float* signals, float* forces);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_gradient_add_seeds(IntPtr gradient, uint* ids, uint first, uint count, double* positions, double* velocities);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_gradient_reverse(IntPtr gradient, uint step_count);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_gradient_get(IntPtr gradient, mspring_gradient_of of, uint* ids, uint first, uint count, double* values, uint stride);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_gradient_get_signals(IntPtr gradient, uint step, double* values);
+        [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_gradient_get_forces(IntPtr gradient, uint step, double* values);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_network_get_plasticity(IntPtr network, mspring_plasticity* report);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_builder_add_strain_limits(IntPtr builder, uint first, uint count, float strain, float stiffening, uint* first_limit);
         [DllImport(LIBRARY, CallingConvention = CallingConvention.Cdecl)] public static extern mspring_result mspring_area_def_init(mspring_area_def* def, UIntPtr size);

@@ -496,6 +496,25 @@ mspring_result mspring_network_get_grip(
 const mspring_network *network, mspring_id grip, mspring_grip_def *def);
 mspring_result mspring_network_get_grip_impulse(
 const mspring_network *network, mspring_id grip, double *x, double *y);
+typedef struct mspring_gradient mspring_gradient;
+typedef enum mspring_gradient_of { MSPRING_GRADIENT_STIFFNESS = 0, MSPRING_GRADIENT_DAMPING = 1, MSPRING_GRADIENT_REST_LENGTH = 2, MSPRING_GRADIENT_X = 3, MSPRING_GRADIENT_Y = 4, MSPRING_GRADIENT_VX = 5, MSPRING_GRADIENT_VY = 6, MSPRING_GRADIENT_OF_INT = -2147483648
+} mspring_gradient_of;
+mspring_result mspring_gradient_create(mspring_network *network,
+uint32_t step_count, const mspring_id *forced, uint32_t forced_count, mspring_gradient **gradient);
+void mspring_gradient_destroy(mspring_gradient *gradient);
+const char *mspring_gradient_error(const mspring_gradient *gradient);
+mspring_result mspring_gradient_step(
+mspring_gradient *gradient, double dt, const float *signals, const float *forces);
+mspring_result mspring_gradient_add_seeds(mspring_gradient *gradient,
+const mspring_id *ids, mspring_id first, uint32_t count, const double *positions, const double *velocities);
+mspring_result mspring_gradient_reverse(
+mspring_gradient *gradient, uint32_t step_count);
+mspring_result mspring_gradient_get(const mspring_gradient *gradient,
+mspring_gradient_of of, const mspring_id *ids, mspring_id first, uint32_t count, double *values, uint32_t stride);
+mspring_result mspring_gradient_get_signals(
+const mspring_gradient *gradient, uint32_t step, double *values);
+mspring_result mspring_gradient_get_forces(
+const mspring_gradient *gradient, uint32_t step, double *values);
 enum { MSPRING_SPRING_PULL_ONLY = 1u << 2, MSPRING_SPRING_PUSH_ONLY = 1u << 3
 };
 typedef struct mspring_plasticity {
@@ -919,6 +938,7 @@ return {
   MAX_HEIGHTS = 67108864,
   MAX_COLLIDER_POINTS = 65536,
   MAX_GRIPS = 16,
+  MAX_GRADIENT_STEPS = 16777216,
   HARDENING_DEFAULT = 0.1,
   PLASTIC_LIMIT_DEFAULT = 0.5,
   MAX_AREA_PARTICLES = 4096,

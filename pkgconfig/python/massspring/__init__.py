@@ -22,6 +22,7 @@ from ._state import StateView
 from ._types import ClosedError, Error, Record, StaleViewError
 from .batch import Batch
 from .builder import Builder, material
+from .gradient import Gradient, Gradients
 from .network import Network
 from .sweeps import SweepResult, sweep
 from .tuning import TuneTable

@@ -5,20 +5,21 @@ SPDX-License-Identifier: MIT
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Dict, List, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, Tuple, Union
 
 import numpy as np
 
 from . import _header
 from ._bodies import BodyCalls
 from ._calls import count_of
-from ._core import (as_number, bad_argument, changed, empty, enum_value, fail, ffi, filled, lib, pointer, text_of,
+from ._core import (as_number, bad_argument, changed, empty, enum_value, fail, ffi, filled, id_array, lib, pointer, text_of,
                     with_keywords)
 from ._edits import EditCalls
 from ._laws import LawCalls
 from ._measure import MeasureCalls
 from ._state import StateCalls
 from .builder import Builder
+from .gradient import Gradients, gradient_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -108,6 +109,29 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
         info = self.step_info
         is_its = info.result == result
         fail(result, message, info.particle if is_its else None, info.spring if is_its else None)
+
+    def set_actuators(self, springs: Any, changes: int = 1) -> None:
+        """Make springs actuators, whose rest lengths follow the signals of gradient(). Their lengths of now are signal 1.
+
+        springs  ids; these replace the actuators that there are
+        changes  in how many even parts a step takes a length to its signal, 1 to 256
+        """
+        ids = id_array("springs", springs)
+        self._change(lib.mspring_network_set_actuators, pointer("mspring_id", ids), len(ids),
+                     count_of("changes", changes))
+
+    def gradient(self, loss: Callable[..., Any], steps: int, *, dt: float, signals: Any = None, forces: Any = None,
+                 forced: Any = ()) -> Gradients:
+        """Step as often as steps says by dt, s, and return a loss with its derivatives.
+
+        loss     called with the final positions and velocities, returns (value, its derivatives by positions, and by
+                 velocities if they count); each (particles, 2)
+        signals  (steps, actuators) or None
+        forces   (steps, forced, 2) on the particles forced, N, or None
+
+        The network is then at the end. Gradient goes step by step, for a loss with terms of earlier states.
+        """
+        return gradient_of(self, loss, count_of("steps", steps), dt, signals, forces, forced)
 
     @property
     def step_info(self) -> StepInfo:

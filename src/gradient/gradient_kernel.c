@@ -1,0 +1,210 @@
+/// Particles and springs, a substep back: the loops in which a reverse spends its time.
+///
+/// Springs are taken some octets at a time: first their lengths, in one loop over all lanes, then the law, an octet
+/// at once. Nothing is summed across lanes, so bits are the same with all instructions.
+#include "base/cpu.h"
+#include "gradient/gradient.h"
+
+/// Squared length that is added to all, m^2: springs of no length have a finite inverse, lanes without a spring,
+/// too. No other is changed by it.
+#define MSPRINGI_GRADIENT_NO_LENGTH 1e-37
+
+/// Octets at a time.
+#define MSPRINGI_OCTET_BATCH 16u
+
+/// Numbers that are computed at once: an octet, if the compiler has such a type, as it leaves short loops as they
+/// are.
+#if defined(__GNUC__)
+typedef double octet_lanes __attribute__((vector_size(8 * sizeof(double)), aligned(8)));
+#else
+typedef double octet_lanes;
+#endif
+#define LANES_AT_ONCE (sizeof(octet_lanes) / sizeof(double))
+
+/// The lanes at an address.
+#define AT(address) (*(octet_lanes *)(void *)(address))
+#define READ(address) (*(const octet_lanes *)(const void *)(address))
+
+/// Extents of springs, by lane.
+typedef struct octet_batch {
+    double dx[MSPRINGI_OCTET_BATCH * MSPRINGI_OCTET], dy[MSPRINGI_OCTET_BATCH * MSPRINGI_OCTET]; ///< from a to b, m
+    double inverse[MSPRINGI_OCTET_BATCH * MSPRINGI_OCTET];                                       ///< 1 / L, 1/m
+} octet_batch;
+
+// The inverse of a length is that in single precision, with a step of Newton's method: right to 1e-14, in a third
+// of the time of root and division in double precision.
+MSPRINGI_ALWAYS_INLINE void measure_octets(octet_batch *batch, const mspringi_octets *o, const mspringi_moment *at,
+                                           uint32_t first, uint32_t count) {
+    for (uint32_t octet = 0; octet < count; ++octet)
+        for (uint32_t i = 0; i < MSPRINGI_OCTET; i += LANES_AT_ONCE) {
+            const uint32_t a = o->a[first + octet] + i, b = o->b[first + octet] + i,
+                           lane = octet * MSPRINGI_OCTET + i;
+            AT(batch->dx + lane) = READ(at->x + b) - READ(at->x + a);
+            AT(batch->dy + lane) = READ(at->y + b) - READ(at->y + a);
+        }
+    for (uint32_t i = 0; i < count * MSPRINGI_OCTET; ++i) {
+        const double dx = batch->dx[i], dy = batch->dy[i], square = dx * dx + dy * dy + MSPRINGI_GRADIENT_NO_LENGTH;
+        const double near = (double)(1.0f / sqrtf((float)square));
+        batch->inverse[i] = near * (1.5 - 0.5 * square * (near * near));
+    }
+}
+
+// With d from a to b, q = U(a) - U(b), and f = k (1 - r / L) + c (dv . d) / L^2:
+//     by d    f q + (d . q) ((k r / L^3 - 2 c (dv . d) / L^4) d + c / L^2 dv)
+//     by dv   (d . q) c / L^2 d
+// which act on b, and the opposite on a; and by k, c and r (d . q) (1 - r / L), (d . q) (dv . d) / L^2 and
+// -(d . q) k / L.
+MSPRINGI_ALWAYS_INLINE void reverse_law(const octet_batch *batch, uint32_t lane, const mspringi_octets *o,
+                                        const mspringi_adjoint *to, const mspringi_moment *at, uint32_t octet,
+                                        uint32_t i, bool is_damped) {
+    const uint32_t a = o->a[octet] + i, b = o->b[octet] + i;
+    const size_t spring = (size_t)octet * MSPRINGI_OCTET + i;
+    const octet_lanes dx = READ(batch->dx + lane), dy = READ(batch->dy + lane),
+                      inverse = READ(batch->inverse + lane);
+    const octet_lanes k = READ(o->stiffness + spring), r = READ(o->length + spring);
+    const octet_lanes qx = READ(to->force.x + a) - READ(to->force.x + b);
+    const octet_lanes qy = READ(to->force.y + a) - READ(to->force.y + b);
+    const octet_lanes along = dx * qx + dy * qy, square = inverse * inverse;
+    const octet_lanes strain = 1.0 - r * inverse, pull = along * (k * inverse);
+    octet_lanes force = k * strain, turn = pull * r * square;
+    AT(o->by_stiffness + spring) += along * strain;
+    AT(o->by_length + spring) -= pull;
+    if (is_damped) {
+        const octet_lanes c = READ(o->damping + spring);
+        const octet_lanes dvx = READ(at->vx + b) - READ(at->vx + a), dvy = READ(at->vy + b) - READ(at->vy + a);
+        const octet_lanes rate = (dvx * dx + dvy * dy) * square, drag = along * (c * square);
+        const octet_lanes vx = drag * dx, vy = drag * dy;
+        force += c * rate;
+        turn -= 2.0 * (drag * rate);
+        const octet_lanes x = force * qx + turn * dx + drag * dvx, y = force * qy + turn * dy + drag * dvy;
+        AT(o->by_damping + spring) += along * rate;
+        AT(to->by_velocity[0].x + a) -= vx;
+        AT(to->by_velocity[0].y + a) -= vy;
+        AT(to->by_velocity[1].x + b) += vx;
+        AT(to->by_velocity[1].y + b) += vy;
+        AT(to->by_position[0].x + a) -= x;
+        AT(to->by_position[0].y + a) -= y;
+        AT(to->by_position[1].x + b) += x;
+        AT(to->by_position[1].y + b) += y;
+    } else {
+        const octet_lanes x = force * qx + turn * dx, y = force * qy + turn * dy;
+        AT(to->by_position[0].x + a) -= x;
+        AT(to->by_position[0].y + a) -= y;
+        AT(to->by_position[1].x + b) += x;
+        AT(to->by_position[1].y + b) += y;
+    }
+}
+
+MSPRINGI_ALWAYS_INLINE void law(const octet_batch *batch, uint32_t lane, const mspringi_octets *o,
+                                const mspringi_doubles *to, const mspringi_moment *at, uint32_t octet, uint32_t i,
+                                bool is_damped) {
+    const uint32_t a = o->a[octet] + i, b = o->b[octet] + i;
+    const size_t spring = (size_t)octet * MSPRINGI_OCTET + i;
+    const octet_lanes dx = READ(batch->dx + lane), dy = READ(batch->dy + lane),
+                      inverse = READ(batch->inverse + lane);
+    octet_lanes force = READ(o->stiffness + spring) * (1.0 - READ(o->length + spring) * inverse);
+    if (is_damped) {
+        const octet_lanes dvx = READ(at->vx + b) - READ(at->vx + a), dvy = READ(at->vy + b) - READ(at->vy + a);
+        force += READ(o->damping + spring) * (dvx * dx + dvy * dy) * (inverse * inverse);
+    }
+    AT(to[0].x + a) += force * dx;
+    AT(to[0].y + a) += force * dy;
+    AT(to[1].x + b) -= force * dx;
+    AT(to[1].y + b) -= force * dy;
+}
+
+MSPRINGI_ALWAYS_INLINE void visit_springs(const mspring_gradient *g, const mspringi_moment *at, bool is_damped,
+                                          bool goes_back) {
+    const mspringi_octets octets = g->octets, *o = &octets; // copies: no store can change their pointers
+    const mspringi_adjoint adjoint = g->adjoint;
+    const mspringi_moment moment = *at;
+    const mspringi_doubles forces[2] = {g->spring_force[0], g->spring_force[1]};
+    octet_batch batch;
+    for (uint32_t first = 0; first < o->count; first += MSPRINGI_OCTET_BATCH) {
+        const uint32_t count = o->count - first < MSPRINGI_OCTET_BATCH ? o->count - first : MSPRINGI_OCTET_BATCH;
+        measure_octets(&batch, o, &moment, first, count);
+        for (uint32_t octet = 0; octet < count; ++octet)
+            for (uint32_t i = 0; i < MSPRINGI_OCTET; i += LANES_AT_ONCE) {
+                if (goes_back)
+                    reverse_law(&batch, octet * MSPRINGI_OCTET + i, o, &adjoint, &moment, first + octet, i,
+                                is_damped);
+                else
+                    law(&batch, octet * MSPRINGI_OCTET + i, o, forces, &moment, first + octet, i, is_damped);
+            }
+    }
+}
+
+// W and U of derivatives by the state after a substep, and those before it, as far as springs do not act. Slots
+// without a particle have none, and pins keep their velocity.
+MSPRINGI_ALWAYS_INLINE void push_back(const mspring_gradient *g, const mspringi_times *t) {
+    const mspringi_adjoint *a = &g->adjoint;
+    for (uint32_t i = 0; i < g->lanes; i += LANES_AT_ONCE) {
+        const octet_lanes wx = READ(a->velocity.x + i) + t->h * READ(a->position.x + i);
+        const octet_lanes wy = READ(a->velocity.y + i) + t->h * READ(a->position.y + i);
+        const octet_lanes kick = t->kick * READ(a->inverse_mass + i), keep = 1.0 - t->loss * READ(a->is_free + i);
+        AT(a->force.x + i) = kick * wx;
+        AT(a->force.y + i) = kick * wy;
+        AT(a->velocity.x + i) = keep * wx;
+        AT(a->velocity.y + i) = keep * wy;
+    }
+}
+
+MSPRINGI_ALWAYS_INLINE void gather_ends(double *sum, double *first, double *second, uint32_t count) {
+    const octet_lanes zero = {0.0};
+    for (uint32_t i = 0; i < count; i += LANES_AT_ONCE) {
+        AT(sum + i) += READ(first + i) + READ(second + i);
+        AT(first + i) = zero;
+        AT(second + i) = zero;
+    }
+}
+
+MSPRINGI_ALWAYS_INLINE void undo_substep(const mspring_gradient *g, const mspringi_moment *at,
+                                         const mspringi_times *t) {
+    const mspringi_adjoint *a = &g->adjoint;
+    push_back(g, t);
+    if (g->octets.damping)
+        visit_springs(g, at, true, true);
+    else
+        visit_springs(g, at, false, true);
+    gather_ends(a->position.x, a->by_position[0].x, a->by_position[1].x, g->lanes);
+    gather_ends(a->position.y, a->by_position[0].y, a->by_position[1].y, g->lanes);
+    if (g->octets.damping) {
+        gather_ends(a->velocity.x, a->by_velocity[0].x, a->by_velocity[1].x, g->lanes);
+        gather_ends(a->velocity.y, a->by_velocity[0].y, a->by_velocity[1].y, g->lanes);
+    }
+}
+
+#define KERNEL(level, target)                                                                                      \
+    target static void undo_substep_##level(const mspring_gradient *g, const mspringi_moment *at,                  \
+                                            const mspringi_times *t) {                                             \
+        undo_substep(g, at, t);                                                                                    \
+    }                                                                                                              \
+    target static void pull_##level(const mspring_gradient *g, const mspringi_moment *at) {                        \
+        if (g->octets.damping)                                                                                     \
+            visit_springs(g, at, true, false);                                                                     \
+        else                                                                                                       \
+            visit_springs(g, at, false, false);                                                                    \
+    }
+
+KERNEL(plain, )
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
+KERNEL(avx2, __attribute__((target("avx2"))))
+KERNEL(avx512, __attribute__((target("avx512f"))))
+#define CALL(name, ...)                                                                                            \
+    if (g->level == MSPRING_SIMD_AVX512)                                                                           \
+        name##_avx512(__VA_ARGS__);                                                                                \
+    else if (g->level == MSPRING_SIMD_AVX2)                                                                        \
+        name##_avx2(__VA_ARGS__);                                                                                  \
+    else                                                                                                           \
+        name##_plain(__VA_ARGS__);
+#else
+#define CALL(name, ...) name##_plain(__VA_ARGS__);
+#endif
+
+void mspringi_gradient_go_back(mspring_gradient *g, const mspringi_moment *at, const mspringi_times *t) {
+    CALL(undo_substep, g, at, t)
+}
+
+void mspringi_octets_forces(mspring_gradient *g, const mspringi_moment *at) {
+    CALL(pull, g, at)
+}
