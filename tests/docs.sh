@@ -27,14 +27,15 @@ while read -r page; do
   for block in "$scratch"/block_*.c; do
     [ -e "$block" ] || continue
     blocks=$((blocks + 1))
-    "$compiler" -std=c99 -Wall -Wextra -pedantic -Werror -fsyntax-only -Iinclude "$block" ||
+    "$compiler" -std=c99 -Wall -Wextra -pedantic -Werror -fsyntax-only -Iinclude -Isrc/gpu/include "$block" ||
       complain "$page: a block of C does not compile"
   done
 
   grep -oE '\b(mspring|MSPRING)_[A-Za-z0-9_]*[A-Za-z0-9]' "$page" | sort -u >"$scratch/names" || true
   while read -r name; do
     names=$((names + 1))
-    grep -qw "$name" src/CMakeLists.txt include/*.h include/massspring/*.h || complain "$page: no header has $name"
+    grep -qw "$name" CMakeLists.txt src/CMakeLists.txt include/*.h include/massspring/*.h src/gpu/include/massspring/*.h ||
+      complain "$page: no header has $name"
   done <"$scratch/names"
 
   sed -E 's/\]\(/\n](/g' "$page" | sed -nE 's/^\]\(([^)#]+)(#[^)]*)?\).*/\1/p' | grep -v '://' >"$scratch/links" || true

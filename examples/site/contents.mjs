@@ -22,6 +22,8 @@ export const CONTENTS = [
     ['Archives', 'examples/guides/archives.html'],
     ['Sleep', 'examples/guides/sleep.html'],
     ['Batches', 'examples/guides/batches.html'],
+    ['Graphics cards', 'examples/guides/gpu.html'],
+    ['Gradients', 'examples/guides/gradients.html'],
     ['Determinism', 'examples/guides/determinism.html'],
     ['Limits', 'examples/guides/limits.html'],
     ['Build', 'examples/guides/building.html'],
