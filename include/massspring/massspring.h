@@ -376,7 +376,8 @@ typedef enum mspring_integrator {
 ///    the iterations, and impacts some intervals, halves and passes. A calm one has 8 iterations, or a quarter of the most
 ///    if that is more; with residual 0 all. Where that ends, the rest is done once, by implicit Euler: the energy budget
 ///    holds, and bodies near each other move on as rigid ones, with friction but no bounce. The step has
-///    MSPRING_STEP_FEWER. The solution that comes to the end may be one of two on top.
+///    MSPRING_STEP_FEWER; MSPRING_GUARD_GROWTH and _RETRY reject it. The solution that comes to the end may be one of
+///    two on top.
 typedef struct mspring_solver_def {
     uint32_t struct_size;
     mspring_solver solver; ///< default MSPRING_SOLVER_EXPLICIT
@@ -441,11 +442,12 @@ enum {
 typedef enum mspring_guard {
     /// Reject a step whose substeps exceed the stability limit (mspring_network_stable_dt()), or make motion grow.
     /// Steps within the limit are never rejected, not even where uneven dt or violent motion adds energy step by step.
+    /// With the implicit and the direct solver, reject a step that spends its most_work, as heaps and tangles may.
     MSPRING_GUARD_GROWTH = 0,
     /// Repeat a step that would be rejected, with twice as many substeps, up to max_substeps and as long as
     /// mspring_solver_def.most_work lasts: where that ends it, the step fails, and the next one begins with the number
     /// that would have followed. Later steps keep the number until mspring_network_set_solver(). Hooks are called again.
-    /// Relative springs gain nothing by it.
+    /// Relative springs gain nothing by it. An implicit or direct step that spends its most_work fails, too.
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2, ///< check the bounds only
     /// Repeat a step that would be rejected, by one substep of implicit Euler. The 15 steps after it use that, too. It
