@@ -245,17 +245,16 @@ static mspring_result choose_tiles(making *m) {
     return MSPRING_OK;
 }
 
-// Products that a substep takes with these tiles, less a constant. Factoring the coarse matrix costs as much as
-// some. Twice as large tiles have a smaller matrix, but take more iterations: one more for each 8 rows on lattices,
-// 0.01 of the residual being asked for. (Where ropes hang on thin structures larger tiles do not make the matrix
-// smaller, and each doubling doubles the iterations.)
+// Products that a substep takes with these tiles, less a constant. Factoring costs as much as some. Larger tiles
+// have a smaller matrix, but take more iterations: one more for each 8 rows on lattices. (Where ropes hang on thin
+// structures they do not make it smaller, and each doubling doubles the iterations.)
 static double score_of(const making *m) {
     const mspringi_topology *t = &m->network->topology;
     const double slots = MSPRINGI_WIDTH * (double)(t->block_count - t->spare_blocks);
     const double cost = mspringi_coarse_cost(&m->made->tiles);
-    return cost > MOST_COARSE_COST ? INFINITY
-                                   : cost / (PRODUCT_COST_PER_SLOT * slots) +
-                                         (double)m->made->tiles.cells.size / MSPRINGI_LEAST_TILE_SIZE;
+    const double score =
+        cost / (PRODUCT_COST_PER_SLOT * slots) + (double)m->made->tiles.cells.size / MSPRINGI_LEAST_TILE_SIZE;
+    return cost > MOST_COARSE_COST ? INFINITY : score;
 }
 
 // Cut into tiles of the size asked for or else of each size, until larger ones cannot be better. Keep the best.
