@@ -44,8 +44,8 @@ MSPRINGI_ALWAYS_INLINE void measure_octets(octet_batch *batch, const mspringi_oc
         }
     for (uint32_t i = 0; i < count * MSPRINGI_OCTET; ++i) {
         const double dx = batch->dx[i], dy = batch->dy[i], square = dx * dx + dy * dy + MSPRINGI_GRADIENT_NO_LENGTH;
-        const double near = (double)(1.0f / sqrtf((float)square));
-        batch->inverse[i] = near * (1.5 - 0.5 * square * (near * near));
+        const double guess = (double)(1.0f / sqrtf((float)square));
+        batch->inverse[i] = guess * (1.5 - 0.5 * square * (guess * guess));
     }
 }
 
@@ -187,19 +187,25 @@ MSPRINGI_ALWAYS_INLINE void undo_substep(const mspring_gradient *g, const msprin
     }
 
 KERNEL(plain, )
-#if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__))
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__)) && !defined(MSPRINGI_WITHOUT_AVX2)
 KERNEL(avx2, __attribute__((target("avx2"))))
+#define CALL_AVX2(name, ...)                                                                                       \
+    if (g->level >= MSPRING_SIMD_AVX2)                                                                             \
+        name##_avx2(__VA_ARGS__);                                                                                  \
+    else
+#else
+#define CALL_AVX2(name, ...)
+#endif
+#if defined(__GNUC__) && (defined(__x86_64__) || defined(__i386__)) && !defined(MSPRINGI_WITHOUT_AVX512)
 KERNEL(avx512, __attribute__((target("avx512f"))))
-#define CALL(name, ...)                                                                                            \
+#define CALL_AVX512(name, ...)                                                                                     \
     if (g->level == MSPRING_SIMD_AVX512)                                                                           \
         name##_avx512(__VA_ARGS__);                                                                                \
-    else if (g->level == MSPRING_SIMD_AVX2)                                                                        \
-        name##_avx2(__VA_ARGS__);                                                                                  \
-    else                                                                                                           \
-        name##_plain(__VA_ARGS__);
+    else
 #else
-#define CALL(name, ...) name##_plain(__VA_ARGS__);
+#define CALL_AVX512(name, ...)
 #endif
+#define CALL(name, ...) CALL_AVX512(name, __VA_ARGS__) CALL_AVX2(name, __VA_ARGS__) name##_plain(__VA_ARGS__);
 
 void mspringi_gradient_go_back(mspring_gradient *g, const mspringi_moment *at, const mspringi_times *t) {
     CALL(undo_substep, g, at, t)

@@ -15,7 +15,7 @@ static mspring_result refuse_features(mspring_network *network) {
         const char *name;
         bool (*acts)(const mspring_network *network);
     } features[] = {
-#define ACTS(function) {#function + sizeof "mspringi_" - 1, function},
+#define ACTS(function) {&#function[sizeof "mspringi_" - 1], function},
 #include "store/features.def"
     };
     for (size_t i = 0; i < sizeof features / sizeof features[0]; ++i) {
