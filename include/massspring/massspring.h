@@ -48,7 +48,8 @@
 ///     archives    network_write, builder_read, _get_network_def
 ///
 /// massspring_contact.h: contact, colliders, grips; massspring_laws.h: yielding, areas, angles; massspring_batch.h:
-/// groups; massspring_tools.h: the rest, as ropes, meshes, clones, hooks, queries, stability, equilibrium, tuning.
+/// groups; massspring_gradient.h: derivatives of runs; massspring_tools.h: the rest, as ropes, meshes, clones, hooks,
+/// queries, stability, equilibrium, tuning.
 ///
 /// **Words.** A slot is an index into the arrays of a view; an id is another number. A hook is a function of yours that
 /// steps call. A component is all particles that unbroken springs connect, or a lone one. The plan is how a network
