@@ -6,32 +6,35 @@
 ///     actuators   gpu_set_signals
 ///     state       gpu_get_flags, gpu_observe, gpu_get_positions, gpu_get_velocities, gpu_get_state_hash
 ///
-/// A library of its own, massspring_gpu: build with -DMASSSPRING_GPU=ON. It uses public calls of massspring alone. These
-/// calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
+/// These calls are a separate library, massspring_gpu: build with -DMASSSPRING_GPU=ON. It uses only public calls of
+/// massspring. The calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
 ///
-/// **What it takes.** You make a network of one body or several on the processor, divide it into groups
-/// (massspring_batch.h) and set floor and settings. mspring_gpu_create() reads it, repeats it as often as you ask, and
-/// puts it on a device. The network is needed no more. Each step then gives the bits that a network with as many groups
-/// gives: mspring_gpu_get_state_hash() is mspring_network_state_hash() of that network. Before it returns,
-/// mspring_gpu_create() steps a clone of the network with random velocities, and the batch likewise, and compares them.
+/// **How it works.** You make a network of one body or several on the processor, divide it into groups
+/// (massspring_batch.h), and set floor and settings. mspring_gpu_create() reads it, repeats its bodies as often as you
+/// ask, and copies them to a device. After that the network is no longer needed. Each step gives the bits of a network
+/// with that many groups: mspring_gpu_get_state_hash() equals its mspring_network_state_hash(). Before it returns,
+/// mspring_gpu_create() checks this: it steps a clone of the network and the batch from the same random velocities, and
+/// compares them.
 ///
-/// **What bodies may have.** Up to MSPRING_GPU_MAX_PARTICLES particles, pinned or not, each with a spring; springs
-/// with stiffness, damping and rest length, relative ones, welds; actuators; half-planes with friction and
-/// restitution; gravity and global damping. All bodies have the same springs and masses; positions and velocities may
-/// differ. The particles and springs of a body follow each other, as mspring_builder_add_copies() gives them. A body
-/// is a lattice, a chain, neither, or has parts of each. All are laid out alike. Anything else is an error that names
-/// it: MSPRING_NETWORK_PRECISE, broken springs and those that break, yield or act one way, areas, angles, contact,
-/// heights, scales of inverse masses. No call tells of hooks, so the batch goes without them; nor of the shortest rest
-/// length at creation, which bounds how bodies bounce: where there is a floor, give rest lengths to the builder.
+/// **What bodies may have.** Up to MSPRING_GPU_MAX_PARTICLES particles, pinned or not, each with a spring; springs with
+/// stiffness, damping and rest length, relative ones, welds; actuators; half-planes with friction and restitution;
+/// gravity and global damping. All bodies have the same springs and masses; positions and velocities may differ.
+/// Particles and springs of a body have consecutive ids, as mspring_builder_add_copies() gives them. Parts of a body
+/// may be lattices, chains or neither, and all bodies have the same layout.
 ///
-/// **Devices.** OpenCL 1.2 or later with double precision, loaded when the first batch is created. A device whose
-/// division and root are not correctly rounded, or that flushes subnormal numbers, would give other bits: it is an error.
+/// **What is rejected.** Anything else is an error that names it: MSPRING_NETWORK_PRECISE, springs that are broken or
+/// break, yield or act one way, areas, angles, contact, heights, scales of inverse masses. There are two exceptions,
+/// because no call reads them. Hooks are ignored. So is the shortest rest length at creation, which bounds how bodies
+/// bounce: if there is a floor, give the builder the rest lengths, and do not change them later.
 ///
-/// **Failures.** A call that fails leaves the batch in the state of before. Where a device is lost, calls return
-/// MSPRING_ERROR_DEVICE, and so do those that read.
+/// **Devices.** OpenCL 1.2 or later with double precision, loaded when the first batch is created. A device is rejected
+/// if its division and square root are not correctly rounded, or if it flushes subnormal numbers: bits would differ.
+///
+/// **Failures.** A call that fails leaves the batch as it was before. If the device is lost, all calls that need it
+/// return MSPRING_ERROR_DEVICE, also those that read.
 ///
 /// The kernel, src/gpu/batch.cl, is derived from the specification (src/SPECIFICATION.md, tests/spec). One difference:
-/// where bodies out of bounds make the processor repeat a step, a device judges each body by itself.
+/// if a body is out of bounds, the processor repeats the step, but a device handles each body separately.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MASSSPRING_MASSSPRING_GPU_H
@@ -43,28 +46,28 @@
 extern "C" {
 #endif
 
-/// Result: there is no OpenCL or no such device, the device does not suit, or a call of it failed.
+/// Result: there is no OpenCL or no such device, the device is unsuitable, or an OpenCL call failed.
 #define MSPRING_ERROR_DEVICE ((mspring_result)-100)
 
-/// Most particles of a body. Its state fits into the local memory of a device.
+/// Largest number of particles in a body. Its state must also fit into the local memory of the device.
 #define MSPRING_GPU_MAX_PARTICLES 1024u
 
-/// The first device that suits, graphics cards first.
+/// Value of mspring_gpu_def.device: the first suitable device, graphics cards first.
 #define MSPRING_GPU_ANY 0xffffffffu
 
 /// A batch on a device.
 typedef struct mspring_gpu mspring_gpu;
 
-/// A batch at the start. Fill with mspring_gpu_def_init() first.
+/// Definition of a batch. Fill with mspring_gpu_def_init() first.
 typedef struct mspring_gpu_def {
     uint32_t struct_size;
     uint32_t device;             ///< number of a device (mspring_gpu_describe_devices()); default MSPRING_GPU_ANY
-    uint32_t body_count;         ///< default 0: as many as the network has groups. Body i begins as group i modulo their
-                                 ///< number, in the same place
-    uint32_t changes;            ///< as of mspring_network_set_actuators(), 1 to 256; default 1
+    uint32_t body_count;         ///< at least the number of groups, default 0: that number. Body i begins as group
+                                 ///< i % groups, in the same place
+    uint32_t changes;            ///< as for mspring_network_set_actuators(), 1 to 256; default 1
     const mspring_id *actuators; ///< [actuator_count] springs of the first body, each once, no welds; default NULL
     uint32_t actuator_count;     ///< default 0
-    uint32_t message_size;       ///< bytes of message; default 0
+    uint32_t message_size;       ///< bytes of message, its final 0 included; default 0
     char *message;               ///< receives why mspring_gpu_create() failed; default NULL
     const char *library;         ///< path of the OpenCL library; default NULL: the system's
 } mspring_gpu_def;
@@ -73,30 +76,31 @@ typedef struct mspring_gpu_def {
 /// @threads any   @allocates never   @errors ARGUMENT, STRUCT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_def_init(mspring_gpu_def *def, size_t size);
 
-/// Describe the devices, a line for each: number, name, and why it does not suit, if so.
+/// Describe the devices, one line each: number, name and, if it is unsuitable, the reason.
 /// @param library  path of the OpenCL library, or NULL: the system's
-/// @param text     [size] receives the lines, as many as fit, or what is wrong
-/// @threads any   @allocates yes, and frees it; the OpenCL library stays loaded   @errors ARGUMENT; DEVICE if there is
-///          no OpenCL
+/// @param text     [size] receives as much of the lines as fits, or the error message
+/// @threads any   @allocates yes, and frees it; the OpenCL library stays loaded
+/// @errors ARGUMENT; MEMORY; DEVICE if there is no OpenCL
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_describe_devices(
     const char *library, char *text, size_t size);
 
-/// Create a batch of the bodies of a network that has groups and has not taken a step yet.
-/// The state of now is the start to which mspring_gpu_reset() goes back. The network's own actuators and signals are not
-/// read: def has those of the batch.
-/// @param batch  receives the batch; free it by mspring_gpu_destroy()
-/// @threads shared for the network, but that it must not step   @allocates yes; on the device three times 24 bytes for a
-///          particle
-/// @errors ARGUMENT also for a network that has what the batch can't (the message names it); STRUCT; LIMIT for more than
-///         MSPRING_GPU_MAX_PARTICLES or the local memory of the device; ID or DUPLICATE for an actuator; MEMORY; DEVICE
+/// Create a batch from a network that has groups and has not taken a step yet.
+/// The present state is the start, to which mspring_gpu_reset() goes back. The network's own actuators and signals are
+/// not read: def has those of the batch.
+/// @param batch  receives the batch; free it with mspring_gpu_destroy()
+/// @threads shared for the network, which must not step meanwhile
+/// @allocates yes; on the device 48 bytes for each particle of the batch, and 24 for each of the network
+/// @errors ARGUMENT also for a network with something that a batch cannot have (the message names it); STRUCT; LIMIT
+///         for more than MSPRING_GPU_MAX_PARTICLES, 65534 springs in a body, 2^32 - 1 particles or actuators, or the
+///         local memory of the device; ID or DUPLICATE for an actuator; MEMORY; DEVICE
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_create(
     const mspring_network *network, const mspring_gpu_def *def, mspring_gpu **batch);
 
-/// Destroy a batch. NULL does nothing.
-/// @threads exclusive   @allocates frees
+/// Destroy a batch. NULL is allowed.
+/// @threads exclusive   @allocates never
 MSPRING_API void MSPRING_CALL mspring_gpu_destroy(mspring_gpu *batch);
 
-/// Return the message of the last call that failed, or "". It is valid until the next call on the batch.
+/// Return the message of the last call that failed, or "". It is valid until the next call on the batch. NULL gives "".
 /// @threads exclusive   @allocates never
 MSPRING_API const char *MSPRING_CALL mspring_gpu_error(const mspring_gpu *batch);
 
@@ -104,55 +108,56 @@ MSPRING_API const char *MSPRING_CALL mspring_gpu_error(const mspring_gpu *batch)
 /// @threads shared   @allocates never
 MSPRING_API uint32_t MSPRING_CALL mspring_gpu_body_count(const mspring_gpu *batch);
 
-/// Step all bodies that are not held by dt, with the substeps of the network, and wait for the device.
-/// A body out of bounds (max_speed, MSPRING_MAX_COORDINATE, NaN) is held as a group is: it stays where it was before the
-/// step, at rest, until mspring_gpu_reset().
+/// Step all bodies that are not held, with the network's number of substeps. Waits for the device.
+/// If a step takes a body out of bounds (max_speed, MSPRING_MAX_COORDINATE, NaN), the body is held, as a group is. It
+/// stays where it was before the step, at rest, until mspring_gpu_reset().
 /// @param dt  s, finite, > 0
 /// @threads exclusive   @allocates never   @errors ARGUMENT, DEVICE, MEMORY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_step(mspring_gpu *batch, double dt);
 
-/// Put bodies back to their start, and hold them no more. Signals that no step has used yet are dropped.
-/// @param mask  [bodies] those with a mask other than 0; NULL: all
+/// Put bodies back to their start, and release those that are held. Their signals that no step has used are dropped.
+/// @param mask  [mspring_gpu_body_count()] resets bodies whose mask is not 0; NULL: all
 /// @threads exclusive   @allocates never   @errors ARGUMENT, DEVICE, MEMORY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_reset(mspring_gpu *batch, const uint8_t *mask);
 
-/// Set signals, as mspring_network_set_signals(). Actuator a of body b has number b * actuator_count + a.
+/// Set signals for the next step, as mspring_network_set_signals(). Actuator a of body b has number
+/// b * actuator_count + a.
 /// @param signals  that of actuator first + i in signals[i * stride], 0.01 to 100
-/// @param stride   elements from one to the next; 0: all have signals[0]
+/// @param stride   elements from one signal to the next; 0: all have signals[0]
 /// @threads exclusive   @allocates never   @errors ID, ARGUMENT (the message names the actuator)
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_set_signals(
     mspring_gpu *batch, uint32_t first, uint32_t count, const float *signals, uint32_t stride);
 
 /// Read the flags of the bodies first ... first + count - 1: MSPRING_GROUP_HELD.
 /// @param flags   receives those of body first + i in flags[i * stride]
-/// @param stride  elements from one to the next, at least 1
+/// @param stride  elements from one body to the next, at least 1
 /// @threads exclusive   @allocates yes, and frees it   @errors ID, ARGUMENT, MEMORY, DEVICE
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_get_flags(
     mspring_gpu *batch, uint32_t first, uint32_t count, uint32_t *flags, uint32_t stride);
 
-/// Observe the bodies first ... first + count - 1 on the device, as mspring_network_observe_groups(), with its bits.
+/// Observe the bodies first ... first + count - 1 on the device, bit for bit as mspring_network_observe_groups().
 /// @param particles       [particle_count] chosen particles, counted from the first of each body; may be NULL if
 ///                        particle_count is 0
 /// @param rows            receives column c of body first + i in rows[i * stride + c]
 /// @param stride          elements from one row to the next, at least MSPRING_OBSERVE_PARTICLES + 4 * particle_count
-/// @threads exclusive   @allocates the first time for so many numbers   @errors ID, ARGUMENT, MEMORY, DEVICE
+/// @threads exclusive   @allocates yes, and keeps a buffer on the device   @errors ID, ARGUMENT, MEMORY, DEVICE
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_observe(mspring_gpu *batch, uint32_t first,
     uint32_t count, const uint32_t *particles, uint32_t particle_count, double *rows, uint32_t stride);
 
 /// Read world positions (m) of the particles first ... first + count - 1. Particle p of body b has the id
 /// b * particles + p, as in a network with as many bodies.
 /// @param x, y    receive those of particle first + i in x[i * stride] and y[i * stride]
-/// @param stride  elements from one to the next, at least 1
+/// @param stride  elements from one particle to the next, at least 1
 /// @threads exclusive   @allocates yes, and frees it   @errors ID, ARGUMENT, MEMORY, DEVICE
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_get_positions(
     mspring_gpu *batch, mspring_id first, uint32_t count, double *x, double *y, uint32_t stride);
 
-/// Read velocities (m/s) of half a substep ago, as mspring_gpu_get_positions().
+/// Read velocities (m/s), half a substep old, as mspring_gpu_get_positions().
 /// @threads exclusive   @allocates yes, and frees it   @errors ID, ARGUMENT, MEMORY, DEVICE
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_get_velocities(
     mspring_gpu *batch, mspring_id first, uint32_t count, float *vx, float *vy, uint32_t stride);
 
-/// Hash the state: that of a network with as many bodies, mspring_network_state_hash(). Reads all of it.
+/// Hash the state. It is the mspring_network_state_hash() of a network with as many bodies. Reads the whole state.
 /// @threads exclusive   @allocates yes, and frees it   @errors ARGUMENT, MEMORY, DEVICE
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_get_state_hash(mspring_gpu *batch, uint64_t *hash);
 
