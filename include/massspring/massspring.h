@@ -400,12 +400,13 @@ typedef struct mspring_solver_def {
                     ///< out of balance, has fallen to this share of its value after the first iteration. 0: exactly
                     ///< `iterations`; 1: springs hardly act. With a floor it is squared, or the iterations double;
                     ///< bodies that touch have a tolerance of their own
-    /// Length of all substeps, s, rounded to a float, instead of `substeps`, which reads back as MSPRING_SUBSTEPS_AUTO;
-    /// 1.2e-38 to 1e30, or 0, the default. A step takes the nearest whole number of them, and the rest of dt is left to
-    /// the next (mspring_step_info.time_left, at most half a substep). So what nothing damps keeps its
-    /// energy, and a fixed tick stays what it is, whatever dt does. A dt that is too short for a substep takes
-    /// none: it only adds to time_left, and is not counted as a step. Forces and signals given for it stay for the next.
-    /// MSPRING_SUBSTEPS_EVEN chooses a length by itself, and changes it where it has to.
+    /// Length of all substeps, s, rounded to a float; 1.2e-38 to 1e30, or 0, the default: not set. It replaces
+    /// `substeps`, which then reads back as MSPRING_SUBSTEPS_AUTO. A step takes the nearest whole number of substeps,
+    /// and leaves the rest of dt to the next: mspring_step_info.time_left, at most half a substep. So motion without
+    /// damping keeps its energy, and the length of a tick stays the same, however dt varies. If dt is too short for a
+    /// substep, the call only adds it to time_left, and does not count as a step; forces and signals wait for the next
+    /// one. If dt needs more than MSPRING_MAX_SUBSTEPS, the step returns MSPRING_ERROR_ARGUMENT. Networks with groups
+    /// reject a length. MSPRING_SUBSTEPS_EVEN chooses a length by itself, and changes it if necessary.
     double substep_length;
 } mspring_solver_def;
 
@@ -432,8 +433,8 @@ enum {
     /// bytes more. In implicit and direct steps second words of positions always count. Strains for breaking and stress
     /// use the first words.
     MSPRING_NETWORK_PRECISE = 1u << 2,
-    /// Places of particles at creation, or when they were added, are kept for the angle of mspring_body. Takes 16 bytes
-    /// a particle, also in whole snapshots and archives.
+    /// Keep the positions of particles at creation, or when they were added, for the angle of mspring_body. Takes 16
+    /// bytes a particle, also in whole snapshots and archives.
     MSPRING_NETWORK_POSES = 1u << 3
 };
 
@@ -443,12 +444,12 @@ enum {
 typedef enum mspring_guard {
     /// Reject a step whose substeps exceed the stability limit (mspring_network_stable_dt()), or make motion grow.
     /// Steps within the limit are never rejected, not even where uneven dt or violent motion adds energy step by step.
-    /// With the implicit and the direct solver, reject a step that spends its most_work, as heaps and tangles may.
+    /// With the implicit and the direct solver, reject a step that runs out of most_work, as heaps and tangles may.
     MSPRING_GUARD_GROWTH = 0,
     /// Repeat a step that would be rejected, with twice as many substeps, up to max_substeps and as long as
     /// mspring_solver_def.most_work lasts: where that ends it, the step fails, and the next one begins with the number
     /// that would have followed. Later steps keep the number until mspring_network_set_solver(). Hooks are called again.
-    /// Relative springs gain nothing by it. An implicit or direct step that spends its most_work fails, too.
+    /// Relative springs gain nothing by it. An implicit or direct step that runs out of most_work fails, too.
     MSPRING_GUARD_RETRY = 1,
     MSPRING_GUARD_BOUNDS = 2, ///< check the bounds only
     /// Repeat a step that would be rejected, by one substep of implicit Euler. The 15 steps after it use that, too. It
@@ -759,8 +760,8 @@ typedef struct mspring_step_info {
     uint64_t fallback_count; ///< of these with MSPRING_STEP_FALLBACK or MSPRING_STEP_CLAMPED
     double time;             ///< simulated time of these, s: that of the state
     double largest_speed;    ///< length of the fastest particle's velocity now, m/s
-    double time_left;        ///< with MSPRING_SUBSTEPS_EVEN or substep_length, dt that steps were given and have not taken yet, s; < 0:
-                             ///< they are ahead
+    double time_left;        ///< with MSPRING_SUBSTEPS_EVEN or substep_length: dt that steps were given and have not
+                             ///< taken yet, s; < 0: they are ahead
     double work;             ///< of the last step, even if it failed, in calm steps (mspring_solver_def.most_work): 1 if
                              ///< nothing was repeated or raised; 0 if nothing was computed
 } mspring_step_info;
@@ -817,15 +818,16 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_impulses_at(mspring_network *network,
     const mspring_id *particles, uint32_t count, const float *x, const float *y, uint32_t stride);
 
-/// Add a torque (N m) to a body during the next step: forces around its centre of mass, whose sum is 0.
-/// The force on a particle is in proportion to its mass and to its distance from the centre. So it turns a rigid body
-/// without bending it. Pinned particles get none, and do not count in the centre. For a motor, give the opposite torque
-/// to another body.
-/// @param ids     [count] the particles; one that repeats counts as often; NULL: first ... first + count - 1
+/// Add a torque (N m) to a body during the next step. It acts as forces around the centre of mass, whose sum is 0.
+/// The force on a particle is proportional to its mass and to its distance from the centre, so it turns a rigid body
+/// without bending it. Pinned particles get no force, and do not count for the centre. For a motor, apply the opposite
+/// torque to another body.
+/// @param ids     [count] the particles; a repeated id counts each time; NULL: first ... first + count - 1, without
+///                removed ones
 /// @param first   not used if ids is given
-/// @param torque  counterclockwise
-/// @threads exclusive   @allocates at the first force given to a network   @since 0.2   @errors ID; ARGUMENT also for
-///          free particles that are all in one place, or if a sum of forces is not finite; MEMORY, BUSY
+/// @param torque  N m, counterclockwise
+/// @threads exclusive   @allocates at the first force given to a network   @since 0.2   @errors ID; ARGUMENT also if
+///          no particle is free or all free ones are in one place, or if a sum of forces is not finite; MEMORY, BUSY
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_apply_torque(
     mspring_network *network, const mspring_id *ids, mspring_id first, uint32_t count, float torque);
 
@@ -1210,29 +1212,30 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_moment
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_bounds(
     const mspring_network *network, double *min_x, double *min_y, double *max_x, double *max_y);
 
-/// Particles as one body, with pinned ones unless it says otherwise. Set struct_size first.
+/// Set of particles as one body. Pinned particles count unless a field says otherwise. Set struct_size first.
 typedef struct mspring_body {
     uint32_t struct_size;
     uint32_t particle_count;
-    mspring_id head;   ///< its lowest particle, or MSPRING_NONE
+    mspring_id head;   ///< lowest id of its particles, or MSPRING_NONE
     uint32_t reserved; ///< 0
     double mass;       ///< kg
     double x, y;       ///< centre of mass, m, world coordinates
     double vx, vy;     ///< its velocity, m/s
     double inertia;    ///< moment of inertia about it, kg m^2
-    double angle;      ///< rad, -pi to pi, counterclockwise: the turn that takes the places at creation nearest to
-                       ///< those of now, by squares of distances times masses; 0 without MSPRING_NETWORK_POSES
-    double spin;       ///< rad/s, counterclockwise: angular momentum about the centre over inertia; 0 if that is 0
+    double angle;      ///< rad, -pi to pi, counterclockwise: rotation since creation that fits best, by least squares
+                       ///< of distances weighted with mass; 0 without MSPRING_NETWORK_POSES
+    double spin;       ///< rad/s, counterclockwise: angular momentum about the centre / inertia; 0 if inertia is 0
     double px, py;     ///< momentum, kg m/s, of particles that are not pinned
     double angular;    ///< angular momentum of these about the world's origin, kg m^2/s
     double min_x, min_y, max_x, max_y; ///< smallest box around the particles, m, world coordinates
 } mspring_body;
 
-/// Measure particles as one body: for a sprite's place and turn, a camera's box, or momentum.
-/// Sums are in double precision about the centre of mass: a body far from the world's origin has the digits of one at
-/// it. Velocities are those that you read: after explicit steps half a substep old. Without particles all is 0, and the
-/// place that of the local origin. The angle is a fit without reflection or scale (Kabsch 1976).
-/// @param ids    [count] the particles; one that repeats counts as often; NULL: first ... first + count - 1, without
+/// Measure particles as one body: position and angle of a sprite, box for a camera, momentum.
+/// Sums are in double precision and relative to the centre of mass, so a body far from the world's origin loses no
+/// digits. Velocities are those that mspring_network_get_velocities() reads: after explicit steps, half a substep old.
+/// Without particles all sums are 0, and the position is that of the local origin. The angle is a fit without
+/// reflection or scale (Kabsch 1976).
+/// @param ids    [count] the particles; a repeated id counts each time; NULL: first ... first + count - 1, without
 ///               removed ones
 /// @param first  not used if ids is given
 /// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT, STRUCT

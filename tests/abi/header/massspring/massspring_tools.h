@@ -298,26 +298,27 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_partic
     const mspring_network *network, double min_x, double min_y, double max_x, double max_y, mspring_id *particles,
     uint32_t capacity, uint32_t *count);
 
-/// Springs to find.
+/// Kinds of springs to find. Removed springs are never found.
 enum {
-    MSPRING_FIND_WHOLE = 1u << 0, ///< those that are not broken
-    MSPRING_FIND_BROKEN = 1u << 1 ///< broken ones, as for repair; removed ones are never found
+    MSPRING_FIND_WHOLE = 1u << 0, ///< springs that are not broken
+    MSPRING_FIND_BROKEN = 1u << 1 ///< broken springs, for example to repair them
 };
 
-/// Find the spring nearest to a point: of all places on springs. Takes a pass over all springs.
+/// Find the spring nearest to a point.
+/// The distance is to the nearest position on a spring, ends included. Takes a pass over all springs.
 /// @param x, y      world position, m, at most MSPRING_MAX_COORDINATE in size
 /// @param within    largest distance, m, >= 0; INFINITY for any
 /// @param flags     bits of MSPRING_FIND_, at least one
-/// @param spring    receives its id, the lowest of several, or MSPRING_NONE
-/// @param fraction  receives where on it the nearest place is, from 0 at end a to 1 at end b; may be NULL
+/// @param spring    receives its id, the lowest of several at one distance, or MSPRING_NONE
+/// @param fraction  receives the nearest position on it, from 0 at end a to 1 at end b; 0 without one; may be NULL
 /// @param distance  receives its distance, m, or INFINITY; may be NULL
 /// @threads shared   @allocates never   @since 0.2   @errors ARGUMENT
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_nearest_spring(const mspring_network *network,
     double x, double y, double within, uint32_t flags, mspring_id *spring, double *fraction, double *distance);
 
-/// Find the springs that come into a circle, its edge included: to burn, cut or repair them.
-/// Takes a pass over all springs.
-/// @param x, y, radius  world position and radius, m; radius >= 0
+/// Find the springs that come within a radius of a point: to burn, cut or repair them.
+/// A spring that the circle only touches counts. Takes a pass over all springs.
+/// @param x, y, radius  world position of the centre and radius, m; radius >= 0
 /// @param flags         bits of MSPRING_FIND_, at least one
 /// @param springs       [capacity] receives as many ids as fit, in order; may be NULL if capacity is 0
 /// @param count         receives how many there are, which may be more than fit
@@ -660,8 +661,9 @@ typedef struct mspring_tune_row {
     double fine_mean[MSPRING_TUNE_QUANTITIES];    ///< the same of the fine runs from the same starts
     double fine_spread[MSPRING_TUNE_QUANTITIES];
     float residual; ///< as in mspring_solver_def
-    /// trajectory_share of a second fine run. Its start differs by a rounding in single precision: each coordinate by
-    /// 2^-24 of the network's size. Differences between rows that are smaller say nothing.
+    /// trajectory_share of a second fine run; 0 also if the budget ended before it. Its start differs by a rounding in
+    /// single precision: each coordinate by 2^-24 times the network's size. Smaller differences between rows mean
+    /// nothing.
     float trajectory_spread;
 } mspring_tune_row;
 
@@ -689,8 +691,8 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_tune_settings(
 /// will simulate: just made and falling, or moving.
 ///
 ///   cost        time of every step with a setting, by the clock, with the network's workers
-///   trajectory  distance from a fine run in double precision (symplectic, of second order); the fine run is made
-///               twice, to tell if the motion itself is chaotic (MSPRING_TUNE_CHAOTIC)
+///   trajectory  distance from a fine run in double precision (symplectic, of second order); a second fine run shows
+///               if the motion itself is chaotic (MSPRING_TUNE_CHAOTIC)
 ///   rest        equilibrium (mspring_network_settle()), and motion from there on; not for networks without one
 ///   scene       comparison with many fine runs, with the floor, breaking and hooks of mspring_tune_def.scene
 ///
