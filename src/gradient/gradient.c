@@ -75,7 +75,7 @@ static void read_actuator_lengths(mspring_gradient *g) {
         g->lengths[i] = mspringi_actuator_length(g->network, i);
 }
 
-// Half-planes, as features/contact/floor.c has them.
+// Read the half-planes as features/contact/floor.c does: unit normal, and its product with a point on the border.
 static void read_planes(mspring_gradient *g) {
     mspring_floor_def floor = {.struct_size = sizeof floor};
     if (mspring_network_get_floor(g->network, &floor) != MSPRING_OK)
@@ -117,7 +117,8 @@ static mspring_result read_forced(mspring_gradient *g, const mspring_view *view,
     return result;
 }
 
-// A particle without springs takes all substeps of a step together, and on the clone one by one: other bits.
+// Reject moving particles without springs. The network takes all their substeps together, the clone with its hook
+// takes them one by one, so the bits differ.
 static mspring_result refuse_loose(const mspring_gradient *g, const mspring_view *view) {
     mspringi_message *message = &g->network->message;
     double *degree = g->adjoint.force.x; // not used yet
@@ -242,7 +243,7 @@ mspring_result mspring_gradient_add_seeds(mspring_gradient *gradient, const mspr
 /* -------------------------------------------------------------------------------------------------------- reading
  */
 
-// Derivative by a value of a spring, wherever it is kept. An actuator's length is that where the reverse stands.
+// Derivative by a parameter of a spring. For an actuator, by its length before the steps reversed so far.
 static double spring_gradient(const mspring_gradient *g, mspring_gradient_of of, uint32_t spring) {
     const uint32_t place = g->octets.place[spring];
     if (of == MSPRING_GRADIENT_REST_LENGTH && g->actuator_count > 0) {

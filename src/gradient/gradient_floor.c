@@ -1,11 +1,11 @@
 /// Half-planes without friction and restitution, a substep back.
 ///
-/// A particle that a substep would take below a plane lands on it: with n the normal and d > 0 its distance before,
-/// n.v' = -d / h, so that n.x' is on the plane. One that is on it or below (d <= 0) is put onto it, and n.v' is at
-/// least 0. What it does along the plane stays (features/contact/floor_bounce.c).
+/// A particle that a substep would take below a plane lands on it. With n the normal and d > 0 its distance before,
+/// n.v' = -d / h, so that x' is on the plane. If it is on the plane or below (d <= 0), it is put onto the plane,
+/// and n.v' is at least 0. Motion along the plane does not change (features/contact/floor_bounce.c).
 #include "gradient/gradient.h"
 
-// Rounding of a position that has lost its low word, m.
+// Rounding error of a position without its low word, m.
 static double floor_slop(double x, double y) {
     return 0x1p-21 * (fabs(x) + fabs(y)) + 1e-12;
 }
@@ -16,7 +16,7 @@ static double floor_distance(const mspring_gradient *g, uint32_t plane, const ms
     return p[0] * (at->origin_x + x) + p[1] * (at->origin_y + y) - p[2];
 }
 
-// Planes that a particle is on after a substep: it may have landed there.
+// Return the set of planes that a particle is on or below after a substep. It may have landed there.
 static uint32_t planes_below(const mspring_gradient *g, const mspringi_moment *after, uint32_t slot) {
     const double x = after->x[slot], y = after->y[slot], slop = floor_slop(x, y);
     uint32_t planes = 0;
@@ -36,13 +36,13 @@ static void free_velocity(const mspring_gradient *g, const mspringi_moment *befo
            t->kick * mass * (g->spring_force[0].y[slot] + g->spring_force[1].y[slot] + host[1]);
 }
 
-// A landing: where it was, and what became of its velocity across the plane.
+// A landing: side of the plane before it, and whether the particle already moved away.
 typedef struct floor_landing {
     uint32_t plane;
     bool was_above, rises;
 } floor_landing;
 
-// Let the planes act on a particle, in their order. Return how many did.
+// Let the planes act on a particle, in their order. Return the number that did.
 static uint32_t land(const mspring_gradient *g, const mspringi_moment *before, double h, uint32_t slot, double v[2],
                      floor_landing *landings) {
     double x = before->x[slot], y = before->y[slot];
@@ -62,8 +62,9 @@ static uint32_t land(const mspring_gradient *g, const mspringi_moment *before, d
     return count;
 }
 
-// Derivatives by position and velocity after a substep, of a particle that landed, become those by its position
-// before the substep, which are kept in `by_position`, and by its velocity before the floor acted, so that h X = 0.
+// Take the derivatives by position and velocity after a landing back to those before it. Those by the position
+// before the substep go to `by_position`, those by the velocity before the floor acted to `velocity`. These include
+// h X, so `position` becomes 0.
 static void land_back(mspring_gradient *g, double h, uint32_t slot, const floor_landing *landings, uint32_t count) {
     mspringi_adjoint *a = &g->adjoint;
     double px = a->position.x[slot], py = a->position.y[slot];
@@ -93,7 +94,7 @@ static void host_force(const mspring_gradient *g, const float *forces, uint32_t 
         }
 }
 
-// True if the velocity is what the network had, but for rounding: of positions, over h, and of velocities.
+// True if the velocity agrees with the network's up to rounding of positions, divided by h, and of velocities.
 static bool is_as_computed(const mspringi_moment *before, const mspringi_moment *after, double h, uint32_t slot,
                            const double v[2], const double before_floor[2]) {
     const double slop = floor_slop(before->x[slot], before->y[slot]);

@@ -1,19 +1,18 @@
 /// Particles and springs, a substep back: the loops in which a reverse spends its time.
 ///
-/// Springs are taken some octets at a time: first their lengths, in one loop over all lanes, then the law, an octet
-/// at once. Nothing is summed across lanes, so bits are the same with all instructions.
+/// Springs are taken in batches of octets: first their lengths, in one loop over all lanes, then the law, octet by
+/// octet. Nothing is summed across lanes, so all instruction sets give the same bits.
 #include "base/cpu.h"
 #include "gradient/gradient.h"
 
-/// Squared length that is added to all, m^2: springs of no length have a finite inverse, lanes without a spring,
-/// too. No other is changed by it.
+/// Added to all squared lengths, m^2, so that springs of length 0 and lanes without a spring have a finite inverse.
+/// It is too small to change other lengths.
 #define MSPRINGI_GRADIENT_NO_LENGTH 1e-37
 
-/// Octets at a time.
+/// Octets of a batch.
 #define MSPRINGI_OCTET_BATCH 16u
 
-/// Numbers that are computed at once: an octet, if the compiler has such a type, as it leaves short loops as they
-/// are.
+/// Doubles computed together: an octet if the compiler has vector types, because it does not vectorise short loops.
 #if defined(__GNUC__)
 typedef double octet_lanes __attribute__((vector_size(8 * sizeof(double)), aligned(8)));
 #else
@@ -31,8 +30,8 @@ typedef struct octet_batch {
     double inverse[MSPRINGI_OCTET_BATCH * MSPRINGI_OCTET];                                       ///< 1 / L, 1/m
 } octet_batch;
 
-// The inverse of a length is that in single precision, with a step of Newton's method: right to 1e-14, in a third
-// of the time of root and division in double precision.
+// Compute extents and inverse lengths. An inverse is computed in single precision and refined by one Newton step.
+// It is right to 1e-14, in a third of the time of square root and division in double precision.
 MSPRINGI_ALWAYS_INLINE void measure_octets(octet_batch *batch, const mspringi_octets *o, const mspringi_moment *at,
                                            uint32_t first, uint32_t count) {
     for (uint32_t octet = 0; octet < count; ++octet)
@@ -49,11 +48,14 @@ MSPRINGI_ALWAYS_INLINE void measure_octets(octet_batch *batch, const mspringi_oc
     }
 }
 
-// With d from a to b, q = U(a) - U(b), and f = k (1 - r / L) + c (dv . d) / L^2:
+// Add the derivatives by the state and the parameters of the springs in some lanes. With d from a to b,
+// q = U(a) - U(b) and f = k (1 - r / L) + c (dv . d) / L^2 they are:
 //     by d    f q + (d . q) ((k r / L^3 - 2 c (dv . d) / L^4) d + c / L^2 dv)
 //     by dv   (d . q) c / L^2 d
-// which act on b, and the opposite on a; and by k, c and r (d . q) (1 - r / L), (d . q) (dv . d) / L^2 and
-// -(d . q) k / L.
+//     by k    (d . q) (1 - r / L)
+//     by c    (d . q) (dv . d) / L^2
+//     by r    -(d . q) k / L
+// Those by d and dv are added at b and subtracted at a.
 MSPRINGI_ALWAYS_INLINE void reverse_law(const octet_batch *batch, uint32_t lane, const mspringi_octets *o,
                                         const mspringi_adjoint *to, const mspringi_moment *at, uint32_t octet,
                                         uint32_t i, bool is_damped) {
@@ -134,8 +136,8 @@ MSPRINGI_ALWAYS_INLINE void visit_springs(const mspring_gradient *g, const mspri
     }
 }
 
-// W and U of derivatives by the state after a substep, and those before it, as far as springs do not act. Slots
-// without a particle have none, and pins keep their velocity.
+// Compute W and U from the derivatives by the state after a substep, and those by the state before it without the
+// part of springs. They are 0 in slots without a particle. Pins keep their velocity.
 MSPRINGI_ALWAYS_INLINE void push_back(const mspring_gradient *g, const mspringi_times *t) {
     const mspringi_adjoint *a = &g->adjoint;
     for (uint32_t i = 0; i < g->lanes; i += LANES_AT_ONCE) {

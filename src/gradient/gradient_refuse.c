@@ -1,15 +1,15 @@
-/// What has no gradient.
+/// Rejection of networks that have no gradient.
 #include <massspring/massspring_contact.h>
 #include <massspring/massspring_laws.h>
 
 #include "gradient/gradient.h"
 #include "store/feature.h"
 
-/// Springs and particles that are looked at together.
+/// Springs that are read together.
 #define MSPRINGI_GRADIENT_CHUNK 256u
 
-// Everything that acts besides springs, gravity and global damping (store/features.def), by the names of rooms in
-// features/, which begin the names of these functions. Contact and floor are looked at by themselves.
+// Reject everything that acts besides springs, gravity and global damping (store/features.def). The message names
+// the folder in features/, which the name of the function begins with. refuse_floor() checks contact and floor.
 static mspring_result refuse_features(mspring_network *network) {
     static const struct {
         const char *name;

@@ -16,8 +16,8 @@ static mspringi_times times_of(const mspring_gradient *g, const mspringi_past *p
 /* ------------------------------------------------------------------------------------------------------- actuators
  */
 
-// Part of the way to their new lengths that actuators have gone in a substep, as features/actuators/actuators.c has
-// it.
+// Part of the change to their new lengths that actuators have made in a substep, as in
+// features/actuators/actuators.c.
 static double actuator_part(const mspring_gradient *g, const mspringi_past *past, uint32_t substep) {
     const uint32_t count = past->substeps, all = g->changes < count ? g->changes : count;
     const uint32_t by = g->changes <= 1       ? 1
@@ -35,7 +35,7 @@ static void set_actuators(mspring_gradient *g, uint32_t step, double part) {
     }
 }
 
-// Divide the derivatives by lengths in a substep between those at the start of the step and at its end.
+// Share the derivatives by the lengths in a substep out to the lengths at the start and at the end of the step.
 static void take_actuators(mspring_gradient *g, uint32_t step, double part) {
     double *by_signals = g->by_signals + (size_t)step * g->actuator_count;
     for (uint32_t i = 0; i < g->actuator_count; ++i) {
@@ -44,12 +44,13 @@ static void take_actuators(mspring_gradient *g, uint32_t step, double part) {
             continue;
         const double by_length = g->octets.by_length[place];
         g->octets.by_length[place] = 0.0;
-        by_signals[i] += part * by_length; // by the length at the end, until the step is through
+        by_signals[i] += part * by_length; // by the length at the end, until end_actuators()
         g->actuator_start[i] += (1.0 - part) * by_length;
     }
 }
 
-// Once a step is through, its end's lengths are those of its signals, or those before it.
+// After a step, pass the derivatives by its final lengths to its signals or, without signals, to the lengths before
+// it.
 static void end_actuators(mspring_gradient *g, uint32_t step) {
     double *by_signals = g->by_signals + (size_t)step * g->actuator_count;
     for (uint32_t i = 0; i < g->actuator_count; ++i) {
@@ -91,7 +92,7 @@ static mspring_result reverse_substep(mspring_gradient *g, uint32_t step, uint32
 
 static bool has_finite_adjoint(const mspring_gradient *g) {
     const mspringi_adjoint *a = &g->adjoint;
-    double sum = 0.0; // of numbers times 0: NaN if any is not finite
+    double sum = 0.0; // of zeros: NaN if any number is not finite
     for (uint32_t i = 0; i < g->slots; ++i)
         sum += 0.0 * a->position.x[i] + 0.0 * a->position.y[i] + 0.0 * a->velocity.x[i] + 0.0 * a->velocity.y[i];
     return isfinite(sum);

@@ -2,7 +2,7 @@
 #include "gradient/gradient.h"
 #include "layout/analysis.h"
 
-/// Slots of a tile: springs of a tile are visited direction by direction, then those of the next tile.
+/// Slots of a tile. Springs are visited tile by tile, and in a tile direction by direction.
 #define MSPRINGI_OCTET_TILE 512u
 
 /// Ends and parameters of all springs.
@@ -49,13 +49,14 @@ static uint32_t octet_distance(const octet_springs *s, uint32_t spring) {
     return s->a[spring] < s->b[spring] ? s->b[spring] - s->a[spring] : s->a[spring] - s->b[spring];
 }
 
-// The lower slot takes 27 bits, of which 9 lie within a tile.
+// Sort key of a spring: tile, distance of its slots, lower slot in the tile. A slot has 27 bits, 9 of them in a
+// tile.
 static uint64_t octet_key(const octet_springs *s, uint32_t spring) {
     const uint64_t low = octet_low(s, spring), distance = octet_distance(s, spring);
     return low / MSPRINGI_OCTET_TILE << 36 | distance << 9 | low % MSPRINGI_OCTET_TILE;
 }
 
-// Give each key an octet and a lane. Springs of equal keys, between the same slots, do not occur.
+// Assign octets to sorted keys, and return their number. Keys are unique: no two springs join the same slots.
 static uint32_t octets_assign(mspringi_octets *o, const uint64_t *keys, size_t count, bool writes) {
     uint32_t octets = 0, begin = 0;
     uint64_t way = UINT64_MAX;
@@ -94,7 +95,7 @@ static bool octets_reserve(mspring_gradient *g, uint32_t count, bool is_damped) 
            (!is_damped || (o->damping && o->by_damping));
 }
 
-// First octet of a tile and distance that may have a slot: octets are in the order of keys.
+// Find the place of a spring in the octets, which are in the order of keys.
 static uint32_t octets_find(const mspringi_octets *o, uint64_t key, uint32_t low) {
     uint32_t least = 0, most = o->count;
     while (most - least > 1) {

@@ -1,4 +1,4 @@
-/// Steps that are recorded: frames of some, and the states of all substeps between two of them, computed again.
+/// Recorded steps: frames of some, and the states of all substeps between two frames, which are computed again.
 #include "base/cpu.h"
 #include "gradient/gradient.h"
 #include "stability/stability.h"
@@ -6,7 +6,7 @@
 /* -------------------------------------------------------------------------------------------------------- forwards
  */
 
-// Numbers of a moment.
+// Count of doubles in a moment.
 static size_t moment_size(const mspring_gradient *g) {
     return (size_t)g->lanes * (g->needs_velocities ? 4 : 2);
 }
@@ -33,15 +33,15 @@ static mspring_result save_frame(mspring_gradient *g) {
     return result;
 }
 
-// The distance of frames with which they and a segment of substeps between take the least memory: with s steps,
-// frames of f bytes and steps of t on the tape it is s / p f + p t.
+// Steps between frames, p, with which frames and one segment on the tape take the least memory. With s steps, f
+// bytes for a frame and t bytes for a step on the tape, they take s / p f + p t.
 static uint32_t frame_period(const mspring_gradient *g, uint32_t substeps) {
     const double step = (double)substeps * (double)(moment_size(g) * sizeof *g->tape);
     const double period = sqrt((double)g->capacity * (double)g->frames[0].size / step);
     return period < 1.0 ? 1u : period > (double)g->capacity ? g->capacity : (uint32_t)period;
 }
 
-// The lag that an explicit step begins with, as step/attempt.c has it.
+// Lag at the start of an explicit step, as in step/attempt.c.
 static float lag_of(mspring_network *network, float lag, float h) {
     mspring_id spring;
     return lag > h
@@ -60,7 +60,7 @@ static mspring_result set_inputs(mspring_gradient *g, mspring_network *network, 
     return result;
 }
 
-// Keep what a step is given. The lengths after it are those that it ends with.
+// Save the inputs of a step, and the rest lengths of actuators at its end.
 static void record_inputs(mspring_gradient *g, const float *signals, const float *forces) {
     const uint32_t step = g->count, actuators = g->actuator_count, forced = g->forced_count * 2;
     mspringi_past *past = &g->past[step];
@@ -75,7 +75,7 @@ static void record_inputs(mspring_gradient *g, const float *signals, const float
         g->forces[(size_t)step * forced + i] = forces[i];
 }
 
-// Step the network by a guard that clamps nothing.
+// Step the network with a guard that neither clamps nor retries.
 static mspring_result step_guarded(mspring_network *network, double dt) {
     mspring_settings settings = {.struct_size = sizeof settings};
     mspring_result result = mspring_network_get_settings(network, &settings);
@@ -167,7 +167,8 @@ static void write_position(double *to, const float *high, const float *low, uint
         to[i] = (double)high[i] + (double)low[i];
 }
 
-// Write the clone's state onto the tape. What is behind its end is left out: an error follows.
+// Write the clone's state onto the tape. A state behind the end of the tape is dropped; play() then reports an
+// error.
 static void write_moment(mspring_gradient *g, uint32_t at) {
     const mspring_network *n = g->clone;
     const mspringi_state *state = &n->state;
@@ -184,7 +185,7 @@ static void write_moment(mspring_gradient *g, uint32_t at) {
     g->origins[2 * (size_t)at + 1] = n->origin_y;
 }
 
-// A step that is repeated writes again.
+// Hook after each substep. A repeated step overwrites its states.
 static void MSPRING_CALL hear_substep(const mspring_hook_args *args, void *user) {
     mspring_gradient *g = user;
     write_moment(g, g->moments + args->substep);
