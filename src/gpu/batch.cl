@@ -1,11 +1,11 @@
-// A step of a batch of equal bodies: a work-group for each body, its state in local memory.
+// A step of a batch of equal bodies: one work-group for each body, with its state in local memory.
 //
-// Derived from tests/spec: spec.c has the order of sums (add_rows, add_others), the kick, the move and the dither,
-// spec_springs.c the actuators, spec_floor.c the floor. Names here are those there. Where this and that program differ,
-// that program is right. Of massspring_batch.h it follows that the lag is h, so all substeps have one kick.
+// Derived from tests/spec, with the same names: spec.c has the order of sums (add_rows, add_others), the kick, the
+// move and the dither, spec_springs.c the actuators, spec_floor.c the floor. If the two differ, tests/spec is
+// right. In networks with groups (massspring_batch.h) the lag is h, so all substeps have the same kick.
 //
-// Defined by the host: PARTICLES, ROW_SLOTS and SLOTS of springs around each, ACTUATORS, PLANES, LOCAL (work-items of a
-// group), IS_DAMPED.
+// Defined by the host: PARTICLES, ROW_SLOTS and SLOTS of springs around each, ACTUATORS, PLANES, LOCAL (work-items
+// of a group), IS_DAMPED.
 //
 // SPDX-License-Identifier: MIT
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -30,7 +30,7 @@ static float low_of(float value, float low) {
     return fabs(low) <= fabs(value) * 0x1p-21f || low == 0.0f ? low : 0.0f;
 }
 
-// x, y: place; z, w: velocity.
+// Force of a spring. x, y: position, z, w: velocity of its ends.
 static float2 pull(float4 here, float4 there, float stiffness, float damping, float rest_length) {
     const float2 d = there.xy - here.xy, dv = there.zw - here.zw;
     const float square = d.x * d.x + d.y * d.y, length = sqrt(square);
@@ -41,8 +41,9 @@ static float2 pull(float4 here, float4 there, float stiffness, float damping, fl
     return (float2)(force * d.x, force * d.y);
 }
 
-// Link of a particle: x has the other particle, and an actuator or ACTUATORS; then stiffness, damping, rest length. A
-// slot without a spring has one of no stiffness to the particle itself: its force is 0 without a branch.
+// Force of a link of a particle. Its x has the other particle in 16 bits, and above them the actuator, or 0xffff.
+// Then come stiffness, damping and rest length. A slot without a spring has a link without stiffness to the
+// particle itself, so its force is 0 without a branch.
 static float2 pull_by(uint4 link, float4 here, local const float4 *motions, local const float *lengths) {
     float rest_length = as_float(link.w);
 #if ACTUATORS > 0
@@ -77,8 +78,8 @@ static float dither(const step_def *all, uint number) {
 }
 
 #if PLANES > 0
-// Half-planes, in double precision: spec_floor.c without heights. Of each plane the host gives n, the offset of the
-// border, friction and restitution.
+// Half-planes, in double precision: spec_floor.c without heights. The host gives n, the offset of the border,
+// friction and restitution of each plane.
 #define NO_RESTITUTION 0.1
 #define GROWTH (1.0 + 1e-9)
 #define ROUNDS_OF_PLANES 4
@@ -208,7 +209,7 @@ static void put_coordinate(double x, float *first, float *low) {
     *low = low_of(*first, (float)(x - (double)*first));
 }
 
-// spec_touch_floor(), and what bounce() of spec.c does with its result.
+// As spec_touch_floor(), and as bounce() in spec.c applies its result.
 static void touch_floor(global const double *planes, double shortest, double h, double kick, double loss,
                         float2 had, float2 *place, float2 *low, float2 *velocity) {
     const double keep = 1.0 - loss, scale = h / kick, per_length = 4.0 * h / shortest;
@@ -248,7 +249,7 @@ static void touch_floor(global const double *planes, double shortest, double h, 
 }
 #endif
 
-// Rest lengths of actuators in a substep: they go to their targets in even parts.
+// Set the rest lengths of actuators in a substep. They change to their targets in even parts.
 static void set_lengths(const step_def *all, uint number, global const float *from, global const float *targets,
                         local float *lengths) {
 #if ACTUATORS > 0
@@ -261,7 +262,7 @@ static void set_lengths(const step_def *all, uint number, global const float *fr
 #endif
 }
 
-// Kick and move of a particle, and what the floor does then. Motion after the substep, with the low words.
+// Kick and move a particle, then let the floor act. Return the motion after the substep; *low has its low words.
 static float4 move_particle(const step_def *all, uint number, uint p, uint2 particle, global const uint4 *links,
                             global const double *planes, double shortest, local const float4 *motions,
                             local const float *lengths, float2 *low) {
@@ -306,7 +307,7 @@ static float4 move_particle(const step_def *all, uint number, uint p, uint2 part
     return (float4)(place, velocity);
 }
 
-// After a step tiny speeds become 0, but -0 stays. True if a particle is out of bounds.
+// End a step: tiny speeds become 0, but -0 stays. True if the particle is out of bounds.
 static bool end_motion(const step_def *all, local float4 *motion) {
     float4 m = *motion;
     if (all->stops) {
@@ -318,7 +319,8 @@ static bool end_motion(const step_def *all, local float4 *motion) {
            !isfinite(m.x + m.y + m.z + m.w);
 }
 
-// A body out of bounds moves from where it was as pins at rest do: that may round a tie in its low words.
+// Position of a body out of bounds: it moves from where it was as pins at rest do, which may round a tie in a low
+// word.
 static float2 rest_at(float place, float low) {
     const float whole = 0.0f + low, at = place + whole;
     return (float2)(at, whole - (at - place));
@@ -376,7 +378,7 @@ void take_step(global const float *before, global float *after, global const uch
         is_held[body] = is_bad != 0;
 }
 
-// Put chosen bodies back to their start, and copy the others: body b began as number b % start_count.
+// Put the bodies in a mask back to their start, and copy the others. Body b began as number b % start_count.
 kernel __attribute__((reqd_work_group_size(LOCAL, 1, 1)))
 void put_back(global const float *before, global float *after, global const uchar *was_held, global uchar *is_held,
               global const float *start, global const uchar *mask, uint start_count) {
@@ -388,7 +390,8 @@ void put_back(global const float *before, global float *after, global const ucha
         is_held[body] = mask[body] ? 0 : was_held[body];
 }
 
-// As mspring_network_observe_groups(), a work-item for each body: its sums are in the order of particles.
+// Observe bodies as mspring_network_observe_groups(). Each body is one work-item, so sums are in the order of
+// particles.
 kernel void observe(global const float *state, global const uchar *is_held, global const float *masses,
                     global const uint *chosen, global double *rows, uint first, uint count, uint chosen_count,
                     double origin_x, double origin_y) {

@@ -1,4 +1,4 @@
-/// Making a batch: its buffers, its kernels, and the proof that it has the bits of the processor.
+/// Creation of a batch: buffers, kernels, and a check that it has the bits of the processor.
 ///
 /// SPDX-License-Identifier: MIT
 #include "gpu_batch.h"
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Most work-items of a group, and a multiple that devices like.
+/// Most work-items of a group, and a multiple that suits devices.
 #define MOST_ITEMS 256u
 #define ITEM_MULTIPLE 32u
 
@@ -153,7 +153,7 @@ static double draw(uint64_t *seed) { // -1 to 1
     return (double)(int64_t)(*seed >> 11) * 0x1p-52 - 1.0;
 }
 
-// Write the start, put all bodies back to it, and count from it.
+// Write the start to the device, put all bodies back to it, and clear the lag.
 static mspring_result begin_at(mspring_gpu *batch) {
     const size_t floats = mspringi_gpu_state_size(batch), motion = 6 * (size_t)batch->t.particle_count;
     float *start = malloc(batch->start_count * floats * sizeof *start);
@@ -172,7 +172,7 @@ static mspring_result begin_at(mspring_gpu *batch) {
     return result;
 }
 
-// Give the springs of all bodies signals. The network checks the list of springs on the way.
+// Make random signals, and give the clone actuators with them. It checks the list of springs, too.
 static mspring_result prove_signals(mspring_gpu *batch, const mspring_gpu_def *def, mspring_network *clone,
                                     float **signals, uint64_t *seed) {
     const uint32_t all = batch->start_count * batch->actuator_count;
@@ -192,7 +192,8 @@ static mspring_result prove_signals(mspring_gpu *batch, const mspring_gpu_def *d
     return result;
 }
 
-// Random velocities, by which a spring's length changes by some hundredths in a substep. A step that is stable.
+// Give the clone random velocities, which change the length of a spring by about 3 % in a substep. Choose a stable
+// dt.
 static mspring_result prove_motion(const mspring_gpu *batch, mspring_network *clone, double *dt, uint64_t *seed) {
     const size_t all = (size_t)batch->start_count * batch->t.particle_count;
     double h = 0.0;
@@ -210,7 +211,7 @@ static mspring_result prove_motion(const mspring_gpu *batch, mspring_network *cl
     return result;
 }
 
-// Step a clone of the network and the batch, from the state of the clone, and compare their hashes.
+// Step the clone and the batch from the clone's state, and compare their hashes.
 static mspring_result step_both(mspring_gpu *batch, mspring_network *clone, const float *signals, double dt) {
     uint64_t expected = 0, hash = 1;
     mspring_result result = mspringi_gpu_read_states(clone, &batch->t, &batch->message);

@@ -59,7 +59,7 @@ mspring_result mspringi_gpu_check(const mspringi_gpu_device *gpu, mspringi_gpu_m
 
 /* --------------------------------------------------------------------------------------------- loading */
 
-// The library stays loaded: drivers leave threads behind.
+// Load OpenCL. It is never unloaded, because drivers leave threads behind.
 static void *load_library(const char *path) {
 #if defined(_WIN32)
     return (void *)LoadLibraryA(path != NULL ? path : "OpenCL.dll");
@@ -96,7 +96,7 @@ static mspring_result load_functions(mspringi_gpu_device *gpu, const char *path,
 
 /* --------------------------------------------------------------------------------------------- devices */
 
-// Why a device does not suit, or NULL. Its name, the size of its groups and its local memory are read on the way.
+// Return why a device is unsuitable, or NULL. Also reads its name, group size and local memory.
 static const char *why_unfit(mspringi_gpu_device *gpu, cl_device_id device) {
     cl_bool is_available = CL_FALSE, has_compiler = CL_FALSE;
     cl_device_fp_config single = 0, wide = 0;
@@ -122,7 +122,7 @@ static const char *why_unfit(mspringi_gpu_device *gpu, cl_device_id device) {
                                                              : NULL;
 }
 
-/// Most platforms, and devices of each.
+/// Most platforms, and most devices of each.
 #define MOST_PLATFORMS 16
 #define MOST_DEVICES 64
 

@@ -1,5 +1,5 @@
 /// @file gpu_opencl.h
-/// OpenCL, loaded at run time, and a device of it that gives the bits of the processor.
+/// OpenCL, loaded at run time, and a device that gives the bits of the processor.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_GPU_OPENCL_H
@@ -13,7 +13,7 @@
 #include <massspring/massspring_laws.h>
 #include <massspring/massspring_tools.h>
 
-/// Functions of OpenCL that are used.
+/// OpenCL functions in use.
 #define MSPRINGI_GPU_FUNCTIONS(X)                                                                                  \
     X(clGetPlatformIDs)                                                                                            \
     X(clGetDeviceIDs)                                                                                              \
@@ -36,7 +36,7 @@
     X(clEnqueueNDRangeKernel)                                                                                      \
     X(clFinish)
 
-/// The message of an object.
+/// Error message of a batch.
 typedef struct mspringi_gpu_message {
     char text[1024];
 } mspringi_gpu_message;
@@ -61,18 +61,18 @@ mspring_result mspringi_gpu_fail(mspringi_gpu_message *message, mspring_result r
 #endif
     ;
 
-/// Return MSPRING_OK if a call succeeded, or say which one failed, at what, and on which device.
+/// Return MSPRING_OK if an OpenCL call succeeded. Else set a message with the call, its purpose and the device.
 mspring_result mspringi_gpu_check(const mspringi_gpu_device *gpu, mspringi_gpu_message *message, cl_int status,
                                   const char *call, const char *purpose);
 
-/// Load OpenCL, choose a device, and make a context and a queue. On error nothing is left.
+/// Load OpenCL, choose a device, and make a context and a queue. On error both are released.
 mspring_result mspringi_gpu_open(mspringi_gpu_device *gpu, const char *library, uint32_t number,
                                  mspringi_gpu_message *message);
 
 /// Build the program with these options.
 mspring_result mspringi_gpu_build(mspringi_gpu_device *gpu, const char *options, mspringi_gpu_message *message);
 
-/// Release what has been made, if anything.
+/// Release program, queue and context, if they exist.
 void mspringi_gpu_close(mspringi_gpu_device *gpu);
 
 #endif

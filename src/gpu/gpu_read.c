@@ -5,7 +5,7 @@
 
 #include "gpu_batch.h"
 
-/// Bodies whose state is read at once.
+/// Bodies whose state is read together.
 #define CHUNK_OF_BODIES 4096u
 
 static mspring_result check_gpu_range(mspring_gpu *batch, const char *kind, uint64_t first, uint64_t count,
@@ -117,7 +117,7 @@ mspring_result mspring_gpu_observe(mspring_gpu *batch, uint32_t first, uint32_t 
 
 /* ----------------------------------------------------------------------------------------------- state */
 
-/// A visit of bodies in order. Numbers of particles are those of the batch.
+/// Arguments and result of a visit of bodies in order. first and count are particles of the batch.
 typedef struct gpu_visit {
     uint32_t first, count, stride;
     double *x, *y;

@@ -1,5 +1,5 @@
-/// A step: its constants, springs that follow the substep, the kernel. spec.c and spec_springs.c of tests/spec have
-/// the arithmetic.
+/// A step: constants, relative springs, the kernel. The arithmetic is that of spec.c and spec_springs.c in
+/// tests/spec.
 ///
 /// SPDX-License-Identifier: MIT
 #include "gpu_batch.h"
@@ -9,7 +9,7 @@
 
 /* -------------------------------------------------------------------------------------- global damping */
 
-// 1 - exp(-x): loss() of spec.c.
+// Compute 1 - exp(-x), as loss() in spec.c.
 static double gpu_loss(double x) {
     double sum = 1.0;
     if (x < 0.125) {
@@ -30,7 +30,7 @@ static double gpu_loss(double x) {
     return 1.0 - (double)(float)sum;
 }
 
-// In a network with groups the lag is h, so all substeps have the kick of h.
+// Compute the constants of a step. In a network with groups the lag is h, so all substeps have the kick of h.
 static mspringi_gpu_step gpu_step_of(const mspring_gpu *batch, float h) {
     const mspringi_gpu_template *t = &batch->t;
     const double rate = (double)t->global_damping, decay = rate * (double)h;
@@ -49,7 +49,7 @@ static mspringi_gpu_step gpu_step_of(const mspring_gpu *batch, float h) {
 
 /* ----------------------------------------------------------------------------------------------- links */
 
-// Stiffness and damping of a spring in substeps of h: spec_derive_relative().
+// Return a spring with its stiffness and damping in substeps of h, as spec_derive_relative().
 static mspringi_gpu_spring gpu_spring_at(const mspringi_gpu_template *t, uint32_t spring, float h) {
     mspringi_gpu_spring s = t->springs[spring];
     const double rate = 1.0 / (double)h;
@@ -70,7 +70,7 @@ static mspring_result write_links(mspring_gpu *batch, float h) {
         const uint32_t p = (uint32_t)(i % t->particle_count);
         cl_uint *link = batch->links + 4 * i;
         memset(link, 0, 4 * sizeof *link);
-        link[0] = p | (cl_uint)MSPRINGI_GPU_NONE << 16; // no spring: one of no stiffness to itself
+        link[0] = p | (cl_uint)MSPRINGI_GPU_NONE << 16; // no spring: one without stiffness to itself
         if (t->slots[i] != MSPRINGI_GPU_NONE) {
             const mspringi_gpu_spring s = gpu_spring_at(t, t->slots[i], h);
             link[0] = (s.a + s.b - p) | (cl_uint)batch->actuator_of[t->slots[i]] << 16;

@@ -1,10 +1,10 @@
-/// Reading a network of equal bodies by public calls, and refusing what a batch can't have.
+/// Reading a network of equal bodies by public calls, and rejecting networks that a batch cannot have.
 ///
-/// **Order of sums.** It follows from slots and from the counts of the plan. Particles in lattices lie first, then
-/// those in chains, then the irregular ones. A row is whole blocks of 16 slots: the columns of neighbours in a
-/// lattice differ as their slots do modulo 16, neighbours in a row lie side by side, and rows rise with slots. A
-/// row from which no spring leads north is a top row. arrange.c of tests/spec has what follows from rows. If the
-/// springs so found are not as many as the plan has, the network is refused.
+/// **Order of sums.** It follows from slots and from the counts of the plan. Particles in lattices come first, then
+/// those in chains, then the irregular ones. A row is whole blocks of 16 slots. So columns of neighbours in a
+/// lattice differ as their slots do modulo 16, neighbours in a row have consecutive slots, and higher rows have
+/// higher slots. A row from which no spring leads north is a top row. arrange.c in tests/spec derives the order
+/// from rows. If the number of springs found in rows differs from the plan's, the network is rejected.
 ///
 /// SPDX-License-Identifier: MIT
 #include "gpu_template.h"
@@ -99,7 +99,7 @@ mspring_result mspringi_gpu_read_states(const mspring_network *network, mspringi
     return call_failed(network, result, message);
 }
 
-// The hash tells whether all words have been found.
+// Compare the hash of the state that was read with the network's: it differs if a word could not be read.
 static mspring_result check_hash(const mspring_network *network, const mspringi_gpu_template *t,
                                  mspringi_gpu_message *message) {
     uint64_t expected, hash = mspringi_gpu_hash_head(t->origin_x, t->origin_y, 0.0f);
@@ -170,7 +170,7 @@ static mspring_result read_floor(const mspring_network *network, mspringi_gpu_te
     return MSPRING_OK;
 }
 
-// Each group has a particle of the last number of a body, and there are no more: so all groups have as many.
+// Check that each group has as many particles as a body: each has the last one, and there are no more.
 static mspring_result check_groups_of(const mspring_network *network, const mspringi_gpu_template *t,
                                       mspringi_gpu_message *message) {
     const uint32_t last = t->particle_count - 1;
@@ -211,7 +211,7 @@ static mspring_result read_sizes(const mspring_network *network, mspringi_gpu_te
 /* ------------------------------------------------------------------------------------- particles,
  * springs */
 
-// True if all bodies have the values of the first.
+// True if all bodies have the values of the first. Else *at is the index of a different one.
 static bool are_alike(const uint32_t *values, uint32_t bodies, uint32_t count, uint32_t *at) {
     for (uint32_t i = count; i < bodies * count; i++)
         if (values[i] != values[i % count]) {
@@ -221,8 +221,7 @@ static bool are_alike(const uint32_t *values, uint32_t bodies, uint32_t count, u
     return true;
 }
 
-// Read a property of the first body, which all have. least: what values may be at least, or the message has the
-// name.
+// Read a property of the first body. Fails if another body has other values, or if a value is below least.
 static mspring_result read_property(const mspring_network *network, const mspringi_gpu_template *t,
                                     mspring_property property, const char *name, float least, uint32_t *values,
                                     mspringi_gpu_message *message) {
@@ -345,13 +344,13 @@ static mspring_result read_springs(const mspring_network *network, mspringi_gpu_
 typedef struct body_layout {
     uint32_t *slots; ///< [particle_count]
     uint8_t *kinds;  ///< [particles of the network] a body_kind
-    int32_t *rows;   ///< [particle_count] scratch: number of a row in a part that springs join
-    uint32_t *parts; ///< [particle_count] scratch: lowest particle of that part
+    int32_t *rows;   ///< [particle_count] scratch: number of the row in its part
+    uint32_t *parts; ///< [particle_count] scratch: lowest particle that springs in rows connect with this one
 } body_layout;
 
 typedef enum body_kind { IN_LATTICE, IN_CHAIN, IRREGULAR } body_kind;
 
-// Particles in lattices lie in the first slots, then those in chains.
+// Find the kinds of particles. Those in lattices have the first slots, then come those in chains.
 static mspring_result read_kinds(const mspring_network *network, const mspringi_gpu_template *t,
                                  const mspring_plan *plan, const body_layout *layout,
                                  mspringi_gpu_message *message) {
@@ -379,7 +378,7 @@ static mspring_result read_kinds(const mspring_network *network, const mspringi_
     return result;
 }
 
-// Side of a spring, as the kernel numbers them, or MSPRINGI_GPU_SIDES if it is summed by no row.
+// Return the side of a spring, as the kernel numbers them, or MSPRINGI_GPU_SIDES if it is in no row.
 static uint32_t side_to(const body_layout *layout, uint32_t p, uint32_t q) {
     const uint32_t from = layout->slots[p], to = layout->slots[q], column = (to - from) % GPU_BLOCK;
     const bool is_north = to > from;
@@ -392,7 +391,8 @@ static uint32_t side_to(const body_layout *layout, uint32_t p, uint32_t q) {
     return column == 0 ? (is_north ? 6 : 1) : column == 1 ? (is_north ? 7 : 0) : (is_north ? 4 : 2);
 }
 
-// Put a spring into the slot of a particle by its side, or else into the next one of the others.
+// Put each spring into a slot of its two particles: that of its side or, if it is in no row, the next one behind
+// those. Without slots, only count them.
 static void fill_slots(mspringi_gpu_template *t, const body_layout *layout, uint32_t *others) {
     const size_t n = t->particle_count;
     memset(others, 0, n * sizeof *others);
@@ -427,7 +427,7 @@ static mspring_result check_row_springs(const mspringi_gpu_template *t, const ms
                              (unsigned)(plan->chain_springs / t->body_count));
 }
 
-// Number the rows of each part that springs in rows join, from that of its first particle.
+// Number the rows of each part, which springs in rows connect. The row of its first particle is 0.
 static void number_rows(const mspringi_gpu_template *t, const body_layout *layout) {
     for (uint32_t p = 0; p < t->particle_count; p++) {
         layout->rows[p] = 0;
@@ -449,7 +449,7 @@ static void number_rows(const mspringi_gpu_template *t, const body_layout *layou
     }
 }
 
-// A row is a top row if no spring leads north from it.
+// Flag the particles in rows, and those in top rows: rows from which no spring leads north.
 static void mark_rows(mspringi_gpu_template *t, const body_layout *layout) {
     const uint32_t n = t->particle_count;
     number_rows(t, layout);
