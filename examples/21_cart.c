@@ -1,5 +1,6 @@
 /// @file 21_cart.c
-/// A cart on two axles rolls downhill into boxes. Its wheels and a lamp overlap it: groups let them pass through it.
+/// A cart on two axles rolls downhill into boxes. Its wheels and a lamp overlap it: contact groups let them pass
+/// through.
 ///
 /// SPDX-License-Identifier: MIT
 #include "common/show.h"
@@ -10,7 +11,7 @@
 #include <massspring/massspring_tools.h>
 
 enum { COLUMNS = 17, ROWS = 3, BOX = 4, BOXES = 3, HEIGHTS = 80, STEPS = 288, LINKS = 5 };
-enum { PARTS = 2, CHASSIS = 4 }; // contact groups; boxes stay in group 1
+enum { PARTS = 2, CHASSIS = 4 }; // contact groups; boxes stay in the default group, 1
 
 static const double spacing = 0.25, left = 1.5, bottom = 2.9, dt = 1.0 / 64; // m, s
 
@@ -27,7 +28,7 @@ static mspring_result add_wood(mspring_builder *builder, uint32_t width, uint32_
     return result ? result : mspring_builder_add_lattice(builder, &lattice, ids);
 }
 
-// A wheel whose centre is welded to a particle of the chassis: it turns freely around it.
+// Add a wheel. Its centre is welded to a particle of the chassis, so it turns freely.
 static mspring_result add_wheel(mspring_builder *builder, double x, double y, mspring_id axle, mspring_id *centre) {
     mspring_disc_def wheel;
     mspring_spring_def weld;
@@ -42,7 +43,7 @@ static mspring_result add_wheel(mspring_builder *builder, double x, double y, ms
     return result ? result : mspring_builder_add_spring(builder, &weld, NULL);
 }
 
-// A lamp of 8 kg on a chain from the top of the chassis: it swings in front of it.
+// Add a lamp of 8 kg on a chain from the top of the chassis. It swings in front of the chassis.
 static mspring_result add_lamp(mspring_builder *builder, double x, double y, mspring_id hook, mspring_id *parts) {
     mspring_particle_def lamp;
     mspring_rope_def chain;
@@ -66,7 +67,7 @@ static mspring_result add_cart(mspring_builder *builder, mspring_id *wheels, msp
     return result ? result : add_lamp(builder, x, y, cells[0][COLUMNS / 2], lamp);
 }
 
-// Wheels and lamp pass through the chassis, and touch all else.
+// Let wheels and lamp pass through the chassis, and touch everything else.
 static mspring_result set_groups(mspring_network *network, const mspring_id *wheels, uint32_t wheel_size,
                                  const mspring_id *lamp) {
     const uint32_t all = 0xffffffffu;

@@ -1,4 +1,4 @@
-/// Torques: forces around the centre of mass of free particles, which add to those for the next step.
+/// Torques: forces around the centre of mass of the free particles, added to the forces for the next step.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -18,7 +18,7 @@ static double inertia_of(const mspring_network *network, const mspringi_selectio
     return sum;
 }
 
-// Sums are made in the backup, which is free between steps, and copied once all of them are valid.
+// Add the forces. The sums are computed in the backup, which is unused between steps, and copied if all are finite.
 static mspring_result add_turn(mspring_network *network, const mspringi_selection *at,
                                const mspringi_selection_centre *c, double per_inertia) {
     const mspringi_field held = network->forces.held, made = {network->backup.vx, network->backup.vy};

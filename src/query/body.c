@@ -1,4 +1,4 @@
-/// A set of particles as one body: place, turn, motion and box.
+/// A set of particles as one body: position, angle, motion and box.
 #include <math.h>
 
 #include "base/cpu.h"
@@ -9,12 +9,12 @@
 
 // Second moments about the centre of mass.
 typedef struct second_moments {
-    double inertia, spin;  ///< kg m^2, kg m^2/s
-    double cosine, sine;   ///< of the best rigid turn, times a number
-    double px, py, moment; ///< of free particles; moment of momentum about the local origin
+    double inertia, spin;  ///< kg m^2; angular momentum, kg m^2/s
+    double cosine, sine;   ///< of the best rotation, times a common factor
+    double px, py, moment; ///< of free particles: momentum; angular momentum about the local origin
 } second_moments;
 
-// Centre of the places at creation.
+// Centre of mass of the positions at creation.
 static mspringi_posed posed_centre(const mspring_network *network, const mspringi_selection *at, double mass) {
     mspringi_posed from = {0}, sum = {0};
     bool any = false;
@@ -31,8 +31,8 @@ static mspringi_posed posed_centre(const mspring_network *network, const mspring
     return any ? (mspringi_posed){from.x + sum.x / mass, from.y + sum.y / mass} : from;
 }
 
-// The turn that takes places at creation nearest to those of now has this cosine and sine (Kabsch 1976; in two
-// dimensions they are sums of products).
+// Compute the moments. cosine and sine are those of the rotation that takes the positions at creation nearest to
+// the present ones (Kabsch 1976; in two dimensions they are sums of products).
 static second_moments second_moments_of(const mspring_network *network, const mspringi_selection *at,
                                         const mspringi_selection_centre *c) {
     const mspringi_state *s = &network->state;

@@ -1,4 +1,4 @@
-/// Snapshot of mspring_solver_def.substep_length. Networks without have none: their snapshots are as before it.
+/// Snapshot of mspring_solver_def.substep_length. Networks without one write nothing.
 #include <float.h>
 
 #include "store/sections.h"

@@ -108,7 +108,7 @@ static uint32_t even_substeps(mspring_network *network, choice *made) {
 
 /* -------------------------------------------------------------------------------------------- substep_length */
 
-// Substeps of the given length in dt and what earlier steps have left.
+// Number of substeps of substep_length in dt plus the rest of earlier steps.
 static double whole_substeps(const mspring_network *network, double dt) {
     return floor((dt + network->steps.pace.left) / network->substep_length + 0.5);
 }

@@ -16,7 +16,7 @@ mspring_result mspringi_pace_choose(mspring_network *network, double dt, bool ma
 /// has too many.
 mspring_result mspringi_pace_defer(mspring_network *network, double dt, bool *is_deferred);
 
-/// With substep_length: set the substeps of a step that takes some, its length and what it leaves.
+/// With substep_length: set the number of substeps of a step that is not deferred, its length and its rest.
 void mspringi_pace_keep_length(mspring_network *network, double dt);
 
 /// Note that a step of dt has succeeded.

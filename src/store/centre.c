@@ -1,6 +1,6 @@
 #include "store/centre.h"
 
-// Sums are relative to the first particle, so that a body far from the local origin has the centre of one near it.
+// Sums are relative to the first particle, so that the centre of a body far from the local origin loses no digits.
 mspringi_selection_centre mspringi_selection_centre_of(const mspring_network *network, const mspringi_selection *at,
                                                        bool with_pinned) {
     const mspringi_state *s = &network->state;

@@ -10,10 +10,10 @@
 typedef struct mspringi_selection_centre {
     uint32_t count;      ///< particles
     double mass;         ///< kg
-    double x, y, vx, vy; ///< local coordinates, m, m/s; 0 without particles
+    double x, y, vx, vy; ///< centre in local coordinates, m, and its velocity, m/s; 0 without particles
 } mspringi_selection_centre;
 
-/// Compute it; of a set's particles that are there and, unless `with_pinned`, free.
+/// Compute the centre of a set. Removed particles do not count, pinned ones only if `with_pinned`.
 mspringi_selection_centre mspringi_selection_centre_of(const mspring_network *network, const mspringi_selection *at,
                                                        bool with_pinned);
 

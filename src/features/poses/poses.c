@@ -34,7 +34,7 @@ const mspringi_feature_state mspringi_state_of_poses = {MSPRINGI_ARRAY_TABLE(arr
 /* ----------------------------------------------------------------------------------------------------- snapshots
  */
 
-// Values of a place.
+// Coordinates of a position.
 enum { COORDINATES = sizeof(mspringi_posed) / sizeof(double) };
 
 static void poses_save(const mspring_network *network, mspringi_writer *to) {
@@ -50,7 +50,7 @@ static mspring_result poses_check(mspring_network *network, const uint8_t *from,
     for (size_t i = 0; result == MSPRING_OK && i < COORDINATES * count; ++i) {
         double value;
         from = mspringi_get(from, &value, 1, sizeof value);
-        if (!(fabs(value) <= 2.0 * MSPRING_MAX_COORDINATE)) // of the origin, and from it
+        if (!(fabs(value) <= 2.0 * MSPRING_MAX_COORDINATE)) // once for the origin, once from it
             result = mspringi_section_fail(network, &mspringi_section_poses, "particle %zu was at %g m",
                                            i / COORDINATES, value);
     }

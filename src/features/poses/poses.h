@@ -1,5 +1,5 @@
 /// @file poses.h
-/// Where particles were when they were added, so that a body's turn can be measured (MSPRING_NETWORK_POSES).
+/// Positions of particles when they were added, to measure the angle of a body (MSPRING_NETWORK_POSES).
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_POSES_H
@@ -15,7 +15,7 @@ typedef struct mspringi_poses {
     mspringi_posed *of_particle; ///< [particle ids]
 } mspringi_poses;
 
-/// Keep the present place of a particle, if the network keeps any.
+/// Save the present position of a particle, if the network keeps positions.
 void mspringi_pose_keep(mspring_network *network, mspring_id particle);
 
 #endif
