@@ -109,9 +109,9 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_add_s
 /// clone.
 /// @param step_count  at most the number of steps not reversed yet
 /// @threads exclusive for gradient, shared for network   @allocates yes   @since 0.2
-/// @errors ARGUMENT also if the steps computed again differ from those recorded because the network was edited between
-///         them, or if the floor acted in a corner; UNSTABLE if a derivative is not finite; MEMORY. After any error but
-///         a step_count that is too large, destroy the gradient: its derivatives are incomplete.
+/// @errors ARGUMENT also if steps computed again differ because the network was edited between them, or if the floor
+///         acted in a corner; UNSTABLE if a derivative is not finite; MEMORY. After any error but a step_count that is
+///         too large, destroy the gradient: its derivatives are incomplete.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_reverse(
     mspring_gradient *gradient, uint32_t step_count);
 
