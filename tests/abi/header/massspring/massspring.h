@@ -406,7 +406,8 @@ typedef struct mspring_solver_def {
     /// damping keeps its energy, and the length of a tick stays the same, however dt varies. If dt is too short for a
     /// substep, the call only adds it to time_left, and does not count as a step; forces and signals wait for the next
     /// one. If dt needs more than MSPRING_MAX_SUBSTEPS, the step returns MSPRING_ERROR_ARGUMENT. Networks with groups
-    /// reject a length. MSPRING_SUBSTEPS_EVEN chooses a length by itself, and changes it if necessary.
+    /// reject a length. The guard may repeat a step with other substeps. MSPRING_SUBSTEPS_EVEN chooses a length by
+    /// itself, and changes it if necessary.
     double substep_length;
 } mspring_solver_def;
 
