@@ -94,6 +94,17 @@ static mspring_result step_guarded(mspring_network *network, double dt) {
     return outcome == MSPRING_OK ? result : outcome;
 }
 
+// Take the forces of a step that failed off the network, which keeps its message.
+static void take_back_forces(mspring_gradient *g) {
+    mspring_network *network = g->network;
+    const mspringi_message message = network->message;
+    float *forces = g->forces + (size_t)g->count * g->forced_count * 2;
+    for (uint32_t i = 0; i < 2 * g->forced_count; ++i)
+        forces[i] = -forces[i];
+    (void)!mspring_network_apply_forces_at(network, g->forced, g->forced_count, forces, forces + 1, 2);
+    network->message = message;
+}
+
 static mspring_result take_step(mspring_gradient *g, double dt) {
     mspring_network *network = g->network;
     mspringi_past *past = &g->past[g->count];
@@ -103,8 +114,11 @@ static mspring_result take_step(mspring_gradient *g, double dt) {
         result = g->count / (g->period ? g->period : 1) < g->frame_count ? MSPRING_OK : save_frame(g);
     if (result == MSPRING_OK)
         result = set_inputs(g, network, g->count);
-    if (result == MSPRING_OK)
-        result = step_guarded(network, dt);
+    if (result != MSPRING_OK)
+        return result;
+    result = step_guarded(network, dt);
+    if (result != MSPRING_OK && past->has_forces)
+        take_back_forces(g);
     if (result != MSPRING_OK)
         return result;
     past->dt = dt;
