@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Most work-items of a group, and a multiple that suits devices.
+/// Most work-items of a group.
 #define MOST_ITEMS 256u
-#define ITEM_MULTIPLE 32u
 
 /* ---------------------------------------------------------------------------------------- device calls */
 
@@ -77,10 +76,9 @@ static mspring_result make_kernel(mspring_gpu *batch, const char *name, cl_kerne
 static mspring_result make_kernels(mspring_gpu *batch) {
     const mspringi_gpu_template *t = &batch->t;
     const uint64_t local = 16 * (uint64_t)t->particle_count + 4 * ((uint64_t)batch->actuator_count + 1) + 64;
-    const size_t whole = (t->particle_count + ITEM_MULTIPLE - 1) / ITEM_MULTIPLE * ITEM_MULTIPLE;
     const size_t most = batch->gpu.group_size < MOST_ITEMS ? batch->gpu.group_size : MOST_ITEMS;
     char options[512];
-    batch->group_size = t->particle_count <= most ? t->particle_count : whole < most ? whole : most;
+    batch->group_size = t->particle_count <= most ? t->particle_count : most;
     if (local > batch->gpu.local_memory)
         return mspringi_gpu_fail(&batch->message, MSPRING_ERROR_LIMIT,
                                  "a body with %u actuators takes %llu bytes of local memory, and %s has %llu",
