@@ -4,7 +4,7 @@
 #include "kernels/spring_law.h"
 #include "query/kinetic.h"
 #include "query/measure.h"
-#include "store/feature.h"
+#include "store/element_laws.h"
 #include "store/moments.h"
 #include "store/springs.h"
 
@@ -89,10 +89,9 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         if (network->tested.nominal)
             elastic_sum += hardening_energy(network, i, (double)r.stiffness);
     }
-#define ELASTIC(function)                                                                                          \
-    if (elastic)                                                                                                   \
-        function(network, &elastic_sum);
-#include "store/features.def"
+    mspringi_element_walk walk = mspringi_walk_elements(network, MSPRINGI_CLOSED_ELEMENTS);
+    while (elastic && mspringi_element_next(&walk))
+        elastic_sum += mspringi_element_energy(network, &walk.element);
     if (kinetic)
         *kinetic = mspringi_kinetic_energy(network);
     if (elastic)

@@ -134,7 +134,7 @@ static mspring_result report_elements(mspring_network *network, const mspringi_a
                          "unstable: the substep of %g s exceeds the stability limit of areas and angles (%g s "
                          "by themselves). Use a "
                          "shorter dt, more substeps, or less stiffness or pressure.",
-                         (double)attempt->h, mspringi_stability_elements_longest(network));
+                         (double)attempt->h, mspringi_elements_longest(network));
 }
 
 // Report the tightest spring, and the lighter of its ends.
@@ -205,7 +205,7 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
 // those at the start of a substep. The clamped solver takes any step.
 static mspring_result check_elements(mspring_network *network, const mspringi_attempt *attempt) {
     if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS || attempt->solver == &mspringi_clamped ||
-        (double)attempt->h <= mspringi_stability_elements_longest(network))
+        (double)attempt->h <= mspringi_elements_longest(network))
         return MSPRING_OK;
     return report_elements(network, attempt);
 }

@@ -7,22 +7,7 @@
 
 #include "stability/pencil.h"
 #include "stability/stability_limit.h"
-
-/// Functions of one element.
-typedef struct mspringi_stability_ops {
-    bool (*is_used)(const mspring_network *network);
-    void (*sum)(const mspring_network *network, float *sums, float *dampings);
-    double (*largest)(const mspring_network *network, const float *sums);
-    void (*bound)(const mspring_network *network, const mspringi_stability_limit *limit);
-    void (*image)(const mspring_network *network, const mspringi_stability_limit *limit, double square);
-    void (*quotient)(const mspring_network *network, mspringi_displacement vector, mspringi_quotient *sum);
-    double (*longest)(const mspring_network *network);
-} mspringi_stability_ops;
-
-#define STABILITY(table) extern const mspringi_stability_ops table;
-#include "store/features.def"
-
-bool mspringi_stability_elements_are_used(const mspring_network *network);
+#include "store/element_laws.h"
 
 /// In any shape: add to the sums of springs' stiffness and damping by slot, in the shape that elements were added
 /// in. Return the largest quotient of these sums over the elements.
@@ -36,8 +21,5 @@ void mspringi_stability_elements_image(const mspring_network *network, const msp
                                        double square);
 void mspringi_stability_elements_quotient(const mspring_network *network, mspringi_displacement vector,
                                           mspringi_quotient *sum);
-
-/// Longest substep that is stable, s, with those that linear systems do not have in them; or INFINITY.
-double mspringi_stability_elements_longest(const mspring_network *network);
 
 #endif

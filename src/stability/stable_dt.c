@@ -90,7 +90,7 @@ static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, doubl
         return result;
     const double any_shape = mspringi_stable_in_any_shape(network, &spring);
     *now = any_shape < INFINITY ? find_limit(network, &work, any_shape) : INFINITY;
-    if (!mspringi_stability_elements_are_used(network)) // the stiffness of areas grows with the network
+    if (!mspringi_elements_exist(network)) // the stiffness of areas grows with the network
         *now = fmax(*now, any_shape);
     release(network, &work);
     return MSPRING_OK;

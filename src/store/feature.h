@@ -21,7 +21,6 @@ typedef struct mspringi_feature_state {
     mspring_result reserve(const mspring_network *network, const mspring_id *ids, mspring_builder *builder);       \
     void append(const mspring_network *network, const mspring_id *ids, mspring_builder *builder);
 #define GROUPED(function) mspring_result function(mspring_network *network, const uint32_t *group_of_particle);
-#define ELASTIC(function) void function(const mspring_network *network, double *sum);
 #define REACTS(function) void function(mspring_network *network, mspringi_change change, uint32_t index);
 #define LENGTHS(function) bool function(const mspring_network *network);
 #define VARIES(function) bool function(const mspring_network *network);

@@ -14,11 +14,6 @@ static mspringi_vectors vectors_at(double *block, size_t count, size_t *used) {
     return vectors;
 }
 
-const mspringi_statics_ops *const mspringi_statics_elements[] = {
-#define STATICS(table) &table,
-#include "store/features.def"
-    NULL};
-
 bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count, uint32_t edge_count,
                              mspringi_memory *memory) {
     const size_t particles = particle_count, springs = edge_count;
@@ -58,7 +53,8 @@ void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory
     mspringi_free(memory, statics->block);
     mspringi_free(memory, statics->spring_block);
     mspringi_free(memory, statics->end_block);
-    mspringi_free(memory, statics->areas.sides);
+    mspringi_free(memory, statics->elements.sides);
+    mspringi_free(memory, statics->elements.blocks);
 }
 
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,
@@ -120,8 +116,7 @@ mspringi_residual mspringi_statics_forces(mspringi_statics *statics) {
         force.y[s->b[i]] -= each * now.y;
         residual.scale = fmax(residual.scale, fabs(pull));
     }
-    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; *ops; ++ops)
-        residual.scale = fmax(residual.scale, (*ops)->forces(statics));
+    residual.scale = fmax(residual.scale, mspringi_statics_element_forces(statics));
     for (uint32_t p = 0; p < statics->particle_count; ++p) {
         if (statics->fixed[p])
             continue;
@@ -151,9 +146,7 @@ static double half_square(double stretch) {
 double mspringi_statics_energy_change(const mspringi_statics *statics, double t, double *error) {
     const mspringi_statics_springs *s = &statics->springs;
     const mspringi_vectors step = statics->step, curvature = statics->curvature;
-    double size = 0.0, change = 0.0;
-    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; *ops; ++ops)
-        change += (*ops)->change(statics, t, &size);
+    double size = 0.0, change = mspringi_statics_element_change(statics, t, &size);
     for (uint32_t i = 0; i < s->count; ++i) {
         const uint32_t a = s->a[i], b = s->b[i];
         const spring_vector now = vector_of_spring(statics, i);
@@ -225,8 +218,7 @@ bool mspringi_statics_factor(mspringi_statics *statics, bool clamped, double shi
         add_spring(statics, i, clamped);
     for (uint32_t i = s->count; i < s->edge_count; ++i)
         s->xx[i] = s->xy[i] = s->yy[i] = 0.0;
-    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; *ops; ++ops)
-        (*ops)->stiffness(statics, clamped);
+    mspringi_statics_add_element_stiffness(statics, clamped);
     double stiffest = 0.0;
     for (uint32_t p = 0; p < count; ++p)
         stiffest = statics->fixed[p] ? stiffest : fmax(stiffest, statics->scale[p]);

@@ -8,7 +8,7 @@
 
 #include "analysis/settle/settle.h"
 #include "solvers/sparse/cholesky.h"
-#include "store/network.h"
+#include "store/element_laws.h"
 
 /// Two values for each particle.
 typedef struct mspringi_vectors {
@@ -17,7 +17,7 @@ typedef struct mspringi_vectors {
 
 /// The springs with stiffness.
 typedef struct mspringi_statics_springs {
-    uint32_t count, edge_count;      ///< springs; springs and, behind them, pairs of angles
+    uint32_t count, edge_count;      ///< springs; springs and, behind them, sides that elements own
     uint32_t *a, *b;                 ///< [edge_count] particles
     double *stiffness, *rest_length; ///< [count]
     double *side;                    ///< [count] 1: pulls only; -1: pushes only; 0: both
@@ -26,11 +26,12 @@ typedef struct mspringi_statics_springs {
     double *xx, *xy, *yy; ///< [edge_count] blocks of the stiffness matrix
 } mspringi_statics_springs;
 
-/// Closed areas and angles (settle_areas.c, settle_angles.c).
-typedef struct mspringi_statics_areas {
-    const struct mspringi_areas *of; ///< NULL: none
-    uint32_t *sides;                 ///< [corners] spring of each side; edges a b, b c, c a of an angle
-} mspringi_statics_areas;
+/// Closed elements (settle_elements.c).
+typedef struct mspringi_statics_elements {
+    const mspring_network *of;
+    uint32_t *sides;        ///< [corners] edge of each side
+    mspringi_block *blocks; ///< [corners of the largest] scratch
+} mspringi_statics_elements;
 
 typedef struct mspringi_statics {
     uint32_t particle_count;
@@ -49,34 +50,25 @@ typedef struct mspringi_statics {
     uint32_t *end_block;
     mspringi_watcher watcher; ///< called before each iteration
     mspringi_statics_springs springs;
-    mspringi_statics_areas areas;
+    mspringi_statics_elements elements;
     mspringi_cholesky_symbolic plan;
     mspringi_cholesky_double factor;
 } mspringi_statics;
 
-/// Reserve memory for particles, springs and pairs of angles.
+/// Reserve memory for particles, and springs with sides that elements own.
 bool mspringi_statics_create(mspringi_statics *statics, uint32_t particle_count, uint32_t edge_count,
                              mspringi_memory *memory);
 void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory);
 
-/// An element: forces between particles besides springs. Count its edges in the matrix besides those of springs;
-/// add it after the springs, of a network that outlives the problem; add its part to the forces, and return the
-/// largest; to the change of energy and its absolute sum; to the stiffness. is_possible: false if it cannot be
-/// added.
-typedef struct mspringi_statics_ops {
-    uint32_t (*count_edges)(const mspring_network *network);
-    bool (*is_possible)(const mspring_network *network);
-    mspring_result (*add)(mspringi_statics *statics, mspring_network *network);
-    double (*forces)(mspringi_statics *statics);
-    double (*change)(const mspringi_statics *statics, double t, double *size);
-    void (*stiffness)(mspringi_statics *statics, bool clamped);
-} mspringi_statics_ops;
-
-#define STATICS(table) extern const mspringi_statics_ops table;
-#include "store/features.def"
-
-/// All of them; NULL behind the last.
-extern const mspringi_statics_ops *const mspringi_statics_elements[];
+/// Find the closed elements, and count the sides that they own; add them after the springs, of a network that
+/// outlives the problem.
+uint32_t mspringi_statics_count_sides(mspring_network *network);
+mspring_result mspringi_statics_add_elements(mspringi_statics *statics, mspring_network *network);
+/// Add their part: to the forces, and return the largest; to the change of energy, whose absolute sum is *size; to
+/// the stiffness.
+double mspringi_statics_element_forces(mspringi_statics *statics);
+double mspringi_statics_element_change(const mspringi_statics *statics, double t, double *size);
+void mspringi_statics_add_element_stiffness(mspringi_statics *statics, bool clamped);
 
 /// Analyse the stiffness matrix, after particles and springs are filled in.
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,

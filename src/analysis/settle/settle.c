@@ -204,18 +204,14 @@ static double store_positions(const mspringi_statics *statics, mspring_network *
 static mspring_result solve(mspringi_statics *statics, mspring_network *network, const mspring_settle_def *def,
                             mspring_settle_result *out, mspringi_watcher watcher) {
     uint32_t left_alone = 0;
-    uint32_t edges = count_springs(network);
-    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; *ops; ++ops)
-        edges += (*ops)->count_edges(network);
+    const uint32_t edges = count_springs(network) + mspringi_statics_count_sides(network);
     if (!mspringi_statics_create(statics, network->topology.particle_count, edges, &network->memory))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory to settle %u particles",
                              (unsigned)network->topology.particle_count);
     statics->watcher = watcher;
     fill_particles(statics, network);
     fill_springs(statics, network);
-    mspring_result result = MSPRING_OK;
-    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; result == MSPRING_OK && *ops; ++ops)
-        result = (*ops)->add(statics, network);
+    mspring_result result = mspringi_statics_add_elements(statics, network);
     if (result == MSPRING_OK)
         result = check_floating(statics, def, &left_alone, network);
     if (result == MSPRING_OK)
@@ -302,7 +298,8 @@ mspring_result mspringi_settle_watched(mspring_network *network, const mspring_s
 
 bool mspringi_can_settle(const mspring_network *network) {
     bool can = true;
-    for (const mspringi_statics_ops *const *ops = mspringi_statics_elements; *ops; ++ops)
-        can = can && (*ops)->is_possible(network);
+    mspringi_element_walk walk = mspringi_walk_elements(network, MSPRINGI_REFRESHED_ELEMENTS);
+    while (can && mspringi_element_next(&walk))
+        can = walk.element.is_ringed;
     return can;
 }

@@ -7,11 +7,6 @@
 #include "kernels/spring_law.h"
 #include "store/springs.h"
 
-static const mspringi_reference_ops *const elements[] = {
-#define REFERENCE(table) &table,
-#include "store/features.def"
-    NULL};
-
 /// Substep, relative to the longest one that is stable in any shape.
 #define PART_OF_STABLE (1.0 / 3.0)
 
@@ -102,6 +97,7 @@ static void fill_springs(mspringi_reference *r, const mspring_network *network) 
 
 mspring_result mspringi_reference_create(mspringi_reference *reference, mspring_network *network) {
     mspringi_reference made = {
+        .network = network,
         .particle_count = network->topology.particle_count,
         .gravity_x = (double)network->settings.gravity_x,
         .gravity_y = (double)network->settings.gravity_y,
@@ -112,8 +108,7 @@ mspring_result mspringi_reference_create(mspringi_reference *reference, mspring_
         return result;
     fill_particles(&made, network);
     fill_springs(&made, network);
-    for (const mspringi_reference_ops *const *ops = elements; *ops; ++ops)
-        (*ops)->begin(&made, network);
+    mspringi_elements_refresh(network);
     *reference = made;
     return MSPRING_OK;
 }
@@ -129,6 +124,46 @@ void mspringi_reference_clear_forces(mspringi_reference *r) {
     r->has_accelerations = false;
 }
 
+/* ----------------------------------------------------------------------------------------------------- elements */
+
+static void push_elements(const mspringi_reference *r, const double *vx, const double *vy) {
+    const mspringi_positions now = {.x = r->x, .y = r->y};
+    mspringi_element_walk walk = mspringi_walk_elements(r->network, MSPRINGI_REFRESHED_ELEMENTS);
+    while (mspringi_element_next(&walk)) {
+        const mspringi_element_ref *e = &walk.element;
+        double rate = 0.0;
+        for (uint32_t i = 0; e->damping > 0.0 && i < e->count; ++i) {
+            const mspringi_vector g = e->law->gradient(e, &now, i);
+            rate += g.x * vx[e->corners[i].particle] + g.y * vy[e->corners[i].particle];
+        }
+        const double force = e->law->force(e->of, e->law->size(e, &now)) - e->damping * rate;
+        for (uint32_t i = 0; i < e->count; ++i) {
+            const mspringi_vector g = e->law->gradient(e, &now, i);
+            const uint32_t p = e->corners[i].particle;
+            r->ax[p] += r->inverse_mass[p] * force * g.x;
+            r->ay[p] += r->inverse_mass[p] * force * g.y;
+        }
+    }
+}
+
+// In c g g', the row of a corner has blocks of size c |g| |g'|, times the roots of both inverse masses.
+static void add_element_sums(const mspringi_reference *r, double *stiffness, double *damping) {
+    mspringi_element_walk walk = mspringi_walk_elements(r->network, MSPRINGI_REFRESHED_ELEMENTS);
+    while (mspringi_element_next(&walk)) {
+        const mspringi_element_ref *e = &walk.element;
+        const mspringi_element_bound bound = e->law->bound(e->of);
+        double all = 0.0;
+        for (uint32_t i = 0; i < e->count; ++i)
+            all += (double)e->corners[i].reach * sqrt(r->inverse_mass[e->corners[i].particle]);
+        for (uint32_t i = 0; i < e->count; ++i) {
+            const uint32_t p = e->corners[i].particle;
+            const double weight = (double)e->corners[i].reach * sqrt(r->inverse_mass[p]) * all;
+            stiffness[p] += bound.stiffness * weight + 2.0 * bound.rest * r->inverse_mass[p];
+            damping[p] += e->damping * weight;
+        }
+    }
+}
+
 // No eigenvalue of M^-1 K exceeds the largest row sum of its symmetric form (Gershgorin), in any shape. The same
 // holds for the dampers. The limit is h^2 K + 2 h C = 4.
 double mspringi_reference_substep(const mspringi_reference *r) {
@@ -142,8 +177,7 @@ double mspringi_reference_substep(const mspringi_reference *r) {
         damping[spring->a] += (double)spring->damping * (wa + both);
         damping[spring->b] += (double)spring->damping * (wb + both);
     }
-    for (const mspringi_reference_ops *const *ops = elements; *ops; ++ops)
-        (*ops)->bound(r, stiffness, damping);
+    add_element_sums(r, stiffness, damping);
     for (uint32_t p = 0; p < r->particle_count; ++p) {
         const double k = stiffness[p], c = damping[p] + r->global_damping, rate = c + sqrt(c * c + 4.0 * k);
         if (rate > 0.0)
@@ -177,8 +211,7 @@ static void find_accelerations(const mspringi_reference *r, const double *vx, co
         r->ax[b] -= r->inverse_mass[b] * fx;
         r->ay[b] -= r->inverse_mass[b] * fy;
     }
-    for (const mspringi_reference_ops *const *ops = elements; *ops; ++ops)
-        (*ops)->push(r, vx, vy);
+    push_elements(r, vx, vy);
 }
 
 // to = from + factor * change. count includes both coordinates, which follow each other in memory.
@@ -234,7 +267,9 @@ mspringi_reference_energy mspringi_reference_measure(const mspringi_reference *r
         const double stretch = sqrt(dx * dx + dy * dy) - (double)spring->rest_length;
         energy.internal += 0.5 * (double)spring->stiffness * stretch * stretch;
     }
-    for (const mspringi_reference_ops *const *ops = elements; *ops; ++ops)
-        energy.internal += (*ops)->energy(r);
+    const mspringi_positions now = {.x = r->x, .y = r->y};
+    mspringi_element_walk walk = mspringi_walk_elements(r->network, MSPRINGI_REFRESHED_ELEMENTS);
+    while (mspringi_element_next(&walk))
+        energy.internal += walk.element.law->energy(walk.element.of, walk.element.law->size(&walk.element, &now));
     return energy;
 }

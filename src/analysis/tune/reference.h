@@ -10,7 +10,7 @@
 #ifndef MSPRINGI_REFERENCE_H
 #define MSPRINGI_REFERENCE_H
 
-#include "store/network.h"
+#include "store/element_laws.h"
 
 typedef struct mspringi_reference_spring {
     uint32_t a, b;
@@ -26,7 +26,7 @@ typedef struct mspringi_reference {
     double *held_x, *held_y;                 ///< accelerations from external forces, m/s^2
     double *extrapolated_x, *extrapolated_y; ///< velocities extrapolated to the end of a substep, m/s
     mspringi_reference_spring *springs;      ///< those with stiffness or damping
-    const struct mspringi_areas *areas;      ///< of the network, which outlives the reference
+    const mspring_network *network;          ///< of which the elements are; it outlives the reference
     double gravity_x, gravity_y, global_damping;
     bool has_accelerations; ///< ax and ay are up to date
 } mspringi_reference;
@@ -57,18 +57,5 @@ typedef struct mspringi_reference_energy {
     double internal, potential;
 } mspringi_reference_energy;
 mspringi_reference_energy mspringi_reference_measure(const mspringi_reference *reference);
-
-/// An element: forces between particles besides springs. Begin with those of a network; add its part: to the
-/// accelerations at these velocities; to the row sums of M^-1 K and of the dampers, in the shape that it was added
-/// in; return its elastic energy.
-typedef struct mspringi_reference_ops {
-    void (*begin)(mspringi_reference *reference, mspring_network *network);
-    void (*push)(const mspringi_reference *reference, const double *vx, const double *vy);
-    void (*bound)(const mspringi_reference *reference, double *stiffness, double *damping);
-    double (*energy)(const mspringi_reference *reference);
-} mspringi_reference_ops;
-
-#define REFERENCE(table) extern const mspringi_reference_ops table;
-#include "store/features.def"
 
 #endif

@@ -48,44 +48,24 @@ mspringi_area mspringi_angle_make(float stiffness, float damping, double rest_an
     return made;
 }
 
-static double angle_size(const mspring_network *network, const mspringi_area *angle) {
-    const uint32_t middle = mspringi_area_slot(network, angle, 1);
-    const arm u = arm_of(network, mspringi_area_slot(network, angle, 0), middle),
-              w = arm_of(network, middle, mspringi_area_slot(network, angle, 2));
-    return size_by(angle, &u, &w);
-}
-
 double mspringi_angle_size_by(const mspringi_area *angle, const double u[2], const double w[2]) {
     const arm one = {u[0], u[1], u[0] * u[0] + u[1] * u[1]}, other = {w[0], w[1], w[0] * w[0] + w[1] * w[1]};
     return size_by(angle, &one, &other);
 }
 
-double mspringi_angle_torque(const mspringi_area *angle, double size) {
+double mspringi_angle_torque(const void *of, double size) {
+    const mspringi_area *angle = of;
     return -(double)angle->stiffness * size * sqrt(fmax(1.0 - 0.25 * size * size, 0.0));
 }
 
-double mspringi_angle_stiffness(const mspringi_area *angle, double size) {
+double mspringi_angle_stiffness(const void *of, double size) {
+    const mspringi_area *angle = of;
     return (double)angle->stiffness * fmax(1.0 - 0.5 * size * size, 0.0);
 }
 
-double mspringi_angle_energy(const mspringi_area *angle, double size) {
+double mspringi_angle_energy(const void *of, double size) {
+    const mspringi_area *angle = of;
     return 0.5 * (double)angle->stiffness * size * size;
-}
-
-static mspringi_area_end angle_end_of(const mspring_network *network, const mspringi_area *angle, uint32_t corner) {
-    const uint32_t middle = mspringi_area_slot(network, angle, 1);
-    const uint32_t ends[2] = {mspringi_area_slot(network, angle, 0), mspringi_area_slot(network, angle, 2)};
-    mspringi_area_end all[3] = {{ends[0], 0.0, 0.0}, {middle, 0.0, 0.0}, {ends[1], 0.0, 0.0}};
-    const arm arms[2] = {arm_of(network, ends[0], middle), arm_of(network, middle, ends[1])};
-    for (int i = 0; i < 2; ++i) {
-        if (!(arms[i].square > 0.0))
-            continue;
-        all[2 * i].x = -arms[i].y / arms[i].square;
-        all[2 * i].y = arms[i].x / arms[i].square;
-        all[1].x -= all[2 * i].x;
-        all[1].y -= all[2 * i].y;
-    }
-    return all[corner];
 }
 
 // By how much the end of an arm is ahead of its beginning, turning to the left, rad/s.
@@ -126,6 +106,101 @@ static double angle_between_arms(const mspring_network *network, const mspringi_
                                   mspringi_area_slot(network, angle, 1), mspringi_area_slot(network, angle, 2));
 }
 
-const mspringi_angle_law mspringi_law_of_angles = {
-    angle_size,   mspringi_angle_size_by, mspringi_angle_torque, mspringi_angle_stiffness, mspringi_angle_energy,
-    angle_end_of, push_corners,           angle_between_arms};
+/* -------------------------------------------------------------------------------------------------- as elements */
+
+static arm arm_at(const mspringi_element_ref *e, const mspringi_positions *at, uint32_t from) {
+    const mspringi_vector along = mspringi_way_of(at, e, from, from + 1);
+    return (arm){along.x, along.y, along.x * along.x + along.y * along.y};
+}
+
+// Gradient of its direction at its far end.
+static mspringi_vector gradient_of_arm(arm of) {
+    return of.square > 0.0 ? (mspringi_vector){-of.y / of.square, of.x / of.square} : (mspringi_vector){0.0, 0.0};
+}
+
+static double angle_size(const mspringi_element_ref *e, const mspringi_positions *at) {
+    const arm u = arm_at(e, at, 0), w = arm_at(e, at, 1);
+    return size_by(e->of, &u, &w);
+}
+
+static mspringi_vector angle_gradient(const mspringi_element_ref *e, const mspringi_positions *at,
+                                      uint32_t corner) {
+    if (corner != 1)
+        return gradient_of_arm(arm_at(e, at, corner / 2));
+    const mspringi_vector a = gradient_of_arm(arm_at(e, at, 0)), c = gradient_of_arm(arm_at(e, at, 1));
+    return (mspringi_vector){-a.x - c.x, -a.y - c.y};
+}
+
+// Turn of an arm by a move. False if its length is 0 before or after.
+static bool turn_by(const arm *before, mspringi_vector by, mspringi_rotation *turn) {
+    const double x = before->x + by.x, y = before->y + by.y, lengths = sqrt(before->square) * sqrt(x * x + y * y);
+    if (!(lengths > 0.0))
+        return false;
+    turn->cosine = (before->x * x + before->y * y) / lengths;
+    turn->sine = (before->x * by.y - before->y * by.x) / lengths;
+    return true;
+}
+
+// With e the change of the angle: k (cos d - cos(d + e)) = k (cos d (1 - cos e) + sin d sin e). The difference of
+// the energies would be lost in rounding.
+static double angle_energy_change(const mspringi_element_ref *e, const mspringi_positions *at,
+                                  const mspringi_move *move, double *sum) {
+    const mspringi_area *angle = e->of;
+    mspringi_rotation of_u, of_w;
+    const arm u = arm_at(e, at, 0), w = arm_at(e, at, 1);
+    const double z = size_by(angle, &u, &w), k = (double)angle->stiffness;
+    if (!turn_by(&u, mspringi_move_of(move, e, 0, 1), &of_u) ||
+        !turn_by(&w, mspringi_move_of(move, e, 1, 2), &of_w))
+        return -mspringi_angle_energy(angle, z); // an arm would vanish: too far
+    const double sine = of_w.sine * of_u.cosine - of_w.cosine * of_u.sine;
+    const double cosine = of_w.cosine * of_u.cosine + of_w.sine * of_u.sine;
+    const double beyond = cosine > 0.0 ? sine * sine / (1.0 + cosine) : 1.0 - cosine;
+    const double torque = -mspringi_angle_torque(angle, z);
+    *sum += k * beyond + fabs(torque) * (fabs(of_w.sine) + fabs(of_u.sine));
+    return k * (1.0 - 0.5 * z * z) * beyond + torque * sine;
+}
+
+// Of an arm: A + S or C + S, and a part of the second derivative from its rotation.
+static mspringi_block block_of_arm(mspringi_vector g, double k, mspringi_block s, double part) {
+    const double across = 2.0 * part * g.x * g.y;
+    return (mspringi_block){k * (g.x * g.x + s.xx) - across,
+                            k * (g.x * g.y + s.xy) + part * (g.x * g.x - g.y * g.y),
+                            k * (g.y * g.y + s.yy) + across};
+}
+
+static void angle_blocks(const mspringi_element_ref *e, const mspringi_positions *at, bool clamped,
+                         mspringi_block *blocks) {
+    const arm u = arm_at(e, at, 0), w = arm_at(e, at, 1);
+    const mspringi_vector a = gradient_of_arm(u), c = gradient_of_arm(w);
+    const double z = size_by(e->of, &u, &w), k = mspringi_angle_stiffness(e->of, z);
+    const double torque = clamped ? 0.0 : mspringi_angle_torque(e->of, z);
+    const mspringi_block s = {a.x * c.x, 0.5 * (a.x * c.y + a.y * c.x), a.y * c.y};
+    blocks[0] = block_of_arm(a, k, s, torque);
+    blocks[1] = block_of_arm(c, k, s, -torque);
+    blocks[2] = (mspringi_block){-k * s.xx, -k * s.xy, -k * s.yy};
+}
+
+// Along an arm 1 / length^2.
+static double angle_rest(const mspringi_element_ref *e, const mspringi_positions *at, uint32_t side) {
+    if (side == 2)
+        return 0.0;
+    const mspringi_vector g = gradient_of_arm(arm_at(e, at, side));
+    return g.x * g.x + g.y * g.y;
+}
+
+static mspringi_element_bound angle_bound(const void *of) {
+    const mspringi_area *angle = of;
+    return (mspringi_element_bound){(double)angle->stiffness, 0.0};
+}
+
+const mspringi_angle_law mspringi_law_of_angles = {{.size = angle_size,
+                                                    .gradient = angle_gradient,
+                                                    .force = mspringi_angle_torque,
+                                                    .stiffness = mspringi_angle_stiffness,
+                                                    .energy = mspringi_angle_energy,
+                                                    .energy_change = angle_energy_change,
+                                                    .blocks = angle_blocks,
+                                                    .rest = angle_rest,
+                                                    .bound = angle_bound},
+                                                   push_corners,
+                                                   angle_between_arms};

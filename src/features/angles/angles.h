@@ -13,6 +13,14 @@
 /// Cosine and sine of the angle are products of u and w, those of the rest angle are kept. So there is no function
 /// of libm, and no jump at half a turn. An arm of length 0 has no direction: then there is no torque.
 ///
+/// When it settles, with p and q the displacements of a and c relative to b, its stiffness is
+///
+///     (g_a . p + g_c . q)^2 = p' (A + S) p + q' (C + S) q - (p - q)' S (p - q),
+///     A = g_a g_a',  C = g_c g_c',  S = (g_a g_c' + g_c g_a') / 2
+///
+/// so three blocks between pairs of its particles. They are symmetric: the antisymmetric part of g_a g_c' is left
+/// out. It scales with the square of the angle's sine: strongly bent beams take more iterations.
+///
 /// An angle is kept among the areas, with three corners and no spring on its third side.
 ///
 /// SPDX-License-Identifier: MIT
@@ -28,9 +36,9 @@ void mspringi_angle_set_rest(mspringi_area *angle, double rest_angle);
 /// z by the ways along both arms.
 double mspringi_angle_size_by(const mspringi_area *angle, const double u[2], const double w[2]);
 
-double mspringi_angle_torque(const mspringi_area *angle, double size);
-double mspringi_angle_stiffness(const mspringi_area *angle, double size);
-double mspringi_angle_energy(const mspringi_area *angle, double size);
+double mspringi_angle_torque(const void *angle, double size);
+double mspringi_angle_stiffness(const void *angle, double size);
+double mspringi_angle_energy(const void *angle, double size);
 
 /// The angle between three slots now, rad; 0 if there is none.
 double mspringi_angle_between(const mspring_network *network, uint32_t a, uint32_t b, uint32_t c);

@@ -1,4 +1,4 @@
-/// Areas and angles of a network as others ask for them: builders that it is appended to, groups, its energy.
+/// Areas and angles of a network as others ask for them: builders that it is appended to, and groups.
 #include "builder/builder.h"
 #include "features/areas/areas.h"
 #include "store/feature.h"
@@ -44,12 +44,4 @@ mspring_result mspringi_areas_check_groups(mspring_network *network, const uint3
                                      a->list[i].is_angle ? "angle" : "area", (unsigned)a->list[i].id);
     }
     return MSPRING_OK;
-}
-
-void mspringi_areas_add_energy(const mspring_network *network, double *sum) {
-    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
-        const mspringi_area *area = &network->areas->list[i];
-        if (!mspringi_area_is_open(network, area))
-            *sum += mspringi_area_energy(area, mspringi_area_size(network, area));
-    }
 }

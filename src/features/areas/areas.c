@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "base/shoelace.h"
 #include "builder/builder.h"
 #include "store/changed.h"
 #include "store/feature.h"
@@ -10,150 +9,29 @@
 #include "store/springs.h"
 #include "store/store.h"
 
-/// Part of the rest area below which the pressure of a gas no longer rises.
-#define SMALLEST 0.05
-
-/* --------------------------------------------------------------------------------------------------------- law */
-
 // The table that there is, or NULL.
 #define ANGLES(table) &table +
 const mspringi_angle_law *const mspringi_angles =
 #include "store/features.def"
     0;
 
+mspringi_element_ref mspringi_area_element(const mspring_network *network, const mspringi_area *area) {
+    return (mspringi_element_ref){
+        .law = area->is_angle ? &mspringi_angles->of_element : &mspringi_law_of_areas,
+        .of = area,
+        .corners = network->areas->corners + area->first,
+        .count = area->count,
+        .id = area->id,
+        .damping = (double)area->damping,
+        .is_ringed = area->is_ringed,
+        .owns_sides = area->is_angle,
+        .is_paired = area->count == 4,
+    };
+}
+
 double mspringi_area_size(const mspring_network *network, const mspringi_area *area) {
-    if (area->is_angle)
-        return mspringi_angles->size(network, area);
-    const mspringi_state *s = &network->state;
-    const uint32_t first = mspringi_area_slot(network, area, 0);
-    mspringi_shoelace polygon = {0};
-    for (uint32_t i = 1; i < area->count; ++i) {
-        const uint32_t slot = mspringi_area_slot(network, area, i);
-        mspringi_shoelace_add(&polygon, mspringi_x_of(s, slot) - mspringi_x_of(s, first),
-                              mspringi_y_of(s, slot) - mspringi_y_of(s, first));
-    }
-    return 0.5 * polygon.twice;
-}
-
-double mspringi_area_pressure(const mspringi_area *area, double size) {
-    if (area->is_angle)
-        return mspringi_angles->torque(area, size);
-    const double share = size / area->rest_area, fill = (double)area->fill, pressure = (double)area->pressure;
-    return area->kind == MSPRING_AREA_GAS ? pressure * fill / fmax(share, SMALLEST)
-                                          : pressure + (double)area->stiffness * (fill - share);
-}
-
-double mspringi_area_stiffness(const mspringi_area *area, double size) {
-    if (area->is_angle)
-        return mspringi_angles->stiffness(area, size);
-    const double share = size / area->rest_area;
-    if (area->kind == MSPRING_AREA_ELASTIC)
-        return (double)area->stiffness / area->rest_area;
-    return share > SMALLEST ? mspringi_area_pressure(area, size) / size : 0.0;
-}
-
-// ln m = 2 artanh((m - 1) / (m + 1)), by that quotient, of at most 0.1716 in size. Not every host has libm's.
-static double logarithm_by(double quotient) {
-    double sum = 0.0;
-    for (int power = 21; power > 0; power -= 2)
-        sum = sum * quotient * quotient + 2.0 / (double)power;
-    return sum * quotient;
-}
-
-// Of a number > 0, by that of a part of it between sqrt(1 / 2) and sqrt(2).
-static double logarithm(double x) {
-    const double ln2 = 0.693147180559945309417;
-    double powers = 0.0;
-    for (; x > 1.4142135623730951 && x < INFINITY; x *= 0.5)
-        powers += 1.0;
-    for (; x < 0.70710678118654752; x *= 2.0)
-        powers -= 1.0;
-    return powers * ln2 + logarithm_by((x - 1.0) / (x + 1.0));
-}
-
-double mspringi_area_energy(const mspringi_area *area, double size) {
-    if (area->is_angle)
-        return mspringi_angles->energy(area, size);
-    const double share = size / area->rest_area, fill = (double)area->fill, lacks = fill - share;
-    const double pressure = (double)area->pressure * area->rest_area;
-    if (area->kind == MSPRING_AREA_ELASTIC)
-        return lacks * (0.5 * (double)area->stiffness * area->rest_area * lacks + pressure);
-    const double down_to = fmax(share, SMALLEST);
-    return pressure * fill * ((down_to - share) / SMALLEST - logarithm(down_to / fill));
-}
-
-double mspringi_area_energy_change(const mspringi_area *area, double size, double growth) {
-    const double pressure = mspringi_area_pressure(area, size), part = growth / size, after = size + growth;
-    if (area->kind == MSPRING_AREA_ELASTIC)
-        return growth * (0.5 * (double)area->stiffness / area->rest_area * growth - pressure);
-    if (!(fabs(part) < 0.3) || !(fmin(size, after) > SMALLEST * area->rest_area))
-        return mspringi_area_energy(area, after) - mspringi_area_energy(area, size);
-    return -pressure * size * logarithm_by(part / (2.0 + part));
-}
-
-mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner) {
-    if (area->is_angle)
-        return mspringi_angles->end_of(network, area, corner);
-    const mspringi_state *s = &network->state;
-    const uint32_t before = mspringi_area_slot(network, area, corner > 0 ? corner - 1 : area->count - 1);
-    const uint32_t behind = mspringi_area_slot(network, area, corner + 1 < area->count ? corner + 1 : 0);
-    return (mspringi_area_end){.slot = mspringi_area_slot(network, area, corner),
-                               .x = 0.5 * (mspringi_y_of(s, behind) - mspringi_y_of(s, before)),
-                               .y = 0.5 * (mspringi_x_of(s, before) - mspringi_x_of(s, behind))};
-}
-
-// mspringi_area_push() for the four corners of a cell, whose coordinates stay in registers.
-static void push_cell(const mspringi_state *s, const mspringi_area *area, const mspringi_corner *corners,
-                      double share, mspringi_field field) {
-    double x[4], y[4];
-    mspringi_shoelace polygon = {0};
-    for (int i = 0; i < 4; ++i) {
-        x[i] = mspringi_x_of(s, corners[i].slot);
-        y[i] = mspringi_y_of(s, corners[i].slot);
-    }
-    for (int i = 1; i < 4; ++i)
-        mspringi_shoelace_add(&polygon, x[i] - x[0], y[i] - y[0]);
-    const double half = 0.5 * share * mspringi_area_pressure(area, 0.5 * polygon.twice);
-    for (int i = 0; i < 4; ++i) {
-        const int before = (i + 3) % 4, next = (i + 1) % 4;
-        field.x[corners[i].slot] += mspringi_bounded(half * (y[next] - y[before]));
-        field.y[corners[i].slot] += mspringi_bounded(half * (x[before] - x[next]));
-    }
-}
-
-void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
-                        mspringi_field field) {
-    if (area->is_angle) {
-        mspringi_angles->push(network, area, share, field);
-        return;
-    }
-    const mspringi_state *s = &network->state;
-    const mspringi_corner *corners = network->areas->corners + area->first;
-    if (area->count == 4) {
-        push_cell(s, area, corners, share, field);
-        return;
-    }
-    const uint32_t first = corners[0].slot, last = corners[area->count - 1].slot;
-    const double first_x = mspringi_x_of(s, first), first_y = mspringi_y_of(s, first);
-    const double last_x = mspringi_x_of(s, last), last_y = mspringi_y_of(s, last);
-    mspringi_shoelace polygon = {0};
-    for (uint32_t i = 1; i < area->count; ++i)
-        mspringi_shoelace_add(&polygon, mspringi_x_of(s, corners[i].slot) - first_x,
-                              mspringi_y_of(s, corners[i].slot) - first_y);
-    const double half = 0.5 * share * mspringi_area_pressure(area, 0.5 * polygon.twice);
-    double x = first_x, y = first_y, before_x = last_x, before_y = last_y;
-    for (uint32_t i = 0; i < area->count; ++i) {
-        const bool is_last = i + 1 == area->count;
-        const uint32_t slot = corners[i].slot;
-        const double next_x = is_last ? first_x : mspringi_x_of(s, corners[i + 1].slot);
-        const double next_y = is_last ? first_y : mspringi_y_of(s, corners[i + 1].slot);
-        field.x[slot] += mspringi_bounded(half * (next_y - before_y));
-        field.y[slot] += mspringi_bounded(half * (before_x - next_x));
-        before_x = x;
-        before_y = y;
-        x = next_x;
-        y = next_y;
-    }
+    const mspringi_element_ref e = mspringi_area_element(network, area);
+    return mspringi_element_size(network, &e);
 }
 
 /* ----------------------------------------------------------------------------------------------------- outline */
@@ -197,41 +75,6 @@ static mspring_id spring_between(const mspring_network *network, mspring_id a, m
         found = found == MSPRING_NONE ? s : found;
     }
     return found;
-}
-
-/* ------------------------------------------------------------------------------------------------------ bounds */
-
-// In the shape that it was added in g . u is the sum of g_i . (u_i - u'), whatever u' is, as all g add up to 0.
-// With the mean of u by the sizes |g| for u', (g . u)^2 is at most the sum of |g_i| |g_j| (u_i - u_j)^2 over all
-// pairs: c times that is what springs of stiffness c |g_i| |g_j| between them would have. Of four corners, those
-// opposite each other have opposite g, and two such pairs are enough. The part of the tangent of the size of the
-// pressure is at most that of springs of half of it along the outline.
-void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums, float *dampings) {
-    const mspringi_corner *corners = network->areas->corners + area->first;
-    const bool is_gas = area->kind == MSPRING_AREA_GAS;
-    const double fill = (double)area->fill, pressure = fabs((double)area->pressure);
-    const double stiffness = (is_gas ? pressure * fill : (double)area->stiffness) / area->rest_area;
-    const double outline = is_gas ? pressure * fill : pressure + (double)area->stiffness * fabs(fill - 1.0);
-    double all = 0.0;
-    for (uint32_t i = 0; i < area->count; ++i)
-        all += (double)corners[i].reach;
-    for (uint32_t i = 0; i < area->count; ++i) {
-        const double reach = (double)corners[i].reach, others = area->count == 4 ? 0.5 * all : all - reach;
-        const uint32_t slot = mspringi_area_slot(network, area, i);
-        sums[slot] += mspringi_bounded(stiffness * reach * others + outline);
-        dampings[slot] += mspringi_bounded((double)area->damping * reach * others);
-    }
-}
-
-double mspringi_area_largest(const mspring_network *network, const mspringi_area *area, const float *sums) {
-    double first = 0.0, second = 0.0;
-    for (uint32_t i = 0; i < area->count; ++i) {
-        const uint32_t slot = mspringi_area_slot(network, area, i);
-        const double quotient = (double)sums[slot] * (double)network->inverse_mass[slot];
-        second = fmax(second, fmin(first, quotient));
-        first = fmax(first, quotient);
-    }
-    return first + second;
 }
 
 /* ---------------------------------------------------------------------------------------------------- the list */
@@ -281,9 +124,10 @@ void mspringi_areas_append(mspring_network *network, const mspringi_area *area, 
             .particle = particles[i],
             .spring = area->is_angle && i == 2 ? MSPRING_NONE : spring_between(network, particles[i], next)};
     }
+    const mspringi_element_ref e = mspringi_area_element(network, made);
     for (uint32_t i = 0; i < area->count; ++i) {
-        const mspringi_area_end end = mspringi_area_end_of(network, made, i);
-        a->corners[made->first + i].reach = mspringi_bounded(sqrt(end.x * end.x + end.y * end.y));
+        const mspringi_vector g = e.law->gradient(&e, &(mspringi_positions){.network = network}, i);
+        a->corners[made->first + i].reach = mspringi_bounded(sqrt(g.x * g.x + g.y * g.y));
     }
     a->changes++;
 }
@@ -409,14 +253,18 @@ static double find_longest(mspring_network *network, bool of_all) {
     mspringi_areas *a = network->areas;
     double largest = 0.0, damped = 0.0;
     mspringi_field_clear(network, network->forces.inner);
-    for (size_t i = 0; i < a->count; ++i)
-        if (of_all || !a->list[i].is_ringed)
-            mspringi_area_weigh(network, &a->list[i], network->forces.inner.x, network->forces.inner.y);
-    for (size_t i = 0; i < a->count; ++i)
-        if (of_all || !a->list[i].is_ringed) {
-            largest = fmax(largest, mspringi_area_largest(network, &a->list[i], network->forces.inner.x));
-            damped = fmax(damped, mspringi_area_largest(network, &a->list[i], network->forces.inner.y));
+    for (size_t i = 0; i < a->count; ++i) {
+        const mspringi_element_ref e = mspringi_area_element(network, &a->list[i]);
+        if (of_all || !e.is_ringed)
+            mspringi_element_weigh(network, &e, network->forces.inner.x, network->forces.inner.y);
+    }
+    for (size_t i = 0; i < a->count; ++i) {
+        const mspringi_element_ref e = mspringi_area_element(network, &a->list[i]);
+        if (of_all || !e.is_ringed) {
+            largest = fmax(largest, mspringi_element_largest(network, &e, network->forces.inner.x));
+            damped = fmax(damped, mspringi_element_largest(network, &e, network->forces.inner.y));
         }
+    }
     // h^2 largest + 2 h damped = 4
     return largest + damped > 0.0 ? 4.0 / (damped + sqrt(damped * damped + 4.0 * largest)) : INFINITY;
 }
@@ -501,3 +349,31 @@ mspring_result mspringi_areas_of_builder(mspring_network *network, const mspring
 bool mspringi_areas_act(const mspring_network *network) {
     return mspringi_area_count(network) > 0;
 }
+
+/* ------------------------------------------------------------------------------------------------- as elements */
+
+static bool next_element(mspringi_element_walk *walk) {
+    const mspring_network *network = walk->network;
+    while (walk->next < mspringi_area_count(network)) {
+        const mspringi_area *area = &network->areas->list[walk->next++];
+        if ((walk->which == MSPRINGI_CLOSED_ELEMENTS && mspringi_area_is_open(network, area)) ||
+            (walk->which == MSPRINGI_REFRESHED_ELEMENTS && area->is_open))
+            continue;
+        walk->element = mspringi_area_element(network, area);
+        return true;
+    }
+    return false;
+}
+
+static void refresh(mspring_network *network) {
+    if (mspringi_area_count(network) > 0)
+        mspringi_areas_refresh(network);
+}
+
+// In linear systems, those without springs all around have the forces of the start of a substep.
+static double longest_of_unringed(const mspring_network *network) {
+    const mspringi_areas *a = network->areas;
+    return a && a->unringed > 0 ? a->longest : INFINITY;
+}
+
+const mspringi_element_list mspringi_list_of_areas = {next_element, refresh, longest_of_unringed};

@@ -17,18 +17,10 @@
 #ifndef MSPRINGI_AREAS_H
 #define MSPRINGI_AREAS_H
 
-#include <float.h>
 #include <math.h>
 
 #include "builder/builder_areas.h"
-#include "store/network.h"
-
-typedef struct mspringi_corner {
-    mspring_id particle;
-    mspring_id spring; ///< to the next corner when the area was added; MSPRING_NONE: there was none
-    uint32_t slot;     ///< of the particle; see mspringi_areas_refresh()
-    float reach;       ///< by how much the area grew then where the particle moved outwards, m
-} mspringi_corner;
+#include "store/element_laws.h"
 
 /// Counters of edits, see mspringi_edits.
 typedef struct mspringi_areas_seen {
@@ -103,43 +95,26 @@ void mspringi_area_tell(mspring_network *network, uint32_t edit, const mspringi_
 bool mspringi_area_is_open(const mspring_network *network, const mspringi_area *area);
 /// A, m^2.
 double mspringi_area_size(const mspring_network *network, const mspringi_area *area);
-/// p, and c, in N/m and N/m^3, by A.
-double mspringi_area_pressure(const mspringi_area *area, double size);
-double mspringi_area_stiffness(const mspringi_area *area, double size);
-double mspringi_area_energy(const mspringi_area *area, double size);
-/// By how much the energy changes where the area grows, exact where that is little, too.
-double mspringi_area_energy_change(const mspringi_area *area, double size, double growth);
+/// p, and c, in N/m and N/m^3, by A; of no angle.
+double mspringi_area_pressure(const void *area, double size);
+double mspringi_area_stiffness(const void *area, double size);
+double mspringi_area_energy(const void *area, double size);
+/// The area or angle as an element, but for its number.
+mspringi_element_ref mspringi_area_element(const mspring_network *network, const mspringi_area *area);
 
 static inline uint32_t mspringi_area_slot(const mspring_network *network, const mspringi_area *area,
                                           uint32_t corner) {
     return network->topology.slot_of_particle[network->areas->corners[area->first + corner].particle];
 }
 
-/// Within what a float can be: the guard finds what is that large.
-static inline float mspringi_bounded(double value) {
-    const double most = (double)FLT_MAX, above = value > -most ? value : -most; // -most if it is no number
-    return (float)(above < most ? above : most);
-}
-
 /// Add the forces of an area, or a share of them, to a field.
 void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
                         mspringi_field field);
 
-/// A corner's slot, and its gradient now.
-typedef struct mspringi_area_end {
-    uint32_t slot;
-    double x, y;
-} mspringi_area_end;
-mspringi_area_end mspringi_area_end_of(const mspring_network *network, const mspringi_area *area, uint32_t corner);
-
-/// What the functions of these names do where the area is an angle; size_by: by the ways along both arms.
+/// What the law of an area and of an angle is, and what functions of these names do where the area is an angle.
+extern const mspringi_element_law mspringi_law_of_areas;
 typedef struct mspringi_angle_law {
-    double (*size)(const mspring_network *network, const mspringi_area *angle);
-    double (*size_by)(const mspringi_area *angle, const double u[2], const double w[2]);
-    double (*torque)(const mspringi_area *angle, double size);
-    double (*stiffness)(const mspringi_area *angle, double size);
-    double (*energy)(const mspringi_area *angle, double size);
-    mspringi_area_end (*end_of)(const mspring_network *network, const mspringi_area *angle, uint32_t corner);
+    mspringi_element_law of_element;
     void (*push)(const mspring_network *network, const mspringi_area *angle, double share, mspringi_field field);
     double (*between_arms)(const mspring_network *network, const mspringi_area *angle); ///< rad
 } mspringi_angle_law;
@@ -147,26 +122,7 @@ typedef struct mspringi_angle_law {
 #define ANGLES(table) extern const mspringi_angle_law table;
 #include "store/features.def"
 
-struct mspringi_statics;
-/// Add an angle, whose pairs become edges; add its part, as mspringi_statics_ops do
-/// (analysis/settle/equilibrium.h).
-typedef struct mspringi_angle_statics {
-    void (*add)(struct mspringi_statics *statics, const mspringi_areas *all, const mspringi_area *angle);
-    double (*forces)(struct mspringi_statics *statics, const mspringi_area *angle);
-    double (*change)(const struct mspringi_statics *statics, const mspringi_area *angle, double t, double *size);
-    void (*stiffness)(struct mspringi_statics *statics, const mspringi_area *angle, bool clamped);
-} mspringi_angle_statics;
-
-#define ANGLE_STATICS(table) extern const mspringi_angle_statics table;
-#include "store/features.def"
-
 /// NULL: a build without angles, so no area is one.
 extern const mspringi_angle_law *const mspringi_angles;
-
-/// The sums of the weights of springs that bound an area in the shape that it was added in, N/m, added to those by
-/// slot; and those of dampers that bound that of an angle, N s/m.
-void mspringi_area_weigh(const mspring_network *network, const mspringi_area *area, float *sums, float *dampings);
-/// The largest sum of such quotients, sums times inverse masses, of two corners that share a weight.
-double mspringi_area_largest(const mspring_network *network, const mspringi_area *area, const float *sums);
 
 #endif

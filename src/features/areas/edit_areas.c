@@ -410,7 +410,8 @@ mspring_result mspringi_areas_measure(const mspring_network *network, bool is_an
         if (sizes)
             sizes[found - 1] = is_angle ? mspringi_angles->between_arms(network, a) : size;
         if (pressures)
-            pressures[found - 1] = mspringi_area_is_open(network, a) ? 0.0 : mspringi_area_pressure(a, size);
+            pressures[found - 1] =
+                mspringi_area_is_open(network, a) ? 0.0 : mspringi_area_element(network, a).law->force(a, size);
     }
     *count = found;
     return MSPRING_OK;

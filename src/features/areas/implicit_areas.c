@@ -111,7 +111,8 @@ static double energy_above_0(const mspring_network *network, const mspringi_area
     const double pressure = fabs((double)area->pressure), stiffness = (double)area->stiffness;
     const double lowest = stiffness > 0.0 ? 0.5 * pressure * pressure / stiffness : 8.0 * pressure;
     const double fill = area->kind == MSPRING_AREA_GAS ? (double)area->fill : 1.0;
-    return mspringi_area_energy(area, mspringi_area_size(network, area)) + lowest * fill * area->rest_area;
+    const mspringi_element_ref e = mspringi_area_element(network, area);
+    return mspringi_element_energy(network, &e) + lowest * fill * area->rest_area;
 }
 
 static void add_energy(const mspring_network *network) {
