@@ -89,7 +89,7 @@ mspring_result mspring_network_energy(const mspring_network *network, double *ki
         if (network->tested.nominal)
             elastic_sum += hardening_energy(network, i, (double)r.stiffness);
     }
-    mspringi_element_walk walk = mspringi_walk_elements(network, MSPRINGI_CLOSED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(network);
     while (elastic && mspringi_element_next(&walk))
         elastic_sum += mspringi_element_energy(network, &walk.element);
     if (kinetic)

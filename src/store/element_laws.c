@@ -7,6 +7,37 @@ static const mspringi_element_list *const lists[] = {
 #include "store/features.def"
     NULL};
 
+mspringi_vector mspringi_way_between(const mspringi_positions *at, mspring_id from, mspring_id to) {
+    if (at->network) {
+        const mspringi_state *s = &at->network->state;
+        const uint32_t a = at->network->topology.slot_of_particle[from],
+                       b = at->network->topology.slot_of_particle[to];
+        return (mspringi_vector){mspringi_x_of(s, b) - mspringi_x_of(s, a),
+                                 mspringi_y_of(s, b) - mspringi_y_of(s, a)};
+    }
+    mspringi_vector way = {at->x[to] - at->x[from], at->y[to] - at->y[from]};
+    if (at->moved_x) {
+        way.x += at->moved_x[to] - at->moved_x[from];
+        way.y += at->moved_y[to] - at->moved_y[from];
+    }
+    return way;
+}
+
+const mspringi_positions *mspringi_gather(mspringi_gathered *room, const mspringi_positions *all,
+                                          const mspringi_element_ref *e) {
+    if (all->moved_x || e->count > sizeof room->corners / sizeof room->corners[0])
+        return all;
+    for (uint32_t i = 0; all->network && i < e->count; ++i) {
+        const uint32_t slot = mspringi_slot_of_corner(all->network, e, i);
+        const mspringi_state *s = &all->network->state;
+        room->corners[i] = (mspringi_vector){mspringi_x_of(s, slot), mspringi_y_of(s, slot)};
+    }
+    for (uint32_t i = 0; !all->network && i < e->count; ++i)
+        room->corners[i] = (mspringi_vector){all->x[e->corners[i].particle], all->y[e->corners[i].particle]};
+    room->at.corners = room->corners;
+    return &room->at;
+}
+
 bool mspringi_element_next(mspringi_element_walk *walk) {
     for (; lists[walk->list]; ++walk->list, walk->next = 0) {
         if (!lists[walk->list]->next(walk))
@@ -19,7 +50,7 @@ bool mspringi_element_next(mspringi_element_walk *walk) {
 }
 
 bool mspringi_elements_exist(const mspring_network *network) {
-    mspringi_element_walk walk = mspringi_walk_elements(network, MSPRINGI_ALL_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_all_elements(network);
     return mspringi_element_next(&walk);
 }
 
@@ -36,7 +67,9 @@ double mspringi_elements_longest(const mspring_network *network) {
 }
 
 double mspringi_element_size(const mspring_network *network, const mspringi_element_ref *e) {
-    return e->law->size(e, &(mspringi_positions){.network = network});
+    const mspringi_positions all = {.network = network};
+    mspringi_gathered room;
+    return e->law->size(e, mspringi_gather(&room, &all, e));
 }
 
 double mspringi_element_energy(const mspring_network *network, const mspringi_element_ref *e) {

@@ -39,18 +39,14 @@ typedef struct mspringi_element_ref {
     bool is_paired;  ///< four corners; those opposite each other have opposite g
 } mspringi_element_ref;
 
-/// Positions of particles: of a network, if there is one, else by particle.
+/// Positions of particles: of the corners of the element at hand, if they are gathered; else of a network, if there
+/// is one; else by particle.
 typedef struct mspringi_positions {
+    const mspringi_vector *corners;
     const mspring_network *network;
     const double *x, *y;
     const double *moved_x, *moved_y; ///< added to x and y; NULL: nothing is
 } mspringi_positions;
-
-/// Within what a float can be: the guard finds what is that large.
-static inline float mspringi_bounded(double value) {
-    const double most = (double)FLT_MAX, above = value > -most ? value : -most; // -most if it is no number
-    return (float)(above < most ? above : most);
-}
 
 static inline uint32_t mspringi_slot_of_corner(const mspring_network *network, const mspringi_element_ref *e,
                                                uint32_t corner) {
@@ -58,21 +54,28 @@ static inline uint32_t mspringi_slot_of_corner(const mspring_network *network, c
 }
 
 /// The way from one corner to another.
+mspringi_vector mspringi_way_between(const mspringi_positions *at, mspring_id from, mspring_id to);
 static inline mspringi_vector mspringi_way_of(const mspringi_positions *at, const mspringi_element_ref *e,
                                               uint32_t from, uint32_t to) {
-    const uint32_t a = e->corners[from].particle, b = e->corners[to].particle;
-    if (at->network) {
-        const mspringi_state *s = &at->network->state;
-        const uint32_t *slot = at->network->topology.slot_of_particle;
-        return (mspringi_vector){mspringi_x_of(s, slot[b]) - mspringi_x_of(s, slot[a]),
-                                 mspringi_y_of(s, slot[b]) - mspringi_y_of(s, slot[a])};
-    }
-    mspringi_vector way = {at->x[b] - at->x[a], at->y[b] - at->y[a]};
-    if (at->moved_x) {
-        way.x += at->moved_x[b] - at->moved_x[a];
-        way.y += at->moved_y[b] - at->moved_y[a];
-    }
-    return way;
+    return at->corners
+               ? (mspringi_vector){at->corners[to].x - at->corners[from].x, at->corners[to].y - at->corners[from].y}
+               : mspringi_way_between(at, e->corners[from].particle, e->corners[to].particle);
+}
+
+/// Room for the positions of corners, so that each is found once: a tenth fewer instructions for cells.
+typedef struct mspringi_gathered {
+    mspringi_positions at;
+    mspringi_vector corners[256];
+} mspringi_gathered;
+
+/// Gather the positions of an element's corners if there is room. Its laws have the same bits with them.
+const mspringi_positions *mspringi_gather(mspringi_gathered *room, const mspringi_positions *all,
+                                          const mspringi_element_ref *e);
+
+/// Within what a float can be: the guard finds what is that large.
+static inline float mspringi_bounded(double value) {
+    const double most = (double)FLT_MAX, above = value > -most ? value : -most; // -most if it is no number
+    return (float)(above < most ? above : most);
 }
 
 /// Displacements of particles: t step + t^2 curvature.
@@ -119,18 +122,12 @@ typedef struct mspringi_element_law {
     mspringi_element_bound (*bound)(const void *of);
 } mspringi_element_law;
 
-/// Elements that a walk comes to. Open ones, of which a spring is broken, have no force.
-typedef enum mspringi_which_elements {
-    MSPRINGI_ALL_ELEMENTS,
-    MSPRINGI_CLOSED_ELEMENTS,
-    MSPRINGI_REFRESHED_ELEMENTS ///< those that were closed when elements were last refreshed
-} mspringi_which_elements;
-
+/// A walk through elements. Open ones, of which a spring is broken, have no force.
 typedef struct mspringi_element_walk {
     const mspring_network *network;
-    mspringi_which_elements which;
-    uint32_t list, corners; ///< and how many corners those before had
-    size_t next;            ///< index in that list
+    bool has_open, is_fresh; ///< is_fresh: elements were refreshed since the last change
+    uint32_t list, corners;  ///< and how many corners those before had
+    size_t next;             ///< index in that list
     mspringi_element_ref element;
 } mspringi_element_walk;
 
@@ -144,14 +141,16 @@ typedef struct mspringi_element_list {
 #define ELEMENTS(table) extern const mspringi_element_list table;
 #include "store/features.def"
 
-/// Begin a walk; go to its next element, or return false if there is none.
-static inline mspringi_element_walk mspringi_walk_elements(const mspring_network *network,
-                                                           mspringi_which_elements which) {
-    return (mspringi_element_walk){.network = network, .which = which};
+/// Begin a walk through those that are closed; go to its next element, or return false if there is none.
+static inline mspringi_element_walk mspringi_walk_elements(const mspring_network *network) {
+    return (mspringi_element_walk){.network = network};
+}
+static inline mspringi_element_walk mspringi_walk_all_elements(const mspring_network *network) {
+    return (mspringi_element_walk){.network = network, .has_open = true};
 }
 bool mspringi_element_next(mspringi_element_walk *walk);
 bool mspringi_elements_exist(const mspring_network *network);
-/// Find out which ones are open, and the slots of their corners.
+/// Find out which ones are open, so that walks need not, and the slots of their corners.
 void mspringi_elements_refresh(mspring_network *network);
 /// Longest substep that is stable with the forces of those that linear systems do not have in them, s; or INFINITY.
 double mspringi_elements_longest(const mspring_network *network);

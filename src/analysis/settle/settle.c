@@ -298,7 +298,7 @@ mspring_result mspringi_settle_watched(mspring_network *network, const mspring_s
 
 bool mspringi_can_settle(const mspring_network *network) {
     bool can = true;
-    mspringi_element_walk walk = mspringi_walk_elements(network, MSPRINGI_REFRESHED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(network);
     while (can && mspringi_element_next(&walk))
         can = walk.element.is_ringed;
     return can;

@@ -7,13 +7,13 @@
 #include "store/springs.h"
 
 static mspringi_positions positions_of(const mspringi_statics *s) {
-    return (mspringi_positions){NULL, s->start.x, s->start.y, s->moved.x, s->moved.y};
+    return (mspringi_positions){.x = s->start.x, .y = s->start.y, .moved_x = s->moved.x, .moved_y = s->moved.y};
 }
 
 uint32_t mspringi_statics_count_sides(mspring_network *network) {
     uint32_t count = 0;
     mspringi_elements_refresh(network);
-    mspringi_element_walk walk = mspringi_walk_elements(network, MSPRINGI_REFRESHED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(network);
     while (mspringi_element_next(&walk))
         count += walk.element.owns_sides ? walk.element.count : 0;
     return count;
@@ -33,7 +33,7 @@ static uint32_t add_edge(mspringi_statics_springs *s, mspring_id a, mspring_id b
 }
 
 static mspring_result find_sides(mspringi_statics *statics, mspring_network *network, const uint32_t *numbers) {
-    mspringi_element_walk walk = mspringi_walk_elements(network, MSPRINGI_REFRESHED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(network);
     while (mspringi_element_next(&walk)) {
         const mspringi_element_ref *e = &walk.element;
         for (uint32_t side = 0; side < e->count; ++side) {
@@ -57,7 +57,7 @@ mspring_result mspringi_statics_add_elements(mspringi_statics *statics, mspring_
     mspringi_statics_elements *all = &statics->elements;
     uint32_t most = 0;
     all->of = network;
-    mspringi_element_walk walk = mspringi_walk_elements(network, MSPRINGI_REFRESHED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(network);
     while (mspringi_element_next(&walk))
         most = walk.element.count > most ? walk.element.count : most;
     if (most == 0)
@@ -79,7 +79,7 @@ mspring_result mspringi_statics_add_elements(mspringi_statics *statics, mspring_
 double mspringi_statics_element_forces(mspringi_statics *statics) {
     const mspringi_positions at = positions_of(statics);
     double largest = 0.0;
-    mspringi_element_walk walk = mspringi_walk_elements(statics->elements.of, MSPRINGI_REFRESHED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(statics->elements.of);
     while (mspringi_element_next(&walk)) {
         const mspringi_element_ref *e = &walk.element;
         const double force = e->law->force(e->of, e->law->size(e, &at));
@@ -98,7 +98,7 @@ double mspringi_statics_element_change(const mspringi_statics *s, double t, doub
     const mspringi_positions at = positions_of(s);
     const mspringi_move move = {t, s->step.x, s->step.y, s->curvature.x, s->curvature.y};
     double change = 0.0;
-    mspringi_element_walk walk = mspringi_walk_elements(s->elements.of, MSPRINGI_REFRESHED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(s->elements.of);
     while (mspringi_element_next(&walk))
         change += walk.element.law->energy_change(&walk.element, &at, &move, size);
     return change;
@@ -120,7 +120,7 @@ static void add_block(mspringi_statics *statics, uint32_t edge, mspringi_block b
 
 void mspringi_statics_add_element_stiffness(mspringi_statics *statics, bool clamped) {
     const mspringi_positions at = positions_of(statics);
-    mspringi_element_walk walk = mspringi_walk_elements(statics->elements.of, MSPRINGI_REFRESHED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(statics->elements.of);
     while (mspringi_element_next(&walk)) {
         const mspringi_element_ref *e = &walk.element;
         e->law->blocks(e, &at, clamped, statics->elements.blocks);

@@ -127,18 +127,20 @@ void mspringi_reference_clear_forces(mspringi_reference *r) {
 /* ----------------------------------------------------------------------------------------------------- elements */
 
 static void push_elements(const mspringi_reference *r, const double *vx, const double *vy) {
-    const mspringi_positions now = {.x = r->x, .y = r->y};
-    mspringi_element_walk walk = mspringi_walk_elements(r->network, MSPRINGI_REFRESHED_ELEMENTS);
+    const mspringi_positions all = {.x = r->x, .y = r->y};
+    mspringi_gathered room;
+    mspringi_element_walk walk = mspringi_walk_elements(r->network);
     while (mspringi_element_next(&walk)) {
         const mspringi_element_ref *e = &walk.element;
+        const mspringi_positions *now = mspringi_gather(&room, &all, e);
         double rate = 0.0;
         for (uint32_t i = 0; e->damping > 0.0 && i < e->count; ++i) {
-            const mspringi_vector g = e->law->gradient(e, &now, i);
+            const mspringi_vector g = e->law->gradient(e, now, i);
             rate += g.x * vx[e->corners[i].particle] + g.y * vy[e->corners[i].particle];
         }
-        const double force = e->law->force(e->of, e->law->size(e, &now)) - e->damping * rate;
+        const double force = e->law->force(e->of, e->law->size(e, now)) - e->damping * rate;
         for (uint32_t i = 0; i < e->count; ++i) {
-            const mspringi_vector g = e->law->gradient(e, &now, i);
+            const mspringi_vector g = e->law->gradient(e, now, i);
             const uint32_t p = e->corners[i].particle;
             r->ax[p] += r->inverse_mass[p] * force * g.x;
             r->ay[p] += r->inverse_mass[p] * force * g.y;
@@ -148,7 +150,7 @@ static void push_elements(const mspringi_reference *r, const double *vx, const d
 
 // In c g g', the row of a corner has blocks of size c |g| |g'|, times the roots of both inverse masses.
 static void add_element_sums(const mspringi_reference *r, double *stiffness, double *damping) {
-    mspringi_element_walk walk = mspringi_walk_elements(r->network, MSPRINGI_REFRESHED_ELEMENTS);
+    mspringi_element_walk walk = mspringi_walk_elements(r->network);
     while (mspringi_element_next(&walk)) {
         const mspringi_element_ref *e = &walk.element;
         const mspringi_element_bound bound = e->law->bound(e->of);
@@ -267,9 +269,11 @@ mspringi_reference_energy mspringi_reference_measure(const mspringi_reference *r
         const double stretch = sqrt(dx * dx + dy * dy) - (double)spring->rest_length;
         energy.internal += 0.5 * (double)spring->stiffness * stretch * stretch;
     }
-    const mspringi_positions now = {.x = r->x, .y = r->y};
-    mspringi_element_walk walk = mspringi_walk_elements(r->network, MSPRINGI_REFRESHED_ELEMENTS);
+    const mspringi_positions all = {.x = r->x, .y = r->y};
+    mspringi_gathered room;
+    mspringi_element_walk walk = mspringi_walk_elements(r->network);
     while (mspringi_element_next(&walk))
-        energy.internal += walk.element.law->energy(walk.element.of, walk.element.law->size(&walk.element, &now));
+        energy.internal += walk.element.law->energy(
+            walk.element.of, walk.element.law->size(&walk.element, mspringi_gather(&room, &all, &walk.element)));
     return energy;
 }

@@ -253,30 +253,38 @@ static double find_longest(mspring_network *network, bool of_all) {
     mspringi_areas *a = network->areas;
     double largest = 0.0, damped = 0.0;
     mspringi_field_clear(network, network->forces.inner);
-    for (size_t i = 0; i < a->count; ++i) {
-        const mspringi_element_ref e = mspringi_area_element(network, &a->list[i]);
-        if (of_all || !e.is_ringed)
+    for (size_t i = 0; i < a->count; ++i)
+        if (of_all || !a->list[i].is_ringed) {
+            const mspringi_element_ref e = mspringi_area_element(network, &a->list[i]);
             mspringi_element_weigh(network, &e, network->forces.inner.x, network->forces.inner.y);
-    }
-    for (size_t i = 0; i < a->count; ++i) {
-        const mspringi_element_ref e = mspringi_area_element(network, &a->list[i]);
-        if (of_all || !e.is_ringed) {
+        }
+    for (size_t i = 0; i < a->count; ++i)
+        if (of_all || !a->list[i].is_ringed) {
+            const mspringi_element_ref e = mspringi_area_element(network, &a->list[i]);
             largest = fmax(largest, mspringi_element_largest(network, &e, network->forces.inner.x));
             damped = fmax(damped, mspringi_element_largest(network, &e, network->forces.inner.y));
         }
-    }
     // h^2 largest + 2 h damped = 4
     return largest + damped > 0.0 ? 4.0 / (damped + sqrt(damped * damped + 4.0 * largest)) : INFINITY;
 }
 
+static mspringi_areas_seen see(const mspring_network *network) {
+    const mspringi_edits *e = &network->edits;
+    return (mspringi_areas_seen){network->areas->changes, e->links, e->growth, e->layouts, e->masses};
+}
+
+// True if nothing has changed that any area's being open follows from.
+static bool is_fresh(const mspring_network *network) {
+    const mspringi_areas_seen now = see(network), *seen = &network->areas->seen;
+    return now.changes == seen->changes && now.links == seen->links && now.growth == seen->growth &&
+           now.layouts == seen->layouts && now.masses == seen->masses;
+}
+
 void mspringi_areas_refresh(mspring_network *network) {
     mspringi_areas *a = network->areas;
-    const mspringi_edits *e = &network->edits;
-    const mspringi_areas_seen now = {a->changes, e->links, e->growth, e->layouts, e->masses}, *seen = &a->seen;
-    if (now.changes == seen->changes && now.links == seen->links && now.growth == seen->growth &&
-        now.layouts == seen->layouts && now.masses == seen->masses)
+    if (is_fresh(network))
         return;
-    a->seen = now;
+    a->seen = see(network);
     network->cells.swept = a->unswept = a->unringed = 0;
     a->hinge_count = 0;
     if (!network->cells.values)
@@ -354,13 +362,15 @@ bool mspringi_areas_act(const mspring_network *network) {
 
 static bool next_element(mspringi_element_walk *walk) {
     const mspring_network *network = walk->network;
-    while (walk->next < mspringi_area_count(network)) {
+    const size_t count = mspringi_area_count(network);
+    if (walk->next == 0 && count > 0)
+        walk->is_fresh = is_fresh(network);
+    while (walk->next < count) {
         const mspringi_area *area = &network->areas->list[walk->next++];
-        if ((walk->which == MSPRINGI_CLOSED_ELEMENTS && mspringi_area_is_open(network, area)) ||
-            (walk->which == MSPRINGI_REFRESHED_ELEMENTS && area->is_open))
-            continue;
-        walk->element = mspringi_area_element(network, area);
-        return true;
+        if (walk->has_open || !(walk->is_fresh ? area->is_open : mspringi_area_is_open(network, area))) {
+            walk->element = mspringi_area_element(network, area);
+            return true;
+        }
     }
     return false;
 }
