@@ -94,9 +94,9 @@ static inline mspringi_vector mspringi_move_of(const mspringi_move *m, const msp
 }
 
 /// Symmetric block of a stiffness matrix.
-typedef struct mspringi_block {
+typedef struct mspringi_side_block {
     double xx, xy, yy;
-} mspringi_block;
+} mspringi_side_block;
 
 /// Bound of an element in the shape that it was added in: on c, and on the row sum of the rest at a corner.
 typedef struct mspringi_element_bound {
@@ -116,7 +116,7 @@ typedef struct mspringi_element_law {
     /// Stiffness of springs along its sides that have as much together, by sides. clamped: without what makes it
     /// indefinite.
     void (*blocks)(const mspringi_element_ref *e, const mspringi_positions *at, bool clamped,
-                   mspringi_block *blocks);
+                   mspringi_side_block *blocks);
     /// Stiffness of a spring along a side, relative to f: together they bound the rest of the tangent.
     double (*rest)(const mspringi_element_ref *e, const mspringi_positions *at, uint32_t side);
     mspringi_element_bound (*bound)(const void *of);

@@ -29,8 +29,8 @@ typedef struct mspringi_statics_springs {
 /// Closed elements (settle_elements.c).
 typedef struct mspringi_statics_elements {
     const mspring_network *of;
-    uint32_t *sides;        ///< [corners] edge of each side
-    mspringi_block *blocks; ///< [corners of the largest] scratch
+    uint32_t *sides;             ///< [corners] edge of each side
+    mspringi_side_block *blocks; ///< [corners of the largest] scratch
 } mspringi_statics_elements;
 
 typedef struct mspringi_statics {

@@ -104,7 +104,7 @@ double mspringi_statics_element_change(const mspringi_statics *s, double t, doub
     return change;
 }
 
-static void add_block(mspringi_statics *statics, uint32_t edge, mspringi_block block) {
+static void add_block(mspringi_statics *statics, uint32_t edge, mspringi_side_block block) {
     mspringi_statics_springs *s = &statics->springs;
     for (int end = 0; end < 2; ++end) {
         const uint32_t p = end ? s->b[edge] : s->a[edge];

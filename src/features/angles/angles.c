@@ -161,23 +161,23 @@ static double angle_energy_change(const mspringi_element_ref *e, const mspringi_
 }
 
 // Of an arm: A + S or C + S, and a part of the second derivative from its rotation.
-static mspringi_block block_of_arm(mspringi_vector g, double k, mspringi_block s, double part) {
+static mspringi_side_block block_of_arm(mspringi_vector g, double k, mspringi_side_block s, double part) {
     const double across = 2.0 * part * g.x * g.y;
-    return (mspringi_block){k * (g.x * g.x + s.xx) - across,
-                            k * (g.x * g.y + s.xy) + part * (g.x * g.x - g.y * g.y),
-                            k * (g.y * g.y + s.yy) + across};
+    return (mspringi_side_block){k * (g.x * g.x + s.xx) - across,
+                                 k * (g.x * g.y + s.xy) + part * (g.x * g.x - g.y * g.y),
+                                 k * (g.y * g.y + s.yy) + across};
 }
 
 static void angle_blocks(const mspringi_element_ref *e, const mspringi_positions *at, bool clamped,
-                         mspringi_block *blocks) {
+                         mspringi_side_block *blocks) {
     const arm u = arm_at(e, at, 0), w = arm_at(e, at, 1);
     const mspringi_vector a = gradient_of_arm(u), c = gradient_of_arm(w);
     const double z = size_by(e->of, &u, &w), k = mspringi_angle_stiffness(e->of, z);
     const double torque = clamped ? 0.0 : mspringi_angle_torque(e->of, z);
-    const mspringi_block s = {a.x * c.x, 0.5 * (a.x * c.y + a.y * c.x), a.y * c.y};
+    const mspringi_side_block s = {a.x * c.x, 0.5 * (a.x * c.y + a.y * c.x), a.y * c.y};
     blocks[0] = block_of_arm(a, k, s, torque);
     blocks[1] = block_of_arm(c, k, s, -torque);
-    blocks[2] = (mspringi_block){-k * s.xx, -k * s.xy, -k * s.yy};
+    blocks[2] = (mspringi_side_block){-k * s.xx, -k * s.xy, -k * s.yy};
 }
 
 // Along an arm 1 / length^2.

@@ -108,7 +108,7 @@ static double middle_of(const mspringi_element_ref *e, const mspringi_positions 
 
 // As in implicit substeps (implicit_areas.c). That is an upper bound, so Newton's step still descends.
 static void area_blocks(const mspringi_element_ref *e, const mspringi_positions *at, bool clamped,
-                        mspringi_block *blocks) {
+                        mspringi_side_block *blocks) {
     const double c = mspringi_area_stiffness(e->of, area_size(e, at));
     mspringi_vector middle = {0.0, 0.0};
     double all = 0.0;
@@ -124,9 +124,9 @@ static void area_blocks(const mspringi_element_ref *e, const mspringi_positions 
         const mspringi_vector d = mspringi_way_of(at, e, side, side + 1 < e->count ? side + 1 : 0);
         const double square = d.x * d.x + d.y * d.y;
         const double k = c * all * middle_of(e, at, side, middle);
-        blocks[side] =
-            square > 0.0 ? (mspringi_block){k * d.x * d.x / square, k * d.x * d.y / square, k * d.y * d.y / square}
-                         : (mspringi_block){0.0, 0.0, 0.0};
+        blocks[side] = square > 0.0 ? (mspringi_side_block){k * d.x * d.x / square, k * d.x * d.y / square,
+                                                            k * d.y * d.y / square}
+                                    : (mspringi_side_block){0.0, 0.0, 0.0};
     }
 }
 
