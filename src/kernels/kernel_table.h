@@ -49,10 +49,8 @@ MSPRINGI_ROW_VARIANT(chain, forced, MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(chain, damped, MSPRINGI_DAMPED)
 MSPRINGI_ROW_VARIANT(chain, damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
 MSPRINGI_ROW_VARIANT(chain, precise, MSPRINGI_VARIANT_FOUND)
-MSPRINGI_ROW_VARIANT(irregular, plain, 0)
-MSPRINGI_ROW_VARIANT(irregular, forced, MSPRINGI_FORCED)
-MSPRINGI_ROW_VARIANT(irregular, damped, MSPRINGI_DAMPED)
-MSPRINGI_ROW_VARIANT(irregular, damped_forced, MSPRINGI_DAMPED | MSPRINGI_FORCED)
+MSPRINGI_ROW_VARIANT(irregular, plain, MSPRINGI_FORCED_OR_NOT)
+MSPRINGI_ROW_VARIANT(irregular, damped, MSPRINGI_DAMPED | MSPRINGI_FORCED_OR_NOT)
 MSPRINGI_ROW_VARIANT(irregular, precise, MSPRINGI_VARIANT_FOUND)
 MSPRINGI_ROW_VARIANT(bundle, plain, 0)
 MSPRINGI_ROW_VARIANT(bundle, forced, MSPRINGI_FORCED)
@@ -84,7 +82,7 @@ const mspringi_kernels MSPRINGI_TABLE = {
     .lattice = {{lattice_plain, lattice_forced}, {lattice_damped, lattice_damped_forced}},
     .chain = {{chain_plain, chain_forced}, {chain_damped, chain_damped_forced}},
     .loose = {loose_plain, loose_forced},
-    .irregular = {{irregular_plain, irregular_forced}, {irregular_damped, irregular_damped_forced}},
+    .irregular = {irregular_plain, irregular_damped},
     .bundle = {{bundle_plain, bundle_forced}, {bundle_damped, bundle_damped_forced}},
     .pack = pack,
     .attached = {attached_plain, attached_damped},

@@ -173,7 +173,7 @@ static inline void kick_precisely(float *v, float *low, float push, float gravit
 
 // Leapfrog: the velocity first, then the position.
 static inline void move(const mspringi_sweep *s, size_t slot, vector force, mspringi_variant of) {
-    if (of & MSPRINGI_FORCED) {
+    if (of & MSPRINGI_FORCED || (of & MSPRINGI_FORCED_OR_NOT && s->force_x)) {
         force.x = force.x + s->force_x[slot];
         force.y = force.y + s->force_y[slot];
     }

@@ -203,7 +203,7 @@ MSPRINGI_INLINE vec kicked_precisely(vec v, vec *low, vec push, vec gravity, flo
 
 // Leapfrog: the velocities first, then the positions.
 MSPRINGI_INLINE void move(const mspringi_sweep *s, size_t slot, motion here, vector force, mspringi_variant of) {
-    if (of & MSPRINGI_FORCED) {
+    if (of & MSPRINGI_FORCED || (of & MSPRINGI_FORCED_OR_NOT && s->force_x)) {
         force.x = add(force.x, load(s->force_x + slot));
         force.y = add(force.y, load(s->force_y + slot));
     }

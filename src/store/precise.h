@@ -25,7 +25,7 @@ static inline mspringi_row_fn mspringi_row_kernel(const mspring_network *network
     case MSPRINGI_ROW_CHAIN:
         return network->is_precise ? k->precise.chain : k->chain[damped][forced];
     default:
-        return network->is_precise ? k->precise.irregular : k->irregular[damped][forced];
+        return network->is_precise ? k->precise.irregular : k->irregular[damped];
     }
 }
 

@@ -199,7 +199,7 @@ static void run(arena *a, const setup *s, const mspringi_kernels *with) {
         with->pack(&half, FIRST, s->own, a->gathered);
     }
     attached(&sweep, 0, a->irregular.attached_count, a->attached_x, a->attached_y);
-    (s->precise ? with->precise.irregular : with->irregular[damped][s->forced])(&sweep, &span, 1);
+    (s->precise ? with->precise.irregular : with->irregular[damped])(&sweep, &span, 1);
 }
 
 static void web_kernels(void **state) {
