@@ -458,10 +458,13 @@ MSPRINGI_INLINE vector add_pull(vector sum, gap to, const float *record, mspring
     const vec length = square_root(to.square);
     const vec rest_length = load(record + MSPRINGI_REST_LENGTH * MSPRINGI_WIDTH);
     const vec stiffness = load(record + MSPRINGI_STIFFNESS * MSPRINGI_WIDTH);
-    vec force = of & MSPRINGI_PRECISE ? mul(stretch(length, rest_length, to.major, to.minor, to.low, of), stiffness)
-                                      : mul(sub(length, rest_length), mul(length, stiffness));
+    vec force =
+        of & MSPRINGI_PRECISE
+            ? MSPRINGI_LAW_FORCE(mul, stiffness, stretch(length, rest_length, to.major, to.minor, to.low, of))
+            : MSPRINGI_LAW_FORCE(mul, mul(length, stiffness), sub(length, rest_length));
     if (of & MSPRINGI_DAMPED)
-        force = add(force, mul(to.change, load(record + MSPRINGI_DAMPING * MSPRINGI_WIDTH)));
+        force = add(force,
+                    MSPRINGI_LAW_DAMPING_FORCE(mul, load(record + MSPRINGI_DAMPING * MSPRINGI_WIDTH), to.change));
     force = mul(force, inverse_or_zero(to.square));
     sum.x = add(sum.x, mul(force, to.dx));
     sum.y = add(sum.y, mul(force, to.dy));

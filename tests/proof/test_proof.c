@@ -1,7 +1,8 @@
 /// @file test_proof.c
 /// An element that the library does not have, a triangle with the energy of St. Venant and Kirchhoff, can be added
-/// without changing it: triangle.c and triangle.h, and three lines of two tables, which stand in store/ before
-/// the library's own. All solvers have it. A wind takes step/house/wind.c and two lines.
+/// without changing it: triangle.c and triangle.h, and four lines of two tables, which stand in store/ before
+/// the library's own. All solvers have it, and the stability limit, settling and energies. A wind takes
+/// step/house/wind.c and two lines.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -69,7 +70,7 @@ static void stretch(mspring_network *network) {
 static double energy_of(const mspring_network *network) {
     double kinetic, elastic;
     check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
-    return kinetic + elastic + proof_energy(network);
+    return kinetic + elastic;
 }
 
 static void forces_are_gradients_of_the_energy(void **state) {
@@ -176,12 +177,60 @@ static void wind_and_triangles_go_together(void **state) {
     }
 }
 
+/// The stability limit has them: just below it motion stays small, just above it grows.
+static void their_border_is_found(void **state) {
+    (void)state;
+    for (int above = 0; above < 2; above++) {
+        mspring_network *network = strip(MSPRING_SOLVER_EXPLICIT, MSPRING_SIMD_AUTO, 1, 1, 0);
+        double now, any_shape, worst = 0;
+        check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+        print_message("stable up to %.5f s, in any shape to %.5f\n", now, any_shape);
+        assert_true(any_shape <= now && any_shape > 0.5 * now);
+        support_kick(network, PARTICLES / 2, 1e-4f);
+        mspring_result result = MSPRING_OK;
+        for (int step = 0; step < 2000 && result == MSPRING_OK; step++) {
+            result = mspring_network_step(network, (above ? 1.02 : 0.98) * now);
+            worst = fmax(worst, fabs(support_position(network, 0).x));
+        }
+        assert_true(above ? result == MSPRING_ERROR_UNSTABLE || worst > 1 : result == MSPRING_OK && worst < 1e-3);
+        destroy(network);
+    }
+}
+
+/// It settles hanging from two corners, where explicit steps leave it.
+static void it_settles(void **state) {
+    (void)state;
+    mspring_network *network = strip(MSPRING_SOLVER_EXPLICIT, MSPRING_SIMD_AUTO, 64, 1, 0);
+    mspring_settle_result settled = {.struct_size = sizeof settled};
+    const mspring_id corners[] = {PARTICLES - WIDTH, PARTICLES - 1};
+    const float pinned = 0;
+    mspring_settings settings;
+    check_ok(mspring_settings_init(&settings, sizeof settings));
+    check_ok(mspring_network_get_settings(network, &settings));
+    settings.gravity_y = -9.8f;
+    check_ok(mspring_network_set_settings(network, &settings));
+    for (int i = 0; i < 2; i++) {
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, corners[i], 1, &pinned, 1));
+    }
+    check_ok(mspring_network_settle(network, NULL, &settled));
+    print_message("%u iterations, moved by %.3f m\n", settled.iterations, settled.displacement);
+    assert_true(settled.is_stable && settled.iterations < 40 && settled.displacement > 0.01);
+    const support_point before = support_position(network, WIDTH / 2);
+    support_steps(network, 64, DT);
+    const support_point after = support_position(network, WIDTH / 2);
+    check_near(after.x, before.x, 1e-5);
+    check_near(after.y, before.y, 1e-5);
+    destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(forces_are_gradients_of_the_energy),
         cmocka_unit_test(motion_is_that_of_short_substeps),
         cmocka_unit_test(long_substeps_are_stable),
         cmocka_unit_test(wind_and_triangles_go_together),
+        cmocka_unit_test(their_border_is_found),
+        cmocka_unit_test(it_settles),
     };
     return cmocka_run_group_tests_name("proof", tests, NULL, NULL);
 }

@@ -1,8 +1,11 @@
 #include "triangle.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "solvers/implicit/implicit.h"
+#include "store/changed.h"
+#include "store/element_laws.h"
 #include "store/elements.h"
 #include "store/stages.h"
 
@@ -12,7 +15,15 @@ typedef struct triangle {
     double area, lambda, mu;
 } triangle;
 
+/// A strain of a triangle as an element.
+typedef struct strain {
+    uint32_t triangle, which;
+    double stiffness;
+    mspringi_corner corners[3];
+} strain;
+
 static triangle triangles[PROOF_TRIANGLES];
+static strain strains[PROOF_STRAINS * PROOF_TRIANGLES];
 static uint32_t triangle_count;
 static mspringi_field force;
 
@@ -75,6 +86,20 @@ double proof_energy(const mspring_network *network) {
     return sum;
 }
 
+static void list_strains(const mspring_network *network, uint32_t i) {
+    const proof_strains now = strains_now(network, i);
+    for (uint32_t k = 0; k < PROOF_STRAINS; ++k) {
+        strain *of = &strains[PROOF_STRAINS * i + k];
+        *of = (strain){.triangle = i, .which = k, .stiffness = now.stiffness[k]};
+        for (int corner = 0; corner < 3; ++corner) {
+            const double *g = now.gradient[k][corner];
+            of->corners[corner] = (mspringi_corner){.particle = triangles[i].corners[corner],
+                                                    .spring = MSPRING_NONE,
+                                                    .reach = (float)hypot(g[0], g[1])};
+        }
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------- edits */
 
 void proof_add_triangle(mspring_network *network, const mspring_id corners[3], double lambda, double mu) {
@@ -93,6 +118,8 @@ void proof_add_triangle(mspring_network *network, const mspring_id corners[3], d
     t->area = 0.5 * twice;
     t->lambda = lambda;
     t->mu = mu;
+    list_strains(network, triangle_count - 1);
+    mspringi_notify_change(network, MSPRINGI_CHANGED_AREA, 0);
     (void)mspringi_constraints_reserve(network, MSPRINGI_ANGLE_CONSTRAINT, PROOF_STRAINS * PROOF_TRIANGLES,
                                        3 * PROOF_STRAINS * PROOF_TRIANGLES);
     (void)mspringi_field_reserve(network, &force);
@@ -188,3 +215,120 @@ static void add_energy(const mspring_network *network) {
 
 const mspringi_element_ops proof_element_triangles = {
     .is_used = is_used, .list_constraints = list_constraints, .add_energy = add_energy};
+
+/* ------------------------------------------------------------------- stability, settling, tuning: each strain */
+
+static proof_strains strains_of(const mspringi_element_ref *e, const mspringi_positions *at) {
+    const strain *of = e->of;
+    double position[3][2] = {{0}};
+    for (uint32_t corner = 1; corner < 3; ++corner) {
+        const mspringi_vector way = mspringi_way_of(at, e, 0, corner);
+        position[corner][0] = way.x;
+        position[corner][1] = way.y;
+    }
+    return proof_strains_at(of->triangle, (const double(*)[2])position);
+}
+
+static double size_of(const mspringi_element_ref *e, const mspringi_positions *at) {
+    return strains_of(e, at).size[((const strain *)e->of)->which];
+}
+
+static mspringi_vector gradient_of(const mspringi_element_ref *e, const mspringi_positions *at, uint32_t corner) {
+    const proof_strains s = strains_of(e, at);
+    const double *g = s.gradient[((const strain *)e->of)->which][corner];
+    return (mspringi_vector){g[0], g[1]};
+}
+
+static double force_of(const void *of, double size) {
+    return -((const strain *)of)->stiffness * size;
+}
+
+static double stiffness_of(const void *of, double size) {
+    (void)size;
+    return ((const strain *)of)->stiffness;
+}
+
+static double energy_of_strain(const void *of, double size) {
+    return 0.5 * ((const strain *)of)->stiffness * size * size;
+}
+
+// The second derivative of a strain by two corners is this times the unit matrix.
+static double second_derivative(const strain *of, uint32_t i, uint32_t j) {
+    const double(*by)[2] = (const double(*)[2])triangles[of->triangle].inverse;
+    const double all[3][2] = {
+        {-by[0][0] - by[1][0], -by[0][1] - by[1][1]}, {by[0][0], by[0][1]}, {by[1][0], by[1][1]}};
+    const double xx = all[i][0] * all[j][0], yy = all[i][1] * all[j][1];
+    return of->which == 0 ? xx + yy : of->which == 1 ? xx - yy : all[i][0] * all[j][1] + all[i][1] * all[j][0];
+}
+
+// Strains are quadratic: a move changes one by g . u + u . H u / 2.
+static double energy_change_of(const mspringi_element_ref *e, const mspringi_positions *at,
+                               const mspringi_move *move, double *sum) {
+    const strain *of = e->of;
+    const double size = size_of(e, at);
+    double change = 0.0;
+    for (uint32_t i = 1; i < 3; ++i) {
+        const mspringi_vector g = gradient_of(e, at, i), u = mspringi_move_of(move, e, 0, i);
+        change += g.x * u.x + g.y * u.y;
+        for (uint32_t j = 1; j < 3; ++j) {
+            const mspringi_vector v = mspringi_move_of(move, e, 0, j);
+            change += 0.5 * second_derivative(of, i, j) * (u.x * v.x + u.y * v.y);
+        }
+    }
+    const double energy = of->stiffness * change * (size + 0.5 * change);
+    *sum += fabs(energy);
+    return energy;
+}
+
+// As all g add up to 0, c g g' is that of springs along the sides, of which each is -c g_i g_j'; likewise the rest.
+static void blocks_of(const mspringi_element_ref *e, const mspringi_positions *at, bool clamped,
+                      mspringi_side_block *blocks) {
+    const strain *of = e->of;
+    const double push = clamped ? 0.0 : force_of(of, size_of(e, at)), c = of->stiffness;
+    for (uint32_t side = 0; side < 3; ++side) {
+        const uint32_t next = (side + 1) % 3;
+        const mspringi_vector g = gradient_of(e, at, side), h = gradient_of(e, at, next);
+        const double rest = push * second_derivative(of, side, next);
+        blocks[side] =
+            (mspringi_side_block){rest - c * g.x * h.x, -0.5 * c * (g.x * h.y + g.y * h.x), rest - c * g.y * h.y};
+    }
+}
+
+static double rest_of(const mspringi_element_ref *e, const mspringi_positions *at, uint32_t side) {
+    (void)at;
+    return fabs(second_derivative(e->of, side, (side + 1) % 3));
+}
+
+static mspringi_element_bound bound_of(const void *of) {
+    return (mspringi_element_bound){((const strain *)of)->stiffness, 0.0};
+}
+
+static const mspringi_element_law law = {.size = size_of,
+                                         .gradient = gradient_of,
+                                         .force = force_of,
+                                         .stiffness = stiffness_of,
+                                         .energy = energy_of_strain,
+                                         .energy_change = energy_change_of,
+                                         .blocks = blocks_of,
+                                         .rest = rest_of,
+                                         .bound = bound_of};
+
+static bool next_strain(mspringi_element_walk *walk) {
+    if (walk->next >= (size_t)PROOF_STRAINS * triangle_count)
+        return false;
+    const strain *of = &strains[walk->next++];
+    walk->element = (mspringi_element_ref){
+        .law = &law, .of = of, .corners = of->corners, .count = 3, .is_ringed = true, .owns_sides = true};
+    return true;
+}
+
+static void refresh(mspring_network *network) {
+    (void)network; // none is ever open
+}
+
+static double longest(const mspring_network *network) {
+    (void)network;
+    return INFINITY;
+}
+
+const mspringi_element_list proof_list_of_strains = {next_strain, refresh, longest};
