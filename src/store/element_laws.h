@@ -65,7 +65,7 @@ static inline mspringi_vector mspringi_way_of(const mspringi_positions *at, cons
 /// Room for the positions of corners, so that each is found once: a tenth fewer instructions for cells.
 typedef struct mspringi_gathered {
     mspringi_positions at;
-    mspringi_vector corners[256];
+    mspringi_vector corners[512];
 } mspringi_gathered;
 
 /// Gather the positions of an element's corners if there is room. Its laws have the same bits with them.
