@@ -111,7 +111,7 @@ static inline uint32_t mspringi_area_slot(const mspring_network *network, const 
 void mspringi_area_push(const mspring_network *network, const mspringi_area *area, double share,
                         mspringi_field field);
 
-/// What the law of an area and of an angle is, and what functions of these names do where the area is an angle.
+/// The laws of an area and of an angle, and functions of these names where the area is an angle.
 extern const mspringi_element_law mspringi_law_of_areas;
 typedef struct mspringi_angle_law {
     mspringi_element_law of_element;
