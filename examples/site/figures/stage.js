@@ -41,14 +41,14 @@ function makeBreathe() {
   };
 }
 
-// what: a sentence with {} for the number that was found; unit follows each number.
-export function judge({ what, found, wanted, within, least, most, digits = 2, unit = '' }) {
+// what: a sentence with {} for the number that was found; unit follows each number. A time depends on the computer, too.
+export function judge({ what, found, wanted, within, least, most, digits = 2, unit = '', timed = false }) {
   const ok = least !== undefined ? found >= least : most !== undefined ? found <= most : Math.abs(found - wanted) <= within;
   const number = (value) => (Number.isInteger(value) && !digits ? String(value) : value.toFixed(digits)) + unit;
   const [low, high] = [wanted - within, wanted + within].map(number);
   const limit = least !== undefined ? `at least ${least}${unit}` : most !== undefined ? `at most ${most}${unit}`
     : low === high ? `must be ${number(wanted)}` : `must be ${low} to ${high}`;
-  return { ok, text: `${ok ? '✓' : '✗'} ${what.replace('{}', number(found))} (${limit})` };
+  return { ok, timed, text: `${ok ? '✓' : '✗'} ${what.replace('{}', number(found))} (${limit})` };
 }
 
 class Stage {
