@@ -35,7 +35,7 @@ typedef struct mspring_svg {
     FILE *file;
     uint32_t particles, springs;
     double *x, *y;                   /* [particles] m */
-    float *scale;                    /* [particles] MSPRING_INVERSE_MASS_SCALE, 0 if pinned */
+    uint32_t *kind;                  /* [particles] MSPRING_PARTICLE_FLAGS */
     uint32_t *a, *b, *flags;         /* [springs] */
     float *strain, *sorted;          /* [springs] */
     unsigned char *has_spring;       /* [particles] */
@@ -115,36 +115,34 @@ static inline mspring_result mspring_svg_read(mspring_svg *s, const mspring_netw
     const size_t particles = (size_t)s->particles + 1, springs = (size_t)s->springs + 1;
     s->x = (double *)malloc(particles * sizeof(double));
     s->y = (double *)malloc(particles * sizeof(double));
-    s->scale = (float *)malloc(particles * sizeof(float));
+    s->kind = (uint32_t *)malloc(particles * sizeof(uint32_t));
     s->has_spring = (unsigned char *)calloc(particles, 1);
     s->a = (uint32_t *)malloc(springs * sizeof(uint32_t));
     s->b = (uint32_t *)malloc(springs * sizeof(uint32_t));
     s->flags = (uint32_t *)malloc(springs * sizeof(uint32_t));
     s->strain = (float *)malloc(springs * sizeof(float));
     s->sorted = (float *)malloc(springs * sizeof(float));
-    if (!s->x || !s->y || !s->scale || !s->has_spring || !s->a || !s->b || !s->flags || !s->strain || !s->sorted)
+    if (!s->x || !s->y || !s->kind || !s->has_spring || !s->a || !s->b || !s->flags || !s->strain || !s->sorted)
         return MSPRING_ERROR_MEMORY;
-    mspring_result result = mspring_network_get_positions(network, 0, s->particles, s->x, s->y, 1);
+    const mspring_column columns[] = {{MSPRING_END_A, 1, s->a}, {MSPRING_END_B, 1, s->b},
+        {MSPRING_SPRING_FLAGS, 1, s->flags}, {MSPRING_STRAIN, 1, s->strain}};
+    mspring_result result = mspring_network_get_positions(network, NULL, 0, s->particles, s->x, s->y, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, 0, s->particles, s->scale, 1);
+        result = mspring_network_get_integers(network, MSPRING_PARTICLE_FLAGS, NULL, 0, s->particles, s->kind, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get_ends(network, 0, s->springs, MSPRING_ENDS_IDS, s->a, s->b, 1);
-    if (result == MSPRING_OK)
-        result = mspring_network_get_spring_flags(network, 0, s->springs, s->flags, 1);
-    if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_STRAIN, 0, s->springs, s->strain, 1);
+        result = mspring_network_get_columns(network, NULL, 0, s->springs, columns, 4);
     return result;
 }
 
 /* The box around all particles, the scale of strains, and the width of lines. */
-static inline void mspring_svg_fit(mspring_svg *s, const mspring_network *network) {
+static inline void mspring_svg_fit(mspring_svg *s) {
     double total = 0.0, most;
     uint32_t count = 0;
     int mantissa, power;
     s->left = s->bottom = HUGE_VAL;
     s->right = s->top = -HUGE_VAL;
     for (uint32_t p = 0; p < s->particles; ++p) {
-        if (!mspring_network_has_particle(network, p))
+        if (s->kind[p] & MSPRING_PARTICLE_REMOVED)
             continue;
         s->left = fmin(s->left, s->x[p]);
         s->right = fmax(s->right, s->x[p]);
@@ -188,8 +186,7 @@ static inline long mspring_svg_height(const mspring_svg *s, const mspring_floor_
 }
 
 static inline void mspring_svg_floor(const mspring_svg *s, const mspring_network *network) {
-    mspring_floor_def def;
-    def.struct_size = sizeof def;
+    mspring_floor_def def = mspring_floor_def_default();
     if (mspring_network_get_floor(network, &def) != MSPRING_OK || (def.plane_count == 0 && def.height_count == 0))
         return;
     const double wide = s->width / s->zoom, from = s->left - 0.1 * wide, to = s->left + 1.1 * wide;
@@ -240,11 +237,11 @@ static inline void mspring_svg_springs(const mspring_svg *s) {
     }
 }
 
-static inline void mspring_svg_particles(const mspring_svg *s, const mspring_network *network) {
+static inline void mspring_svg_particles(const mspring_svg *s) {
     const long size = mspring_svg_size(fmin(fmax(2.0 * s->line, 1.0), 6.0));
     for (uint32_t p = 0; p < s->particles; ++p) {
-        const int is_pinned = s->scale[p] == 0.0f;
-        if ((s->has_spring[p] && !is_pinned) || !mspring_network_has_particle(network, p))
+        const int is_pinned = (s->kind[p] & MSPRING_PARTICLE_PINNED) != 0;
+        if ((s->has_spring[p] && !is_pinned) || (s->kind[p] & MSPRING_PARTICLE_REMOVED))
             continue;
         const long x = mspring_svg_x(s, s->x[p]), y = mspring_svg_y(s, s->y[p]);
         if (is_pinned)
@@ -286,27 +283,27 @@ static inline void mspring_svg_legend(const mspring_svg *s) {
 }
 
 /// Write a picture of a network to a file, which is replaced if it is there.
-/// @threads as mspring_network_get()   @allocates yes, with malloc, and frees it
-/// @errors ARGUMENT: NULL, or the file cannot be written (errno says why); MEMORY
+/// Threads: shared. Allocates: yes, with malloc, and frees it. Errors: ARGUMENT for NULL, or if the file cannot be
+/// written (errno says why); MEMORY.
 static inline mspring_result mspring_svg_write(const mspring_network *network, const char *path) {
     mspring_svg s;
     mspring_result result = MSPRING_ERROR_ARGUMENT;
     if (!network || !path)
         return result;
     memset(&s, 0, sizeof s);
-    s.particles = mspring_network_particle_count(network);
-    s.springs = mspring_network_spring_count(network);
+    s.particles = mspring_network_count(network, MSPRING_PARTICLES);
+    s.springs = mspring_network_count(network, MSPRING_SPRINGS);
     result = mspring_svg_read(&s, network);
     if (result == MSPRING_OK && !(s.file = fopen(path, "wb")))
         result = MSPRING_ERROR_ARGUMENT;
     if (result == MSPRING_OK) {
-        mspring_svg_fit(&s, network);
+        mspring_svg_fit(&s);
         fprintf(s.file, "<svg xmlns='http://www.w3.org/2000/svg' width='%ld' height='%ld' viewBox='0 0 %ld %ld'>\n",
             (long)s.width, (long)s.height, mspring_svg_size(s.width), mspring_svg_size(s.height));
         fputs("<rect width='100%' height='100%' fill='#fff'/>\n", s.file);
         mspring_svg_floor(&s, network);
         mspring_svg_springs(&s);
-        mspring_svg_particles(&s, network);
+        mspring_svg_particles(&s);
         mspring_svg_legend(&s);
         fputs("</svg>\n", s.file);
         const int is_wrong = ferror(s.file);
@@ -315,7 +312,7 @@ static inline mspring_result mspring_svg_write(const mspring_network *network, c
     }
     free(s.x);
     free(s.y);
-    free(s.scale);
+    free(s.kind);
     free(s.has_spring);
     free(s.a);
     free(s.b);

@@ -5,12 +5,26 @@
 /// Largest stiffening. Beyond it, even a stable substep gains energy when a spring meets its limit.
 #define MAX_STIFFENING 30.0f
 
-static mspring_result check_range(mspring_builder *builder, mspring_id first, uint32_t count, float strain,
-                                  float stiffening) {
+// Springs that get a limit: a list, or a range.
+typedef struct springs {
+    const mspring_id *ids;
+    mspring_id first;
+    uint32_t count;
+} springs;
+
+static mspring_result check(mspring_builder *builder, const springs *of, float strain, float stiffening) {
     mspringi_message *message = &builder->message;
-    if (first > builder->spring_count || count > builder->spring_count - first)
-        return mspringi_fail(message, MSPRING_ERROR_ID, "springs %u ... %llu get a limit, but there are only %zu",
-                             (unsigned)first, (unsigned long long)first + count - 1, builder->spring_count);
+    const size_t there = builder->spring_count;
+    if (!of->ids && (of->first > there || of->count > there - of->first))
+        return mspringi_fail(message, MSPRING_ERROR_ID, "%u springs from id %s on get a limit: ids are below %zu",
+                             (unsigned)of->count, MSPRINGI_ID(of->first), there);
+    if (of->ids && of->count == MSPRING_ALL)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the count is MSPRING_ALL, but there is a list of ids: give its length");
+    for (uint32_t i = 0; of->ids && i < of->count; ++i)
+        if (of->ids[of->first + i] >= there)
+            return mspringi_fail(message, MSPRING_ERROR_ID, "index %u of the list: there is no spring %s",
+                                 (unsigned)(of->first + i), MSPRINGI_ID(of->ids[of->first + i]));
     if (!(strain > -1.0f && strain < MSPRING_NEVER && strain != 0.0f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "strain limit is %g, it must be above 0 for pull, or -1 to 0 for push, both excluded",
@@ -32,7 +46,9 @@ static mspring_result add_limit(mspring_builder *builder, size_t spring, float s
     mspringi_message *message = &builder->message;
     const mspringi_spring original = builder->springs[spring];
     const float rest_length = mspringi_read_length(original.rest_length);
-    const float break_strain = mspringi_builder_limits_of(builder, spring).break_strain;
+    const float given = mspringi_builder_limits_of(builder, spring).break_strain;
+    const float break_strain =
+        original.flags & MSPRING_SPRING_METRES ? mspringi_strain_of_metres(given, original.rest_length) : given;
     const mspringi_spring limit = {.a = original.a,
                                    .b = original.b,
                                    .stiffness = original.stiffness * stiffening,
@@ -62,14 +78,14 @@ static mspring_result add_limit(mspring_builder *builder, size_t spring, float s
     return MSPRING_OK;
 }
 
-static MSPRINGI_NOINLINE mspring_result add_limits(mspring_builder *builder, mspring_id first, uint32_t count,
-                                                   float strain, float stiffening, mspring_id *first_limit) {
+static MSPRINGI_NOINLINE mspring_result add_limits(mspring_builder *builder, const springs *of, float strain,
+                                                   float stiffening, mspring_id *first_limit) {
     const size_t before = builder->spring_count;
-    mspring_result result = check_range(builder, first, count, strain, stiffening);
+    mspring_result result = check(builder, of, strain, stiffening);
     if (result == MSPRING_OK)
-        result = mspringi_builder_reserve_springs(builder, count);
-    for (size_t spring = first; result == MSPRING_OK && spring < (size_t)first + count; ++spring)
-        result = add_limit(builder, spring, strain, stiffening);
+        result = mspringi_builder_reserve_springs(builder, of->count);
+    for (uint32_t i = 0; result == MSPRING_OK && i < of->count; ++i)
+        result = add_limit(builder, of->ids ? of->ids[of->first + i] : of->first + i, strain, stiffening);
     if (result != MSPRING_OK)
         mspringi_builder_cut_springs(builder, before);
     else if (first_limit)
@@ -77,13 +93,20 @@ static MSPRINGI_NOINLINE mspring_result add_limits(mspring_builder *builder, msp
     return result;
 }
 
-mspring_result mspring_builder_add_strain_limits(mspring_builder *builder, mspring_id first, uint32_t count,
-                                                 float strain, float stiffening, mspring_id *first_limit) {
+mspring_result mspring_builder_add_strain_limits(mspring_builder *builder, const mspring_id *ids, mspring_id first,
+                                                 uint32_t count, float strain, float stiffening,
+                                                 mspring_id *first_limit) {
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     mspringi_message_clear(&builder->message);
+    if (ids && count == MSPRING_ALL)
+        return mspringi_builder_end(builder, mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
+                                                           "the count is MSPRING_ALL, but there is a list of ids: "
+                                                           "give its length"));
+    const bool is_open = !ids && count == MSPRING_ALL && first <= builder->spring_count;
+    const springs of = {ids, first, is_open ? (uint32_t)builder->spring_count - first : count};
     const mspringi_fp_state before = mspringi_fp_enter();
-    mspring_result result = add_limits(builder, first, count, strain, stiffening, first_limit);
+    const mspring_result result = add_limits(builder, &of, strain, stiffening, first_limit);
     mspringi_fp_leave(before);
-    return result;
+    return mspringi_builder_end(builder, result);
 }

@@ -60,20 +60,8 @@ mspringi_read_chunk mspringi_archive_find(const uint8_t *archive, const char *ta
 
 static mspring_network_def def_of(const mspring_network *network) {
     mspring_network_def def;
-    mspring_solver_def solver = {.struct_size = sizeof solver};
-    (void)mspring_network_def_init(&def, sizeof def);
-    if (mspring_network_get_solver(network, &solver) != MSPRING_OK)
-        return def;
-#define SETTING(name, first, range, is_good, change) def.name = network->settings.name;
-#include "base/settings.def"
-    def.guard = network->settings.guard;
-    def.solver = solver.solver;
-    def.substeps = solver.substeps;
-    def.max_substeps = solver.max_substeps;
-    def.integrator = solver.integrator;
-    def.iterations = solver.iterations;
-    def.tile_size = solver.tile_size;
-    def.coarse_period = solver.coarse_period;
+    (void)mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def);
+    def.settings = mspringi_settings_of(network);
     def.flags = (network->is_precise ? (uint32_t)MSPRING_NETWORK_PRECISE : 0) |
                 (network->keeps_poses ? (uint32_t)MSPRING_NETWORK_POSES : 0) |
                 (network->parts > MSPRINGI_DAMPING ? (uint32_t)MSPRING_NETWORK_RESERVE_DAMPING : 0) |
@@ -108,7 +96,8 @@ mspringi_archive_head mspringi_archive_head_of(const mspring_network *network) {
 // Settings come last, so that there may be more.
 void mspringi_archive_hand_head(mspringi_io *io, mspringi_archive_head *head) {
     mspring_network_def *def = &head->def;
-    int32_t names[] = {(int32_t)def->solver, (int32_t)def->integrator, (int32_t)def->guard};
+    mspring_settings *of = &def->settings;
+    int32_t names[] = {(int32_t)of->solver, (int32_t)of->integrator, (int32_t)of->guard};
     mspringi_hand(io, &head->first_particle, 9, sizeof(uint32_t)); // and those that follow
     MSPRINGI_HAND(io, head->shortest_set);
     MSPRINGI_HAND(io, head->grid);
@@ -118,16 +107,21 @@ void mspringi_archive_hand_head(mspringi_io *io, mspringi_archive_head *head) {
     MSPRINGI_HAND(io, head->basis.turn_inertia);
     MSPRINGI_HAND(io, def->flags);
     mspringi_hand(io, names, 3, sizeof names[0]);
-    mspringi_hand(io, &def->iterations, 3, sizeof(uint32_t)); // and the next two
-    MSPRINGI_HAND(io, def->substeps);
-    MSPRINGI_HAND(io, def->max_substeps);
-    def->solver = (mspring_solver)names[0];
-    def->integrator = (mspring_integrator)names[1];
-    def->guard = (mspring_guard)names[2];
+    mspringi_hand(io, &of->iterations, 3, sizeof(uint32_t)); // and the next two
+    MSPRINGI_HAND(io, of->substeps);
+    MSPRINGI_HAND(io, of->max_substeps);
+    of->solver = (mspring_solver)names[0];
+    of->integrator = (mspring_integrator)names[1];
+    of->guard = (mspring_guard)names[2];
 #define SETTING(name, first, range, is_good, change)                                                               \
     if (io->to || io->left > 0)                                                                                    \
-        MSPRINGI_HAND(io, def->name);
+        MSPRINGI_HAND(io, of->name);
 #include "base/settings.def"
+    if (io->to || io->left > 0) {
+        MSPRINGI_HAND(io, of->most_work);
+        MSPRINGI_HAND(io, of->residual);
+        MSPRINGI_HAND(io, of->substep_length);
+    }
     def->spare_particles = head->particle_end - head->first_particle;
     def->spare_springs = head->spring_end - head->first_spring;
 }

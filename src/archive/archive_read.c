@@ -7,6 +7,8 @@
 #include "archive/archive_format.h"
 #include "base/cpu.h"
 #include "base/definitions.h"
+#include "store/metres.h"
+#include "store/properties.h"
 
 static mspring_result fail(mspring_builder *builder, const char *what) {
     return mspringi_fail(&builder->message, MSPRING_ERROR_SNAPSHOT, "the archive %s", what);
@@ -97,18 +99,13 @@ static mspring_result check_chunks(mspring_builder *builder, const uint8_t *byte
 /* --------------------------------------------------------------------------------------------------------- head */
 
 static bool is_length(double value) {
-    return (value >= 0.0 && value <= MSPRINGI_MAX_LENGTH) || value == (double)INFINITY;
+    return (value >= 0.0 && value <= (double)MSPRINGI_MAX_OWN_LENGTH) || value == (double)INFINITY;
 }
 
 static mspring_result check_head(mspring_builder *builder, const mspringi_archive_head *head, bool is_short) {
-    const mspring_settings settings = mspringi_settings_of(&head->def);
-    const mspring_solver_def solver = mspringi_solver_of(&head->def);
     const mspringi_solver_basis *basis = &head->basis;
     mspringi_message message;
-    mspring_result result = mspringi_check_settings(&settings, &message);
-    if (result == MSPRING_OK)
-        result = mspringi_check_solver(&solver, &message);
-    if (result != MSPRING_OK)
+    if (mspringi_check_settings(&head->def.settings, &message) != MSPRING_OK)
         return fail_in(builder, "definition", message.text);
     const bool has_counts = head->first_particle >= 1 && head->first_particle <= head->particle_end &&
                             head->particle_end <= MSPRING_MAX_PARTICLES && head->first_spring <= head->spring_end &&
@@ -214,14 +211,14 @@ static mspring_result append_spring(mspring_builder *builder, const mspringi_arc
                                     .rest_length = mspringi_float_at(in->values, 3 * (size_t)s + 2),
                                     .flags = *from};
     if (ends[0] >= head->first_particle || ends[1] >= head->first_particle || ends[0] == ends[1] ||
-        spring.flags & ~(uint32_t)MSPRINGI_KEPT_SPRING_FLAGS)
+        spring.flags & ~(uint32_t)(MSPRINGI_KEPT_SPRING_FLAGS & ~MSPRING_SPRING_METRES))
         return mspringi_fail(&builder->message, MSPRING_ERROR_SNAPSHOT,
                              SAID "spring %u joins particles %s and %s, with flags %#x", "plan", (unsigned)s,
                              MSPRINGI_ID(ends[0]), MSPRINGI_ID(ends[1]), (unsigned)spring.flags);
     mspringi_message message;
     mspring_result result =
         mspringi_check_coefficients(&message, "spring", s, spring.stiffness, spring.damping, spring.flags);
-    if (result == MSPRING_OK && !(spring.rest_length > 0.0f && spring.rest_length <= MSPRINGI_MAX_LENGTH))
+    if (result == MSPRING_OK && !mspringi_is_spring_value(MSPRINGI_REST_LENGTH, spring.rest_length))
         result = mspringi_fail(&message, MSPRING_ERROR_SNAPSHOT, "spring %u has rest length %g m", (unsigned)s,
                                (double)spring.rest_length);
     if (result != MSPRING_OK)
@@ -255,19 +252,28 @@ static mspring_result set_limits(mspring_builder *builder, const uint8_t *bytes,
     const uint8_t *breaks = thresholds(bytes, mspringi_section_break_strains.tag, size),
                   *stresses = thresholds(bytes, mspringi_section_stress_strains.tag, size),
                   *relaxes = thresholds(bytes, mspringi_section_relax_strains.tag, size),
-                  *yields = thresholds(bytes, "yiel", 4 * size);
+                  *yields = thresholds(bytes, "yiel", 4 * size),
+                  *metres = thresholds(bytes, mspringi_section_metres.tag, MSPRINGI_METRES * size);
     const uint32_t springs = (uint32_t)builder->spring_count;
     mspring_result result = MSPRING_OK;
     builder->spring_count = 0;
-    for (mspring_id s = 0; result == MSPRING_OK && s < springs && (breaks || stresses || relaxes || yields); ++s) {
+    for (mspring_id s = 0;
+         result == MSPRING_OK && s < springs && (breaks || stresses || relaxes || yields || metres); ++s) {
         mspringi_limits limits = mspringi_builder_limits_of(builder, builder->limit_count);
         limits.break_strain = breaks ? mspringi_float_at(breaks, s) : limits.break_strain;
-        limits.stress_strain = stresses ? mspringi_float_at(stresses, s) : limits.stress_strain;
+        limits.warn_strain = stresses ? mspringi_float_at(stresses, s) : limits.warn_strain;
         limits.relax_strain = relaxes ? mspringi_float_at(relaxes, s) : limits.relax_strain;
         if (yields) {
             float *const of_yield[] = {&limits.yield_strain, &limits.hardening, &limits.plastic_limit};
             for (size_t i = 0; i < 3; ++i)
                 *of_yield[i] = mspringi_float_at(yields, 4 * (size_t)s + i);
+        }
+        if (metres && mspringi_float_at(metres, MSPRINGI_METRES * (size_t)s) != 0.0f) {
+            float *const of_metres[] = {&limits.break_strain, &limits.warn_strain, &limits.relax_strain,
+                                        &limits.yield_strain};
+            for (size_t i = 0; i < MSPRINGI_METRES; ++i)
+                *of_metres[i] = mspringi_read_value(mspringi_float_at(metres, MSPRINGI_METRES * (size_t)s + i));
+            builder->springs[s].flags |= MSPRING_SPRING_METRES;
         }
         mspringi_message message;
         if (mspringi_check_limits(&message, "spring", s, limits) != MSPRING_OK)
@@ -303,7 +309,7 @@ static MSPRINGI_NOINLINE mspring_result read_all(mspring_builder *builder, const
                                                  uint32_t *skipped) {
     mspringi_archive_head head = {0};
     parts in;
-    (void)mspring_network_def_init(&head.def, sizeof head.def);
+    (void)mspring_init(MSPRING_STRUCT_NETWORK_DEF, &head.def, sizeof head.def);
     mspring_result result = check_chunks(builder, bytes, size, skipped);
     if (result != MSPRING_OK)
         return result;
@@ -324,23 +330,27 @@ static MSPRINGI_NOINLINE mspring_result read_all(mspring_builder *builder, const
     return result;
 }
 
-mspring_result mspring_builder_read(mspring_builder *builder, const void *archive, size_t size, uint32_t *skipped) {
-    uint32_t count = 0;
-    if (!builder)
-        return MSPRING_ERROR_ARGUMENT;
-    mspringi_message_clear(&builder->message);
+static mspring_result read_archive(mspring_builder *builder, const void *archive, size_t size, uint32_t *skipped) {
     if (!archive)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "the archive is NULL");
     if (builder->particle_count > 0 || builder->archive)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
                              "the builder has %zu particles, an archive needs an empty one",
                              builder->particle_count);
+    return read_all(builder, archive, size, skipped);
+}
+
+mspring_result mspring_builder_read(mspring_builder *builder, const void *archive, size_t size, uint32_t *skipped) {
+    uint32_t count = 0;
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&builder->message);
     const mspringi_fp_state before = mspringi_fp_enter();
-    const mspring_result result = read_all(builder, archive, size, &count);
+    const mspring_result result = read_archive(builder, archive, size, &count);
     mspringi_fp_leave(before);
     if (result == MSPRING_OK && skipped)
         *skipped = count;
-    return result;
+    return mspringi_builder_end(builder, result);
 }
 
 mspring_result mspring_builder_get_network_def(mspring_builder *builder, mspring_network_def *def) {

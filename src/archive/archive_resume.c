@@ -34,8 +34,8 @@ static mspring_result take_def(mspring_builder *builder, const mspring_network_d
     }
     // The direct solver finds an order of elimination, and a compact layout tiles: not before all springs are
     // there.
-    if (head->is_compact || own->solver == MSPRING_SOLVER_DIRECT)
-        def->solver = MSPRING_SOLVER_EXPLICIT;
+    if (head->is_compact || own->settings.solver == MSPRING_SOLVER_DIRECT)
+        def->settings.solver = MSPRING_SOLVER_EXPLICIT;
     return MSPRING_OK;
 }
 
@@ -183,10 +183,10 @@ static mspring_result load_section(mspring_network *network, const mspringi_arch
 
 // Have a solver without bundles, if this build has one: what is compacted then has none, whatever is chosen later.
 static mspring_result leave_bundles(mspring_network *network) {
-    mspring_solver_def solver;
-    (void)mspring_solver_def_init(&solver, sizeof solver);
+    mspring_settings solver;
+    (void)mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver);
     solver.solver = MSPRING_SOLVER_IMPLICIT;
-    const mspring_result result = mspring_network_set_solver(network, &solver);
+    const mspring_result result = mspring_network_set_settings(network, &solver);
     if (result == MSPRING_ERROR_MEMORY)
         return result;
     mspringi_message_clear(&network->message);
@@ -195,14 +195,14 @@ static mspring_result leave_bundles(mspring_network *network) {
 
 // Choose the archived solver where the network was created with another one, and compact it if it was.
 static mspring_result lay_out_anew(mspring_network *network, const mspringi_archive_head *head) {
-    const mspring_solver_def solver = mspringi_solver_of(&head->def);
+    const mspring_settings solver = head->def.settings;
     mspring_result result = MSPRING_OK;
     if (!head->is_compact_with_bundles)
         result = solver.solver == MSPRING_SOLVER_EXPLICIT ? leave_bundles(network)
-                                                          : mspring_network_set_solver(network, &solver);
+                                                          : mspring_network_set_settings(network, &solver);
     if (result == MSPRING_OK && head->is_compact)
         result = mspring_network_compact(network);
-    return result == MSPRING_OK ? mspring_network_set_solver(network, &solver) : result;
+    return result == MSPRING_OK ? mspring_network_set_settings(network, &solver) : result;
 }
 
 // Bounds that depend on what the network was created with.
@@ -220,29 +220,19 @@ static void set_basis(mspring_network *network, const mspringi_archive_head *hea
 
 /* --------------------------------------------------------------------------------------------------- the others */
 
-// Settings and solver where the host wants others than the archive's.
+// Settings, where the host wants others than the archive's.
 static mspring_result change(mspring_network *network, const mspring_network_def *own,
                              const mspring_network_def *given) {
-    const mspring_settings settings = mspringi_settings_of(given), archived = mspringi_settings_of(own);
-    const mspring_solver_def solver = mspringi_solver_of(given), had = mspringi_solver_of(own);
-    mspring_result result = MSPRING_OK;
-    if (memcmp(&settings, &archived, sizeof settings) != 0)
-        result = mspring_network_set_settings(network, &settings);
-    if (result != MSPRING_OK || memcmp(&solver, &had, sizeof solver) == 0)
-        return result;
-    mspring_solver_def now = {.struct_size = sizeof now}, wanted = solver;
-    result = mspring_network_get_solver(network, &now);
-    wanted.most_work = now.most_work;
-    wanted.residual = now.residual;
-    wanted.substep_length = now.substep_length;
-    return result == MSPRING_OK ? mspring_network_set_solver(network, &wanted) : result;
+    return memcmp(&given->settings, &own->settings, sizeof own->settings) == 0
+               ? MSPRING_OK
+               : mspring_network_set_settings(network, &given->settings);
 }
 
 static mspring_result resume(mspring_network *network, const mspring_builder *builder,
                              const mspring_network_def *given) {
     const mspringi_archive *archive = builder->archive;
     const mspringi_archive_head *head = &archive->head;
-    const bool is_laid_out_anew = head->is_compact || head->def.solver == MSPRING_SOLVER_DIRECT;
+    const bool is_laid_out_anew = head->is_compact || head->def.settings.solver == MSPRING_SOLVER_DIRECT;
     mspring_result result = MSPRING_OK;
     set_bounds(network, head);
     for (const mspringi_chunk *const *chunk = mspringi_chunks; result == MSPRING_OK && *chunk; ++chunk)

@@ -84,7 +84,7 @@ static mspring_simd best_of_cpu(void) {
 
 #endif
 
-mspring_simd mspring_simd_supported(void) {
+static mspring_simd best_of_build(void) {
     const mspring_simd best = best_of_cpu();
     size_t i = LEVEL_COUNT - 1;
     while (i > 0 && levels[i] > best)
@@ -97,7 +97,7 @@ uint32_t mspring_simd_available(mspring_simd level) {
         return 1;
     for (size_t i = 0; i < LEVEL_COUNT; ++i)
         if (levels[i] == level)
-            return level <= mspring_simd_supported();
+            return level <= best_of_build();
     return 0;
 }
 
@@ -119,7 +119,7 @@ const char *mspring_simd_name(mspring_simd level) {
 
 // MSPRING_SIMD_SCALAR selects scalar code, or the lowest level of this build.
 mspring_simd mspringi_cpu_choose(mspring_simd wanted) {
-    mspring_simd level = mspring_simd_supported();
+    mspring_simd level = best_of_build();
     if (wanted == MSPRING_SIMD_SCALAR)
         level = levels[0];
     else if (wanted != MSPRING_SIMD_AUTO && mspring_simd_available(wanted))

@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 /// Choose the level: the best supported one, unless `wanted` (other than MSPRING_SIMD_AUTO) or the environment
 /// variable MSPRING_SIMD lowers it.

@@ -99,6 +99,8 @@ const char *mspring_result_string(mspring_result result) {
         return "no equilibrium found";
     case MSPRING_ERROR_SNAPSHOT:
         return "no snapshot of this network";
+    case MSPRING_ERROR_REFUSED:
+        return "refused by the host";
     default:
         return "unknown result code";
     }

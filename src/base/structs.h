@@ -5,9 +5,13 @@
 #ifndef MSPRINGI_STRUCTS_H
 #define MSPRINGI_STRUCTS_H
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
+#include <stddef.h>
+
+#include <massspring/massspring.h>
+#if !defined(MSPRING_EXPERIMENTAL)
+#define MSPRING_EXPERIMENTAL
+#endif
+#include <massspring/lab.h>
 
 #include "base/message.h"
 #include "base/parts.h"
@@ -18,13 +22,11 @@
 /// A public struct that begins with struct_size.
 typedef struct mspringi_struct {
     const char *name;
-    uint32_t first;       ///< bytes in the version that introduced it; never changes
-    uint32_t known;       ///< bytes today
+    uint32_t first;    ///< bytes in the version that introduced it; never changes
+    uint32_t known;    ///< bytes today
+    uint32_t settings; ///< offset of the mspring_settings that it ends with, and that grow with it; 0: it has none
     const void *defaults; ///< [known]; NULL: 0
 } mspringi_struct;
-
-/// Give a struct of the host its defaults, and struct_size its size. Fields of a later header become 0.
-mspring_result mspringi_init_struct(const mspringi_struct *of, void *out, size_t size);
 
 /// Copy a struct of the host onto the defaults: what an older header lacks has its default. Refuse a size that no
 /// version has, and fields of a later header that are not 0. The copy has today's size. NULL gives the defaults.
@@ -41,20 +43,16 @@ mspring_result mspringi_check_given(mspringi_message *message, const mspringi_st
 
 /// Refuse a struct that cannot be filled. NULL is MSPRING_ERROR_ARGUMENT. The message may be NULL.
 mspring_result mspringi_check_output(mspringi_message *message, const mspringi_struct *of, const void *out);
-/// Check all elements of an array of equal size.
-mspring_result mspringi_check_outputs(mspringi_message *message, const mspringi_struct *of, const void *array,
-                                      uint32_t count);
 
 /// Fill a struct that was checked, as far as its header has it. Fields of a later header become 0; struct_size
 /// stays.
 void mspringi_put_struct(const mspringi_struct *of, void *out, const void *made);
-
-/// An element of an array of the host whose structs are as large as the first of them says.
-void *mspringi_element(const void *array, size_t index);
+/// Fill an element of an array whose first element was checked. The others get its struct_size.
+void mspringi_put_struct_at(const mspringi_struct *of, void *array, size_t index, const void *made);
 
 /// For each struct: its mspringi_struct, and the above with its type. A struct that is taken is exchanged for the
 /// copy, so that all that follows reads that.
-#define INPUT_STRUCT(name, on_64_bits, on_32_bits)                                                                 \
+#define INPUT_STRUCT(name, KIND, on_64_bits, on_32_bits, settings)                                                 \
     extern const mspringi_struct mspringi_struct_##name;                                                           \
     static inline mspring_result mspringi_take_##name##_or_defaults(                                               \
         mspringi_message *message, const mspring_##name **given, mspring_##name *taken) {                          \
@@ -76,7 +74,7 @@ void *mspringi_element(const void *array, size_t index);
         mspringi_put_struct(&mspringi_struct_##name, out, made);                                                   \
     }                                                                                                              \
     static inline void mspringi_put_##name##_at(mspring_##name *array, size_t index, const mspring_##name *made) { \
-        mspringi_put_struct(&mspringi_struct_##name, mspringi_element(array, index), made);                        \
+        mspringi_put_struct_at(&mspringi_struct_##name, array, index, made);                                       \
     }
 #define OUTPUT_STRUCT INPUT_STRUCT
 #include "base/structs.def"

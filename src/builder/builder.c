@@ -39,15 +39,31 @@ void mspring_builder_destroy(mspring_builder *builder) {
 }
 
 const char *mspring_builder_error(const mspring_builder *builder) {
-    return builder ? builder->message.text : "";
+    return !builder ? "" : builder->failed == MSPRING_OK ? builder->message.text : builder->failed_message.text;
 }
 
-uint32_t mspring_builder_particle_count(const mspring_builder *builder) {
-    return builder ? (uint32_t)builder->particle_count : 0;
+void mspring_builder_forget_error(mspring_builder *builder) {
+    if (!builder)
+        return;
+    builder->failed = MSPRING_OK;
+    mspringi_message_clear(&builder->message);
 }
 
-uint32_t mspring_builder_spring_count(const mspring_builder *builder) {
-    return builder ? (uint32_t)builder->spring_count : 0;
+mspring_result mspringi_builder_end(mspring_builder *builder, mspring_result result) {
+    if (result != MSPRING_OK && builder->failed == MSPRING_OK) {
+        builder->failed = result;
+        builder->failed_message = builder->message;
+    }
+    return result;
+}
+
+uint32_t mspring_builder_count(const mspring_builder *builder, mspring_kind kind) {
+    const size_t count = !builder                    ? 0
+                         : kind == MSPRING_PARTICLES ? builder->particle_count
+                         : kind == MSPRING_SPRINGS   ? builder->spring_count
+                         : kind == MSPRING_ELEMENTS  ? builder->area_count
+                                                     : 0;
+    return (uint32_t)count;
 }
 
 /* ---------------------------------------------------------------------------------------------- reserving */
@@ -235,11 +251,8 @@ static void append_spring(mspring_builder *builder, const mspring_spring_def *de
     mspringi_builder_put_limits(builder, builder->spring_count - 1, MSPRINGI_LIMITS_OF(def));
 }
 
-mspring_result mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_def *defs,
-                                             uint32_t count, mspring_id *first_id) {
-    if (!builder)
-        return MSPRING_ERROR_ARGUMENT;
-    mspringi_message_clear(&builder->message);
+static mspring_result add_particles(mspring_builder *builder, const mspring_particle_def *defs, uint32_t count,
+                                    mspring_id *first_id) {
     if (!defs && count > 0)
         return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "particle definitions are NULL");
     const size_t before = builder->particle_count;
@@ -259,9 +272,12 @@ mspring_result mspring_builder_add_particles(mspring_builder *builder, const msp
     return result;
 }
 
-mspring_result mspring_builder_add_particle(mspring_builder *builder, const mspring_particle_def *def,
-                                            mspring_id *id) {
-    return mspring_builder_add_particles(builder, def, 1, id);
+mspring_result mspring_builder_add_particles(mspring_builder *builder, const mspring_particle_def *defs,
+                                             uint32_t count, mspring_id *first_id) {
+    if (!builder)
+        return MSPRING_ERROR_ARGUMENT;
+    mspringi_message_clear(&builder->message);
+    return mspringi_builder_end(builder, add_particles(builder, defs, count, first_id));
 }
 
 static MSPRINGI_NOINLINE mspring_result add_springs(mspring_builder *builder, const mspring_spring_def *defs,
@@ -296,11 +312,7 @@ mspring_result mspring_builder_add_springs(mspring_builder *builder, const mspri
         return MSPRING_ERROR_ARGUMENT;
     mspringi_message_clear(&builder->message);
     const mspringi_fp_state before = mspringi_fp_enter();
-    mspring_result result = add_springs(builder, defs, count, first_id);
+    const mspring_result result = add_springs(builder, defs, count, first_id);
     mspringi_fp_leave(before);
-    return result;
-}
-
-mspring_result mspring_builder_add_spring(mspring_builder *builder, const mspring_spring_def *def, mspring_id *id) {
-    return mspring_builder_add_springs(builder, def, 1, id);
+    return mspringi_builder_end(builder, result);
 }

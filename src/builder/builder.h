@@ -5,11 +5,13 @@
 #ifndef MSPRINGI_BUILDER_H
 #define MSPRINGI_BUILDER_H
 
+#include <float.h>
+
 #include "base/memory.h"
 #include "base/structs.h"
 #include "builder/builder_areas.h"
 
-#include <massspring/massspring_batch.h>
+#include <massspring/massspring.h>
 
 typedef struct mspringi_particle {
     double x, y;
@@ -42,9 +44,17 @@ static inline float mspringi_strain_of(float length, float kept) {
     return (length - mspringi_read_length(kept)) / mspringi_strain_length(kept);
 }
 
+/// Strain of a limit that is given in metres. It is still a limit: neither 0 nor, unless it is large, infinite.
+static inline float mspringi_strain_of_metres(float metres, float kept) {
+    const double strain = (double)metres / (double)mspringi_strain_length(kept);
+    if (!(metres > 0.0f && metres < MSPRING_NEVER)) // never, at once, or the default relax strain
+        return metres;
+    return strain < (double)FLT_MIN ? FLT_MIN : strain < (double)FLT_MAX ? (float)strain : MSPRING_NEVER;
+}
+
 /// Flags of a definition that are stored with the spring.
 #define MSPRINGI_ONE_WAY_FLAGS (MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY)
-#define MSPRINGI_KEPT_SPRING_FLAGS (MSPRING_SPRING_RELATIVE | MSPRINGI_ONE_WAY_FLAGS)
+#define MSPRINGI_KEPT_SPRING_FLAGS (MSPRING_SPRING_RELATIVE | MSPRINGI_ONE_WAY_FLAGS | MSPRING_SPRING_METRES)
 
 typedef struct mspringi_spring {
     mspring_id a, b;
@@ -52,15 +62,15 @@ typedef struct mspringi_spring {
     uint32_t flags;
 } mspringi_spring;
 
-/// Strain limits of a spring, as in its definition.
+/// Strain limits of a spring, as in its definition: strains, or m if it has MSPRING_SPRING_METRES.
 typedef struct mspringi_limits {
-    float break_strain, stress_strain, relax_strain;
+    float break_strain, warn_strain, relax_strain;
     float yield_strain, hardening, plastic_limit;
     float nominal_length; ///< rest length before plastic flow, m; 0: it has not flowed
 } mspringi_limits;
 
 #define MSPRINGI_LIMITS_OF(def)                                                                                    \
-    ((mspringi_limits){(def)->break_strain, (def)->stress_strain, (def)->relax_strain, (def)->yield_strain,        \
+    ((mspringi_limits){(def)->break_strain, (def)->warn_strain, (def)->relax_strain, (def)->yield_strain,          \
                        (def)->hardening, (def)->plastic_limit, 0.0f})
 
 /// Largest plastic strain and largest hardening.
@@ -69,7 +79,9 @@ typedef struct mspringi_limits {
 
 struct mspring_builder {
     mspringi_memory memory;
-    mspringi_message message;
+    mspringi_message message;        ///< of the last call
+    mspringi_message failed_message; ///< of the first description that failed
+    mspring_result failed;           ///< its result, or MSPRING_OK
     mspringi_particle *particles;
     mspringi_spring *springs;
     size_t particle_count, particle_capacity;
@@ -117,6 +129,16 @@ static inline bool mspringi_is_relax_strain(float strain) {
     return (strain >= 0.0f) | (strain == MSPRING_RELAX_STRAIN_DEFAULT);
 }
 
+/// End a call that describes something: remember the first failure, and return its result.
+mspring_result mspringi_builder_end(mspring_builder *builder, mspring_result result);
+
+/// Copy a material and check it; `what` is for the message.
+mspring_result mspringi_take_good_material(mspringi_message *message, const char *what, size_t index,
+                                           const mspring_material *materials, mspring_material *material);
+/// Copy and check the material of a rope, a mesh or a disc; from may be NULL, which is an error.
+mspring_result mspringi_take_own_material(mspringi_message *message, const char *shape,
+                                          const mspring_material *from, mspring_material *material);
+
 /// Make room for `count` more particles or springs.
 mspring_result mspringi_builder_reserve_particles(mspring_builder *builder, size_t count);
 mspring_result mspringi_builder_reserve_springs(mspring_builder *builder, size_t count);
@@ -146,8 +168,9 @@ mspring_result mspringi_check_coefficients(mspringi_message *message, const char
 /// relative.
 float mspringi_find_damping(float stiffness, float damping, uint32_t flags, float mass_a, float mass_b);
 
-/// Add a whole mesh or, on error, nothing.
-mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def);
+/// Add a whole mesh of a good material or, on error, nothing.
+mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def,
+                                         const mspring_material *material);
 
 /// Copy definition i of the host's array; reject one that is invalid in any builder. `index` is for the message.
 mspring_result mspringi_take_particle(mspringi_message *message, size_t index, const mspring_particle_def *defs,

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_BUILDER_AREAS_H
 #define MSPRINGI_BUILDER_AREAS_H
 
-#include <massspring/massspring_laws.h>
+#include <massspring/massspring.h>
 
 #include <stdbool.h>
 

@@ -35,6 +35,8 @@ static mspring_result check(mspring_builder *builder, const mspring_builder *fro
     if (!from || from == builder)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the builder to copy is %s",
                              from ? "the one that gets the copies" : "NULL");
+    if (from->failed != MSPRING_OK)
+        return mspringi_fail(message, from->failed, "the builder to copy: %s", from->failed_message.text);
     if (count == 0 || !by->x != !by->y)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s",
                              count == 0 ? "there are 0 copies, at least 1 is needed"
@@ -97,11 +99,13 @@ static MSPRINGI_NOINLINE mspring_result add_copies(mspring_builder *builder, con
     mspring_result result = check(builder, from, count, by);
     if (result == MSPRING_OK)
         result = reserve(builder, from, count);
-    const float lag = from->particle_count > 0 ? mspringi_joint_lag(builder, from->lag) : builder->lag;
-    for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i)
+    if (result != MSPRING_OK)
+        return result;
+    const float lag = mspringi_joint_lag(builder, from->lag);
+    for (uint32_t i = 0; i < count; ++i)
         append(builder, from, x_of(by, i), y_of(by, i));
-    builder->lag = result == MSPRING_OK ? lag : builder->lag;
-    return result;
+    builder->lag = lag;
+    return MSPRING_OK;
 }
 
 mspring_result mspring_builder_add_copies(mspring_builder *builder, const mspring_builder *from, uint32_t count,
@@ -113,7 +117,7 @@ mspring_result mspring_builder_add_copies(mspring_builder *builder, const msprin
     const mspring_id particle = (mspring_id)builder->particle_count, spring = (mspring_id)builder->spring_count;
     const offsets by = {x, y, stride};
     const mspringi_fp_state before = mspringi_fp_enter();
-    const mspring_result result = add_copies(builder, from, count, &by);
+    const mspring_result result = mspringi_builder_end(builder, add_copies(builder, from, count, &by));
     mspringi_fp_leave(before);
     if (result == MSPRING_OK && first_particle)
         *first_particle = particle;

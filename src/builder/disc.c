@@ -23,7 +23,7 @@ static mspring_result check_disc(mspringi_message *message, const mspring_disc_d
     if (def->centre_flags & ~(uint32_t)MSPRING_PARTICLE_PINNED)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "disc has unknown centre_flags 0x%x",
                              (unsigned)def->centre_flags);
-    return MSPRING_OK;
+    return mspringi_check_reserved(message, "mspring_disc_def", def->reserved | (def->reserved_pointer != NULL));
 }
 
 // Vertex k of a ring, modulo the ring's size.
@@ -82,8 +82,8 @@ static void join_vertices(uint32_t rings, uint32_t *corner) {
     }
 }
 
-static mspring_result fill_disc(mspring_builder *builder, const mspring_disc_def *def, double *places,
-                                uint32_t *corners) {
+static mspring_result fill_disc(mspring_builder *builder, const mspring_disc_def *def,
+                                const mspring_material *material, double *places, uint32_t *corners) {
     const size_t centre = builder->particle_count;
     const uint32_t vertices = 1 + 3 * def->ring_count * (def->ring_count + 1);
     if (!places || !corners)
@@ -91,25 +91,16 @@ static mspring_result fill_disc(mspring_builder *builder, const mspring_disc_def
                              (unsigned)def->ring_count);
     place_vertices(def, places, places + vertices);
     join_vertices(def->ring_count, corners);
-    const mspring_mesh_def mesh = {.spring_flags = def->spring_flags,
-                                   .vertex_count = vertices,
+    const mspring_mesh_def mesh = {.vertex_count = vertices,
                                    .triangle_count = SECTORS * def->ring_count * def->ring_count,
                                    .x = places,
                                    .y = places + vertices,
                                    .triangles = corners,
                                    .area_density = def->area_density,
-                                   .stiffness = def->stiffness,
-                                   .young_modulus = def->young_modulus,
-                                   .damping = def->damping,
-                                   .break_strain = def->break_strain,
-                                   .stress_strain = def->stress_strain,
-                                   .relax_strain = def->relax_strain,
-                                   .yield_strain = def->yield_strain,
-                                   .hardening = def->hardening,
-                                   .plastic_limit = def->plastic_limit};
-    mspring_result result = mspringi_builder_add_mesh(builder, &mesh);
+                                   .young_modulus = def->young_modulus};
+    mspring_result result = mspringi_builder_add_mesh(builder, &mesh, material);
     if (result == MSPRING_OK)
-        builder->particles[centre].flags = def->centre_flags;
+        builder->particles[centre].flags |= def->centre_flags;
     if (result == MSPRING_OK || result == MSPRING_ERROR_MEMORY)
         return result;
     const mspringi_message reason = builder->message;
@@ -118,15 +109,18 @@ static mspring_result fill_disc(mspring_builder *builder, const mspring_disc_def
 
 static MSPRINGI_NOINLINE mspring_result add_disc(mspring_builder *builder, const mspring_disc_def *def) {
     mspring_disc_def taken;
+    mspring_material material;
     mspring_result result = mspringi_take_disc_def(&builder->message, &def, &taken);
     if (result == MSPRING_OK)
         result = check_disc(&builder->message, def);
+    if (result == MSPRING_OK)
+        result = mspringi_take_own_material(&builder->message, "disc", def->material, &material);
     if (result != MSPRING_OK)
         return result;
     const size_t rings = def->ring_count;
     double *places = mspringi_alloc(&builder->memory, 2 * (1 + 3 * rings * (rings + 1)), sizeof *places);
     uint32_t *corners = mspringi_alloc(&builder->memory, 3 * SECTORS * rings * rings, sizeof *corners);
-    result = fill_disc(builder, def, places, corners);
+    result = fill_disc(builder, def, &material, places, corners);
     mspringi_free(&builder->memory, places);
     mspringi_free(&builder->memory, corners);
     return result;
@@ -139,7 +133,7 @@ mspring_result mspring_builder_add_disc(mspring_builder *builder, const mspring_
     mspringi_message_clear(&builder->message);
     const mspring_id particle = (mspring_id)builder->particle_count, spring = (mspring_id)builder->spring_count;
     const mspringi_fp_state before = mspringi_fp_enter();
-    mspring_result result = add_disc(builder, def);
+    const mspring_result result = mspringi_builder_end(builder, add_disc(builder, def));
     mspringi_fp_leave(before);
     if (result == MSPRING_OK && first_particle)
         *first_particle = particle;

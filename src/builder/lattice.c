@@ -18,25 +18,34 @@ static mspring_result take_materials(mspring_builder *builder, mspring_lattice_d
                              (unsigned)def->material_count);
     for (uint32_t i = 0; i < def->material_count; ++i) {
         mspring_material *material = &(*materials)[i];
-        mspring_result result = mspringi_take_material_at(message, def->materials, i, material);
-        result = mspringi_prefix(message, result, "material", i);
-        if (result == MSPRING_OK)
-            result = mspringi_check_mass(&builder->message, "material", i, material->mass);
-        if (result == MSPRING_OK)
-            result = mspringi_check_coefficients(&builder->message, "material", i, material->stiffness,
-                                                 material->damping, material->spring_flags);
-        if (result == MSPRING_OK)
-            result = mspringi_check_limits(message, "material", i, MSPRINGI_LIMITS_OF(material));
+        const mspring_result result = mspringi_take_good_material(message, "material", i, def->materials, material);
         if (result != MSPRING_OK)
             return result;
-        if (material->particle_flags & ~(uint32_t)MSPRING_PARTICLE_PINNED)
-            return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "material %u: unknown particle flags 0x%x",
-                                 (unsigned)i, (unsigned)material->particle_flags);
         if (material->spring_flags != (*materials)->spring_flags)
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                                 "material %u: some materials are relative and some are not", (unsigned)i);
+                                 "material %u: its spring_flags are 0x%x, they must be 0x%x as those of material 0",
+                                 (unsigned)i, (unsigned)material->spring_flags,
+                                 (unsigned)(*materials)->spring_flags);
     }
     def->materials = *materials;
+    return MSPRING_OK;
+}
+
+// Refuse shares that make springs stiffer than one may be.
+static mspring_result check_shares(mspringi_message *message, const mspring_lattice_def *def) {
+    const float share = def->shear_share > def->bend_share ? def->shear_share : def->bend_share;
+    for (uint32_t i = 0; i < def->material_count; ++i) {
+        const mspring_material *of = &def->materials[i];
+        const bool is_ratio = of->spring_flags & MSPRING_SPRING_DAMPING_RATIO;
+        const mspring_result result = mspringi_check_coefficients(
+            message, "material", i, share > 1.0f ? share * of->stiffness : of->stiffness,
+            share > 1.0f && !is_ratio ? share * of->damping : of->damping, of->spring_flags);
+        if (result != MSPRING_OK)
+            return mspringi_fail(message, result,
+                                 "material %u: times %g, the larger share, its stiffness of %g or "
+                                 "damping of %g is above 1e30",
+                                 (unsigned)i, (double)share, (double)of->stiffness, (double)of->damping);
+    }
     return MSPRING_OK;
 }
 
@@ -69,8 +78,6 @@ static mspring_result check_lattice(mspring_builder *builder, mspring_lattice_de
     if (width > MSPRING_MAX_PARTICLES / height)
         return mspringi_fail(message, MSPRING_ERROR_LIMIT, "lattice of %u x %u cells is over the limit of %u",
                              (unsigned)def->width, (unsigned)def->height, (unsigned)MSPRING_MAX_PARTICLES);
-    if (!def->cells)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice cells are NULL");
     if (!(def->spacing >= 1e-9 && def->spacing <= 1e9))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "lattice spacing is %g m, it must be 1e-9 to 1e9",
                              def->spacing);
@@ -93,6 +100,9 @@ static mspring_result check_lattice(mspring_builder *builder, mspring_lattice_de
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "lattice has shear_share %g and bend_share %g, they must be 0 to 1000",
                              (double)def->shear_share, (double)def->bend_share);
+    const mspring_result scaled = check_shares(message, def);
+    if (scaled != MSPRING_OK)
+        return scaled;
     const bool has_shear = def->shear_share > 0.0f, has_bend = def->bend_share > 0.0f;
 
     *particles = *springs = 0;
@@ -120,10 +130,10 @@ static mspring_result check_lattice(mspring_builder *builder, mspring_lattice_de
 
 // Limits of springs between two materials: those of the weaker one.
 static mspringi_limits join_limits(const mspring_material *a, const mspring_material *b) {
-    const mspring_material *stressed = b->stress_strain < a->stress_strain ? b : a;
+    const mspring_material *stressed = b->warn_strain < a->warn_strain ? b : a;
     const mspring_material *yields = b->yield_strain < a->yield_strain ? b : a;
     return (mspringi_limits){.break_strain = b->break_strain < a->break_strain ? b->break_strain : a->break_strain,
-                             .stress_strain = stressed->stress_strain,
+                             .warn_strain = stressed->warn_strain,
                              .relax_strain = stressed->relax_strain,
                              .yield_strain = yields->yield_strain,
                              .hardening = yields->hardening,
@@ -228,12 +238,25 @@ static void append_bend_springs(mspring_builder *builder, const mspring_lattice_
     }
 }
 
+// A definition without cells has the first material in all of them.
+static mspring_result fill_cells(mspring_builder *builder, mspring_lattice_def *def, uint16_t **cells) {
+    const size_t count = (size_t)def->width * def->height;
+    if (def->cells || count == 0 || count > MSPRING_MAX_PARTICLES) // too many are refused below
+        return MSPRING_OK;
+    def->cells = *cells = mspringi_alloc(&builder->memory, count, sizeof **cells);
+    return def->cells ? MSPRING_OK
+                      : mspringi_fail(&builder->message, MSPRING_ERROR_MEMORY, "no memory for %zu cells", count);
+}
+
 static MSPRINGI_NOINLINE mspring_result add_lattice(mspring_builder *builder, const mspring_lattice_def *def,
                                                     mspring_id *cell_ids) {
     mspring_lattice_def taken;
     mspring_material *materials = NULL;
+    uint16_t *cells = NULL;
     size_t particles = 0, springs = 0;
     mspring_result result = mspringi_take_lattice_def(&builder->message, &def, &taken);
+    if (result == MSPRING_OK)
+        result = fill_cells(builder, &taken, &cells);
     if (result == MSPRING_OK)
         result = check_lattice(builder, &taken, &materials, &particles, &springs);
     if (result == MSPRING_OK)
@@ -249,6 +272,7 @@ static MSPRINGI_NOINLINE mspring_result add_lattice(mspring_builder *builder, co
             append_bend_springs(builder, def, first_id);
     }
     mspringi_free(&builder->memory, materials);
+    mspringi_free(&builder->memory, cells);
     return result;
 }
 
@@ -258,7 +282,7 @@ mspring_result mspring_builder_add_lattice(mspring_builder *builder, const mspri
         return MSPRING_ERROR_ARGUMENT;
     mspringi_message_clear(&builder->message);
     const mspringi_fp_state before = mspringi_fp_enter();
-    mspring_result result = add_lattice(builder, def, cell_ids);
+    const mspring_result result = add_lattice(builder, def, cell_ids);
     mspringi_fp_leave(before);
-    return result;
+    return mspringi_builder_end(builder, result);
 }

@@ -17,7 +17,7 @@ mspring_result mspringi_check_limits(mspringi_message *message, const char *what
         bool is_good;
     } all[] = {
         {"break strain", "> 0", limits.break_strain, mspringi_is_threshold(limits.break_strain)},
-        {"stress strain", "> 0", limits.stress_strain, mspringi_is_threshold(limits.stress_strain)},
+        {"warn strain", "> 0", limits.warn_strain, mspringi_is_threshold(limits.warn_strain)},
         {"relax strain", ">= 0 or MSPRING_RELAX_STRAIN_DEFAULT", limits.relax_strain,
          mspringi_is_relax_strain(limits.relax_strain)},
         {"yield strain", "> 0", limits.yield_strain, mspringi_is_threshold(limits.yield_strain)},
@@ -40,7 +40,7 @@ bool mspringi_has_plasticity(mspringi_limits limits) {
 
 bool mspringi_has_limits(mspringi_limits limits) {
     return mspringi_has_plasticity(limits) || limits.break_strain < MSPRING_NEVER ||
-           limits.stress_strain < MSPRING_NEVER || limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT;
+           limits.warn_strain < MSPRING_NEVER || limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT;
 }
 
 mspring_result mspringi_builder_reserve_limits(mspring_builder *builder, size_t count, mspringi_limits limits) {

@@ -52,7 +52,8 @@ static void release(mspring_builder *builder, mesh_work *work) {
 
 /* ----------------------------------------------------------------------------------------------------- checks */
 
-static mspring_result check_values(mspringi_message *message, const mspring_mesh_def *def) {
+static mspring_result check_values(mspringi_message *message, const mspring_mesh_def *def,
+                                   const mspring_material *material) {
     if (def->vertex_count > 0 && (!def->x || !def->y))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "mesh vertices are NULL");
     if (def->triangle_count > 0 && !def->triangles)
@@ -62,23 +63,20 @@ static mspring_result check_values(mspringi_message *message, const mspring_mesh
                              "mesh of %u vertices and %u triangles is over the limit of %u and %u",
                              (unsigned)def->vertex_count, (unsigned)def->triangle_count,
                              (unsigned)MSPRING_MAX_PARTICLES, (unsigned)MSPRING_MAX_SPRINGS);
-    if (!mspringi_in_range(def->area_density, 1e-30f, 1e30f))
+    if (def->area_density != 0.0f && !mspringi_in_range(def->area_density, 1e-30f, 1e30f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "mesh has an area_density of %g kg/m^2, it must be 1e-30 to 1e30",
+                             "mesh has an area_density of %g kg/m^2, it must be 0 or 1e-30 to 1e30",
                              (double)def->area_density);
     if (!mspringi_in_range(def->young_modulus, 0.0f, 1e30f))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "mesh has a young_modulus of %g N/m, it must be 0 to 1e30",
                              (double)def->young_modulus);
-    if (def->young_modulus > 0.0f && (def->stiffness != 0.0f || def->spring_flags & MSPRING_SPRING_RELATIVE))
+    if (def->young_modulus > 0.0f &&
+        (material->stiffness != 0.0f || material->spring_flags & MSPRING_SPRING_RELATIVE))
         return mspringi_fail(
             message, MSPRING_ERROR_ARGUMENT, "mesh has a young_modulus of %g N/m and %s: give one of them",
-            (double)def->young_modulus, def->stiffness != 0.0f ? "a stiffness, too" : "relative springs");
-    mspring_result result =
-        mspringi_check_coefficients(message, "mesh spring", 0, def->stiffness, def->damping, def->spring_flags);
-    if (result == MSPRING_OK)
-        result = mspringi_check_limits(message, "mesh spring", 0, MSPRINGI_LIMITS_OF(def));
-    return result;
+            (double)def->young_modulus, material->stiffness != 0.0f ? "a stiffness, too" : "relative springs");
+    return mspringi_check_reserved(message, "mspring_mesh_def", def->reserved);
 }
 
 static mspring_result check_triangle(mspringi_message *message, const mspring_mesh_def *def, uint32_t triangle,
@@ -114,21 +112,25 @@ static mspring_result check_vertices(mspringi_message *message, const mspring_me
     return MSPRING_OK;
 }
 
-// Distribute the triangles' masses to their corners, a third each.
-static mspring_result distribute_mass(mspringi_message *message, const mspring_mesh_def *def,
+// Distribute the triangles' masses to their corners, a third each. Without a density all weigh as the material
+// says.
+static mspring_result distribute_mass(mspringi_message *message, const mspring_mesh_def *def, float mass,
                                       const mesh_work *work) {
+    const double density = def->area_density > 0.0f ? (double)def->area_density : 1.0;
     for (uint32_t t = 0; t < def->triangle_count; ++t) {
         double area;
         mspring_result result = check_triangle(message, def, t, &area);
         if (result != MSPRING_OK)
             return result;
         for (int i = 0; i < 3; ++i)
-            work->mass[def->triangles[3 * (size_t)t + i]] += area * (double)def->area_density / 3.0;
+            work->mass[def->triangles[3 * (size_t)t + i]] += area * density / 3.0;
     }
     for (uint32_t v = 0; v < def->vertex_count; ++v) {
         if (!(work->mass[v] > 0.0))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                  "vertex %u belongs to no triangle, so it has no mass", (unsigned)v);
+        if (def->area_density == 0.0f)
+            work->mass[v] = (double)mass;
         mspring_result result = mspringi_check_mass(message, "vertex", v, (float)work->mass[v]);
         if (result != MSPRING_OK)
             return result;
@@ -185,7 +187,8 @@ static void measure_areas(const mspring_mesh_def *def, const mesh_work *work) {
     }
 }
 
-static mspring_result append_edge(mspring_builder *builder, const mspring_mesh_def *def, const mesh_work *work,
+static mspring_result append_edge(mspring_builder *builder, const mspring_mesh_def *def,
+                                  const mspring_material *material, const mesh_work *work,
                                   mspring_id first_particle, uint32_t side) {
     uint32_t low, high;
     side_ends(def, side, &low, &high);
@@ -194,7 +197,7 @@ static mspring_result append_edge(mspring_builder *builder, const mspring_mesh_d
     const float rest_length = (float)sqrt(square);
     const float stiffness = def->young_modulus > 0.0f
                                 ? (float)((double)def->young_modulus * work->area[side] / square)
-                                : def->stiffness;
+                                : material->stiffness;
     if (!(rest_length > 0.0f && rest_length <= MSPRINGI_MAX_LENGTH) || !mspringi_in_range(stiffness, 0.0f, 1e30f))
         return mspringi_fail(
             &builder->message, MSPRING_ERROR_ARGUMENT,
@@ -206,58 +209,63 @@ static mspring_result append_edge(mspring_builder *builder, const mspring_mesh_d
         .a = first_particle + low,
         .b = first_particle + high,
         .stiffness = stiffness,
-        .damping = mspringi_find_damping(stiffness, def->damping, def->spring_flags, mass_low, mass_high),
+        .damping = mspringi_find_damping(stiffness, material->damping, material->spring_flags, mass_low, mass_high),
         .rest_length = rest_length,
-        .flags = def->spring_flags & MSPRINGI_KEPT_SPRING_FLAGS};
+        .flags = material->spring_flags & MSPRINGI_KEPT_SPRING_FLAGS};
     return MSPRING_OK;
 }
 
-static mspring_result append_mesh(mspring_builder *builder, const mspring_mesh_def *def, const mesh_work *work) {
+static mspring_result append_mesh(mspring_builder *builder, const mspring_mesh_def *def,
+                                  const mspring_material *material, const mesh_work *work) {
     const size_t particles = builder->particle_count, springs = builder->spring_count;
     const size_t edges = find_edges(def, work);
     mspring_result result = mspringi_builder_reserve_particles(builder, def->vertex_count);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_springs(builder, edges);
     if (result == MSPRING_OK)
-        result = mspringi_builder_reserve_limits(builder, edges, MSPRINGI_LIMITS_OF(def));
+        result = mspringi_builder_reserve_limits(builder, edges, MSPRINGI_LIMITS_OF(material));
     if (result != MSPRING_OK)
         return result;
     measure_areas(def, work);
     for (uint32_t v = 0; v < def->vertex_count; ++v)
-        builder->particles[builder->particle_count++] =
-            (mspringi_particle){.x = def->x[v], .y = def->y[v], .mass = (float)work->mass[v]};
+        builder->particles[builder->particle_count++] = (mspringi_particle){
+            .x = def->x[v], .y = def->y[v], .mass = (float)work->mass[v], .flags = material->particle_flags};
     for (uint32_t side = 0; result == MSPRING_OK && side < 3 * def->triangle_count; ++side)
         if (work->same[side] == side)
-            result = append_edge(builder, def, work, (mspring_id)particles, side);
+            result = append_edge(builder, def, material, work, (mspring_id)particles, side);
     if (result != MSPRING_OK) {
         builder->particle_count = particles;
         mspringi_builder_cut_springs(builder, springs);
     } else {
-        mspringi_builder_put_limits(builder, springs, MSPRINGI_LIMITS_OF(def));
+        mspringi_builder_put_limits(builder, springs, MSPRINGI_LIMITS_OF(material));
     }
     return result;
 }
 
-mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def) {
+mspring_result mspringi_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def,
+                                         const mspring_material *material) {
     mspringi_message *message = &builder->message;
     mesh_work work = {0};
-    mspring_result result = check_values(message, def);
+    mspring_result result = check_values(message, def, material);
     if (result == MSPRING_OK)
         result = check_vertices(message, def);
     if (result == MSPRING_OK)
         result = allocate(builder, def->vertex_count, 3 * (size_t)def->triangle_count, &work);
     if (result == MSPRING_OK)
-        result = distribute_mass(message, def, &work);
+        result = distribute_mass(message, def, material->mass, &work);
     if (result == MSPRING_OK)
-        result = append_mesh(builder, def, &work);
+        result = append_mesh(builder, def, material, &work);
     release(builder, &work);
     return result;
 }
 
 static MSPRINGI_NOINLINE mspring_result add_mesh(mspring_builder *builder, const mspring_mesh_def *def) {
     mspring_mesh_def taken;
+    mspring_material material;
     mspring_result result = mspringi_take_mesh_def(&builder->message, &def, &taken);
-    return result == MSPRING_OK ? mspringi_builder_add_mesh(builder, def) : result;
+    if (result == MSPRING_OK)
+        result = mspringi_take_own_material(&builder->message, "mesh", def->material, &material);
+    return result == MSPRING_OK ? mspringi_builder_add_mesh(builder, def, &material) : result;
 }
 
 mspring_result mspring_builder_add_mesh(mspring_builder *builder, const mspring_mesh_def *def,
@@ -267,7 +275,7 @@ mspring_result mspring_builder_add_mesh(mspring_builder *builder, const mspring_
     mspringi_message_clear(&builder->message);
     const mspring_id particle = (mspring_id)builder->particle_count, spring = (mspring_id)builder->spring_count;
     const mspringi_fp_state before = mspringi_fp_enter();
-    mspring_result result = add_mesh(builder, def);
+    const mspring_result result = mspringi_builder_end(builder, add_mesh(builder, def));
     mspringi_fp_leave(before);
     if (result == MSPRING_OK && first_particle)
         *first_particle = particle;

@@ -14,6 +14,7 @@
 #include "store/changed.h"
 #include "store/fractions.h"
 #include "store/id_pool.h"
+#include "store/metres.h"
 #include "store/spring_limits.h"
 #include "store/springs.h"
 
@@ -45,7 +46,7 @@ static mspring_result check_room(mspring_network *network, const char *what, con
                : mspringi_fail(
                      &network->message, MSPRING_ERROR_LIMIT,
                      "no room for %u %s%s: spare_%ss (mspring_network_def) is %u, and %u of these are free. "
-                     "Set more at creation; mspring_network_recycle() frees what was removed",
+                     "Set more at creation; mspring_network_reuse_ids() frees what was removed",
                      (unsigned)count, what, count == 1 ? "" : "s", what, (unsigned)(end - first), (unsigned)room);
 }
 
@@ -77,16 +78,13 @@ static void put_particle(mspring_network *network, mspring_id p, const mspring_p
     network->inverse_mass[slot] = is_pinned ? 0.0f : 1.0f / def->mass;
     if (network->inverse_mass_scale)
         network->inverse_mass_scale[p] = is_pinned ? 0.0f : 1.0f;
-    if (network->spring_mass)
-        network->spring_mass[p] = def->mass;
     if (network->components.number)
         network->components.number[p] = MSPRING_NONE;
     network->state.vx[slot] = def->vx;
     network->state.vy[slot] = def->vy;
     mspringi_set_position(network, p, def->x, def->y);
     mspringi_pose_keep(network, p);
-    if (network->contacts)
-        mspringi_outline_take_in(network, &network->contacts->outline, p);
+    mspringi_contact_take_in(network, p);
     mspringi_fingerprint(network, MSPRINGI_EDIT_ADDED_PARTICLE, p);
     network->parameter_fingerprint = mspringi_hash(network->parameter_fingerprint, def->flags);
 }
@@ -223,8 +221,7 @@ static void put_spring(mspring_network *network, mspring_id s, const mspring_spr
     mspringi_spring_come_live(network, s);
     mspringi_spring_set_nominal(network, s, spring_slot, (mspringi_relative){def->stiffness, damping});
     mspringi_limits_forget(network, s);
-    mspringi_limits_put(network, s, MSPRINGI_LIMITS_OF(def));
-    mspringi_extents_turn(network, s);
+    mspringi_limits_put(network, s, def->flags, MSPRINGI_LIMITS_OF(def));
     mspringi_fingerprint(network, relative ? MSPRINGI_EDIT_ADDED_RELATIVE : MSPRINGI_EDIT_ADDED_SPRING, s);
     mspringi_fingerprint(network, def->a, def->b);
     mspringi_fingerprint_floats(network, def->stiffness, damping);
@@ -253,6 +250,8 @@ static MSPRINGI_NOINLINE mspring_result add_springs(mspring_network *network, co
         mspring_spring_def def;
         (void)mspringi_take_spring_def_at(NULL, defs, i, &def);
         result = mspringi_limits_reserve(network, MSPRINGI_LIMITS_OF(&def));
+        if (result == MSPRING_OK)
+            result = mspringi_metres_reserve(network, def.flags);
     }
     if (result != MSPRING_OK) {
         for (id = g->lowest_spring; linked > 0; --linked, ++id) {

@@ -161,6 +161,18 @@ static void add_small_rounding_to_nearest(mspring_network *network, const msprin
     mspringi_fp_leave(before);
 }
 
+static mspring_result apply_first_forces(mspring_network *network, const mspringi_selection *at,
+                                         const pushes *given) {
+    mspringi_forces *forces = &network->forces;
+    mspring_result result = mspringi_field_reserve(network, &forces->first);
+    if (result == MSPRING_OK)
+        result = mspringi_field_reserve(network, &forces->begun);
+    if (result == MSPRING_OK)
+        result = add_rounding_to_nearest(network, at, given, &(target){.sum = forces->first});
+    forces->first_any = forces->first_any || (result == MSPRING_OK && at->count > 0);
+    return result;
+}
+
 static mspring_result apply_forces(mspring_network *network, const mspringi_selection *at, const pushes *given) {
     mspringi_forces *forces = &network->forces;
     mspring_result result = mspringi_field_reserve(network, &forces->held);
@@ -178,26 +190,6 @@ static mspring_result apply_forces(mspring_network *network, const mspringi_sele
     forces->held_any = true;
     forces->held_calls = is_small ? calls + 1 : MSPRINGI_MODEST_CALLS;
     return MSPRING_OK;
-}
-
-mspring_result mspring_network_apply_forces(mspring_network *network, mspring_id first, uint32_t count,
-                                            const float *x, const float *y, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, x, y, &at);
-    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){x, y, stride}) : result;
-}
-
-mspring_result mspring_network_apply_forces_at(mspring_network *network, const mspring_id *particles,
-                                               uint32_t count, const float *x, const float *y, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
-    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){x, y, stride}) : result;
-}
-
-mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y) {
-    mspringi_selection at;
-    const mspring_result result = mspringi_select_one(network, MSPRINGI_PARTICLES, &particle, &at);
-    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){&x, &y, 1}) : result;
 }
 
 /* ----------------------------------------------------------------------------------------------------- impulses */
@@ -222,16 +214,27 @@ static mspring_result apply_impulses(mspring_network *network, const mspringi_se
     return result;
 }
 
-mspring_result mspring_network_apply_impulses(mspring_network *network, mspring_id first, uint32_t count,
-                                              const float *x, const float *y, uint32_t stride) {
+/* -------------------------------------------------------------------------------------------------------- calls */
+
+mspring_result mspring_network_apply_force(mspring_network *network, mspring_id particle, float x, float y) {
     mspringi_selection at;
-    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, x, y, &at);
-    return result == MSPRING_OK ? apply_impulses(network, &at, &(pushes){x, y, stride}) : result;
+    const mspring_result result = mspringi_select_one(network, MSPRING_PARTICLES, &particle, &at);
+    return result == MSPRING_OK ? apply_forces(network, &at, &(pushes){&x, &y, 1}) : result;
 }
 
-mspring_result mspring_network_apply_impulses_at(mspring_network *network, const mspring_id *particles,
-                                                 uint32_t count, const float *x, const float *y, uint32_t stride) {
+mspring_result mspring_network_apply_forces(mspring_network *network, mspring_push push, const mspring_id *ids,
+                                            mspring_id first, uint32_t count, const float *x, const float *y,
+                                            uint32_t stride) {
     mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
-    return result == MSPRING_OK ? apply_impulses(network, &at, &(pushes){x, y, stride}) : result;
+    mspring_result result = mspringi_select_for(network, MSPRING_PARTICLES, ids, first, count, x, y, stride, &at);
+    if (result == MSPRING_OK && push != MSPRING_PUSH_STEP && push != MSPRING_PUSH_SUBSTEP &&
+        push != MSPRING_PUSH_IMPULSE)
+        result =
+            mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "push is %d, which is unknown", (int)push);
+    if (result != MSPRING_OK)
+        return result;
+    const pushes given = {x, y, stride};
+    return push == MSPRING_PUSH_STEP      ? apply_forces(network, &at, &given)
+           : push == MSPRING_PUSH_SUBSTEP ? apply_first_forces(network, &at, &given)
+                                          : apply_impulses(network, &at, &given);
 }

@@ -5,22 +5,12 @@
 
 #include "base/cpu.h"
 #include "edits/edit_values.h"
+#include "features/contact/contacts.h"
 #include "store/changed.h"
+#include "store/id_pool.h"
 #include "store/springs.h"
 
 /* ------------------------------------------------------------------------------------------------------ masses */
-
-mspring_result mspringi_reserve_spring_masses(mspring_network *network) {
-    if (!network->fractions.values || network->spring_mass)
-        return MSPRING_OK;
-    const size_t count = network->topology.reserve.particle_end;
-    network->spring_mass = mspringi_alloc(&network->memory, count, sizeof *network->spring_mass);
-    if (!network->spring_mass)
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
-                             "no memory for second masses of %zu particles", count);
-    memcpy(network->spring_mass, network->mass, count * sizeof *network->mass);
-    return MSPRING_OK;
-}
 
 // Index of the first changed mass.
 static uint32_t first_changed_mass(const mspring_network *network, const mspringi_selection *at,
@@ -85,32 +75,39 @@ static MSPRINGI_NOINLINE void store_range(const mspring_network *network, const 
     }
 }
 
+// Each change takes a walk around its particle, or all of them together one pass over all springs.
+static bool are_few(const mspring_network *network, const mspringi_selection *at, uint32_t first) {
+    enum { SPRINGS_OF_PARTICLE = 8 }; // in a lattice
+    return at->count - first < network->topology.spring_count / SPRINGS_OF_PARTICLE;
+}
+
+// Have relative springs follow new masses.
+static void renew_springs(mspring_network *network, const mspringi_selection *at, uint32_t first) {
+    if (!are_few(network, at, first))
+        mspringi_renew_relative(network);
+    else
+        for (uint32_t i = first; i < at->count; ++i)
+            mspringi_renew_relative_around(network, mspringi_selected(at, i));
+    mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING_MASSES, 0);
+}
+
 static mspring_result set_masses(mspring_network *network, const mspringi_selection *at,
                                  const mspringi_values *values) {
     const uint32_t first = first_changed_mass(network, at, values);
     if (first == at->count)
         return MSPRING_OK;
-    mspring_result result = mspringi_reserve_spring_masses(network);
-    if (result != MSPRING_OK)
-        return result;
+    if (network->fractions.values && are_few(network, at, first)) {
+        const mspring_result result = mspringi_incidence_reserve(network);
+        if (result != MSPRING_OK)
+            return result;
+    }
     if (at->list || network->growth.particles)
         store_masses(network, at, values, first);
     else
         store_range(network, at, values, first);
-    network->is_reweighed = network->spring_mass != NULL;
+    if (network->fractions.values)
+        renew_springs(network, at, first);
     mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0);
-    return MSPRING_OK;
-}
-
-mspring_result mspring_network_renew_relative_springs(mspring_network *network) {
-    mspring_result result = mspringi_check_call(network);
-    if (result != MSPRING_OK || !network->spring_mass)
-        return result;
-    memcpy(network->spring_mass, network->mass, network->topology.reserve.particle_end * sizeof *network->mass);
-    const mspringi_fp_state before = mspringi_fp_enter();
-    mspringi_renew_relative(network);
-    mspringi_fp_leave(before);
-    mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING_MASSES, 0);
     return MSPRING_OK;
 }
 
@@ -179,5 +176,7 @@ static mspring_result set_scales(mspring_network *network, const mspringi_select
 
 mspring_result mspringi_set_particle_values(mspring_network *network, const mspringi_selection *at,
                                             const mspringi_values *values) {
-    return values->property == MSPRING_MASS ? set_masses(network, at, values) : set_scales(network, at, values);
+    return values->property == MSPRING_MASS                 ? set_masses(network, at, values)
+           : values->property == MSPRING_INVERSE_MASS_SCALE ? set_scales(network, at, values)
+                                                            : mspringi_contact_set_material(network, at, values);
 }

@@ -7,8 +7,7 @@
 
 #include "store/properties.h"
 
-/// Save the masses for relative springs before the first edit of masses. No effect without relative springs.
-mspring_result mspringi_reserve_spring_masses(mspring_network *network);
+/// Make the array of scales, if it is not there.
 mspring_result mspringi_reserve_inverse_mass_scales(mspring_network *network);
 
 #endif

@@ -39,17 +39,16 @@ static void finish(mspring_network *network) {
     mspringi_notify_change(network, MSPRINGI_CHANGED_GRAFTS, 0);
 }
 
-mspring_result mspring_network_remove_particles(mspring_network *network, const mspring_id *particles,
+mspring_result mspring_network_remove_particles(mspring_network *network, const mspring_id *ids, mspring_id first,
                                                 uint32_t count) {
     mspringi_selection at;
-    mspring_result result =
-        mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, particles, particles, &at);
-    if (result == MSPRING_OK && count > 0)
+    mspring_result result = mspringi_select(network, MSPRING_PARTICLES, ids, first, count, &at);
+    if (result == MSPRING_OK && at.count > 0)
         result = reserve(network);
-    if (result != MSPRING_OK || count == 0)
+    if (result != MSPRING_OK || at.count == 0)
         return result;
-    for (uint32_t i = 0; i < count; ++i)
-        remove_particle(network, particles[i]);
+    for (uint32_t i = 0; i < at.count; ++i)
+        remove_particle(network, mspringi_selected(&at, i));
 #define FORGETS(function) function(network);
 #include "store/features.def"
     mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0); // as after pinning
@@ -57,15 +56,16 @@ mspring_result mspring_network_remove_particles(mspring_network *network, const 
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_remove_springs(mspring_network *network, const mspring_id *springs, uint32_t count) {
+mspring_result mspring_network_remove_springs(mspring_network *network, const mspring_id *ids, mspring_id first,
+                                              uint32_t count) {
     mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_SPRINGS, springs, count, springs, springs, &at);
-    if (result == MSPRING_OK && count > 0)
+    mspring_result result = mspringi_select(network, MSPRING_SPRINGS, ids, first, count, &at);
+    if (result == MSPRING_OK && at.count > 0)
         result = reserve(network);
-    if (result != MSPRING_OK || count == 0)
+    if (result != MSPRING_OK || at.count == 0)
         return result;
-    for (uint32_t i = 0; i < count; ++i)
-        remove_spring(network, springs[i], MSPRING_NONE);
+    for (uint32_t i = 0; i < at.count; ++i)
+        remove_spring(network, mspringi_selected(&at, i), MSPRING_NONE);
     finish(network);
     return MSPRING_OK;
 }
@@ -83,7 +83,7 @@ static mspring_id recycle_ids(uint8_t *marks, mspring_id first, mspring_id end, 
     return lowest;
 }
 
-mspring_result mspring_network_recycle(mspring_network *network) {
+mspring_result mspring_network_reuse_ids(mspring_network *network) {
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK || !network->growth.particles)
         return result;
@@ -91,15 +91,8 @@ mspring_result mspring_network_recycle(mspring_network *network) {
     const mspringi_reserve *r = &network->topology.reserve;
     g->lowest_particle = recycle_ids(g->particles, r->first_particle, r->particle_end, g->lowest_particle);
     g->lowest_spring = recycle_ids(g->springs, r->first_spring, r->spring_end, g->lowest_spring);
+    mspringi_components_forget_removed(network);
     mspringi_fingerprint(network, MSPRINGI_EDIT_RECYCLED, 0);
     mspringi_notify_change(network, MSPRINGI_CHANGED_IDS, 0);
     return MSPRING_OK;
-}
-
-uint32_t mspring_network_has_particle(const mspring_network *network, mspring_id particle) {
-    return network && particle < network->topology.particle_count && mspringi_particle_exists(network, particle);
-}
-
-uint32_t mspring_network_has_spring(const mspring_network *network, mspring_id spring) {
-    return network && spring < network->topology.spring_count && mspringi_spring_exists(network, spring);
 }

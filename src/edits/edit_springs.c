@@ -9,6 +9,7 @@
 #include "edits/edit_values.h"
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
+#include "store/metres.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
 #include "store/spring_limits.h"
@@ -38,11 +39,13 @@ static inline void fetch(const plane *from, mspringi_spring_slot spring_slot) {
         MSPRINGI_PREFETCH(in_plane(from, spring_slot));
 }
 
-// Array of a property. All thresholds have one; so have the given rest lengths of yielding springs, rest lengths of
-// lattices unless shared, and stiffness and damping of lattices.
+// Array of a property. All thresholds have one, unless springs have some in metres; so have the given rest lengths
+// of yielding springs, rest lengths of lattices unless shared, and stiffness and damping of lattices.
 static plane plane_of(const mspring_network *network, mspring_property property) {
     const mspringi_topology *t = &network->topology;
     const uint32_t planes = network->parts - 1;
+    if (network->metres && property >= MSPRING_REST_LENGTH && property <= MSPRING_YIELD_STRAIN)
+        return (plane){NULL, 1, 0};
     float *thresholds = mspringi_limits_of(network, property);
     if (property == MSPRING_REST_LENGTH && mspringi_ramp_count(network) == 0 && network->tested.nominal)
         thresholds = network->tested.nominal;
@@ -171,7 +174,7 @@ static uint32_t edit_of(mspring_property property) {
         return MSPRINGI_EDIT_PARTS + MSPRINGI_REST_LENGTH;
     case MSPRING_BREAK_STRAIN:
         return MSPRINGI_EDIT_BREAK_STRAIN;
-    case MSPRING_STRESS_STRAIN:
+    case MSPRING_WARN_STRAIN:
         return MSPRINGI_EDIT_STRESS_STRAIN;
     case MSPRING_YIELD_STRAIN:
         return MSPRINGI_EDIT_YIELD_STRAIN;
@@ -232,11 +235,12 @@ static MSPRINGI_NOINLINE void set_one(mspring_network *network, mspring_property
     case MSPRING_REST_LENGTH:
         mspringi_ramp_drop(network, spring);
         mspringi_spring_slot_give_length(network, spring_slot, value);
+        mspringi_metres_renew(network, spring);
         break;
     default:
         if (property == MSPRING_PLASTIC_STRAIN)
             mspringi_ramp_drop(network, spring);
-        mspringi_limit_store(network, spring_slot, property, value);
+        mspringi_limit_store(network, spring_slot, property, mspringi_metres_set(network, property, spring, value));
     }
 }
 
@@ -268,7 +272,7 @@ static inline double reduced_mass_of(lattice_setter *with, float a, float b) {
 
 static lattice_setter lattice_setter_of(const mspring_network *network, mspring_property property) {
     return (lattice_setter){.records = plane_of(network, property),
-                            .mass = mspringi_spring_masses(network),
+                            .mass = network->mass,
                             .rate = mspringi_relative_rate(network),
                             .is_damping = property == MSPRING_DAMPING,
                             .has_relative = network->fractions.values != NULL};

@@ -67,9 +67,7 @@ static MSPRINGI_NOINLINE mspring_result apply(mspring_network *network, const ms
 mspring_result mspring_network_apply_torque(mspring_network *network, const mspring_id *ids, mspring_id first,
                                             uint32_t count, float torque) {
     mspringi_selection at;
-    mspring_result result =
-        ids ? mspringi_select_list(network, MSPRINGI_PARTICLES, ids, count, &torque, &torque, &at)
-            : mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, &torque, &torque, &at);
+    mspring_result result = mspringi_select(network, MSPRING_PARTICLES, ids, first, count, &at);
     if (result == MSPRING_OK && !isfinite(torque))
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the torque is %g N m", (double)torque);
     if (result == MSPRING_OK)

@@ -7,13 +7,6 @@
 
 #include "store/properties.h"
 
-/// Valid values of a property: one for each element of a selection, or with stride 0 one for all.
-typedef struct mspringi_values {
-    mspring_property property;
-    const float *first;
-    size_t stride; ///< stride in floats
-} mspringi_values;
-
 static inline float mspringi_value_of(const mspringi_values *values, uint32_t i) {
     const float value = values->first[i * values->stride];
     return values->property == MSPRING_REST_LENGTH ? mspringi_stored_length(value) : mspringi_broken_value(value);

@@ -390,16 +390,53 @@ void put_back(global const float *before, global float *after, global const ucha
         is_held[body] = mask[body] ? 0 : was_held[body];
 }
 
+// Properties that a column may have: mspring_property in core.h.
+#define MASS 0x000u
+#define X 0x002u
+#define Y 0x003u
+#define VX 0x004u
+#define VY 0x005u
+#define RELATIVE_X 0x00bu
+#define RELATIVE_Y 0x00cu
+#define RELATIVE_VX 0x00du
+#define RELATIVE_VY 0x00eu
+#define GROUP_X 0x300u
+#define GROUP_FLAGS 0x380u
+
+// A particle's number in an observation. frame: centre of mass and its velocity.
+static double observed(uint property, double mass, double2 place, double2 velocity, double2 origin, double4 frame) {
+    switch (property) {
+    case MASS:
+        return mass;
+    case X:
+        return origin.x + place.x;
+    case Y:
+        return origin.y + place.y;
+    case VX:
+        return velocity.x;
+    case VY:
+        return velocity.y;
+    case RELATIVE_X:
+        return origin.x - frame.x + place.x;
+    case RELATIVE_Y:
+        return origin.y - frame.y + place.y;
+    case RELATIVE_VX:
+        return velocity.x - frame.z;
+    default:
+        return velocity.y - frame.w;
+    }
+}
+
 // Observe bodies as mspring_network_observe_groups(). Each body is one work-item, so sums are in the order of
-// particles.
+// particles. columns: property and index.
 kernel void observe(global const float *state, global const uchar *is_held, global const float *masses,
-                    global const uint *chosen, global double *rows, uint first, uint count, uint chosen_count,
+                    global const uint2 *columns, global double *rows, uint first, uint count, uint column_count,
                     double origin_x, double origin_y) {
     const size_t i = get_global_id(0);
     if (i >= count)
         return;
     global const float *from = state + (first + i) * STATE;
-    global double *row = rows + i * (9 + 4 * (size_t)chosen_count);
+    global double *row = rows + i * (size_t)column_count;
     double mass = 0.0, sx = 0.0, sy = 0.0, px = 0.0, py = 0.0;
     double low_x = 1e300, low_y = 1e300, high_x = -1e300, high_y = -1e300;
     for (uint p = 0; p < PARTICLES; p++) {
@@ -416,22 +453,24 @@ kernel void observe(global const float *state, global const uchar *is_held, glob
         high_x = x > high_x ? x : high_x;
         high_y = y > high_y ? y : high_y;
     }
-    const double part = 1.0 / mass, middle_x = sx * part, middle_y = sy * part;
-    row[0] = middle_x + origin_x;
-    row[1] = middle_y + origin_y;
-    row[2] = px * part;
-    row[3] = py * part;
-    row[4] = low_x + origin_x;
-    row[5] = low_y + origin_y;
-    row[6] = high_x + origin_x;
-    row[7] = high_y + origin_y;
-    row[8] = is_held[first + i] ? 1.0 : 0.0;
-    for (uint k = 0; k < chosen_count; k++) {
-        const uint p = chosen[k];
-        global double *to = row + 9 + 4 * (size_t)k;
-        to[0] = (double)from[p] + (double)low_of(from[p], from[2 * PARTICLES + p]) - middle_x;
-        to[1] = (double)from[PARTICLES + p] + (double)low_of(from[PARTICLES + p], from[3 * PARTICLES + p]) - middle_y;
-        to[2] = (double)from[4 * PARTICLES + p];
-        to[3] = (double)from[5 * PARTICLES + p];
+    const double part = 1.0 / mass;
+    const double of_body[8] = {origin_x + sx * part, origin_y + sy * part, px * part,         py * part,
+                               origin_x + low_x,     origin_y + low_y,     origin_x + high_x, origin_y + high_y};
+    const double4 frame = (double4)(of_body[0], of_body[1], of_body[2], of_body[3]);
+    for (uint c = 0; c < column_count; c++) {
+        const uint property = columns[c].x, p = columns[c].y;
+        if (property == GROUP_FLAGS)
+            row[c] = is_held[first + i] ? 1.0 : 0.0;
+        else if (property >= GROUP_X)
+            row[c] = of_body[property - GROUP_X];
+        else if (p >= PARTICLES)
+            row[c] = 0.0;
+        else
+            row[c] = observed(
+                property, (double)masses[p],
+                (double2)((double)from[p] + (double)low_of(from[p], from[2 * PARTICLES + p]),
+                          (double)from[PARTICLES + p] + (double)low_of(from[PARTICLES + p], from[3 * PARTICLES + p])),
+                (double2)((double)from[4 * PARTICLES + p], (double)from[5 * PARTICLES + p]),
+                (double2)(origin_x, origin_y), frame);
     }
 }

@@ -185,7 +185,7 @@ static mspring_result prove_signals(mspring_gpu *batch, const mspring_gpu_def *d
     if (result == MSPRING_OK)
         result = mspring_network_set_actuators(clone, springs, all, batch->changes);
     if (result == MSPRING_OK)
-        result = mspring_network_set_signals(clone, 0, all, *signals, 1);
+        result = mspring_network_set(clone, MSPRING_SIGNAL, NULL, 0, all, *signals, 1);
     free(springs);
     return result;
 }
@@ -196,14 +196,15 @@ static mspring_result prove_motion(const mspring_gpu *batch, mspring_network *cl
     const size_t all = (size_t)batch->start_count * batch->t.particle_count;
     double h = 0.0;
     float *velocities = malloc(2 * all * sizeof *velocities);
-    mspring_result result = velocities != NULL ? mspring_network_stable_dt(clone, NULL, &h) : MSPRING_ERROR_MEMORY;
+    mspring_result result =
+        velocities != NULL ? mspring_network_get_stable_dt(clone, NULL, &h) : MSPRING_ERROR_MEMORY;
     h = h > 0.0 && h < 1.0 ? 0.5 * h : 1e-3;
     const double shortest = batch->t.shortest < 1e3 ? batch->t.shortest : 1.0;
     const double fastest = fmin(0.03 * shortest / h, 0.1 * (double)batch->t.max_speed);
     for (size_t i = 0; result == MSPRING_OK && i < 2 * all; i++)
         velocities[i] = (float)(fastest * draw(seed));
     if (result == MSPRING_OK)
-        result = mspring_network_set_velocities(clone, 0, (uint32_t)all, velocities, velocities + 1, 2);
+        result = mspring_network_set_velocities(clone, NULL, 0, (uint32_t)all, velocities, velocities + 1, 2);
     free(velocities);
     *dt = h * (double)batch->t.substeps;
     return result;
@@ -227,7 +228,7 @@ static mspring_result step_both(mspring_gpu *batch, mspring_network *clone, cons
     if (result == MSPRING_OK)
         result = mspring_gpu_get_state_hash(batch, &hash);
     if (result == MSPRING_OK)
-        result = mspring_network_state_hash(clone, &expected);
+        result = mspring_network_get_state_hash(clone, &expected);
     if (result == MSPRING_OK && hash != expected)
         return mspringi_gpu_fail(
             &batch->message, MSPRING_ERROR_ARGUMENT,
@@ -348,7 +349,7 @@ void mspring_gpu_destroy(mspring_gpu *batch) {
     const cl_mem buffers[] = {batch->states[0], batch->states[1],   batch->helds[0],       batch->helds[1],
                               batch->start,     batch->device_mask, batch->device_targets, batch->device_links,
                               batch->particles, batch->masses,      batch->planes,         batch->rows,
-                              batch->chosen};
+                              batch->columns};
     const cl_kernel kernels[] = {batch->take_step, batch->put_back, batch->observe};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++)
         if (buffers[i] != NULL)

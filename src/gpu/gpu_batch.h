@@ -26,8 +26,8 @@ struct mspring_gpu {
     cl_kernel take_step, put_back, observe;
     /// A step reads states[now] and writes the other one. If it fails, states[now] is unchanged.
     cl_mem states[2], helds[2], start, device_targets, device_mask, device_links, particles, masses, planes;
-    cl_mem rows, chosen; ///< of observations
-    size_t rows_bytes, chosen_bytes;
+    cl_mem rows, columns; ///< of observations
+    size_t rows_bytes, columns_bytes;
     uint32_t now;
     float lag, links_h; ///< substep of the last step, and that of the relative springs in links, s
     bool are_targets_new, are_links_known;

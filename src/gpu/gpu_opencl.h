@@ -8,10 +8,8 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
-#include <massspring/massspring_contact.h>
+#define MSPRING_EXPERIMENTAL // mspring_network_describe()
 #include <massspring/massspring_gpu.h>
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
 
 /// OpenCL functions in use.
 #define MSPRINGI_GPU_FUNCTIONS(X)                                                                                  \

@@ -2,6 +2,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <stdlib.h>
+#include <string.h>
 
 #include "gpu_batch.h"
 
@@ -57,23 +58,42 @@ static mspring_result reserve_buffer(mspring_gpu *batch, cl_mem *buffer, size_t 
     return MSPRING_OK;
 }
 
-static mspring_result run_observe(mspring_gpu *batch, uint32_t first, uint32_t count, const uint32_t *particles,
-                                  uint32_t chosen_count, size_t bytes) {
+// Check that the kernel knows the columns.
+static mspring_result check_columns(mspring_gpu *batch, const mspring_observation *columns, uint32_t count) {
+    for (uint32_t c = 0; c < count; c++) {
+        const mspring_property property = columns[c].property;
+        const bool is_of_body =
+            property == MSPRING_GROUP_FLAGS || (property >= MSPRING_GROUP_X && property <= MSPRING_GROUP_MAX_Y);
+        if (is_of_body && columns[c].index != 0)
+            return mspringi_gpu_fail(&batch->message, MSPRING_ERROR_ARGUMENT,
+                                     "column %u is of the body itself: its index is %u, it must be 0", (unsigned)c,
+                                     (unsigned)columns[c].index);
+        if (!is_of_body && property != MSPRING_MASS && !(property >= MSPRING_X && property <= MSPRING_VY) &&
+            !(property >= MSPRING_RELATIVE_X && property <= MSPRING_RELATIVE_VY))
+            return mspringi_gpu_fail(&batch->message, MSPRING_ERROR_ARGUMENT,
+                                     "column %u: a device cannot observe property 0x%x", (unsigned)c,
+                                     (unsigned)property);
+    }
+    return MSPRING_OK;
+}
+
+static mspring_result run_observe(mspring_gpu *batch, uint32_t first, uint32_t count,
+                                  const mspring_observation *columns, uint32_t column_count, size_t bytes) {
     const cl_double origin_x = batch->t.origin_x, origin_y = batch->t.origin_y;
-    const size_t chosen_bytes = (chosen_count > 0 ? chosen_count : 1) * sizeof *particles;
+    const size_t column_bytes = column_count * sizeof *columns;
     mspring_result result = reserve_buffer(batch, &batch->rows, &batch->rows_bytes, bytes);
     if (result == MSPRING_OK)
-        result = reserve_buffer(batch, &batch->chosen, &batch->chosen_bytes, chosen_bytes);
-    if (result == MSPRING_OK && chosen_count > 0)
-        result = mspringi_gpu_write(batch, batch->chosen, chosen_bytes, particles, "writing the list of particles");
+        result = reserve_buffer(batch, &batch->columns, &batch->columns_bytes, column_bytes);
+    if (result == MSPRING_OK)
+        result = mspringi_gpu_write(batch, batch->columns, column_bytes, columns, "writing the columns");
     const mspringi_gpu_argument arguments[] = {{sizeof(cl_mem), &batch->states[batch->now]},
                                                {sizeof(cl_mem), &batch->helds[batch->now]},
                                                {sizeof(cl_mem), &batch->masses},
-                                               {sizeof(cl_mem), &batch->chosen},
+                                               {sizeof(cl_mem), &batch->columns},
                                                {sizeof(cl_mem), &batch->rows},
                                                {sizeof first, &first},
                                                {sizeof count, &count},
-                                               {sizeof chosen_count, &chosen_count},
+                                               {sizeof column_count, &column_count},
                                                {sizeof origin_x, &origin_x},
                                                {sizeof origin_y, &origin_y}};
     if (result == MSPRING_OK)
@@ -82,34 +102,33 @@ static mspring_result run_observe(mspring_gpu *batch, uint32_t first, uint32_t c
     return result == MSPRING_OK ? mspringi_gpu_run(batch, batch->observe, count, 0, "observing bodies") : result;
 }
 
-mspring_result mspring_gpu_observe(mspring_gpu *batch, uint32_t first, uint32_t count, const uint32_t *particles,
-                                   uint32_t particle_count, double *rows, uint32_t stride) {
+mspring_result mspring_gpu_observe(mspring_gpu *batch, uint32_t first, uint32_t count,
+                                   const mspring_observation *columns, uint32_t column_count, double *rows,
+                                   uint32_t stride) {
     if (batch == NULL)
         return MSPRING_ERROR_ARGUMENT;
-    const uint64_t columns = MSPRING_OBSERVE_PARTICLES + 4 * (uint64_t)particle_count;
     mspring_result result = check_gpu_range(batch, "bodies", first, count, batch->body_count, rows, stride);
-    if (result == MSPRING_OK && (stride < columns || (particles == NULL && particle_count > 0)))
-        result = mspringi_gpu_fail(&batch->message, MSPRING_ERROR_ARGUMENT,
-                                   "the stride is %u, but a row has %llu columns; "
-                                   "or the list of particles is NULL",
-                                   (unsigned)stride, (unsigned long long)columns);
-    for (uint32_t i = 0; result == MSPRING_OK && i < particle_count; i++)
-        if (particles[i] >= batch->t.particle_count)
-            result = mspringi_gpu_fail(&batch->message, MSPRING_ERROR_ID,
-                                       "index %u: a body has %u particles, and none with number %u", (unsigned)i,
-                                       (unsigned)batch->t.particle_count, (unsigned)particles[i]);
-    if (result != MSPRING_OK || count == 0)
+    if (result == MSPRING_OK && stride < column_count)
+        result =
+            mspringi_gpu_fail(&batch->message, MSPRING_ERROR_ARGUMENT, "the stride is %u, but a row has %u columns",
+                              (unsigned)stride, (unsigned)column_count);
+    if (result == MSPRING_OK && columns == NULL && column_count > 0)
+        result = mspringi_gpu_fail(&batch->message, MSPRING_ERROR_ARGUMENT, "the list of columns is NULL");
+    if (result == MSPRING_OK)
+        result = check_columns(batch, columns, column_count);
+    if (result != MSPRING_OK || count == 0 || column_count == 0)
         return result;
-    const size_t bytes = (size_t)count * (size_t)columns * sizeof *rows;
-    double *all = stride == columns ? rows : malloc(bytes);
+    if (column_count > SIZE_MAX / sizeof *rows / count)
+        return no_gpu_memory(batch);
+    const size_t bytes = (size_t)count * column_count * sizeof *rows;
+    double *all = stride == column_count ? rows : malloc(bytes);
     if (all == NULL)
         return no_gpu_memory(batch);
-    result = run_observe(batch, first, count, particles, particle_count, bytes);
+    result = run_observe(batch, first, count, columns, column_count, bytes);
     if (result == MSPRING_OK)
         result = mspringi_gpu_read(batch, batch->rows, 0, bytes, all, "reading observations");
     for (size_t i = 0; result == MSPRING_OK && all != rows && i < count; i++)
-        for (size_t c = 0; c < columns; c++)
-            rows[i * stride + c] = all[i * columns + c];
+        memcpy(rows + i * stride, all + i * column_count, column_count * sizeof *rows);
     if (all != rows)
         free(all);
     return result;

@@ -1,10 +1,11 @@
 /// Reading a network of equal bodies by public calls, and rejecting networks that a batch cannot have.
 ///
-/// **Order of sums.** It follows from slots and from the counts of the plan. Particles in lattices come first, then
-/// those in chains, then the irregular ones. A row is whole blocks of 16 slots. So columns of neighbours in a
-/// lattice differ as their slots do modulo 16, neighbours in a row have consecutive slots, and higher rows have
-/// higher slots. A row from which no spring leads north is a top row. arrange.c in tests/spec derives the order
-/// from rows. If the number of springs found in rows differs from the plan's, the network is rejected.
+/// **Order of sums.** It follows from slots and from the plan's counts, which mspring_network_describe() tells.
+/// Particles in lattices come first, then those in chains, then the irregular ones. A row is whole blocks of 16
+/// slots. So columns of neighbours in a lattice differ as their slots do modulo 16, neighbours in a row have
+/// consecutive slots, and higher rows have higher slots. A row from which no spring leads north is a top row.
+/// arrange.c in tests/spec derives the order from rows. If the number of springs found in rows differs from the
+/// plan's, the network is rejected.
 ///
 /// SPDX-License-Identifier: MIT
 #include "gpu_template.h"
@@ -32,8 +33,7 @@ static mspring_result no_memory(mspringi_gpu_message *message) {
     return mspringi_gpu_fail(message, MSPRING_ERROR_MEMORY, "no memory to read the network");
 }
 
-/* ------------------------------------------------------------------------------------- state and
- * hash */
+/* -------------------------------------------------------------------------------------- state and hash */
 
 float mspringi_gpu_low_of(float value, float low) {
     return fabsf(low) <= fabsf(value) * 0x1p-21f ? low : 0.0f;
@@ -76,13 +76,13 @@ uint64_t mspringi_gpu_hash_body(uint64_t hash, const float *state, uint32_t n) {
 mspring_result mspringi_gpu_read_states(const mspring_network *network, mspringi_gpu_template *to,
                                         mspringi_gpu_message *message) {
     const uint32_t n = to->particle_count, all = to->body_count * n;
-    mspring_view view = {.struct_size = sizeof view};
+    mspring_view view = mspring_view_default();
     double *places = malloc(2 * (size_t)all * sizeof *places);
     if (places == NULL)
         return no_memory(message);
-    mspring_result result = mspring_network_view(network, &view);
+    mspring_result result = mspring_network_get_view(network, &view);
     if (result == MSPRING_OK)
-        result = mspring_network_get_positions(network, 0, all, places, places + 1, 2);
+        result = mspring_network_get_positions(network, NULL, 0, all, places, places + 1, 2);
     for (uint32_t p = 0; result == MSPRING_OK && p < all; p++) {
         float *state = to->states + (size_t)(p / n) * 6 * n + p % n;
         const uint32_t slot = view.slot_of_particle[p];
@@ -105,7 +105,7 @@ static mspring_result check_hash(const mspring_network *network, const mspringi_
     uint64_t expected, hash = mspringi_gpu_hash_head(t->origin_x, t->origin_y, 0.0f);
     for (uint32_t b = 0; b < t->body_count; b++)
         hash = mspringi_gpu_hash_body(hash, t->states + (size_t)b * 6 * t->particle_count, t->particle_count);
-    const mspring_result result = call_failed(network, mspring_network_state_hash(network, &expected), message);
+    const mspring_result result = call_failed(network, mspring_network_get_state_hash(network, &expected), message);
     if (result != MSPRING_OK || hash == expected)
         return result;
     return mspringi_gpu_fail(
@@ -118,30 +118,21 @@ static mspring_result check_hash(const mspring_network *network, const mspringi_
 
 static mspring_result read_settings(const mspring_network *network, mspringi_gpu_template *to,
                                     mspringi_gpu_message *message) {
-    mspring_settings settings = {.struct_size = sizeof settings};
-    mspring_solver_def solver = {.struct_size = sizeof solver};
-    mspring_contact_def contact = {.struct_size = sizeof contact};
-    uint32_t areas = 0, angles = 0;
+    mspring_settings settings = mspring_settings_default();
+    mspring_contact_def contact = mspring_contact_def_default();
+    const uint32_t elements = mspring_network_count(network, MSPRING_ELEMENTS);
     mspring_result result = mspring_network_get_settings(network, &settings);
-    if (result == MSPRING_OK)
-        result = mspring_network_get_solver(network, &solver);
-    if (result == MSPRING_OK)
-        result = mspring_network_get_areas(network, NULL, NULL, NULL, 0, &areas);
-    if (result == MSPRING_OK)
-        result = mspring_network_get_angles(network, NULL, NULL, NULL, 0, &angles);
     if (result == MSPRING_OK)
         result = mspring_network_get_contact(network, &contact);
     if (result != MSPRING_OK)
         return call_failed(network, result, message);
-    if (solver.solver != MSPRING_SOLVER_EXPLICIT || solver.substeps > MSPRING_MAX_SUBSTEPS)
+    if (settings.solver != MSPRING_SOLVER_EXPLICIT || settings.substeps > MSPRING_MAX_SUBSTEPS)
         return refuse(message, "a batch takes the explicit solver with a number of substeps", 0);
-    if (areas > 0)
-        return refuse(message, "a batch has no areas, and the network has %u", areas);
-    if (angles > 0)
-        return refuse(message, "a batch has no angle springs, and the network has %u", angles);
+    if (elements > 0)
+        return refuse(message, "a batch has no areas and angles, and the network has %u", elements);
     if (contact.capacity > 0)
         return refuse(message, "a batch has no contact, and the network has room for %u points", contact.capacity);
-    to->substeps = solver.substeps;
+    to->substeps = settings.substeps;
     to->gravity_x = settings.gravity_x;
     to->gravity_y = settings.gravity_y;
     to->global_damping = settings.global_damping;
@@ -151,7 +142,7 @@ static mspring_result read_settings(const mspring_network *network, mspringi_gpu
 
 static mspring_result read_floor(const mspring_network *network, mspringi_gpu_template *to,
                                  mspringi_gpu_message *message) {
-    mspring_floor_def def = {.struct_size = sizeof def};
+    mspring_floor_def def = mspring_floor_def_default();
     const mspring_result result = call_failed(network, mspring_network_get_floor(network, &def), message);
     if (result != MSPRING_OK)
         return result;
@@ -170,22 +161,61 @@ static mspring_result read_floor(const mspring_network *network, mspringi_gpu_te
     return MSPRING_OK;
 }
 
-// Check that each group has as many particles as a body: each has the last one, and there are no more.
+/// The counts of a plan that a batch needs.
+typedef struct gpu_plan {
+    uint32_t particle_count, spring_count, loose_particles, has_damping;
+    uint32_t lattice_particles, lattice_springs, chain_particles, chain_springs;
+} gpu_plan;
+
+// Return the number behind a name in lines of names and numbers, or 0.
+static uint32_t described(const char *text, const char *name) {
+    const size_t size = strlen(name);
+    for (const char *line = text; line != NULL; line = strchr(line, '\n')) {
+        line += *line == '\n';
+        if (strncmp(line, name, size) == 0 && line[size] == ' ')
+            return (uint32_t)strtoul(line + size, NULL, 10);
+    }
+    return 0;
+}
+
+static mspring_result read_plan(const mspring_network *network, gpu_plan *plan, mspringi_gpu_message *message) {
+    char text[4096];
+    const mspring_result result =
+        call_failed(network, mspring_network_describe(network, text, sizeof text, NULL), message);
+    if (result == MSPRING_OK)
+        *plan = (gpu_plan){.particle_count = described(text, "particle_count"),
+                           .spring_count = described(text, "spring_count"),
+                           .loose_particles = described(text, "loose_particles"),
+                           .has_damping = described(text, "has_damping"),
+                           .lattice_particles = described(text, "lattice_particles"),
+                           .lattice_springs = described(text, "lattice_springs"),
+                           .chain_particles = described(text, "chain_particles"),
+                           .chain_springs = described(text, "chain_springs")};
+    return result;
+}
+
+// Check that each group has as many particles as a body: each has the last one, of some mass, and there are no
+// more.
 static mspring_result check_groups_of(const mspring_network *network, const mspringi_gpu_template *t,
                                       mspringi_gpu_message *message) {
-    const uint32_t last = t->particle_count - 1;
-    double row[MSPRING_OBSERVE_PARTICLES + 4];
-    for (uint32_t g = 0; g < t->body_count; g++)
-        if (mspring_network_observe_groups(network, g, 1, &last, 1, row, sizeof row / sizeof row[0]) != MSPRING_OK)
+    const mspring_observation last = {MSPRING_MASS, t->particle_count - 1};
+    for (uint32_t g = 0; g < t->body_count; g++) {
+        double mass = 0.0;
+        const mspring_result result =
+            call_failed(network, mspring_network_observe_groups(network, NULL, g, 1, &last, 1, &mass, 1), message);
+        if (result != MSPRING_OK)
+            return result;
+        if (!(mass > 0.0))
             return refuse(message, "the bodies of a batch are equal, but group %u has fewer particles than others",
                           g);
+    }
     return MSPRING_OK;
 }
 
-static mspring_result read_sizes(const mspring_network *network, mspringi_gpu_template *to, mspring_plan *plan,
+static mspring_result read_sizes(const mspring_network *network, mspringi_gpu_template *to, gpu_plan *plan,
                                  mspringi_gpu_message *message) {
-    const uint32_t groups = mspring_network_group_count(network);
-    const mspring_result result = call_failed(network, mspring_network_get_plan(network, plan), message);
+    const uint32_t groups = mspring_network_count(network, MSPRING_GROUPS);
+    const mspring_result result = read_plan(network, plan, message);
     if (result != MSPRING_OK)
         return result;
     if (groups == 0)
@@ -208,8 +238,7 @@ static mspring_result read_sizes(const mspring_network *network, mspringi_gpu_te
     return check_groups_of(network, to, message);
 }
 
-/* ------------------------------------------------------------------------------------- particles,
- * springs */
+/* ---------------------------------------------------------------------------------- particles, springs */
 
 // True if all bodies have the values of the first. Else *at is the index of a different one.
 static bool are_alike(const uint32_t *values, uint32_t bodies, uint32_t count, uint32_t *at) {
@@ -230,8 +259,8 @@ static mspring_result read_property(const mspring_network *network, const msprin
     const char *kind = is_of_particles ? "particle" : "spring";
     float *floats = (float *)values;
     uint32_t at = 0;
-    const mspring_result result =
-        call_failed(network, mspring_network_get(network, property, 0, t->body_count * count, floats, 1), message);
+    const mspring_result result = call_failed(
+        network, mspring_network_get(network, property, NULL, 0, t->body_count * count, floats, 1), message);
     if (result == MSPRING_OK && !are_alike(values, t->body_count, count, &at))
         return mspringi_gpu_fail(message, MSPRING_ERROR_ARGUMENT,
                                  "the bodies of a batch are equal, but %s %u has another %s than the first body's",
@@ -245,13 +274,13 @@ static mspring_result read_property(const mspring_network *network, const msprin
 
 static mspring_result read_particles(const mspring_network *network, mspringi_gpu_template *to, uint32_t *values,
                                      mspringi_gpu_message *message) {
-    mspring_view view = {.struct_size = sizeof view};
+    mspring_view view = mspring_view_default();
     mspring_result result =
         read_property(network, to, MSPRING_INVERSE_MASS_SCALE, "scale of its inverse mass", 1, values, message);
     if (result == MSPRING_OK)
         result = read_property(network, to, MSPRING_MASS, "mass", 0, values, message);
     if (result == MSPRING_OK)
-        result = call_failed(network, mspring_network_view(network, &view), message);
+        result = call_failed(network, mspring_network_get_view(network, &view), message);
     for (uint32_t p = 0; result == MSPRING_OK && p < to->particle_count; p++) {
         memcpy(&to->masses[p], &values[p], sizeof *values);
         to->particles[p].inverse_mass = view.inverse_mass[view.slot_of_particle[p]];
@@ -262,8 +291,9 @@ static mspring_result read_particles(const mspring_network *network, mspringi_gp
 static mspring_result read_ends(const mspring_network *network, mspringi_gpu_template *to, uint32_t *a, uint32_t *b,
                                 mspringi_gpu_message *message) {
     const uint32_t all = to->body_count * to->spring_count;
+    const mspring_column ends[] = {{MSPRING_END_A, 1, a}, {MSPRING_END_B, 1, b}};
     const mspring_result result =
-        call_failed(network, mspring_network_get_ends(network, 0, all, MSPRING_ENDS_IDS, a, b, 1), message);
+        call_failed(network, mspring_network_get_columns(network, NULL, 0, all, ends, 2), message);
     for (uint32_t i = 0; result == MSPRING_OK && i < all; i++) {
         const uint32_t from = i / to->spring_count * to->particle_count, first = i % to->spring_count;
         if (a[i] != a[first] + from || b[i] != b[first] + from)
@@ -285,12 +315,12 @@ static mspring_result read_flags(const mspring_network *network, mspringi_gpu_te
                                  mspringi_gpu_message *message) {
     uint32_t at = 0;
     const uint32_t all = to->body_count * to->spring_count;
-    const mspring_result result =
-        call_failed(network, mspring_network_get_spring_flags(network, 0, all, values, 1), message);
+    const mspring_result result = call_failed(
+        network, mspring_network_get_integers(network, MSPRING_SPRING_FLAGS, NULL, 0, all, values, 1), message);
     if (result != MSPRING_OK)
         return result;
     for (uint32_t i = 0; i < all; i++)
-        if ((values[i] & ~(uint32_t)MSPRING_SPRING_RELATIVE) != 0)
+        if ((values[i] & ~(uint32_t)(MSPRING_SPRING_RELATIVE | MSPRING_SPRING_METRES)) != 0)
             return mspringi_gpu_fail(message, MSPRING_ERROR_ARGUMENT,
                                      "a batch has no springs that are %s, but spring %u is",
                                      values[i] & (MSPRING_SPRING_BROKEN | MSPRING_SPRING_REMOVED) ? "broken"
@@ -315,7 +345,7 @@ static mspring_result read_springs(const mspring_network *network, mspringi_gpu_
         float least;
         size_t member; // of mspringi_gpu_spring, if it is kept
     } all[] = {{MSPRING_BREAK_STRAIN, "break strain", MSPRING_NEVER, 0},
-               {MSPRING_STRESS_STRAIN, "stress strain", MSPRING_NEVER, 0},
+               {MSPRING_WARN_STRAIN, "warn strain", MSPRING_NEVER, 0},
                {MSPRING_YIELD_STRAIN, "yield strain", MSPRING_NEVER, 0},
                {MSPRING_STIFFNESS, "stiffness", 0, offsetof(mspringi_gpu_spring, stiffness)},
                {MSPRING_DAMPING, "damping", 0, offsetof(mspringi_gpu_spring, damping)},
@@ -352,11 +382,10 @@ typedef enum body_kind { IN_LATTICE, IN_CHAIN, IRREGULAR } body_kind;
 
 // Find the kinds of particles. Those in lattices have the first slots, then come those in chains.
 static mspring_result read_kinds(const mspring_network *network, const mspringi_gpu_template *t,
-                                 const mspring_plan *plan, const body_layout *layout,
-                                 mspringi_gpu_message *message) {
+                                 const gpu_plan *plan, const body_layout *layout, mspringi_gpu_message *message) {
     const uint32_t n = t->particle_count, all = t->body_count * n;
-    mspring_view view = {.struct_size = sizeof view};
-    const mspring_result result = call_failed(network, mspring_network_view(network, &view), message);
+    mspring_view view = mspring_view_default();
+    const mspring_result result = call_failed(network, mspring_network_get_view(network, &view), message);
     for (uint32_t slot = 0, count = 0; result == MSPRING_OK && slot < view.slot_count; slot++) {
         const uint32_t p = view.particle_of_slot[slot];
         if (p >= all)
@@ -411,7 +440,7 @@ static void fill_slots(mspringi_gpu_template *t, const body_layout *layout, uint
         }
 }
 
-static mspring_result check_row_springs(const mspringi_gpu_template *t, const mspring_plan *plan,
+static mspring_result check_row_springs(const mspringi_gpu_template *t, const gpu_plan *plan,
                                         const body_layout *layout, mspringi_gpu_message *message) {
     uint32_t counts[3] = {0, 0, 0};
     for (uint32_t s = 0; s < t->spring_count; s++)
@@ -465,7 +494,7 @@ static void mark_rows(mspringi_gpu_template *t, const body_layout *layout) {
     }
 }
 
-static mspring_result order_sums(const mspring_network *network, mspringi_gpu_template *t, const mspring_plan *plan,
+static mspring_result order_sums(const mspring_network *network, mspringi_gpu_template *t, const gpu_plan *plan,
                                  mspringi_gpu_message *message) {
     const size_t n = t->particle_count;
     uint32_t *numbers = malloc(4 * n * sizeof *numbers);
@@ -498,12 +527,11 @@ static mspring_result order_sums(const mspring_network *network, mspringi_gpu_te
     return result;
 }
 
-/* ----------------------------------------------------------------------------------------------------------
- * reading */
+/* --------------------------------------------------------------------------------------------- reading */
 
 static mspring_result read_all(const mspring_network *network, mspringi_gpu_template *to,
                                mspringi_gpu_message *message) {
-    mspring_plan plan = {.struct_size = sizeof plan};
+    gpu_plan plan;
     mspring_result result = read_sizes(network, to, &plan, message);
     if (result != MSPRING_OK)
         return result;

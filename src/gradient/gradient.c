@@ -100,7 +100,7 @@ static mspring_result read_forced(mspring_gradient *g, const mspring_view *view,
     if (!seen || !g->forced || !g->forced_slot)
         result = mspringi_fail(message, MSPRING_ERROR_MEMORY, "no memory for a gradient");
     for (uint32_t i = 0; i < g->forced_count && result == MSPRING_OK; ++i) {
-        if (!mspring_network_has_particle(g->network, forced[i])) {
+        if (forced[i] >= g->particle_count || !mspringi_particle_exists(g->network, forced[i])) {
             result = mspringi_fail(message, MSPRING_ERROR_ID, "forced[%u] is %s, which is no particle", (unsigned)i,
                                    MSPRINGI_ID(forced[i]));
             break;
@@ -133,7 +133,7 @@ static mspring_result refuse_loose(const mspring_gradient *g, const mspring_view
     mspring_result result = MSPRING_OK;
     for (uint32_t p = 0; p < g->particle_count && result == MSPRING_OK; ++p) {
         const uint32_t slot = view->slot_of_particle[p];
-        if (mspring_network_has_particle(g->network, p) && !(degree[slot] > 0.0) &&
+        if (mspringi_particle_exists(g->network, p) && !(degree[slot] > 0.0) &&
             (view->inverse_mass[slot] > 0.0f || view->vx[slot] != 0.0f || view->vy[slot] != 0.0f))
             result = mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                    "particle %u has no spring: such particles have no gradient yet", (unsigned)p);
@@ -144,11 +144,11 @@ static mspring_result refuse_loose(const mspring_gradient *g, const mspring_view
 
 static mspring_result fill_gradient(mspring_gradient *g, const mspring_id *forced) {
     mspring_view view = {.struct_size = sizeof view};
-    mspring_result result = mspring_network_view(g->network, &view);
+    mspring_result result = mspring_network_get_view(g->network, &view);
     if (result != MSPRING_OK)
         return result;
     g->particle_count = view.particle_count;
-    g->spring_count = mspring_network_spring_count(g->network);
+    g->spring_count = mspring_network_count(g->network, MSPRING_SPRINGS);
     g->slots = view.slot_count;
     g->lanes = (view.slot_count + 3 * MSPRINGI_OCTET) / MSPRINGI_OCTET * MSPRINGI_OCTET;
     g->layout = view.layout_generation;
@@ -221,8 +221,8 @@ mspring_result mspring_gradient_add_seeds(mspring_gradient *gradient, const mspr
     mspringi_message_clear(&g->message);
     for (int adds = 0; adds < 2; ++adds)
         for (uint32_t i = 0; i < count; ++i) {
-            const uint64_t id = ids ? ids[i] : (uint64_t)first + i;
-            if (id >= g->particle_count || !mspring_network_has_particle(g->network, (mspring_id)id))
+            const uint64_t id = ids ? ids[first + i] : (uint64_t)first + i;
+            if (id >= g->particle_count || !mspringi_particle_exists(g->network, (mspring_id)id))
                 return mspringi_fail(&g->message, MSPRING_ERROR_ID, "seed %u: no particle %s", (unsigned)i,
                                      MSPRINGI_ID((mspring_id)id));
             const uint32_t slot = g->network->topology.slot_of_particle[id];
@@ -261,7 +261,7 @@ static double spring_gradient(const mspring_gradient *g, mspring_gradient_of of,
 
 static double particle_gradient(const mspring_gradient *g, mspring_gradient_of of, uint32_t particle) {
     const uint32_t slot = g->network->topology.slot_of_particle[particle];
-    if (!mspring_network_has_particle(g->network, particle))
+    if (!mspringi_particle_exists(g->network, particle))
         return 0.0;
     return of == MSPRING_GRADIENT_X    ? g->adjoint.position.x[slot]
            : of == MSPRING_GRADIENT_Y  ? g->adjoint.position.y[slot]
@@ -276,10 +276,10 @@ mspring_result mspring_gradient_get(const mspring_gradient *gradient, mspring_gr
     const bool is_of_spring = of <= MSPRING_GRADIENT_REST_LENGTH;
     const uint32_t total = is_of_spring ? gradient->spring_count : gradient->particle_count;
     for (uint32_t i = 0; i < count; ++i)
-        if ((ids ? ids[i] : (uint64_t)first + i) >= total)
+        if ((ids ? ids[first + i] : (uint64_t)first + i) >= total)
             return MSPRING_ERROR_ID;
     for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t id = ids ? ids[i] : first + i;
+        const uint32_t id = ids ? ids[first + i] : first + i;
         values[(size_t)i * stride] =
             is_of_spring ? spring_gradient(gradient, of, id) : particle_gradient(gradient, of, id);
     }

@@ -24,7 +24,7 @@
 #ifndef MSPRINGI_GRADIENT_H
 #define MSPRINGI_GRADIENT_H
 
-#include <massspring/massspring_batch.h>
+#include <massspring/massspring.h>
 #include <massspring/massspring_gradient.h>
 
 #include <float.h>

@@ -1,6 +1,7 @@
 /// Rejection of networks that have no gradient.
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
+#include <string.h>
+
+#include <massspring/massspring.h>
 
 #include "gradient/gradient.h"
 #include "store/feature.h"
@@ -25,7 +26,8 @@ static mspring_result refuse_features(mspring_network *network) {
             for (size_t c = 0; c + 1 < sizeof text && name[c] && name[c] != '_'; ++c)
                 text[c] = name[c];
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "the network has %s, which have no gradient yet", text);
+                                 "the network has %s, which have no gradient yet",
+                                 memcmp(text, "areas", sizeof "areas") == 0 ? "areas or angles" : text);
         }
     }
     return MSPRING_OK;
@@ -68,7 +70,8 @@ static mspring_result refuse_settings(mspring_network *network) {
 
 static mspring_result refuse_flags(mspring_network *network, mspring_id first, uint32_t count) {
     uint32_t flags[MSPRINGI_GRADIENT_CHUNK];
-    const mspring_result result = mspring_network_get_spring_flags(network, first, count, flags, 1);
+    const mspring_result result =
+        mspring_network_get_integers(network, MSPRING_SPRING_FLAGS, NULL, first, count, flags, 1);
     for (uint32_t i = 0; i < count && result == MSPRING_OK; ++i) {
         const char *kind = flags[i] & MSPRING_SPRING_BROKEN     ? NULL
                            : flags[i] & MSPRING_SPRING_RELATIVE ? "relative"
@@ -86,15 +89,15 @@ static mspring_result refuse_flags(mspring_network *network, mspring_id first, u
 static mspring_result refuse_laws(mspring_network *network, mspring_id first, uint32_t count) {
     float breaking[MSPRINGI_GRADIENT_CHUNK], yielding[MSPRINGI_GRADIENT_CHUNK], plastic[MSPRINGI_GRADIENT_CHUNK],
         length[MSPRINGI_GRADIENT_CHUNK], active[MSPRINGI_GRADIENT_CHUNK];
-    mspring_result result = mspring_network_get(network, MSPRING_BREAK_STRAIN, first, count, breaking, 1);
+    mspring_result result = mspring_network_get(network, MSPRING_BREAK_STRAIN, NULL, first, count, breaking, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_YIELD_STRAIN, first, count, yielding, 1);
+        result = mspring_network_get(network, MSPRING_YIELD_STRAIN, NULL, first, count, yielding, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_PLASTIC_STRAIN, first, count, plastic, 1);
+        result = mspring_network_get(network, MSPRING_PLASTIC_STRAIN, NULL, first, count, plastic, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_REST_LENGTH, first, count, length, 1);
+        result = mspring_network_get(network, MSPRING_REST_LENGTH, NULL, first, count, length, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, first, count, active, 1);
+        result = mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, NULL, first, count, active, 1);
     for (uint32_t i = 0; i < count && result == MSPRING_OK; ++i) {
         const mspring_id spring = first + i;
         const char *what = !mspringi_spring_exists(network, spring) ? NULL
@@ -111,7 +114,7 @@ static mspring_result refuse_laws(mspring_network *network, mspring_id first, ui
 }
 
 static mspring_result refuse_springs(mspring_network *network) {
-    const uint32_t all = mspring_network_spring_count(network);
+    const uint32_t all = mspring_network_count(network, MSPRING_SPRINGS);
     mspring_result result = MSPRING_OK;
     for (uint32_t first = 0; first < all && result == MSPRING_OK; first += MSPRINGI_GRADIENT_CHUNK) {
         const uint32_t count = all - first < MSPRINGI_GRADIENT_CHUNK ? all - first : MSPRINGI_GRADIENT_CHUNK;

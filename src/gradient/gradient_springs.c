@@ -25,11 +25,12 @@ static bool octet_springs_read(mspring_gradient *g, octet_springs *s) {
     const mspring_network *n = g->network;
     if (count == 0)
         return true;
-    return mspring_network_get_ends(n, 0, count, MSPRING_ENDS_SLOTS, s->a, s->b, 1) == MSPRING_OK &&
-           mspring_network_get_spring_flags(n, 0, count, s->flags, 1) == MSPRING_OK &&
-           mspring_network_get(n, MSPRING_ACTIVE_STIFFNESS, 0, count, s->stiffness, 1) == MSPRING_OK &&
-           mspring_network_get(n, MSPRING_ACTIVE_DAMPING, 0, count, s->damping, 1) == MSPRING_OK &&
-           mspring_network_get(n, MSPRING_ACTIVE_REST_LENGTH, 0, count, s->length, 1) == MSPRING_OK;
+    const mspring_column ends[] = {{MSPRING_SLOT_A, 1, s->a}, {MSPRING_SLOT_B, 1, s->b}};
+    return mspring_network_get_columns(n, NULL, 0, count, ends, 2) == MSPRING_OK &&
+           mspring_network_get_integers(n, MSPRING_SPRING_FLAGS, NULL, 0, count, s->flags, 1) == MSPRING_OK &&
+           mspring_network_get(n, MSPRING_ACTIVE_STIFFNESS, NULL, 0, count, s->stiffness, 1) == MSPRING_OK &&
+           mspring_network_get(n, MSPRING_ACTIVE_DAMPING, NULL, 0, count, s->damping, 1) == MSPRING_OK &&
+           mspring_network_get(n, MSPRING_ACTIVE_REST_LENGTH, NULL, 0, count, s->length, 1) == MSPRING_OK;
 }
 
 static void octet_springs_free(mspringi_memory *memory, octet_springs *s) {

@@ -3,8 +3,7 @@
 #include "gradient/gradient.h"
 #include "stability/stability.h"
 
-/* -------------------------------------------------------------------------------------------------------- forwards
- */
+/* ---------------------------------------------------------------------------------------------------- forwards */
 
 // Count of doubles in a moment.
 static size_t moment_size(const mspring_gradient *g) {
@@ -14,9 +13,9 @@ static size_t moment_size(const mspring_gradient *g) {
 static mspring_result save_frame(mspring_gradient *g) {
     size_t size;
     mspringi_frame frame = {0};
-    mspring_result result = mspring_network_snapshot_size(g->network, MSPRING_SNAPSHOT_FRAME, &size);
+    mspring_result result = mspring_network_get_snapshot_size(g->network, MSPRING_SNAPSHOT_FRAME, &size);
     if (result == MSPRING_OK)
-        result = mspring_network_state_hash(g->network, &frame.hash);
+        result = mspring_network_get_state_hash(g->network, &frame.hash);
     if (result != MSPRING_OK)
         return result;
     frame.bytes = mspringi_alloc_unset(&g->memory, size, 1);
@@ -54,9 +53,10 @@ static mspring_result set_inputs(mspring_gradient *g, mspring_network *network, 
     const float *forces = g->forces + (size_t)step * g->forced_count * 2;
     mspring_result result = MSPRING_OK;
     if (g->past[step].has_signals)
-        result = mspring_network_set_signals(network, 0, g->actuator_count, signals, 1);
+        result = mspring_network_set(network, MSPRING_SIGNAL, NULL, 0, g->actuator_count, signals, 1);
     if (result == MSPRING_OK && g->past[step].has_forces)
-        result = mspring_network_apply_forces_at(network, g->forced, g->forced_count, forces, forces + 1, 2);
+        result = mspring_network_apply_forces(network, MSPRING_PUSH_STEP, g->forced, 0, g->forced_count, forces,
+                                              forces + 1, 2);
     return result;
 }
 
@@ -101,7 +101,8 @@ static void take_back_forces(mspring_gradient *g) {
     float *forces = g->forces + (size_t)g->count * g->forced_count * 2;
     for (uint32_t i = 0; i < 2 * g->forced_count; ++i)
         forces[i] = -forces[i];
-    (void)!mspring_network_apply_forces_at(network, g->forced, g->forced_count, forces, forces + 1, 2);
+    (void)!mspring_network_apply_forces(network, MSPRING_PUSH_STEP, g->forced, 0, g->forced_count, forces,
+                                        forces + 1, 2);
     network->message = message;
 }
 
@@ -157,8 +158,7 @@ mspring_result mspring_gradient_step(mspring_gradient *gradient, double dt, cons
     return result;
 }
 
-/* ------------------------------------------------------------------------------------------------------- backwards
- */
+/* --------------------------------------------------------------------------------------------------- backwards */
 
 mspringi_moment mspringi_tape_moment(const mspring_gradient *g, uint32_t index) {
     const double *values = g->tape + index * moment_size(g), *vx = values + 2 * (size_t)g->lanes;
@@ -246,7 +246,7 @@ static mspring_result play(mspring_gradient *g, uint32_t segment) {
     if (result == MSPRING_OK)
         result = play_steps(g, first, end);
     if (result == MSPRING_OK)
-        result = mspring_network_state_hash(g->clone, &hash);
+        result = mspring_network_get_state_hash(g->clone, &hash);
     if (result != MSPRING_OK)
         return mspringi_fail(&g->message, result, "steps %u to %u can't be computed again: %s", (unsigned)first,
                              (unsigned)end - 1, mspring_network_error(g->clone));
@@ -264,12 +264,12 @@ mspring_result mspringi_tape_play(mspring_gradient *g, uint32_t step) {
     const uint32_t segment = step / g->period;
     if (!g->is_reversing) {
         mspring_hook_def hook;
-        mspring_result result = mspring_hook_def_init(&hook, sizeof hook);
+        mspring_result result = mspring_init(MSPRING_STRUCT_HOOK_DEF, &hook, sizeof hook);
         hook.phase = MSPRING_PHASE_AFTER_SUBSTEP;
         hook.fn = hear_substep;
         hook.user = g;
         if (result == MSPRING_OK)
-            result = mspring_network_state_hash(g->network, &g->end_hash);
+            result = mspring_network_get_state_hash(g->network, &g->end_hash);
         if (result == MSPRING_OK)
             result = mspring_network_add_hook(g->clone, &hook, NULL);
         if (result != MSPRING_OK)

@@ -30,6 +30,15 @@
 #define MSPRINGI_BOUNCE_INLINE static inline __attribute__((always_inline))
 #endif
 
+/// Friction and restitution of a surface and a particle, as of two bodies. The root of a square is exact, so equal
+/// values have the bits of the surface's alone.
+static inline double mspringi_mixed_friction(double of_surface, const mspringi_contact_material *own) {
+    return own->friction >= 0.0f ? sqrt((double)own->friction * of_surface) : of_surface;
+}
+static inline double mspringi_mixed_restitution(double of_surface, const mspringi_contact_material *own) {
+    return (double)own->restitution > of_surface ? (double)own->restitution : of_surface;
+}
+
 /// Restitution that counts as none: such particles land exactly, others bounce from their present position.
 #define MSPRINGI_MIN_RESTITUTION 0.1
 
@@ -44,6 +53,7 @@ typedef struct mspringi_bouncing_particle {
     double max_restitution;
     double slack; ///< 1 - (l/h)^2 if the substep before was shorter, else 0
     double spare; ///< growth of |w|^2 that slack allows, (m/s)^2; 0 once a surface has acted
+    const mspringi_contact_material *own; ///< NULL: none. Kernels have it for whole blocks
 } mspringi_bouncing_particle;
 
 /// Twice the kinetic energy per mass, in step, with what contact may add.
@@ -157,9 +167,10 @@ MSPRINGI_BOUNCE_INLINE double mspringi_bounce(double nx, double ny, double offse
 /// A particle without springs, on a parabola.
 typedef struct mspringi_free_particle {
     double x, y;
-    double wx, wy; ///< in step with the position
-    double ax, ay; ///< acceleration, m/s^2
-    double left;   ///< rest of the substep, s
+    double wx, wy;                        ///< in step with the position
+    double ax, ay;                        ///< acceleration, m/s^2
+    double left;                          ///< rest of the substep, s
+    const mspringi_contact_material *own; ///< as in mspringi_bouncing_particle
 } mspringi_free_particle;
 
 /// As mspringi_bouncing_particle_from().
@@ -263,6 +274,13 @@ static inline double mspringi_silt_damping_at(double above, double depth, double
     const double share = 1.0 - above / depth, some = share > 0.0 ? share : 0.0;
     const double brakes = rate_h * (some < 1.0 ? some : 1.0);
     return brakes / (1.0 + brakes);
+}
+
+/// The same where the depth varies, and may be 0.
+MSPRINGI_BOUNCE_INLINE double mspringi_uneven_silt_damping_at(double above, double depth, double rate_h) {
+    const bool is_deep = depth > 0.0;
+    const double fraction = mspringi_silt_damping_at(above, is_deep ? depth : 1.0, rate_h);
+    return is_deep ? fraction : 0.0;
 }
 
 #endif

@@ -149,6 +149,33 @@ MSPRINGI_FLOOR_INLINE void bounce_off(const mspringi_floor_args *g, surfaces s, 
     }
 }
 
+// Mix the values of the surfaces of some lanes with what their particles have of their own.
+MSPRINGI_FLOOR_INLINE void mix_own(const mspringi_floor_args *g, size_t slot, size_t lanes,
+                                   double *restrict friction, double *restrict restitution) {
+    const mspringi_contact_material *restrict own = g->own + slot % MSPRINGI_WIDTH;
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < lanes; ++i) {
+        friction[i] = mspringi_mixed_friction(friction[i], &own[i]);
+        restitution[i] = mspringi_mixed_restitution(restitution[i], &own[i]);
+    }
+}
+
+// Let a straight surface act on each particle, some of which have values of their own.
+MSPRINGI_FLOOR_INLINE void bounce_off_own(const mspringi_floor_args *g, size_t slot, const mspringi_line *line,
+                                          bounce_block *restrict b) {
+    parts_below mixed;
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < MSPRINGI_HALF; ++i) {
+        mixed.nx[i] = line->nx;
+        mixed.ny[i] = line->ny;
+        mixed.offset[i] = line->offset;
+        mixed.friction[i] = line->friction;
+        mixed.restitution[i] = line->restitution;
+    }
+    mix_own(g, slot, MSPRINGI_HALF, mixed.friction, mixed.restitution);
+    bounce_off(g, surfaces_of_parts(&mixed), b);
+}
+
 // True if a straight surface would act on any particle. Defers those that were below it. Most of several surfaces
 // are far from most blocks.
 MSPRINGI_FLOOR_INLINE bool is_surface_reached(const mspringi_floor_args *g, surfaces s,
@@ -388,11 +415,19 @@ static uint32_t bounce_half(const mspringi_floor_args *g, size_t slot, const dou
     parts_below parts;
     block_end end;
     load_bounce_block(g, slot, &b);
-    if (g->height_count > 0)
+    if (g->height_count > 0) {
         begin_heights(g, &b, &parts);
-    for (uint32_t i = 0; i < g->line_count; ++i)
-        if (is_surface_reached(g, surfaces_of_line(&g->lines[i]), is_active, &b))
+        if (g->own)
+            mix_own(g, slot, MSPRINGI_HALF, parts.friction, parts.restitution);
+    }
+    for (uint32_t i = 0; i < g->line_count; ++i) {
+        if (!is_surface_reached(g, surfaces_of_line(&g->lines[i]), is_active, &b))
+            continue;
+        if (!g->own)
             bounce_off(g, surfaces_of_line(&g->lines[i]), &b);
+        else
+            bounce_off_own(g, slot, &g->lines[i], &b);
+    }
     if (g->height_count > 0)
         bounce_heights(g, &parts, is_active, &b);
     defer_faster(g, &b);

@@ -19,7 +19,7 @@ typedef struct free_block {
 } free_block;
 
 static inline mspringi_free_particle free_at(const free_block *b, size_t i) {
-    return (mspringi_free_particle){b->x[i], b->y[i], b->wx[i], b->wy[i], b->ax[i], b->ay[i], b->left[i]};
+    return (mspringi_free_particle){b->x[i], b->y[i], b->wx[i], b->wy[i], b->ax[i], b->ay[i], b->left[i], NULL};
 }
 
 static void load_free(const mspringi_floor_args *g, size_t slot, free_block *restrict b) {
@@ -138,6 +138,8 @@ static bool advance_to_surfaces(const mspringi_floor_args *g, const parts_below 
         any = true;
         meet_surface(surfaces_of_parts(parts), b);
     }
+    if (any && g->own)
+        mix_own(g, 0, MSPRINGI_WIDTH, b->friction, b->restitution);
     return any && (deflect(how, is_last, b) || !is_only_one);
 }
 

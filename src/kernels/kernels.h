@@ -245,6 +245,11 @@ typedef struct mspringi_line {
     double friction, restitution;
 } mspringi_line;
 
+/// Friction and restitution of a contact.
+typedef struct mspringi_contact_material {
+    float friction, restitution; ///< of a particle, < 0 means the value of what it touches
+} mspringi_contact_material;
+
 /// Global damping in a substep: v' = keep v + a h / scale, with acceleration a.
 typedef struct mspringi_damping {
     double keep, scale; ///< 1 and 1 without damping
@@ -271,9 +276,11 @@ typedef struct mspringi_floor_args {
     float grid;                   ///< m, of precise networks; else 0
     float *before_vx, *before_vy; ///< from_vx and from_vy; NULL if these are vx and vy
     double silt_depth, silt_rate;
+    const float *silt_depths; ///< [height_count] instead of silt_depth; NULL: that is all
     mspringi_damping damping;
     float *impulse_x, *impulse_y;
     const float *inverse_mass, *active_inverse_mass;
+    const mspringi_contact_material *own; ///< [MSPRINGI_WIDTH] of the block's particles; NULL: none has any
 } mspringi_floor_args;
 
 /// Let a floor act on the particles of the block that begins at slot, after a leapfrog substep. One

@@ -9,6 +9,22 @@
 
 #include "kernels/floor_kernel.h"
 
+// Find the fraction of each active particle's velocity that silt takes where its depth varies.
+static void find_uneven_fractions(const mspringi_floor_args *g, size_t slot, double *restrict fractions) {
+    const float *restrict x = g->x + slot, *restrict y = g->y + slot;
+    const float *restrict heights = g->heights, *restrict depths = g->silt_depths;
+    const double left = g->left, spacing = g->spacing, bottom = g->bottom, rate_h = g->silt_rate * g->h;
+    const uint32_t count = g->height_count;
+    MSPRINGI_ROLLED
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
+        const double place = ((double)x[i] - left) / spacing;
+        const double ground = bottom + mspringi_height_at(heights, count, place);
+        const double depth = mspringi_height_at(depths, count, place);
+        const double fraction = mspringi_uneven_silt_damping_at((double)y[i] - ground, depth, rate_h);
+        fractions[i] = fractions[i] > 0.0 ? fraction : 0.0;
+    }
+}
+
 // Find the fraction of each velocity that silt takes.
 static void find_fractions(const mspringi_floor_args *g, size_t slot, double *restrict fractions) {
     const float *restrict x = g->x + slot, *restrict y = g->y + slot, *restrict heights = g->heights;
@@ -16,6 +32,10 @@ static void find_fractions(const mspringi_floor_args *g, size_t slot, double *re
     const double depth = g->silt_depth, rate_h = g->silt_rate * g->h;
     const uint32_t count = g->height_count;
     find_active(g, slot, MSPRINGI_WIDTH, fractions);
+    if (g->silt_depths) {
+        find_uneven_fractions(g, slot, fractions);
+        return;
+    }
     MSPRINGI_ROLLED
     for (size_t i = 0; i < MSPRINGI_WIDTH; ++i) {
         const double ground = bottom + mspringi_height_at(heights, count, ((double)x[i] - left) / spacing);

@@ -53,13 +53,17 @@ static mspring_result copy(const mspring_network *network, const mspring_clone_d
     mspringi_message_clear(&made->message);
     made->shared = NULL;
     relocate_network(made, &network->memory, &made->memory);
-    if (!(def->flags & MSPRING_CLONE_HOOKS))
+    made->release_tasks = NULL;
+    if (!def->copy_hooks)
         mspringi_hooks_clear(made);
     mspring_result result = start_tasks(made, def);
     if (result == MSPRING_OK) {
+        mspringi_hooks_retain(made);
+        mspringi_network_own_tasks(made, def->tasks);
         *clone = made;
     } else {
         *message = made->message;
+        mspringi_hooks_clear(made);
         mspring_network_destroy(made);
     }
     return result;
@@ -77,11 +81,12 @@ static mspring_result check_clone(const mspring_network *network, const mspring_
         result = mspringi_check_reserved(message, "mspring_clone_def", def->reserved);
     if (result != MSPRING_OK)
         return result;
-    if (def->flags & ~(uint32_t)MSPRING_CLONE_HOOKS)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "clone flags %#x are unknown", (unsigned)def->flags);
+    if (def->copy_hooks > 1)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "copy_hooks is %u, it must be 0 or 1",
+                             (unsigned)def->copy_hooks);
     const uint32_t has = mspringi_tasks_workers(network->tasks);
     const uint32_t workers = def->tasks ? def->tasks->worker_count : def->worker_count;
-    if (def->flags & MSPRING_CLONE_HOOKS && workers > has && has_hook_with_storage(network))
+    if (def->copy_hooks && workers > has && has_hook_with_storage(network))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "hooks have storage for %u workers, the clone is to have %u", (unsigned)has,
                              (unsigned)workers);

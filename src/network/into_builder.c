@@ -21,24 +21,18 @@ static mspring_result allocate(mspring_builder *builder, const mspring_network *
 
 // Number the particles, then the springs, that are added, and count them.
 
-static mspring_result number_particles(mspring_builder *builder, const mspring_network *network,
-                                       const mspring_id *particles, uint32_t count, mspring_id *map,
-                                       uint32_t *added) {
+static void number_particles(const mspring_builder *builder, const mspring_network *network,
+                             const mspringi_selection *at, mspring_id *map, uint32_t *added) {
     const uint32_t total = network->topology.particle_count;
     for (mspring_id p = 0; p < total; ++p)
-        map[p] = !particles && mspringi_particle_exists(network, p) ? 0 : MSPRING_NONE;
-    for (uint32_t i = 0; particles && i < count; ++i) {
-        if (particles[i] >= total || !mspringi_particle_exists(network, particles[i]))
-            return mspringi_fail(&builder->message, MSPRING_ERROR_ID,
-                                 "index %u of the list: the network has no particle %s", (unsigned)i,
-                                 MSPRINGI_ID(particles[i]));
-        map[particles[i]] = 0;
-    }
+        map[p] = MSPRING_NONE;
+    for (uint32_t i = 0; i < at->count; ++i)
+        if (mspringi_particle_exists(network, mspringi_selected(at, i)))
+            map[mspringi_selected(at, i)] = 0;
     *added = 0;
     for (mspring_id p = 0; p < total; ++p)
         if (map[p] != MSPRING_NONE)
             map[p] = (mspring_id)builder->particle_count + (*added)++;
-    return MSPRING_OK;
 }
 
 static void find_ends(const mspring_network *network, mspring_id spring, mspring_id *a, mspring_id *b) {
@@ -93,7 +87,7 @@ static mspringi_limits limits_of(const mspring_network *network, mspring_id s) {
     const bool has_flowed =
         nominal && nominal[spring_slot] != mspringi_spring_slot_own_length(network, spring_slot);
     return (mspringi_limits){.break_strain = mspringi_spring_property(network, MSPRING_BREAK_STRAIN, s),
-                             .stress_strain = mspringi_spring_property(network, MSPRING_STRESS_STRAIN, s),
+                             .warn_strain = mspringi_spring_property(network, MSPRING_WARN_STRAIN, s),
                              .relax_strain = mspringi_spring_property(network, MSPRING_RELAX_STRAIN, s),
                              .yield_strain = mspringi_spring_property(network, MSPRING_YIELD_STRAIN, s),
                              .hardening = mspringi_spring_property(network, MSPRING_HARDENING, s),
@@ -114,8 +108,7 @@ static void append_spring(mspring_builder *builder, const mspring_network *netwo
         .stiffness = nominal.stiffness,
         .damping = nominal.damping,
         .rest_length = mspringi_spring_slot_get(network, spring_slot).rest_length,
-        .flags = (mspringi_spring_is_relative(network, s) ? MSPRING_SPRING_RELATIVE : 0u) |
-                 mspringi_side_flags(network, s),
+        .flags = mspringi_spring_flags(network, s) & MSPRINGI_KEPT_SPRING_FLAGS,
     };
     mspringi_builder_put_limits(builder, builder->spring_count - 1, limits);
 }
@@ -154,11 +147,11 @@ static mspring_result append(mspring_builder *builder, const mspring_network *ne
 /* ----------------------------------------------------------------------------------------------------- the call */
 
 static MSPRINGI_NOINLINE mspring_result add_network(mspring_builder *builder, const mspring_network *network,
-                                                    const mspring_id *particles, uint32_t count, id_maps *maps) {
+                                                    const mspringi_selection *at, id_maps *maps) {
     uint32_t added = 0;
     mspring_result result = allocate(builder, network, maps);
     if (result == MSPRING_OK)
-        result = number_particles(builder, network, particles, count, maps->particles, &added);
+        number_particles(builder, network, at, maps->particles, &added);
     if (result == MSPRING_OK)
         result = mspringi_builder_reserve_particles(builder, added);
     const uint32_t springs = result == MSPRING_OK ? number_springs(builder, network, maps) : 0;
@@ -177,16 +170,19 @@ static void copy_ids(mspring_id *to, const mspring_id *from, uint32_t count) {
 }
 
 mspring_result mspring_builder_add_network(mspring_builder *builder, const mspring_network *network,
-                                           const mspring_id *particles, uint32_t count, mspring_id *particle_ids,
-                                           mspring_id *spring_ids) {
+                                           const mspring_id *ids, mspring_id first, uint32_t count,
+                                           mspring_id *particle_ids, mspring_id *spring_ids) {
+    mspringi_selection at;
+    id_maps maps = {0};
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
-    if (!network || (!particles && count > 0))
-        return mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "%s NULL",
-                             network ? "the list of particles is" : "the network is");
-    id_maps maps = {0};
+    mspringi_message_clear(&builder->message);
+    mspring_result result =
+        network ? mspringi_look_up_with(&builder->message, network, MSPRING_PARTICLES, ids, first, count, &at)
+                : mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT, "the network is NULL");
     const mspringi_fp_state before = mspringi_fp_enter();
-    mspring_result result = add_network(builder, network, particles, count, &maps);
+    if (result == MSPRING_OK)
+        result = add_network(builder, network, &at, &maps);
     mspringi_fp_leave(before);
     if (result == MSPRING_OK) {
         copy_ids(particle_ids, maps.particles, network->topology.particle_count);
@@ -194,5 +190,5 @@ mspring_result mspring_builder_add_network(mspring_builder *builder, const mspri
     }
     mspringi_free(&builder->memory, maps.particles);
     mspringi_free(&builder->memory, maps.springs);
-    return result;
+    return mspringi_builder_end(builder, result);
 }

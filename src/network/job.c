@@ -309,8 +309,3 @@ mspring_result mspring_network_compact(mspring_network *network) {
     mspringi_fp_leave(before);
     return result;
 }
-
-mspring_result mspring_network_expand(mspring_network *network) {
-    mspring_result result = mspringi_check_call(network);
-    return result == MSPRING_OK ? mspringi_expand(network) : result;
-}

@@ -18,8 +18,8 @@
 
 /// Request for one of the new network's solvers.
 typedef struct mspringi_job_solver {
-    mspring_solver_def def; ///< of the present solver
-    uint32_t tile_size;     ///< 0: by layout
+    mspring_settings def; ///< of the present solver
+    uint32_t tile_size;   ///< 0: by layout
 } mspringi_job_solver;
 
 struct mspring_job {

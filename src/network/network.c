@@ -18,6 +18,7 @@
 #include "store/feature.h"
 #include "store/fractions.h"
 #include "store/id_pool.h"
+#include "store/metres.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
 #include "store/sleepers.h"
@@ -58,14 +59,6 @@ mspring_result mspringi_check_report(const mspring_network *network, const mspri
     return result == MSPRING_OK ? MSPRING_OK : mspringi_shared_set(network->shared, result, &message);
 }
 
-mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
-                                    uint32_t total) {
-    if (first <= total && count <= total - first)
-        return MSPRING_OK;
-    return mspringi_fail(&network->message, MSPRING_ERROR_ID, "%u %s%s from id %s on: ids are below %u",
-                         (unsigned)count, what, count == 1 ? "" : "s", MSPRINGI_ID(first), (unsigned)total);
-}
-
 static mspring_result check_def(const mspring_network_def **given, mspring_network_def *def,
                                 mspringi_message *message) {
     mspring_result result = mspringi_take_network_def_or_defaults(message, given, def);
@@ -78,9 +71,11 @@ static mspring_result check_def(const mspring_network_def **given, mspring_netwo
                                  MSPRING_NETWORK_PRECISE | MSPRING_NETWORK_POSES))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network flags %#x are unknown",
                              (unsigned)def->flags);
-    const mspring_settings settings = mspringi_settings_of(def);
-    result = mspringi_check_reserved(message, "mspring_network_def", def->reserved);
-    return result == MSPRING_OK ? mspringi_check_settings(&settings, message) : result;
+    uint32_t reserved = def->reserved_pointers[0] || def->reserved_pointers[1];
+    for (size_t i = 0; i < sizeof def->reserved / sizeof def->reserved[0]; ++i)
+        reserved |= def->reserved[i];
+    result = mspringi_check_reserved(message, "mspring_network_def", reserved);
+    return result == MSPRING_OK ? mspringi_check_settings(&def->settings, message) : result;
 }
 
 /* ---------------------------------------------------------------------------------------------------- filling */
@@ -107,6 +102,15 @@ void mspringi_field_clear(const mspring_network *network, mspringi_field field) 
     const size_t size = mspringi_used_slots(network) * sizeof *field.x;
     memset(field.x, 0, size);
     memset(field.y, 0, size);
+}
+
+void mspringi_forces_forget(mspring_network *network) {
+    mspringi_forces *forces = &network->forces;
+    if (forces->held_any)
+        mspringi_field_clear(network, forces->held);
+    if (forces->first_any)
+        mspringi_field_clear(network, forces->first);
+    forces->held_any = forces->first_any = false;
 }
 
 mspring_result mspringi_carry_reserve(mspring_network *network) {
@@ -279,8 +283,12 @@ static mspring_result set_limits(mspring_network *network, const mspring_builder
     mspring_result result = MSPRING_OK;
     for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
         result = mspringi_limits_reserve(network, builder->limits[s]);
-    for (size_t s = 0; result == MSPRING_OK && s < builder->limit_count; ++s)
-        mspringi_limits_put(network, (mspring_id)s, builder->limits[s]);
+    for (size_t s = 0; result == MSPRING_OK && s < builder->spring_count; ++s)
+        result = mspringi_metres_reserve(network, builder->springs[s].flags);
+    const size_t count = network->metres ? builder->spring_count : builder->limit_count;
+    for (size_t s = 0; result == MSPRING_OK && s < count; ++s)
+        mspringi_limits_put(network, (mspring_id)s, builder->springs[s].flags,
+                            mspringi_builder_limits_of(builder, s));
     return result;
 }
 
@@ -319,7 +327,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
     if (result == MSPRING_OK)
         result = make_reserve(&reserve, builder, def, &network->message);
     if (result == MSPRING_OK)
-        result = lay_out(network, builder, &reserve, mspringi_solver_ops_of(def->solver)); // NULL: rejected below
+        // An unknown solver has no operations: rejected below.
+        result = lay_out(network, builder, &reserve, mspringi_solver_ops_of(def->settings.solver));
     if (result != MSPRING_OK)
         return result;
     if (def->simd_level == MSPRING_SIMD_AUTO)
@@ -339,8 +348,8 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
                                               &network->message);
     if (result != MSPRING_OK)
         return result;
-    network->settings = mspringi_settings_of(def);
-    if (def->sleep_speed > 0.0f)
+    network->settings = def->settings;
+    if (def->settings.sleep_speed > 0.0f)
         result = mspringi_sleep_reserve(network);
     if (result == MSPRING_OK)
         result = mark_reversed(network, builder);
@@ -357,10 +366,9 @@ static MSPRINGI_NOINLINE mspring_result fill(mspring_network *network, const msp
         result = mspringi_id_pool_reserve(network);
     if (result != MSPRING_OK)
         return result;
-    const mspring_solver_def solver = mspringi_solver_of(def);
-    result = mspring_network_set_solver(network, &solver);
+    result = mspring_network_set_settings(network, &def->settings);
     if (result == MSPRING_OK)
-        result = mspringi_guard_reserve(network, def->guard);
+        result = mspringi_guard_reserve(network, def->settings.guard);
     if (result == MSPRING_OK)
         result = check_features(network, builder);
     if (result == MSPRING_OK)
@@ -384,6 +392,8 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     mspringi_message *message = &builder->message;
+    if (builder->failed != MSPRING_OK)
+        return builder->failed;
     mspringi_message_clear(message);
     if (!network)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "network is NULL");
@@ -416,16 +426,32 @@ mspring_result mspring_network_create(mspring_builder *builder, const mspring_ne
         mspring_network_destroy(created);
         return result;
     }
+    mspringi_network_own_tasks(created, def->tasks);
     *network = created;
     return MSPRING_OK;
+}
+
+void mspringi_network_own_tasks(mspring_network *network, const mspring_tasks *tasks) {
+    mspring_tasks taken;
+    network->release_tasks = NULL;
+    if (tasks && mspringi_take_tasks(NULL, &tasks, &taken) == MSPRING_OK) {
+        network->release_tasks = taken.release;
+        network->tasks_user = taken.user;
+    }
 }
 
 void mspring_network_destroy(mspring_network *network) {
     if (!network)
         return;
+#define ENDS(function) function(network);
+#include "store/features.def"
     mspringi_memory memory = network->memory, tasks_memory = network->tasks_memory;
+    void(MSPRING_CALL * release)(void *user) = network->release_tasks;
+    void *user = network->tasks_user;
     mspringi_tasks_destroy(network->tasks, &tasks_memory);
     mspringi_free_all(&tasks_memory);
     mspringi_job_invalidate(network);
     mspringi_free_all(&memory);
+    if (release)
+        release(user);
 }

@@ -118,7 +118,7 @@ mspring_result mspringi_relayout_make_fallback(mspring_job *job) {
 static mspring_result adopt_solver(mspring_network *to, mspringi_solver *solver, const mspringi_solver *made,
                                    const mspringi_solver *had, uint32_t tile_size) {
     const mspringi_solver_ops *ops = had->ops;
-    mspring_solver_def def;
+    mspring_settings def;
     mspringi_solver unused = *made;
     *solver = (mspringi_solver){ops, NULL};
     if (ops && ops->create)

@@ -1,4 +1,4 @@
-/// Solver and settings: all that may change between steps.
+/// Settings: all that may change between steps.
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -12,8 +12,8 @@
 #include "store/network.h"
 #include "store/sleepers.h"
 
-static mspring_result check_implicit(const mspring_solver_def *def, mspringi_message *message) {
-    if (def->integrator < MSPRING_INTEGRATOR_GA0 || def->integrator > MSPRING_INTEGRATOR_EULER)
+static mspring_result check_implicit(const mspring_settings *def, mspringi_message *message) {
+    if (def->integrator < MSPRING_INTEGRATOR_ALPHA || def->integrator > MSPRING_INTEGRATOR_EULER)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "integrator is %d, which is unknown",
                              (int)def->integrator);
     if (def->solver == MSPRING_SOLVER_DIRECT)
@@ -41,7 +41,7 @@ static uint32_t auto_of(uint32_t substeps) {
                                                : MSPRINGI_SUBSTEPS_GIVEN;
 }
 
-mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message) {
+static mspring_result check_solver(const mspring_settings *def, mspringi_message *message) {
     mspring_result result = mspringi_solver_check_name(def->solver, message);
     if (result != MSPRING_OK)
         return result;
@@ -61,32 +61,8 @@ mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_mes
     return def->solver != MSPRING_SOLVER_EXPLICIT ? check_implicit(def, message) : MSPRING_OK;
 }
 
-static mspring_solver_def def_of(const mspring_network *network) {
-    const mspringi_solver *solver = &network->solver;
-    mspring_solver_def def;
-    (void)mspring_solver_def_init(&def, sizeof def);
-    if (solver->ops->get_def)
-        solver->ops->get_def(solver->object, &def);
-    def.substeps = network->auto_substeps == MSPRINGI_SUBSTEPS_AUTO   ? MSPRING_SUBSTEPS_AUTO
-                   : network->auto_substeps == MSPRINGI_SUBSTEPS_EVEN ? MSPRING_SUBSTEPS_EVEN
-                                                                      : network->substeps;
-    def.max_substeps = network->max_substeps;
-    def.most_work = network->most_work;
-    def.substep_length = network->substep_length;
-    return def;
-}
-
-mspring_result mspring_network_get_solver(const mspring_network *network, mspring_solver_def *def) {
-    const mspring_result result = mspringi_check_report(network, &mspringi_struct_solver_def, def);
-    if (result != MSPRING_OK)
-        return result;
-    const mspring_solver_def had = def_of(network);
-    mspringi_put_solver_def(def, &had);
-    return MSPRING_OK;
-}
-
 // Replace the solver by the one defined, or adjust it if it fits.
-static mspring_result change_solver(mspring_network *network, const mspring_solver_def *def) {
+static mspring_result change_solver(mspring_network *network, const mspring_settings *def) {
     mspringi_solver made = {mspringi_solver_ops_of(def->solver), NULL};
     if (made.ops == network->solver.ops && (!made.ops->fits || made.ops->fits(network->solver.object, def))) {
         if (made.ops->adjust)
@@ -103,40 +79,6 @@ static mspring_result change_solver(mspring_network *network, const mspring_solv
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_set_solver(mspring_network *network, const mspring_solver_def *def) {
-    mspring_solver_def taken;
-    mspring_result result = mspringi_check_call(network);
-    if (result == MSPRING_OK)
-        result = mspringi_take_solver_def(&network->message, &def, &taken);
-    if (result == MSPRING_OK)
-        result = mspringi_check_solver(def, &network->message);
-    if (result == MSPRING_OK && network->groups.count > 0)
-        result = mspringi_held_groups->check_solver(network, def);
-    if (result != MSPRING_OK)
-        return result;
-    if (def->substep_length > 0.0)
-        taken.substeps = MSPRING_SUBSTEPS_AUTO;
-    taken.substep_length = (double)(float)def->substep_length;
-    const mspring_solver_def before = def_of(network);
-    const void *object = network->solver.object;
-    result = change_solver(network, def);
-    if (result != MSPRING_OK)
-        return result;
-    const mspring_solver_def now = def_of(network);
-    const bool is_same = object == network->solver.object && memcmp(&before, &now, sizeof now) == 0;
-    if (is_same && def->substeps == now.substeps && def->max_substeps == now.max_substeps &&
-        def->most_work == now.most_work && def->substep_length == now.substep_length)
-        return MSPRING_OK;
-    mspringi_notify_change(network, MSPRINGI_CHANGED_SOLVER, 0);
-    network->auto_substeps = auto_of(def->substeps);
-    network->substeps = network->auto_substeps ? 1 : def->substeps;
-    network->max_substeps = def->max_substeps;
-    network->most_work = def->most_work;
-    network->substep_length = def->substep_length;
-    network->guard.fallback_steps = 0;
-    return MSPRING_OK;
-}
-
 /* ---------------------------------------------------------------------------------------------------- settings */
 
 mspring_result mspringi_check_settings(const mspring_settings *settings, mspringi_message *message) {
@@ -147,14 +89,44 @@ mspring_result mspringi_check_settings(const mspring_settings *settings, mspring
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "%s is %g, it must be %s", #name, (double)value,     \
                              range);
 #include "base/settings.def"
-    return mspringi_guard_check(settings->guard, message);
+    const mspring_result result = mspringi_guard_check(settings->guard, message);
+    return result == MSPRING_OK ? check_solver(settings, message) : result;
+}
+
+mspring_settings mspringi_settings_of(const mspring_network *network) {
+    const mspringi_solver *solver = &network->solver;
+    mspring_settings made;
+    (void)mspring_init(MSPRING_STRUCT_SETTINGS, &made, sizeof made);
+    if (solver->ops->get_def)
+        solver->ops->get_def(solver->object, &made);
+#define SETTING(name, first, range, is_good, change) made.name = network->settings.name;
+#include "base/settings.def"
+    made.guard = network->settings.guard;
+    made.substeps = network->auto_substeps == MSPRINGI_SUBSTEPS_AUTO   ? MSPRING_SUBSTEPS_AUTO
+                    : network->auto_substeps == MSPRINGI_SUBSTEPS_EVEN ? MSPRING_SUBSTEPS_EVEN
+                                                                       : network->substeps;
+    made.max_substeps = network->max_substeps;
+    made.most_work = network->most_work;
+    made.substep_length = network->substep_length;
+    return made;
+}
+
+mspring_settings mspringi_settings_with_solver_of(const mspring_settings *settings,
+                                                  const mspring_settings *solver) {
+    mspring_settings made = *solver;
+    made.guard = settings->guard;
+#define SETTING(name, first, range, is_good, change) made.name = settings->name;
+#include "base/settings.def"
+    return made;
 }
 
 mspring_result mspring_network_get_settings(const mspring_network *network, mspring_settings *settings) {
     const mspring_result result = mspringi_check_report(network, &mspringi_struct_settings, settings);
-    if (result == MSPRING_OK)
-        mspringi_put_settings(settings, &network->settings);
-    return result;
+    if (result != MSPRING_OK)
+        return result;
+    const mspring_settings had = mspringi_settings_of(network);
+    mspringi_put_settings(settings, &had);
+    return MSPRING_OK;
 }
 
 // Allocate memory that the new settings need in addition.
@@ -167,6 +139,38 @@ static mspring_result reserve_for(mspring_network *network, const mspring_settin
         result = mspringi_guard_reserve(network, settings->guard);
     mspringi_fp_leave(before);
     return result;
+}
+
+// Set what of the settings is the solver's. `before`: the settings of before, with another solver object or not.
+static void set_solver(mspring_network *network, const mspring_settings *settings, const mspring_settings *before,
+                       const void *object) {
+    const mspring_settings had = mspringi_settings_of(network);
+    const mspring_settings now = mspringi_settings_with_solver_of(before, &had);
+    const bool is_same = object == network->solver.object && memcmp(before, &now, sizeof now) == 0;
+    if (is_same && settings->substeps == now.substeps && settings->max_substeps == now.max_substeps &&
+        settings->most_work == now.most_work && settings->substep_length == now.substep_length)
+        return;
+    mspringi_notify_change(network, MSPRINGI_CHANGED_SOLVER, 0);
+    network->auto_substeps = auto_of(settings->substeps);
+    network->substeps = network->auto_substeps ? 1 : settings->substeps;
+    network->max_substeps = settings->max_substeps;
+    network->most_work = settings->most_work;
+    network->substep_length = settings->substep_length;
+    network->guard.fallback_steps = 0;
+}
+
+// Set the others, in memory that is there.
+static void set_others(mspring_network *network, const mspring_settings *settings) {
+    const mspring_settings old = network->settings;
+    network->settings = *settings;
+    if (settings->guard != old.guard) {
+        network->guard.h = network->guard.peak = 0.0f;
+        network->guard.fallback_steps = 0;
+    }
+#define SETTING(name, first, range, is_good, change)                                                               \
+    if (settings->name != old.name)                                                                                \
+        mspringi_notify_change(network, change, 0);
+#include "base/settings.def"
 }
 
 mspring_result mspring_network_set_settings(mspring_network *network, const mspring_settings *settings) {
@@ -182,15 +186,22 @@ mspring_result mspring_network_set_settings(mspring_network *network, const mspr
         result = reserve_for(network, settings);
     if (result != MSPRING_OK)
         return result;
-    const mspring_settings old = network->settings;
-    network->settings = *settings;
-    if (settings->guard != old.guard) {
-        network->guard.h = network->guard.peak = 0.0f;
-        network->guard.fallback_steps = 0;
-    }
-#define SETTING(name, first, range, is_good, change)                                                               \
-    if (settings->name != old.name)                                                                                \
-        mspringi_notify_change(network, change, 0);
-#include "base/settings.def"
+    if (settings->substep_length > 0.0)
+        taken.substeps = MSPRING_SUBSTEPS_AUTO;
+    taken.substep_length = (double)(float)settings->substep_length;
+    const mspring_settings before = mspringi_settings_of(network);
+    const void *object = network->solver.object;
+    result = change_solver(network, settings);
+    if (result != MSPRING_OK)
+        return result;
+    set_solver(network, settings, &before, object);
+    set_others(network, settings);
     return MSPRING_OK;
+}
+
+mspring_result mspring_network_wake(mspring_network *network) {
+    const mspring_result result = mspringi_check_call(network);
+    if (result == MSPRING_OK && mspringi_sleepers)
+        mspringi_sleepers->wake_all(network);
+    return result;
 }

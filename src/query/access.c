@@ -11,7 +11,7 @@
 
 /* ---------------------------------------------------------------------------------------------------------- get */
 
-// A removed particle is at the local origin, even if the host wrote to its slot through a view.
+// A removed particle reads as 0, whatever hooks have written to its slot.
 static void get_positions(const mspring_network *network, const mspringi_selection *at, double *x, double *y,
                           size_t stride) {
     const double origin_x = network->origin_x, origin_y = network->origin_y;
@@ -20,21 +20,8 @@ static void get_positions(const mspring_network *network, const mspringi_selecti
         const mspring_id particle = mspringi_selected(at, i);
         const uint32_t slot = network->topology.slot_of_particle[particle];
         const bool is_there = mspringi_particle_exists(network, particle);
-        x[i * stride] = origin_x + (is_there ? mspringi_x_of(&state, slot) : 0.0);
-        y[i * stride] = origin_y + (is_there ? mspringi_y_of(&state, slot) : 0.0);
-    }
-}
-
-static void get_positions_float(const mspring_network *network, const mspringi_selection *at, float *x, float *y,
-                                size_t stride) {
-    const double origin_x = network->origin_x, origin_y = network->origin_y;
-    const mspringi_state state = network->state;
-    for (uint32_t i = 0; i < at->count; ++i) {
-        const mspring_id particle = mspringi_selected(at, i);
-        const uint32_t slot = network->topology.slot_of_particle[particle];
-        const bool is_there = mspringi_particle_exists(network, particle);
-        x[i * stride] = (float)(origin_x + (is_there ? mspringi_x_of(&state, slot) : 0.0));
-        y[i * stride] = (float)(origin_y + (is_there ? mspringi_y_of(&state, slot) : 0.0));
+        x[i * stride] = is_there ? origin_x + mspringi_x_of(&state, slot) : 0.0;
+        y[i * stride] = is_there ? origin_y + mspringi_y_of(&state, slot) : 0.0;
     }
 }
 
@@ -50,56 +37,23 @@ static void get_velocities(const mspring_network *network, const mspringi_select
     }
 }
 
-mspring_result mspring_network_get_positions(const mspring_network *network, mspring_id first, uint32_t count,
-                                             double *x, double *y, uint32_t stride) {
+mspring_result mspring_network_get_positions(const mspring_network *network, const mspring_id *ids,
+                                             mspring_id first, uint32_t count, double *x, double *y,
+                                             uint32_t stride) {
     mspringi_selection at;
-    mspring_result result = mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, x, y, stride, &at);
+    const mspring_result result =
+        mspringi_look_up_for(network, MSPRING_PARTICLES, ids, first, count, x, y, stride, &at);
     if (result == MSPRING_OK)
         get_positions(network, &at, x, y, stride);
     return result;
 }
 
-mspring_result mspring_network_get_positions_float(const mspring_network *network, mspring_id first, uint32_t count,
-                                                   float *x, float *y, uint32_t stride) {
+mspring_result mspring_network_get_velocities(const mspring_network *network, const mspring_id *ids,
+                                              mspring_id first, uint32_t count, float *vx, float *vy,
+                                              uint32_t stride) {
     mspringi_selection at;
-    mspring_result result = mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, x, y, stride, &at);
-    if (result == MSPRING_OK)
-        get_positions_float(network, &at, x, y, stride);
-    return result;
-}
-
-mspring_result mspring_network_get_positions_at(const mspring_network *network, const mspring_id *particles,
-                                                uint32_t count, double *x, double *y, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_look_up_list(network, MSPRINGI_PARTICLES, particles, count, x, y, stride, &at);
-    if (result == MSPRING_OK)
-        get_positions(network, &at, x, y, stride);
-    return result;
-}
-
-mspring_result mspring_network_get_positions_float_at(const mspring_network *network, const mspring_id *particles,
-                                                      uint32_t count, float *x, float *y, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_look_up_list(network, MSPRINGI_PARTICLES, particles, count, x, y, stride, &at);
-    if (result == MSPRING_OK)
-        get_positions_float(network, &at, x, y, stride);
-    return result;
-}
-
-mspring_result mspring_network_get_velocities(const mspring_network *network, mspring_id first, uint32_t count,
-                                              float *vx, float *vy, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, vx, vy, stride, &at);
-    if (result == MSPRING_OK)
-        get_velocities(network, &at, vx, vy, stride);
-    return result;
-}
-
-mspring_result mspring_network_get_velocities_at(const mspring_network *network, const mspring_id *particles,
-                                                 uint32_t count, float *vx, float *vy, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result =
-        mspringi_look_up_list(network, MSPRINGI_PARTICLES, particles, count, vx, vy, stride, &at);
+    const mspring_result result =
+        mspringi_look_up_for(network, MSPRING_PARTICLES, ids, first, count, vx, vy, stride, &at);
     if (result == MSPRING_OK)
         get_velocities(network, &at, vx, vy, stride);
     return result;
@@ -107,24 +61,10 @@ mspring_result mspring_network_get_velocities_at(const mspring_network *network,
 
 /* --------------------------------------------------------------------------------------------- set positions */
 
-// Positions in either precision: exactly one pair of arrays is not NULL.
 typedef struct positions {
     const double *x, *y;
-    const float *x_float, *y_float;
-    uint32_t stride;
+    size_t stride;
 } positions;
-
-static double x_of(const positions *p, uint32_t i) {
-    const size_t at = (size_t)i * p->stride;
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): x is there, or x_float
-    return p->x ? p->x[at] : (double)p->x_float[at];
-}
-
-static double y_of(const positions *p, uint32_t i) {
-    const size_t at = (size_t)i * p->stride;
-    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): y is there, or y_float
-    return p->y ? p->y[at] : (double)p->y_float[at];
-}
 
 static mspring_result check_position(mspring_network *network, mspring_id id, double x, double y,
                                      bool keep_origin) {
@@ -146,16 +86,17 @@ static MSPRINGI_NOINLINE mspring_result set_positions(mspring_network *network, 
         const mspring_id particle = mspringi_selected(at, i);
         if (!mspringi_particle_exists(network, particle))
             continue;
-        mspring_result result = check_position(network, particle, x_of(to, i), y_of(to, i), !all);
+        mspring_result result =
+            check_position(network, particle, to->x[i * to->stride], to->y[i * to->stride], !all);
         if (result != MSPRING_OK)
             return result;
-        mspringi_box_include(&box, x_of(to, i), y_of(to, i));
+        mspringi_box_include(&box, to->x[i * to->stride], to->y[i * to->stride]);
     }
     if (all && box.min_x <= box.max_x)
         mspringi_origin_choose(network, &box);
     for (uint32_t i = 0; i < at->count; ++i)
         if (mspringi_particle_exists(network, mspringi_selected(at, i)))
-            mspringi_set_position(network, mspringi_selected(at, i), x_of(to, i), y_of(to, i));
+            mspringi_set_position(network, mspringi_selected(at, i), to->x[i * to->stride], to->y[i * to->stride]);
     mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);
     if (all)
         mspringi_notify_change(network, MSPRINGI_CHANGED_MOTION, 0);
@@ -170,37 +111,12 @@ static mspring_result set_rounding_to_nearest(mspring_network *network, const ms
     return result;
 }
 
-mspring_result mspring_network_set_positions(mspring_network *network, mspring_id first, uint32_t count,
-                                             const double *x, const double *y, uint32_t stride) {
+mspring_result mspring_network_set_positions(mspring_network *network, const mspring_id *ids, mspring_id first,
+                                             uint32_t count, const double *x, const double *y, uint32_t stride) {
     mspringi_selection at;
-    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, x, y, &at);
-    const positions to = {.x = x, .y = y, .stride = stride};
-    return result == MSPRING_OK ? set_rounding_to_nearest(network, &at, &to) : result;
-}
-
-mspring_result mspring_network_set_positions_float(mspring_network *network, mspring_id first, uint32_t count,
-                                                   const float *x, const float *y, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, x, y, &at);
-    const positions to = {.x_float = x, .y_float = y, .stride = stride};
-    return result == MSPRING_OK ? set_rounding_to_nearest(network, &at, &to) : result;
-}
-
-mspring_result mspring_network_set_positions_at(mspring_network *network, const mspring_id *particles,
-                                                uint32_t count, const double *x, const double *y, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
-    const positions to = {.x = x, .y = y, .stride = stride};
-    return result == MSPRING_OK ? set_rounding_to_nearest(network, &at, &to) : result;
-}
-
-mspring_result mspring_network_set_positions_float_at(mspring_network *network, const mspring_id *particles,
-                                                      uint32_t count, const float *x, const float *y,
-                                                      uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, x, y, &at);
-    const positions to = {.x_float = x, .y_float = y, .stride = stride};
-    return result == MSPRING_OK ? set_rounding_to_nearest(network, &at, &to) : result;
+    const mspring_result result =
+        mspringi_select_for(network, MSPRING_PARTICLES, ids, first, count, x, y, stride, &at);
+    return result == MSPRING_OK ? set_rounding_to_nearest(network, &at, &(positions){x, y, stride}) : result;
 }
 
 /* -------------------------------------------------------------------------------------------- set velocities */
@@ -209,7 +125,8 @@ static mspring_result set_velocities(mspring_network *network, const mspringi_se
                                      const float *vy, uint32_t stride) {
     for (uint32_t i = 0; i < at->count; ++i) {
         const float x = vx[(size_t)i * stride], y = vy[(size_t)i * stride];
-        if (!mspringi_is_speed(x) || !mspringi_is_speed(y))
+        if ((!mspringi_is_speed(x) || !mspringi_is_speed(y)) &&
+            mspringi_particle_exists(network, mspringi_selected(at, i)))
             return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                  "particle %u: velocity (%g, %g) m/s is not within 1e15",
                                  (unsigned)mspringi_selected(at, i), (double)x, (double)y);
@@ -225,18 +142,11 @@ static mspring_result set_velocities(mspring_network *network, const mspringi_se
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_set_velocities(mspring_network *network, mspring_id first, uint32_t count,
-                                              const float *vx, const float *vy, uint32_t stride) {
+mspring_result mspring_network_set_velocities(mspring_network *network, const mspring_id *ids, mspring_id first,
+                                              uint32_t count, const float *vx, const float *vy, uint32_t stride) {
     mspringi_selection at;
-    mspring_result result = mspringi_select_range(network, MSPRINGI_PARTICLES, first, count, vx, vy, &at);
-    return result == MSPRING_OK ? set_velocities(network, &at, vx, vy, stride) : result;
-}
-
-mspring_result mspring_network_set_velocities_at(mspring_network *network, const mspring_id *particles,
-                                                 uint32_t count, const float *vx, const float *vy,
-                                                 uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result = mspringi_select_list(network, MSPRINGI_PARTICLES, particles, count, vx, vy, &at);
+    const mspring_result result =
+        mspringi_select_for(network, MSPRING_PARTICLES, ids, first, count, vx, vy, stride, &at);
     return result == MSPRING_OK ? set_velocities(network, &at, vx, vy, stride) : result;
 }
 
@@ -254,7 +164,7 @@ static uint64_t hash_rest_lengths(const mspring_network *network, uint64_t sum) 
     return sum;
 }
 
-mspring_result mspring_network_state_hash(const mspring_network *network, uint64_t *hash) {
+mspring_result mspring_network_get_state_hash(const mspring_network *network, uint64_t *hash) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     if (!hash)

@@ -116,13 +116,45 @@ mspring_result mspring_network_get_body(const mspring_network *network, const ms
     mspringi_selection at;
     mspring_result result = mspringi_check_report(network, &mspringi_struct_body, body);
     if (result == MSPRING_OK)
-        result = ids ? mspringi_look_up_list(network, MSPRINGI_PARTICLES, ids, count, body, body, 1, &at)
-                     : mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, body, body, 1, &at);
+        result = mspringi_look_up(network, MSPRING_PARTICLES, ids, first, count, &at);
     if (result != MSPRING_OK)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
     const mspring_body made = body_of(network, &at);
     mspringi_fp_leave(before);
     mspringi_put_body(body, &made);
+    return MSPRING_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------- components */
+
+static mspring_result check_components(const mspring_network *network, uint32_t first, uint32_t count,
+                                       const mspring_body *bodies, mspringi_message *message) {
+    const mspringi_components *c = &network->components;
+    if (!c->number)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the components are unknown: call mspring_network_update_components() first");
+    if (first > c->count || count > c->count - first)
+        return mspringi_fail(message, MSPRING_ERROR_ID, "%u components from number %s on: numbers are below %u",
+                             (unsigned)count, MSPRINGI_ID(first), (unsigned)c->count);
+    return count > 0 ? mspringi_check_output(message, &mspringi_struct_body, bodies) : MSPRING_OK;
+}
+
+mspring_result mspring_network_get_components(const mspring_network *network, uint32_t first, uint32_t count,
+                                              mspring_body *bodies) {
+    mspringi_message message;
+    if (!network)
+        return MSPRING_ERROR_ARGUMENT;
+    const mspring_result result = check_components(network, first, count, bodies, &message);
+    if (result != MSPRING_OK)
+        return mspringi_shared_set(network->shared, result, &message);
+    const mspringi_components *c = &network->components;
+    const mspringi_fp_state before = mspringi_fp_enter();
+    for (uint32_t i = 0; i < count; ++i) {
+        const mspringi_selection at = {.list = c->particles + c->first[first + i], .count = c->size[first + i]};
+        const mspring_body made = body_of(network, &at);
+        mspringi_put_body_at(bodies, i, &made);
+    }
+    mspringi_fp_leave(before);
     return MSPRING_OK;
 }

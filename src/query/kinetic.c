@@ -11,7 +11,7 @@
 #include "store/feature.h"
 #include "store/springs.h"
 
-enum { CHUNK = 1024, MOST_RUNS = 256 };
+enum { CHUNK = 1024, MOST_RUNS = 256, BATCH = 64 };
 
 /// Runs of springs of equal number, and the lowest and highest particle that each joins: for networks whose ids
 /// follow places, a chunk has to look at few of them.
@@ -26,16 +26,22 @@ static mspring_id lower(mspring_id a, mspring_id b) {
 
 static void find_runs(const mspring_network *network, spring_runs *runs) {
     const mspringi_topology *t = &network->topology;
+    const mspringi_selection all = {.count = network->topology.spring_count};
+    mspringi_spring_values read[BATCH];
     runs->size = (t->spring_count + MOST_RUNS - 1) / MOST_RUNS;
     runs->count = 0;
     for (mspring_id first = 0; first < t->spring_count; first += runs->size) {
         mspring_id lowest = MSPRING_NONE, highest = 0;
-        for (mspring_id s = first; s < lower(first + runs->size, t->spring_count); ++s) {
-            const mspringi_ends ends = mspringi_spring_ends(network, s);
-            const mspring_id a = t->particle_of_slot[ends.a], b = t->particle_of_slot[ends.b];
-            lowest = lower(lowest, lower(a, b));
-            highest = a > highest ? a : highest;
-            highest = b > highest ? b : highest;
+        const mspring_id last = lower(first + runs->size, t->spring_count);
+        for (mspring_id s = first, end; s < last; s = end) {
+            end = lower(s + BATCH, last);
+            mspringi_springs_get(network, &all, s, end - s, read);
+            for (uint32_t i = 0; i < end - s; ++i) {
+                const mspring_id a = t->particle_of_slot[read[i].base], b = t->particle_of_slot[read[i].tip];
+                lowest = lower(lowest, lower(a, b));
+                highest = a > highest ? a : highest;
+                highest = b > highest ? b : highest;
+            }
         }
         runs->lowest[runs->count] = lowest;
         runs->highest[runs->count++] = highest;
@@ -43,18 +49,15 @@ static void find_runs(const mspring_network *network, spring_runs *runs) {
 }
 
 // Add the force of a spring, x and y, and its stiffness to those of its ends that are in the chunk from first on.
-static void add_force(const mspring_network *network, mspring_id spring, mspring_id first,
-                      double (*forces)[CHUNK]) {
+static inline void add_force(const mspring_network *network, mspring_id spring, const mspringi_spring_values *r,
+                             mspring_id first, double (*forces)[CHUNK]) {
     const mspringi_topology *t = &network->topology;
-    const mspringi_state *s = &network->state;
-    const mspringi_ends ends = mspringi_spring_ends(network, spring);
-    const mspring_id a = t->particle_of_slot[ends.a] - first, b = t->particle_of_slot[ends.b] - first;
+    const mspring_id a = t->particle_of_slot[r->base] - first, b = t->particle_of_slot[r->tip] - first;
     if (a >= CHUNK && b >= CHUNK)
         return;
-    const double dx = mspringi_x_of(s, ends.b) - mspringi_x_of(s, ends.a);
-    const double dy = mspringi_y_of(s, ends.b) - mspringi_y_of(s, ends.a), length = sqrt(dx * dx + dy * dy);
-    const double pull = length > 0.0 ? (double)mspringi_spring_force(network, spring) / length : 0.0;
-    const double stiffness = (double)mspringi_spring_get(network, spring).stiffness;
+    double dx, dy, length;
+    const double force = (double)mspringi_force_of(network, spring, r, &dx, &dy, &length);
+    const double pull = length > 0.0 ? force / length : 0.0, stiffness = (double)r->stiffness;
     if (a < CHUNK) {
         forces[0][a] += pull * dx;
         forces[1][a] += pull * dy;
@@ -64,6 +67,18 @@ static void add_force(const mspring_network *network, mspring_id spring, mspring
         forces[0][b] -= pull * dx;
         forces[1][b] -= pull * dy;
         forces[2][b] += stiffness;
+    }
+}
+
+static void add_forces(const mspring_network *network, mspring_id begin, mspring_id last, mspring_id first,
+                       double (*forces)[CHUNK]) {
+    const mspringi_selection all = {.count = network->topology.spring_count};
+    mspringi_spring_values read[BATCH];
+    for (mspring_id s = begin, end; s < last; s = end) {
+        end = lower(s + BATCH, last);
+        mspringi_springs_get(network, &all, s, end - s, read);
+        for (uint32_t i = 0; i < end - s; ++i)
+            add_force(network, s + i, &read[i], first, forces);
     }
 }
 
@@ -119,8 +134,8 @@ double mspringi_kinetic_energy(const mspring_network *network) {
         for (uint32_t run = 0; run < runs.count; ++run) {
             const mspring_id begin = run * runs.size, end = lower(begin + runs.size, t->spring_count);
             const bool is_near = runs.lowest[run] < first + CHUNK && runs.highest[run] >= first;
-            for (mspring_id s = begin; is_near && s < end; ++s)
-                add_force(network, s, first, forces);
+            if (is_near)
+                add_forces(network, begin, end, first, forces);
         }
         for (mspring_id p = first; p < lower(first + CHUNK, t->particle_count); ++p)
             sum += energy_of(network, p, forces[0][p - first], forces[1][p - first], forces[2][p - first]);

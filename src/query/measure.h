@@ -6,16 +6,21 @@
 #define MSPRINGI_MEASURE_H
 
 #include "store/selection.h"
-
-/// Length and strain of the spring in a spring slot; the strain of a broken one is 0.
-float mspringi_spring_slot_length(const mspring_network *network, mspringi_spring_slot spring_slot);
-float mspringi_spring_slot_strain(const mspring_network *network, mspringi_spring_slot spring_slot);
+#include "store/springs.h"
 
 /// Force along a spring: > 0 pulls its ends together.
 float mspringi_spring_force(const mspring_network *network, mspring_id spring);
+/// The same of a spring whose values were read, with the way from its base to its tip.
+float mspringi_force_of(const mspring_network *network, mspring_id spring, const mspringi_spring_values *r,
+                        double *dx, double *dy, double *length);
 
-/// MSPRING_LENGTH or MSPRING_STRAIN of springs, `stride` floats apart. Equal to the functions above up to rounding.
-void mspringi_measure(const mspring_network *network, mspring_property property, const mspringi_selection *at,
-                      float *out, size_t stride);
+/// Where to write what of each spring: [stride], or NULL.
+typedef struct mspringi_lengths {
+    float *length, *direction_x, *direction_y, *strain;
+    uint32_t length_stride, direction_x_stride, direction_y_stride, strain_stride;
+} mspringi_lengths;
+
+/// Compute lengths, directions and strains of springs. A broken spring has strain 0, a removed one 0 everywhere.
+void mspringi_measure(const mspring_network *network, const mspringi_selection *at, const mspringi_lengths *to);
 
 #endif

@@ -86,8 +86,8 @@ static mspring_result check_save(const mspring_network *network, mspring_snapsho
                : mspringi_shared_fail(shared, MSPRING_ERROR_BUSY, "no snapshot is saved inside a hook");
 }
 
-mspring_result mspring_network_snapshot_size(const mspring_network *network, mspring_snapshot_contents contents,
-                                             size_t *size) {
+mspring_result mspring_network_get_snapshot_size(const mspring_network *network, mspring_snapshot_contents contents,
+                                                 size_t *size) {
     uint32_t count;
     mspring_result result = check_save(network, contents, size);
     if (result == MSPRING_OK)

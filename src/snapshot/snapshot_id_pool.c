@@ -264,8 +264,6 @@ static void load_spring(mspring_network *network, const growth *g, mspring_id s)
     }
     t->slot_of_spring[s] =
         g->kinds[i] & IS_LAID_OUT ? t->initial_spring_slots[i] : mspringi_spare_spring_slot(t, s);
-    if (is_new)
-        mspringi_extents_turn(network, s);
 }
 
 static mspring_id first_spare(const uint8_t *marks, mspring_id first, mspring_id end) {
@@ -310,7 +308,7 @@ static void growth_load(mspring_network *network, const uint8_t *from, size_t si
     mspringi_notify_change(network, MSPRINGI_CHANGED_GRAFTS, 0);
 }
 
-/* ------------------------------------------------------------------------------------------------- other sections */
+/* --------------------------------------------------------------------------------------------- other sections */
 
 bool mspringi_saved_has_particle(const mspringi_saved *saved, mspring_id particle) {
     const mspringi_topology *t = &saved->network->topology;
@@ -404,7 +402,7 @@ const mspringi_section mspringi_section_growth = {"grow",      "added and remove
                                                   growth_save, growth_check,
                                                   growth_load, growth_check_against};
 
-/* ------------------------------------------------------------------------------------------------------- archives */
+/* --------------------------------------------------------------------------------------------------- archives */
 
 // Set where the spare ids in use lie.
 static void set_places(const mspring_network *network, uint8_t *section, size_t size, bool in_archive) {

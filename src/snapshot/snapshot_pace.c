@@ -1,4 +1,4 @@
-/// Snapshot of mspring_solver_def.substep_length. Networks without one write nothing.
+/// Snapshot of mspring_settings.substep_length. Networks without one write nothing.
 #include <float.h>
 
 #include "store/sections.h"

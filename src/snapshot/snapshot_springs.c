@@ -5,6 +5,7 @@
 #include "features/breaking/breaking.h"
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
+#include "store/metres.h"
 #include "store/properties.h"
 #include "store/rest_lengths.h"
 #include "store/sections.h"
@@ -242,8 +243,52 @@ static void thresholds_load(mspring_network *network, mspring_property property,
                                                       name##_save, name##_check, name##_load, NULL}
 
 THRESHOLDS(break_strains, "brks", "break strains", MSPRING_BREAK_STRAIN, break_strain, breaks);
-THRESHOLDS(stress_strains, "strs", "stress strains", MSPRING_STRESS_STRAIN, stress_strain, stresses);
+THRESHOLDS(stress_strains, "strs", "stress strains", MSPRING_WARN_STRAIN, warn_strain, stresses);
 THRESHOLDS(relax_strains, "rlxs", "relax strains", MSPRING_RELAX_STRAIN, relax_strain, relaxes);
+
+/* ----------------------------------------------------------------------------------------------------- metres */
+
+// Limits as they were given in metres, 0 for springs that have strains. The sections of strains have what follows
+// from them, so that readers who do not know this section still have the limits.
+static size_t metres_size(const mspring_network *network) {
+    const uint32_t springs = network->topology.reserve.spring_end;
+    mspring_id s = 0;
+    while (network->metres && s < springs && !mspringi_metres_of(network, s)) // memory for it does not make one
+        ++s;
+    return network->metres && s < springs ? springs * MSPRINGI_METRES * sizeof(float) : 0;
+}
+
+static void metres_save(const mspring_network *network, mspringi_writer *to) {
+    mspringi_put(to, network->metres, (size_t)network->topology.reserve.spring_end * MSPRINGI_METRES, sizeof(float));
+}
+
+static mspring_result metres_check(mspring_network *network, const uint8_t *from, size_t size) {
+    const mspringi_section *section = &mspringi_section_metres;
+    const uint32_t springs = network->topology.reserve.spring_end;
+    if (size == 0)
+        return MSPRING_OK;
+    mspring_result result =
+        mspringi_section_check_size(network, section, size, (size_t)springs * MSPRINGI_METRES * sizeof(float));
+    for (size_t i = 0; result == MSPRING_OK && i < (size_t)springs * MSPRINGI_METRES; ++i) {
+        const mspring_property property = (mspring_property)(MSPRING_BREAK_STRAIN + (int)(i % MSPRINGI_METRES));
+        const float value = mspringi_float_at(from, i), first = mspringi_float_at(from, i - i % MSPRINGI_METRES);
+        if (first != 0.0f ? !mspringi_are_allowed(property, &value, 1, 1) : value != 0.0f)
+            result = mspringi_section_fail(network, section, "spring %zu has a %s of %g m", i / MSPRINGI_METRES,
+                                           mspringi_property_of(property)->name, (double)value);
+    }
+    return result == MSPRING_OK ? mspringi_metres_reserve(network, MSPRING_SPRING_METRES) : result;
+}
+
+static void metres_load(mspring_network *network, const uint8_t *from, size_t size) {
+    const size_t count = (size_t)network->topology.reserve.spring_end * MSPRINGI_METRES;
+    if (size > 0)
+        mspringi_get(from, network->metres, count, sizeof(float));
+    else if (network->metres)
+        memset(network->metres, 0, count * sizeof(float));
+}
+
+const mspringi_section mspringi_section_metres = {"mtrs",      "limits in metres", true,        metres_size,
+                                                  metres_save, metres_check,       metres_load, NULL};
 
 /* --------------------------------------------------------------------------------------------------- stressed */
 

@@ -255,11 +255,12 @@ const mspringi_by_id mspringi_by_id_motion = {&mspringi_section_motion, motion_r
 /* ----------------------------------------------------------------------------------------------------- masses */
 
 // Contents of the section: kind; a mass for each particle; inverse masses by slot or, if some are scaled, a scale
-// for each particle; and the masses of relative springs if they differ.
+// for each particle. Files of 0.2 may have masses of relative springs behind them, which are not read: springs
+// follow the masses now.
 enum { SCALED = 1, SPRING_MASSES = 2 };
 
 static uint32_t masses_kind(const mspring_network *network) {
-    return (network->is_scaled ? (uint32_t)SCALED : 0) | (network->is_reweighed ? (uint32_t)SPRING_MASSES : 0);
+    return network->is_scaled ? (uint32_t)SCALED : 0;
 }
 
 static size_t masses_size_of(const mspring_network *network, uint32_t kind) {
@@ -281,13 +282,11 @@ static void masses_save(const mspring_network *network, mspringi_writer *to) {
         mspringi_put(to, network->inverse_mass_scale, particles, sizeof(float));
     else
         mspringi_put(to, network->inverse_mass, mspringi_slot_count(network), sizeof(float));
-    if (kind & SPRING_MASSES)
-        mspringi_put(to, network->spring_mass, particles, sizeof(float));
 }
 
 typedef struct masses {
     uint32_t kind;
-    const uint8_t *mass, *inverse_or_scale, *spring_mass;
+    const uint8_t *mass, *inverse_or_scale;
 } masses;
 
 static masses read_masses(const mspring_network *network, const uint8_t *from) {
@@ -295,8 +294,6 @@ static masses read_masses(const mspring_network *network, const uint8_t *from) {
     masses m;
     m.mass = mspringi_get(from, &m.kind, 1, sizeof m.kind);
     m.inverse_or_scale = m.mass + particles * sizeof(float);
-    m.spring_mass =
-        m.inverse_or_scale + (m.kind & SCALED ? particles : mspringi_slot_count(network)) * sizeof(float);
     return m;
 }
 
@@ -317,20 +314,16 @@ static bool are_scales(const uint8_t *from, size_t count) {
 // True if all values are valid. An unscaled particle has a scale of 0 or 1.
 static bool are_right(const mspring_network *network, const masses *m) {
     const size_t particles = network->topology.reserve.particle_end;
-    return are_masses(m->mass, particles) &&
-           (!(m->kind & SPRING_MASSES) || are_masses(m->spring_mass, particles)) &&
-           (!(m->kind & SCALED) || are_scales(m->inverse_or_scale, particles));
+    return are_masses(m->mass, particles) && (!(m->kind & SCALED) || are_scales(m->inverse_or_scale, particles));
 }
 
 // True if the network already has these masses, the common case.
 static bool has_masses(const mspring_network *network, const masses *m) {
     const size_t particles = network->topology.reserve.particle_end;
-    return !network->growth.particles && m->kind == masses_kind(network) &&
+    return !network->growth.particles && (m->kind & SCALED) == masses_kind(network) &&
            are_same(m->mass, network->mass, particles) &&
-           (m->kind & SCALED
-                ? are_same(m->inverse_or_scale, network->inverse_mass_scale, particles)
-                : are_same(m->inverse_or_scale, network->inverse_mass, mspringi_slot_count(network))) &&
-           (!(m->kind & SPRING_MASSES) || are_same(m->spring_mass, network->spring_mass, particles));
+           (m->kind & SCALED ? are_same(m->inverse_or_scale, network->inverse_mass_scale, particles)
+                             : are_same(m->inverse_or_scale, network->inverse_mass, mspringi_slot_count(network)));
 }
 
 // Scale of an inverse mass. An unscaled one is 0 or the inverse of the mass: its scale is 0 or 1.
@@ -346,7 +339,7 @@ static mspring_result masses_check(mspring_network *network, const uint8_t *from
     uint32_t kind = 0;
     if (size >= sizeof kind)
         mspringi_get(from, &kind, 1, sizeof kind);
-    if (kind > (SCALED | SPRING_MASSES) || (kind & SPRING_MASSES && !network->fractions.values))
+    if (kind > (SCALED | SPRING_MASSES))
         return mspringi_section_fail(network, section, "they are of kind %u", (unsigned)kind);
     mspring_result result = mspringi_section_check_size(network, section, size, masses_size_of(network, kind));
     if (result != MSPRING_OK)
@@ -355,8 +348,7 @@ static mspring_result masses_check(mspring_network *network, const uint8_t *from
     const uint32_t suspects = are_right(network, &m) ? 0 : network->topology.reserve.particle_end;
     for (mspring_id p = 0; p < suspects; ++p) {
         const float mass = mspringi_float_at(m.mass, p);
-        if (!mspringi_is_mass(mass) ||
-            (kind & SPRING_MASSES && !mspringi_is_mass(mspringi_float_at(m.spring_mass, p))))
+        if (!mspringi_is_mass(mass))
             return mspringi_section_fail(network, section, "particle %u has a mass of %g kg", (unsigned)p,
                                          (double)mass);
         if (!mspringi_is_inverse_mass_scale(scale_in(network, &m, p)))
@@ -365,7 +357,7 @@ static mspring_result masses_check(mspring_network *network, const uint8_t *from
     }
     if (kind & SCALED)
         result = mspringi_reserve_inverse_mass_scales(network);
-    return result == MSPRING_OK && kind & SPRING_MASSES ? mspringi_reserve_spring_masses(network) : result;
+    return result;
 }
 
 static void masses_load(mspring_network *network, const uint8_t *from, size_t size) {
@@ -374,6 +366,7 @@ static void masses_load(mspring_network *network, const uint8_t *from, size_t si
     const uint32_t particles = network->topology.reserve.particle_end;
     if (has_masses(network, &m))
         return;
+    const bool renew = network->fractions.values && !are_same(m.mass, network->mass, particles);
     mspringi_get(m.mass, network->mass, particles, sizeof(float));
     for (mspring_id p = 0; p < particles; ++p) {
         const float scale = mspringi_particle_exists(network, p) ? scale_in(network, &m, p) : 0.0f;
@@ -381,16 +374,9 @@ static void masses_load(mspring_network *network, const uint8_t *from, size_t si
         if (network->inverse_mass_scale)
             network->inverse_mass_scale[p] = scale;
     }
-    bool renew = false;
-    for (mspring_id p = 0; network->spring_mass && p < particles; ++p) {
-        const float mass = m.kind & SPRING_MASSES ? mspringi_float_at(m.spring_mass, p) : network->mass[p];
-        renew = renew || mass != network->spring_mass[p];
-        network->spring_mass[p] = mass;
-    }
     if (renew)
         mspringi_renew_relative(network);
     network->is_scaled = m.kind & SCALED;
-    network->is_reweighed = m.kind & SPRING_MASSES;
     mspringi_notify_change(network, MSPRINGI_CHANGED_MASSES, 0);
 }
 
@@ -410,16 +396,8 @@ const mspringi_by_id mspringi_by_id_masses = {&mspringi_section_masses, masses_r
 
 /* ----------------------------------------------------------------------------------------------------- forces */
 
-static size_t forces_size(const mspring_network *network) {
-    return network->forces.held_any ? 2 * mspringi_slot_count(network) * sizeof(float) : 0;
-}
-
-static void forces_save(const mspring_network *network, mspringi_writer *to) {
-    mspringi_put(to, network->forces.held.x, 2 * mspringi_slot_count(network), sizeof(float));
-}
-
-static mspring_result forces_check(mspring_network *network, const uint8_t *from, size_t size) {
-    const mspringi_section *section = &mspringi_section_forces;
+static mspring_result field_check(mspring_network *network, const mspringi_section *section, mspringi_field *field,
+                                  const uint8_t *from, size_t size) {
     const size_t floats = 2 * mspringi_slot_count(network);
     if (size == 0)
         return MSPRING_OK;
@@ -427,26 +405,24 @@ static mspring_result forces_check(mspring_network *network, const uint8_t *from
     for (size_t i = 0; result == MSPRING_OK && i < floats; ++i)
         if (!isfinite(mspringi_float_at(from, i)))
             result = mspringi_section_fail(network, section, "a force is %g N", (double)mspringi_float_at(from, i));
-    return result == MSPRING_OK ? mspringi_field_reserve(network, &network->forces.held) : result;
+    if (result == MSPRING_OK && field == &network->forces.first)
+        result = mspringi_field_reserve(network, &network->forces.begun);
+    return result == MSPRING_OK ? mspringi_field_reserve(network, field) : result;
 }
 
 // Forces on empty slots, from a forged snapshot, are dropped: a particle added later would feel them.
-static void forces_load(mspring_network *network, const uint8_t *from, size_t size) {
-    const mspringi_field held = network->forces.held;
+static void field_load(const mspring_network *network, mspringi_field field, bool *any, const uint8_t *from,
+                       size_t size) {
     const size_t slots = mspringi_slot_count(network);
     if (size > 0)
-        mspringi_get(from, held.x, 2 * slots, sizeof(float));
-    else if (network->forces.held_any)
-        memset(held.x, 0, 2 * slots * sizeof(float));
+        mspringi_get(from, field.x, 2 * slots, sizeof(float));
+    else if (*any)
+        memset(field.x, 0, 2 * slots * sizeof(float));
     for (size_t slot = 0; size > 0 && slot < slots; ++slot)
         if (network->topology.particle_of_slot[slot] == MSPRING_NONE)
-            held.x[slot] = held.y[slot] = 0.0f;
-    network->forces.held_any = size > 0;
-    network->forces.held_calls = MSPRINGI_MODEST_CALLS;
+            field.x[slot] = field.y[slot] = 0.0f;
+    *any = size > 0;
 }
-
-const mspringi_section mspringi_section_forces = {
-    "forc", "forces given for the next step", false, forces_size, forces_save, forces_check, forces_load, NULL};
 
 static uint32_t forces_runs(const mspring_network *network, mspringi_io head, mspringi_run *runs) {
     (void)network;
@@ -454,4 +430,24 @@ static uint32_t forces_runs(const mspring_network *network, mspringi_io head, ms
     return 1;
 }
 
-const mspringi_by_id mspringi_by_id_forces = {&mspringi_section_forces, forces_runs, NULL, NULL};
+// A section of forces given for the next step, absent if there are none.
+#define FORCES(name, tag, words, member)                                                                           \
+    static size_t name##_size(const mspring_network *network) {                                                    \
+        return network->forces.member##_any ? 2 * mspringi_slot_count(network) * sizeof(float) : 0;                \
+    }                                                                                                              \
+    static void name##_save(const mspring_network *network, mspringi_writer *to) {                                 \
+        mspringi_put(to, network->forces.member.x, 2 * mspringi_slot_count(network), sizeof(float));               \
+    }                                                                                                              \
+    static mspring_result name##_check(mspring_network *network, const uint8_t *from, size_t size) {               \
+        return field_check(network, &mspringi_section_##name, &network->forces.member, from, size);                \
+    }                                                                                                              \
+    static void name##_load(mspring_network *network, const uint8_t *from, size_t size) {                          \
+        field_load(network, network->forces.member, &network->forces.member##_any, from, size);                    \
+        network->forces.held_calls = MSPRINGI_MODEST_CALLS;                                                        \
+    }                                                                                                              \
+    const mspringi_section mspringi_section_##name = {tag,         words,        false,       name##_size,         \
+                                                      name##_save, name##_check, name##_load, NULL};               \
+    const mspringi_by_id mspringi_by_id_##name = {&mspringi_section_##name, forces_runs, NULL, NULL}
+
+FORCES(forces, "forc", "forces given for the next step", held);
+FORCES(first_forces, "frst", "forces given for the first substep", first);

@@ -23,8 +23,8 @@ mspring_result mspringi_solver_check_name(mspring_solver name, mspringi_message 
     return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "solver is %d, which is none", (int)name);
 }
 
-mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *network,
-                                    const mspring_solver_def *def, uint32_t tile_size) {
+mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *network, const mspring_settings *def,
+                                    uint32_t tile_size) {
     const mspringi_solver_ops *ops = solver->ops;
     const uint32_t sleeping = network->sleep.sleeping;
     network->sleep.sleeping = 0; // as if nothing slept: snapshots do not have sleepers that the next step wakes
@@ -66,13 +66,13 @@ void mspringi_solver_take_over(const mspring_network *to, const mspringi_solver 
 
 mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size) {
     mspringi_solver made = {mspringi_solver_ops_of(MSPRING_SOLVER_IMPLICIT), NULL};
-    mspring_solver_def def;
+    mspring_settings def;
     if (network->fallback.object)
         return MSPRING_OK;
     mspring_result result = mspringi_solver_check_name(MSPRING_SOLVER_IMPLICIT, &network->message);
     if (result != MSPRING_OK)
         return result;
-    (void)mspring_solver_def_init(&def, sizeof def);
+    (void)mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def);
     def.solver = MSPRING_SOLVER_IMPLICIT;
     def.integrator = MSPRING_INTEGRATOR_EULER;
     result = mspringi_solver_make(&made, network, &def, tile_size);

@@ -25,7 +25,7 @@ mspringi_strength mspringi_strength_of(const mspring_network *network, mspring_i
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
     mspringi_topology_ends(t, spring_slot, &base, &tip);
-    const float *mass = mspringi_spring_masses(network);
+    const float *mass = network->mass;
     const double ma = (double)mass[t->particle_of_slot[base]];
     const double mb = (double)mass[t->particle_of_slot[tip]];
     const double reduced_mass = 1.0 / (1.0 / ma + 1.0 / mb);

@@ -94,13 +94,14 @@ static void clamp_coordinate(float *coordinate, float *low, float grid) {
     *coordinate = bounded;
 }
 
-void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *before) {
-    const mspringi_state *s = &network->state;
+// Clamp the state to its bounds. What is not finite goes back to where it was before the step.
+static void clamp_state(mspring_network *network) {
+    const mspringi_state *s = &network->state, *before = &network->backup;
     const mspringi_topology *t = &network->topology;
     for (mspring_id p = 0; p < t->particle_count; ++p) {
         const uint32_t slot = t->slot_of_particle[p];
         if (!is_finite_in(s, slot)) {
-            const bool was_there = before && isfinite(before->x[slot]) && isfinite(before->y[slot]);
+            const bool was_there = isfinite(before->x[slot]) && isfinite(before->y[slot]);
             s->x[slot] = was_there ? before->x[slot] : 0.0f;
             s->y[slot] = was_there ? before->y[slot] : 0.0f;
             s->low_x[slot] = was_there ? before->low_x[slot] : 0.0f;
@@ -122,7 +123,7 @@ void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *
 
 // Clamp the state at the end of a step. Impulses of grips and colliders may be NaN: they are cleared.
 static mspringi_extrema put_back(mspring_network *network) {
-    mspringi_guard_clamp_state(network, &network->backup);
+    clamp_state(network);
     mspringi_features_discard_step(network);
     return mspringi_guard_extrema(network, 0, mspringi_used_slots(network));
 }
@@ -197,8 +198,14 @@ mspring_result mspringi_guard_reserve(mspring_network *network, mspring_guard po
     mspring_result result = MSPRING_OK;
     if (policy != MSPRING_GUARD_BOUNDS) // the clamped solver works in the same arrays
         result = mspringi_stability_limit_reserve(network);
-    return result == MSPRING_OK && policy == MSPRING_GUARD_IMPLICIT ? mspringi_fallback_reserve(network, 0)
-                                                                    : result;
+    if (result != MSPRING_OK || policy != MSPRING_GUARD_IMPLICIT)
+        return result;
+    // One that is left from before fits the shape of then, and no archive or snapshot has it.
+    if (network->settings.guard != MSPRING_GUARD_IMPLICIT) {
+        mspringi_solver_destroy(&network->fallback, &network->memory);
+        network->fallback = (mspringi_solver){0};
+    }
+    return mspringi_fallback_reserve(network, 0);
 }
 
 // Check elements that linear systems do not have in them. In solvers without a stability limit, their forces are

@@ -28,9 +28,6 @@ mspringi_extrema mspringi_guard_extrema_of_all(const mspring_network *network);
 /// Fill in bounds for the extrema that were not watched in substeps of h since mspringi_guard_begin().
 mspringi_extrema mspringi_guard_bound(const mspring_network *network, float h, mspringi_extrema extrema);
 
-/// Clamp the state to its bounds. before: the state before the step, or NULL.
-void mspringi_guard_clamp_state(mspring_network *network, const mspringi_state *before);
-
 /// Extrema of both sets of slots. The order of joining does not matter.
 mspringi_extrema mspringi_extrema_join(mspringi_extrema a, mspringi_extrema b);
 

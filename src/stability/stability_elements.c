@@ -1,4 +1,4 @@
-/// Elements in the stability limit: in the guard's bound and search, in mspring_network_stable_dt(), and in any
+/// Elements in the stability limit: in the guard's bound and search, in mspring_network_get_stable_dt(), and in any
 /// shape.
 ///
 /// The stiffness of an element is c g g' (element_laws.h), positive semidefinite. The rest of its tangent counts in

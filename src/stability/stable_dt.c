@@ -96,7 +96,7 @@ static MSPRINGI_NOINLINE mspring_result find_now(mspring_network *network, doubl
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_stable_dt(mspring_network *network, double *now, double *any_shape) {
+mspring_result mspring_network_get_stable_dt(mspring_network *network, double *now, double *any_shape) {
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
@@ -123,7 +123,7 @@ mspring_result mspring_network_suggest_substeps(mspring_network *network, double
                              "substeps not NULL",
                              dt, safety);
     double now;
-    result = mspring_network_stable_dt(network, &now, NULL);
+    result = mspring_network_get_stable_dt(network, &now, NULL);
     if (result != MSPRING_OK)
         return result;
     const uint32_t count = mspringi_substeps_within(dt, safety * now, MSPRING_MAX_SUBSTEPS);

@@ -96,8 +96,6 @@ void mspringi_clear_unused_slots(const mspring_network *network) {
 static void tidy(const mspring_network *network) {
     if (!network->is_open)
         return;
-    if (network->has_host_view)
-        mspringi_clear_unused_slots(network);
     mspringi_clear_empty_slots(network);
     mspringi_drop_stale_lows(network);
     drop_stale_low_velocities(network);

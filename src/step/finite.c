@@ -23,8 +23,9 @@ static bool is_motion_finite(const mspring_network *network) {
 }
 
 static bool are_forces_finite(const mspring_network *network) {
-    const mspringi_field fields[] = {
-        network->forces.held, network->sleep.sleeping > 0 ? network->sleep.force : (mspringi_field){NULL, NULL}};
+    const mspringi_field fields[] = {network->forces.held, network->forces.first,
+                                     network->sleep.sleeping > 0 ? network->sleep.force
+                                                                 : (mspringi_field){NULL, NULL}};
     const size_t used = mspringi_used_slots(network);
     bool finite = true;
     for (size_t i = 0; i < sizeof fields / sizeof fields[0]; ++i)

@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "features/hooks/hooks.h"
 #include "stability/guard.h"
 #include "stability/stability.h"
 #include "step/pace.h"
@@ -190,6 +191,8 @@ void mspringi_attempt_first(mspring_network *network, double dt, const mspringi_
 bool mspringi_attempt_next(mspring_network *network, mspringi_attempt *attempt) {
     if (attempt->has_missed)
         return ++attempt->missed_count > 0;
+    if (mspringi_hooks_end_step(network))
+        return false;
     if (attempt->result == MSPRING_ERROR_LIMIT && grow(network, attempt))
         return true;
     if (attempt->result == MSPRING_ERROR_MEMORY)

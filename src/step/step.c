@@ -9,41 +9,12 @@
 #include "step/pace.h"
 #include "store/group_ops.h"
 #include "store/sleepers.h"
-
-/// Global damping times dt above which a speed beyond MSPRING_MAX_SPEED could be below it again by the end of the
-/// step: exp(-20) is 2e-9, and at 1e24 m/s nothing overflows yet.
-#define STRONG_DAMPING 20.0
-
-// Refuse excessive speeds that a hook or a view has written, and that strong damping would hide at the end of the
-// step. Within it, rates of strain overflow, also of springs that do not exist, of which wide vectors have more:
-// levels would differ.
-static mspring_result check_given_speeds(mspring_network *network, double dt) {
-    if (!network->is_open || !((double)network->settings.global_damping * dt > STRONG_DAMPING))
-        return MSPRING_OK;
-    if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS) {
-        mspringi_guard_clamp_state(network, NULL);
-        return MSPRING_OK;
-    }
-    const mspringi_state *s = &network->state;
-    for (mspring_id p = 0; p < network->topology.particle_count; ++p) {
-        const uint32_t slot = network->topology.slot_of_particle[p];
-        if (mspringi_particle_exists(network, p) &&
-            !(fabsf(s->vx[slot]) <= (float)MSPRING_MAX_SPEED && fabsf(s->vy[slot]) <= (float)MSPRING_MAX_SPEED)) {
-            network->outcome.particle = p;
-            return mspringi_fail(&network->message, MSPRING_ERROR_UNSTABLE,
-                                 "unstable: a view or hook gave particle %u a velocity of (%g, %g) m/s. Write at "
-                                 "most 1e15 m/s.",
-                                 (unsigned)p, (double)s->vx[slot], (double)s->vy[slot]);
-        }
-    }
-    return MSPRING_OK;
-}
+#include "store/springs.h"
 
 // Accept a step: let stages and sleepers follow it.
 static void accept(mspring_network *network, const mspringi_attempt *attempt) {
     mspringi_attempt_accept(network, attempt);
     network->is_open = network->was_opened;
-    network->has_host_view = false;
     if (attempt->is_idle) {
         network->outcome.flags |= MSPRING_STEP_ASLEEP;
         network->step_time = attempt->given_dt;
@@ -51,9 +22,7 @@ static void accept(mspring_network *network, const mspringi_attempt *attempt) {
     }
     network->steps.pace = network->next_pace;
     mspringi_stages_after_step(network, attempt->stages, network->step_time);
-    if (network->forces.held_any)
-        mspringi_field_clear(network, network->forces.held);
-    network->forces.held_any = false;
+    mspringi_forces_forget(network);
 }
 
 // Undo what attempts have changed besides the state.
@@ -72,8 +41,6 @@ static MSPRINGI_NOINLINE mspring_result step(mspring_network *network, double dt
                              "dt is %g s, it must be > 0 and at most %g s: a substep is a float, and at most %u "
                              "make a step",
                              dt, longest, (unsigned)MSPRING_MAX_SUBSTEPS);
-    if (check_given_speeds(network, dt) != MSPRING_OK)
-        return MSPRING_ERROR_UNSTABLE;
     const uint32_t substeps = network->substeps;
     const mspringi_any_shape any_shape = network->any_shape;
     const mspringi_stages stages = mspringi_stages_of(network);

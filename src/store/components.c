@@ -4,12 +4,9 @@
 
 #include <string.h>
 
-#include "base/cpu.h"
 #include "store/events.h"
 #include "store/id_pool.h"
-#include "store/moments.h"
 #include "store/roots.h"
-#include "store/selection.h"
 #include "store/store.h"
 
 static mspring_result reserve(mspring_network *network) {
@@ -66,6 +63,33 @@ static void push_event(mspring_network *network, mspring_event_kind kind, msprin
     mspringi_events_push(network, (mspring_event){.kind = kind, .id = id, .other = other});
 }
 
+// Sort the particles by component.
+static void list_particles(mspring_network *network) {
+    mspringi_components *c = &network->components;
+    uint32_t end = 0;
+    for (uint32_t i = 0; i < c->count; ++i) {
+        c->first[i] = end;
+        end += c->size[i];
+    }
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p)
+        if (c->number[p] != MSPRING_NONE)
+            c->particles[c->first[c->number[p]]++] = p;
+    for (uint32_t i = 0; i < c->count; ++i)
+        c->first[i] -= c->size[i];
+}
+
+void mspringi_components_forget_removed(mspring_network *network) {
+    mspringi_components *c = &network->components;
+    for (uint32_t i = 0; i < c->count; ++i) {
+        mspring_id *of = c->particles + c->first[i];
+        uint32_t left = 0;
+        for (uint32_t k = 0; k < c->size[i]; ++k)
+            if (mspringi_particle_exists(network, of[k]))
+                of[left++] = of[k];
+        c->size[i] = left;
+    }
+}
+
 // Tell of the heads that have come and gone.
 static void compare_heads(mspring_network *network) {
     const mspringi_components *c = &network->components;
@@ -108,6 +132,7 @@ mspring_result mspring_network_update_components(mspring_network *network, uint3
         swap(&c->head, &c->old_head);
         mspringi_find_roots(network, c->root);
         number_components(network);
+        list_particles(network);
         if (!is_first)
             compare_heads(network);
     }
@@ -118,76 +143,5 @@ mspring_result mspring_network_update_components(mspring_network *network, uint3
     if (changed)
         *changed = is_first || (!unchanged && memcmp(c->number, c->old,
                                                      network->topology.particle_count * sizeof *c->number) != 0);
-    return MSPRING_OK;
-}
-
-/* ----------------------------------------------------------------------------------------------------- reading */
-
-#define NO_UPDATE "the components are unknown: call mspring_network_update_components() first"
-
-mspring_result mspring_network_get_component_numbers(const mspring_network *network, mspring_id first,
-                                                     uint32_t count, uint32_t *numbers, uint32_t stride) {
-    mspringi_selection at;
-    mspring_result result =
-        mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, numbers, numbers, stride, &at);
-    if (result == MSPRING_OK && !is_known(network))
-        result = mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, NO_UPDATE);
-    if (result != MSPRING_OK)
-        return result;
-    for (uint32_t i = 0; i < count; ++i)
-        numbers[(size_t)i * stride] = network->components.number[first + i];
-    return MSPRING_OK;
-}
-
-// Add a particle to its component: mass, centre times mass, momentum. All of these fields are of the first version,
-// so that the host's struct has them, however short it is.
-static void add_particle(const mspring_network *network, mspring_id particle, mspring_component *to) {
-    const mspringi_moments moments = mspringi_moments_of(network, particle);
-    to->mass += moments.mass;
-    to->x += moments.x;
-    to->y += moments.y;
-    if (network->inverse_mass[network->topology.slot_of_particle[particle]] > 0.0f) {
-        to->px += moments.px;
-        to->py += moments.py;
-    }
-}
-
-static MSPRINGI_NOINLINE void measure(const mspring_network *network, uint32_t first, uint32_t count,
-                                      mspring_component *components) {
-    const mspringi_components *c = &network->components;
-    for (uint32_t i = 0; i < count; ++i)
-        mspringi_put_component_at(
-            components, i, &(mspring_component){.head = c->head[first + i], .particle_count = c->size[first + i]});
-    for (mspring_id p = 0; p < network->topology.particle_count; ++p)
-        if (c->number[p] - first < count && mspringi_particle_exists(network, p)) // unsigned: below first are not
-            add_particle(network, p, mspringi_element(components, c->number[p] - first));
-    for (uint32_t i = 0; i < count; ++i) {
-        mspring_component *component = mspringi_element(components, i);
-        component->x = network->origin_x + component->x / component->mass;
-        component->y = network->origin_y + component->y / component->mass;
-    }
-}
-
-mspring_result mspring_network_get_components(const mspring_network *network, uint32_t first, uint32_t count,
-                                              mspring_component *components) {
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    mspringi_shared_message *shared = network->shared;
-    if (count > 0 && !components)
-        return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT, "the place for %u components is NULL",
-                                    (unsigned)count);
-    if (!is_known(network))
-        return mspringi_shared_fail(shared, MSPRING_ERROR_ARGUMENT, NO_UPDATE);
-    if (first > network->components.count || count > network->components.count - first)
-        return mspringi_shared_fail(shared, MSPRING_ERROR_ID,
-                                    "%u components from number %s on: numbers are below %u", (unsigned)count,
-                                    MSPRINGI_ID(first), (unsigned)network->components.count);
-    mspringi_message message;
-    const mspring_result result = mspringi_check_outputs(&message, &mspringi_struct_component, components, count);
-    if (result != MSPRING_OK)
-        return mspringi_shared_set(shared, result, &message);
-    const mspringi_fp_state before = mspringi_fp_enter();
-    measure(network, first, count, components);
-    mspringi_fp_leave(before);
     return MSPRING_OK;
 }

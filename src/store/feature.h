@@ -33,6 +33,8 @@ typedef struct mspringi_feature_state {
 #define FORGETS(function) void function(mspring_network *network);
 #define ACTS(function) bool function(const mspring_network *network);
 #define FINITE(function) bool function(const mspring_network *network);
+#define YIELDED(function) void function(const mspring_network *network, mspring_energy *energy);
+#define ENDS(function) void function(mspring_network *network);
 #define GROWS(function) mspring_result function(mspring_network *network);
 #include "store/features.def"
 

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include <massspring/massspring_batch.h>
+#include <massspring/massspring.h>
 
 /// State that groups may be reset to. Springs are in the order of mspringi_groups.springs.
 typedef struct mspringi_mark {

@@ -81,6 +81,7 @@ void mspringi_id_pool_take_particle(mspring_network *network, mspring_id particl
     if (network->inverse_mass_scale)
         network->inverse_mass_scale[particle] = 0.0f;
     clear_field(network->forces.held, slot);
+    clear_field(network->forces.first, slot);
     mspringi_notify_change(network, MSPRINGI_CHANGED_SLOT, slot);
     mspringi_spare_remove_particle(&network->topology, particle);
     if (network->is_compact)

@@ -33,8 +33,11 @@ typedef struct mspringi_forces {
     mspringi_field base;   ///< held, with the forces of hooks before the step: the same in all substeps
     mspringi_field driven; ///< base, with the forces of hooks before the substep
     mspringi_field inner;  ///< base or driven, with forces within bodies, as of areas
+    mspringi_field first;  ///< given by the host for the first substep of the next step
+    mspringi_field begun;  ///< those of the first substep: base or driven, with first
     mspringi_field known;  ///< from outside in the first substep of the present attempt; NULL: none, or no step
     bool held_any;         ///< held is not all zero
+    bool first_any;        ///< first is not all zero
     uint32_t held_calls;   ///< if held_any: calls that added forces up to MSPRINGI_MODEST to it
 } mspringi_forces;
 
@@ -87,17 +90,13 @@ typedef struct mspringi_halos {
     uint64_t *weights;    ///< [strips + 1] of the strips below each
 } mspringi_halos;
 
-/// Arrays to measure the extents of all springs; NULL before the first measurement.
-typedef struct mspringi_extents {
-    float *scratch;     ///< [2][spring slots] results, see query/extents.c
-    uint16_t *reversed; ///< [spring slots / 16] a bit for each: 1 where its base is the second end
-} mspringi_extents;
-
 /// The network. Each array has a row in store/network.def. State of one feature alone is behind a pointer that
 /// features.def declares.
 struct mspring_network {
     mspringi_memory memory;       ///< of the network and all arrays, except those in tasks_memory
     mspringi_memory tasks_memory; ///< of data that a copy of the network makes anew: workers, the shared message
+    void(MSPRING_CALL *release_tasks)(void *user); ///< of the host's tasks, called at the end; or NULL
+    void *tasks_user;
     mspringi_message message;
     mspringi_shared_message *shared; ///< of calls that only read; in tasks_memory
     mspringi_topology topology;
@@ -120,7 +119,7 @@ struct mspring_network {
     uint32_t first_substep;    ///< number in the step of the first substep that is now taken
     float lag;                 ///< lag at that substep, s: steps.lag, or less if springs would be unstable with it
     float full_lag;            ///< lag for gravity, s: without that limit
-    double step_time;          ///< length of the present step, s: dt, or near it with MSPRING_SUBSTEPS_EVEN or substep_length
+    double step_time;          ///< length of the present step, s: dt, or near it: SUBSTEPS_EVEN, substep_length
     mspringi_pace next_pace;   ///< becomes steps.pace if the step succeeds
     bool backup_is_start;      ///< only the solver has written to the state since the backup was written
     bool is_to_repeat;         ///< an assumption failed: the substeps that are undone are taken again
@@ -132,8 +131,7 @@ struct mspring_network {
     float *inverse_mass;                ///< [slots] 1/kg; 0 if pinned or empty
     float *mass;                        ///< [particles] kg
     float *inverse_mass_scale;          ///< [particles]; NULL as long as each is 1, or 0 for a pinned particle
-    float *spring_mass;                 ///< [particles] masses from which relative springs follow, kg; NULL: `mass`
-    bool is_scaled, is_reweighed;       ///< the host has set scales, or masses: it needs these two arrays
+    bool is_scaled;                     ///< the host has set scales: it needs the array
     uint32_t parts;                     ///< values per spring in the records: 2, or 3 with damping
     bool is_precise;                    ///< low words count in the lengths of springs
     bool keeps_poses;                   ///< places at creation are kept
@@ -150,6 +148,7 @@ struct mspring_network {
     mspringi_relative *kept; ///< [springs] N/m, N s/m of broken springs that are not relative; NULL before any
     uint8_t *is_reversed; ///< [(reserve.first_spring + 7) / 8] a bit for each spring that was given with the higher
                           ///< id first; NULL if none was
+    float *metres;        ///< [4 * springs] limits as given in metres (store/metres.h); NULL if no spring has any
     int8_t *side;         ///< [reserve.first_spring] see mspringi_side_of(); NULL if all springs pull and push
     bool keeps_none;      ///< all springs are relative, so `kept` is never needed
     uint32_t depth;       ///< substeps that may be swept in one pass over the lattice rows
@@ -157,18 +156,17 @@ struct mspring_network {
     float *carry;         ///< [carry_rows] forces on the row above, N, all x and then all y of each
     mspringi_halos halos;
 
-    mspring_settings settings;
+    mspring_settings settings; ///< but for what is the solver's: mspringi_settings_of()
     mspringi_steps steps;
-    mspringi_outcome outcome;       ///< of the present step
-    uint32_t added_substeps;        ///< substeps that dividing others has added in it
-    uint32_t substeps;              ///< of the last step or, unless auto_substeps, of the next
-    uint32_t max_substeps;          ///< see mspring_solver_def
-    uint32_t most_work;             ///< see mspring_solver_def
-    uint32_t auto_substeps;         ///< each step chooses them, if its solver can: MSPRINGI_SUBSTEPS_AUTO, _EVEN
-    double substep_length;          ///< see mspring_solver_def; 0: none is given
-    mspringi_solver solver;         ///< the one that the host chose
-    mspringi_solver fallback;       ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
-    const mspringi_solver *running; ///< the one that takes the present attempt; else NULL
+    mspringi_outcome outcome;         ///< of the present step
+    uint32_t added_substeps;          ///< substeps that dividing others has added in it
+    uint32_t substeps;                ///< of the last step or, unless auto_substeps, of the next
+    uint32_t max_substeps, most_work; ///< see mspring_settings
+    uint32_t auto_substeps;           ///< each step chooses them, if its solver can: MSPRINGI_SUBSTEPS_AUTO, _EVEN
+    double substep_length;            ///< see mspring_settings; 0: none is given
+    mspringi_solver solver;           ///< the one that the host chose
+    mspringi_solver fallback;         ///< takes steps for the explicit one; none before MSPRING_GUARD_IMPLICIT
+    const mspringi_solver *running;   ///< the one that takes the present attempt; else NULL
     mspringi_guard guard;
     float
         *guard_scratch; ///< [5][slots] weights of the guard's bound, and scratch; NULL if it never checks the limit
@@ -186,7 +184,6 @@ struct mspring_network {
     mspringi_cell_forces cells;
     mspringi_constraints constraints; ///< of the last substep with a linear system
     mspringi_components components;
-    mspringi_extents extents;
     mspringi_sleep sleep;
     mspringi_incidence incidence; ///< of all springs but spare ones; made when it is first needed
     mspringi_id_pool growth;
@@ -203,7 +200,6 @@ struct mspring_network {
     mspringi_extrema seen; ///< extrema after the substeps of the last attempt
     bool is_open; ///< somebody outside may write to the state's arrays, or has done since the last step: a hook, or
                   ///< the host through a view
-    bool has_host_view; ///< the host through a view: then unused slots may be written, too
 };
 
 /// Arrays of a state, one after another: x, y, vx, vy, low_x, low_y and, in precise networks, low_vx, low_vy.
@@ -246,10 +242,6 @@ mspring_result mspringi_check_report(const mspring_network *network, const mspri
 /// Refuse NULL, and calls from inside a hook.
 mspring_result mspringi_check_call(mspring_network *network);
 
-/// Refuse ranges of ids that leave the network.
-mspring_result mspringi_check_range(mspring_network *network, const char *what, mspring_id first, uint32_t count,
-                                    uint32_t total);
-
 /// True if the next step chooses its number of substeps.
 static inline bool mspringi_can_choose_substeps(const mspring_network *network) {
     return network->auto_substeps && network->solver.ops->can_choose_substeps;
@@ -258,8 +250,14 @@ static inline bool mspringi_can_choose_substeps(const mspring_network *network) 
 /// Refuse settings that mspring_network_set_settings() would.
 mspring_result mspringi_check_settings(const mspring_settings *settings, mspringi_message *message);
 
-/// Refuse solver definitions that mspring_network_set_solver() would.
-mspring_result mspringi_check_solver(const mspring_solver_def *def, mspringi_message *message);
+/// The settings that the next step uses.
+mspring_settings mspringi_settings_of(const mspring_network *network);
+
+/// The same settings with another solver: how it is evolved, not what guards it and what acts.
+mspring_settings mspringi_settings_with_solver_of(const mspring_settings *settings, const mspring_settings *solver);
+
+/// From now on, or never if NULL, destroying the network releases the host's tasks.
+void mspringi_network_own_tasks(mspring_network *network, const mspring_tasks *tasks);
 
 /// Clear the slots without a particle, which a hook or a view may have written to: those in use, and those behind.
 void mspringi_clear_empty_slots(const mspring_network *network);
@@ -276,6 +274,8 @@ mspring_result mspringi_layout_reserve(mspring_network *network);
 /// Copy a field, or set it to 0, in the slots in use.
 void mspringi_field_copy(const mspring_network *network, mspringi_field from, mspringi_field to);
 void mspringi_field_clear(const mspring_network *network, mspringi_field field);
+/// Forget the forces that were given for the next step.
+void mspringi_forces_forget(mspring_network *network);
 /// Allocate a field of all slots, zeroed; leaves it alone if it is there.
 mspring_result mspringi_field_reserve(mspring_network *network, mspringi_field *field);
 

@@ -1,5 +1,5 @@
 /// @file properties.h
-/// Properties (mspring_property): one float for each particle or spring.
+/// Properties (mspring_property): a number for each thing of a kind.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_PROPERTIES_H
@@ -8,11 +8,13 @@
 #include <math.h>
 
 #include "builder/builder.h"
-#include "store/selection.h"
+#include "store/things.h"
 
 #define MSPRINGI_SMALLEST_MASS 1e-30f
 #define MSPRINGI_LARGEST_MASS 1e30f
 #define MSPRINGI_SMALLEST_SCALE 1e-6f
+/// Longest rest length in force, m.
+#define MSPRINGI_MAX_OWN_LENGTH 8e12f
 
 /// True if a particle may have this mass or scale. (Inline and without branches, for loops over all.)
 static inline bool mspringi_is_mass(float mass) {
@@ -25,7 +27,8 @@ static inline bool mspringi_is_inverse_mass_scale(float scale) {
 /// True if a record may hold this stiffness, damping or rest length in force. Flow may stretch a rest length to 1.9
 /// times the longest that a host may set.
 static inline bool mspringi_is_spring_value(mspringi_part part, float value) {
-    return part == MSPRINGI_REST_LENGTH ? (value > 0.0f) & (value <= 8e12f) : (value >= 0.0f) & (value <= 1e30f);
+    return part == MSPRINGI_REST_LENGTH ? (value > 0.0f) & (value <= MSPRINGI_MAX_OWN_LENGTH)
+                                        : (value >= 0.0f) & (value <= 1e30f);
 }
 
 /// Value as networks store it, and as the host reads it. They store INFINITY for thresholds from MSPRING_NEVER on,
@@ -38,13 +41,20 @@ static inline float mspringi_read_value(float kept) {
 }
 
 typedef struct mspringi_property {
+    mspring_property number;
     const char *name, *unit, *range; ///< for messages; the unit with a space before it, if there is one
-    mspringi_kind kind;
     bool is_writable;
 } mspringi_property;
 
 /// NULL: there is no such property.
 const mspringi_property *mspringi_property_of(mspring_property property);
+
+static inline mspring_kind mspringi_kind_of(mspring_property property) {
+    return (mspring_kind)((int32_t)property >> 8);
+}
+static inline bool mspringi_is_of_integers(mspring_property property) {
+    return property & 0x80;
+}
 
 /// True if a property may have all of these values, stride floats apart. stride 0: one value for all.
 bool mspringi_are_allowed(mspring_property property, const float *values, uint32_t count, size_t stride);

@@ -1,5 +1,5 @@
 /// @file selection.h
-/// Particles or springs of an edit: a range of ids, or a list of them.
+/// Things that a call is about, such as particles or springs: a range of ids, or a list of them.
 ///
 /// SPDX-License-Identifier: MIT
 #ifndef MSPRINGI_SELECTION_H
@@ -7,9 +7,6 @@
 
 #include "base/cpu.h"
 #include "store/network.h"
-
-/// Kind of ids.
-typedef enum mspringi_kind { MSPRINGI_PARTICLES, MSPRINGI_SPRINGS } mspringi_kind;
 
 typedef struct mspringi_selection {
     const mspring_id *list; ///< [count], or NULL for first, first + 1 ...
@@ -33,23 +30,27 @@ static inline uint32_t mspringi_slot_ahead(const mspring_network *network, const
         .slot_of_particle[mspringi_selected(selection, i + (left < MSPRINGI_AHEAD ? left : MSPRINGI_AHEAD))];
 }
 
-/// Select the ids of an edit. Check that it may be made now, that its ids exist, and that its values (two arrays,
-/// or one twice) are not NULL. A range may contain removed ids: the edit skips them.
-mspring_result mspringi_select_range(mspring_network *network, mspringi_kind kind, mspring_id first, uint32_t count,
-                                     const void *values, const void *more, mspringi_selection *selection);
+/// Select the things of an edit: ids[first ...], or first ... if ids is NULL. Check that it may be made now, and
+/// that its ids exist. A range may contain removed ids: the edit skips them. Count may be MSPRING_ALL for a range.
+mspring_result mspringi_select(mspring_network *network, mspring_kind kind, const mspring_id *ids, mspring_id first,
+                               uint32_t count, mspringi_selection *selection);
+/// The same for an edit with values: two arrays, or one twice, not NULL. MSPRING_ALL needs the stride 0.
+mspring_result mspringi_select_for(mspring_network *network, mspring_kind kind, const mspring_id *ids,
+                                   mspring_id first, uint32_t count, const void *values, const void *more,
+                                   uint32_t stride, mspringi_selection *selection);
 /// Select one particle or spring. *id must live as long as the selection.
-mspring_result mspringi_select_one(mspring_network *network, mspringi_kind kind, const mspring_id *id,
+mspring_result mspringi_select_one(mspring_network *network, mspring_kind kind, const mspring_id *id,
                                    mspringi_selection *selection);
-mspring_result mspringi_select_list(mspring_network *network, mspringi_kind kind, const mspring_id *list,
-                                    uint32_t count, const void *values, const void *more,
-                                    mspringi_selection *selection);
 
-/// Select the ids of a read-only call; several may run at once. Its values have a stride of at least 1.
-mspring_result mspringi_look_up_range(const mspring_network *network, mspringi_kind kind, mspring_id first,
-                                      uint32_t count, const void *values, const void *more, uint32_t stride,
-                                      mspringi_selection *selection);
-mspring_result mspringi_look_up_list(const mspring_network *network, mspringi_kind kind, const mspring_id *list,
-                                     uint32_t count, const void *values, const void *more, uint32_t stride,
+/// Select the things of a call that reads; several may run at once. Values have a stride of at least 1.
+mspring_result mspringi_look_up(const mspring_network *network, mspring_kind kind, const mspring_id *ids,
+                                mspring_id first, uint32_t count, mspringi_selection *selection);
+/// The same for a call on another object, which gets the message.
+mspring_result mspringi_look_up_with(mspringi_message *message, const mspring_network *network, mspring_kind kind,
+                                     const mspring_id *ids, mspring_id first, uint32_t count,
                                      mspringi_selection *selection);
+mspring_result mspringi_look_up_for(const mspring_network *network, mspring_kind kind, const mspring_id *ids,
+                                    mspring_id first, uint32_t count, const void *values, const void *more,
+                                    uint32_t stride, mspringi_selection *selection);
 
 #endif

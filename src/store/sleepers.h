@@ -34,6 +34,12 @@ static inline bool mspringi_slot_is_asleep(const mspring_network *network, size_
     return sleep->sleeping > 0 && sleep->sleepers[slot / MSPRINGI_WIDTH] >> slot % MSPRINGI_WIDTH & 1;
 }
 
+/// The same after edits, too: what was set or written since sleeps until the next step.
+static inline bool mspringi_slot_fell_asleep(const mspring_network *network, size_t slot) {
+    const mspringi_sleep *sleep = &network->sleep;
+    return sleep->sleeping > 0 && sleep->still[sleep->island[slot]] < 0.0;
+}
+
 static inline mspringi_strip_sleep mspringi_sleep_state_of_strip(const mspring_network *network,
                                                                  const mspringi_strip *strip) {
     const mspringi_sleep *sleep = &network->sleep;
@@ -73,6 +79,10 @@ typedef struct mspringi_sleep_ops {
     void (*find_islands)(mspring_network *network);
     /// Take over islands from another layout of the same particles and springs, in the same state.
     void (*move)(mspring_network *to, const mspring_network *from);
+
+    /// Calls of the host: wake everything; whether all sleeps, undisturbed since the last step.
+    void (*wake_all)(mspring_network *network);
+    bool (*is_idle)(const mspring_network *network);
 } mspringi_sleep_ops;
 
 #define SLEEP(table) extern const mspringi_sleep_ops table;

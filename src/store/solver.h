@@ -8,11 +8,12 @@
 #ifndef MSPRINGI_SOLVER_H
 #define MSPRINGI_SOLVER_H
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "base/memory.h"
 #include "kernels/kernels.h"
 #include "layout/topology.h"
+#include "store/plan.h"
 
 struct mspringi_writer;
 struct mspringi_io;
@@ -58,11 +59,11 @@ struct mspringi_solver_ops {
     // nothing is left to free. build: call the next of the short functions that make it, until it is done; on
     // failure it can only be destroyed. fits: true if adjust() to this definition is enough. relocate: redirect the
     // pointers of a copy into the copy of the network. reserve: make room for the present workers.
-    mspring_result (*create)(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+    mspring_result (*create)(mspring_network *network, const mspring_settings *def, uint32_t tile_size,
                              void **object);
     mspring_result (*build)(void *object, bool *is_done);
-    bool (*fits)(const void *object, const mspring_solver_def *def);
-    void (*adjust)(void *object, const mspring_solver_def *def);
+    bool (*fits)(const void *object, const mspring_settings *def);
+    void (*adjust)(void *object, const mspring_settings *def);
     void (*destroy)(void *object, mspringi_memory *memory);
     void (*relocate)(void *object, const mspring_network *network, const mspringi_memory *from,
                      const mspringi_memory *to);
@@ -70,7 +71,7 @@ struct mspringi_solver_ops {
 
     // Another layout of the same network. get_def: the definition as given; a solver with create has it, too.
     // take_over: copy the history of the motion. get_basis, set_basis: see mspringi_solver_basis.
-    void (*get_def)(const void *object, mspring_solver_def *def);
+    void (*get_def)(const void *object, mspring_settings *def);
     void (*take_over)(const mspring_network *to, void *object, const mspring_network *from, const void *had);
     mspringi_solver_basis (*get_basis)(const void *object);
     void (*set_basis)(void *object, const mspring_network *network, const mspringi_solver_basis *basis);
@@ -111,7 +112,7 @@ struct mspringi_solver_ops {
 
     // describe: fill in its part of a plan. The others: its section (store/sections.h) in snapshots, and in
     // archives.
-    void (*describe)(const void *object, mspring_plan *plan);
+    void (*describe)(const void *object, mspringi_plan *plan);
     void (*save)(const mspring_network *network, const void *object, struct mspringi_writer *to);
     mspring_result (*check)(mspring_network *network, const void *object, const uint8_t *from, size_t size);
     void (*load)(mspring_network *network, void *object, const uint8_t *from, size_t size);
@@ -144,8 +145,8 @@ extern const mspringi_solver mspringi_clamped;
 mspring_result mspringi_fallback_reserve(mspring_network *network, uint32_t tile_size);
 
 /// Make the object of a solver whose table is set, in one go. On failure there is none.
-mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *network,
-                                    const mspring_solver_def *def, uint32_t tile_size);
+mspring_result mspringi_solver_make(mspringi_solver *solver, mspring_network *network, const mspring_settings *def,
+                                    uint32_t tile_size);
 void mspringi_solver_destroy(mspringi_solver *solver, mspringi_memory *memory);
 void mspringi_solver_forget(const mspringi_solver *solver);
 mspringi_solver_basis mspringi_solver_get_basis(const mspringi_solver *solver);

@@ -1,6 +1,9 @@
 /// Calls of all features that keep limits of springs.
 #include "store/spring_limits.h"
 
+#include <string.h>
+
+#include "store/metres.h"
 #include "store/properties.h"
 
 static const mspringi_limit_ops *const all[] = {
@@ -10,7 +13,7 @@ static const mspringi_limit_ops *const all[] = {
 
 static const mspringi_limit_ops *owner_of(mspring_property property) {
     const mspringi_limit_ops *const *ops = all;
-    while (*ops && !((*ops)->properties >> property & 1))
+    while (*ops && !(property >= (*ops)->first && property <= (*ops)->last))
         ++ops;
     return *ops;
 }
@@ -29,7 +32,7 @@ mspring_result mspringi_limits_reserve(mspring_network *network, mspringi_limits
         mspring_property property;
         bool is_given;
     } needs[] = {{MSPRING_BREAK_STRAIN, limits.break_strain < MSPRING_NEVER},
-                 {MSPRING_STRESS_STRAIN, limits.stress_strain < MSPRING_NEVER},
+                 {MSPRING_WARN_STRAIN, limits.warn_strain < MSPRING_NEVER},
                  {MSPRING_RELAX_STRAIN, limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT},
                  {MSPRING_YIELD_STRAIN, mspringi_has_plasticity(limits)}};
     mspring_result result = MSPRING_OK;
@@ -53,12 +56,16 @@ void mspringi_limit_store(mspring_network *network, mspringi_spring_slot spring_
     owner_of(property)->store(network, spring_slot, property, value);
 }
 
-void mspringi_limits_put(mspring_network *network, mspring_id spring, mspringi_limits limits) {
+void mspringi_limits_put(mspring_network *network, mspring_id spring, uint32_t flags, mspringi_limits limits) {
+    if (flags & MSPRING_SPRING_METRES)
+        limits = mspringi_metres_put(network, spring, limits);
     for (const mspringi_limit_ops *const *ops = all; *ops; ++ops)
         (*ops)->put(network, spring, limits);
 }
 
 void mspringi_limits_forget(mspring_network *network, mspring_id spring) {
+    if (network->metres)
+        memset(network->metres + (size_t)MSPRINGI_METRES * spring, 0, MSPRINGI_METRES * sizeof *network->metres);
     for (const mspringi_limit_ops *const *ops = all; *ops; ++ops)
         (*ops)->forget(network, spring);
 }
@@ -72,7 +79,7 @@ float *mspringi_limits_of(const mspring_network *network, mspring_property prope
     const mspringi_strain *strain = &network->strain;
     const mspringi_tested *tested = &network->tested;
     return property == MSPRING_BREAK_STRAIN    ? strain->break_strain
-           : property == MSPRING_STRESS_STRAIN ? strain->stress_strain
+           : property == MSPRING_WARN_STRAIN   ? strain->warn_strain
            : property == MSPRING_RELAX_STRAIN  ? strain->relax_strain
            : property == MSPRING_YIELD_STRAIN  ? tested->yield_strain
            : property == MSPRING_HARDENING     ? tested->hardening

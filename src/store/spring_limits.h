@@ -11,7 +11,7 @@
 
 /// The limits of one feature.
 typedef struct mspringi_limit_ops {
-    uint32_t properties; ///< that the feature keeps, a bit 1 << mspring_property for each
+    mspring_property first, last;                                                   ///< that the feature keeps
     mspring_result (*reserve)(mspring_network *network, mspring_property property); ///< make room for a property
     mspring_result (*match_layout)(mspring_network *to,
                                    const mspring_network *from); ///< make room for all that `from` has
@@ -34,8 +34,9 @@ mspring_result mspringi_limits_match_layout(mspring_network *to, const mspring_n
 /// Set a property of a spring; after mspringi_limit_reserve().
 void mspringi_limit_store(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
                           float value);
-/// Give a spring without limits those of its definition; after mspringi_limits_reserve().
-void mspringi_limits_put(mspring_network *network, mspring_id spring, mspringi_limits limits);
+/// Give a spring without limits those of its definition; after mspringi_limits_reserve() and
+/// mspringi_metres_reserve().
+void mspringi_limits_put(mspring_network *network, mspring_id spring, uint32_t flags, mspringi_limits limits);
 /// Let nothing happen to a spring.
 void mspringi_limits_forget(mspring_network *network, mspring_id spring);
 /// Bring what follows from a spring's rest length, given or in force, up to date.

@@ -1,8 +1,12 @@
 /// Spring slots of springs, and their values.
 #include "store/springs.h"
 
+#include <string.h>
+
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
+#include "store/id_pool.h"
+#include "store/metres.h"
 #include "store/record_sharing.h"
 #include "store/rest_lengths.h"
 #include "store/spring_limits.h"
@@ -78,22 +82,12 @@ float mspringi_spring_slot_given_length(const mspring_network *network, mspringi
                                    : mspringi_spring_slot_own_length(network, spring_slot);
 }
 
-// True if a spring was given with the higher id first.
-static bool is_turned(const mspring_network *network, mspring_id spring) {
-    const uint32_t first_spare = network->topology.reserve.first_spring;
-    if (spring < first_spare)
-        return network->is_reversed && network->is_reversed[spring / 8] >> spring % 8 & 1;
-    const mspring_id *ends = network->growth.particle_of_end + 2 * (size_t)(spring - first_spare);
-    return ends[0] > ends[1];
-}
-
 mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring) {
     const mspringi_topology *t = &network->topology;
     uint32_t base, tip;
     mspringi_topology_ends(t, mspringi_slot_of_spring(t, spring), &base, &tip);
-    return (t->particle_of_slot[base] > t->particle_of_slot[tip]) == is_turned(network, spring)
-               ? (mspringi_ends){base, tip}
-               : (mspringi_ends){tip, base};
+    return mspringi_spring_is_from_tip(network, spring, base, tip) ? (mspringi_ends){tip, base}
+                                                                   : (mspringi_ends){base, tip};
 }
 
 uint32_t mspringi_side_flags(const mspring_network *network, mspring_id spring) {
@@ -105,12 +99,30 @@ uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring
     const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, spring);
     return (mspringi_spring_is_relative(network, spring) ? MSPRING_SPRING_RELATIVE : 0u) |
            mspringi_side_flags(network, spring) |
+           (mspringi_metres_of(network, spring) ? MSPRING_SPRING_METRES : 0u) |
            (mspringi_spring_slot_is_live(network, spring_slot) ? 0u : MSPRING_SPRING_BROKEN) |
            (mspringi_spring_slot_is_stressed(network, spring_slot) ? MSPRING_SPRING_STRESSED : 0u);
 }
 
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring) {
     return mspringi_spring_slot_get(network, mspringi_slot_of_spring(&network->topology, spring));
+}
+
+void mspringi_springs_get(const mspring_network *network, const mspringi_selection *at, uint32_t first,
+                          uint32_t count, mspringi_spring_values *values) {
+    const mspringi_topology *t = &network->topology;
+    for (uint32_t i = 0; i < count; ++i) {
+        const mspringi_spring_slot spring_slot = t->slot_of_spring[mspringi_selected(at, first + i)];
+        if (spring_slot >= t->lattice_spring_slots) {
+            values[i] = mspringi_spring_slot_get(network, spring_slot);
+            continue;
+        }
+        const spring_record record = lattice_record(network, spring_slot);
+        values[i].rest_length = *record.rest_length;
+        values[i].stiffness = *record.stiffness;
+        values[i].damping = record.damping ? *record.damping : 0.0f;
+        mspringi_lattice_ends(t, spring_slot, &values[i].base, &values[i].tip);
+    }
 }
 
 void mspringi_spring_slot_set(mspring_network *network, mspringi_spring_slot spring_slot, float stiffness,
@@ -185,7 +197,7 @@ void mspringi_spring_slot_copy(const mspring_network *from, mspringi_spring_slot
 static mspringi_relative derive(const mspring_network *network, const mspringi_spring_values *values,
                                 mspringi_relative fractions) {
     const mspringi_topology *t = &network->topology;
-    const float *mass = mspringi_spring_masses(network);
+    const float *mass = network->mass;
     const double reduced_mass = mspringi_reduced_mass((double)mass[t->particle_of_slot[values->base]],
                                                       (double)mass[t->particle_of_slot[values->tip]]);
     const double rate = mspringi_relative_rate(network);
@@ -251,7 +263,7 @@ static inline void derive_in_lattice(mspring_network *network, deriving *with, m
 
 // While a snapshot is loaded, springs that are not there any more are live until its section of broken ones.
 void mspringi_renew_relative(mspring_network *network) {
-    deriving with = {.mass = mspringi_spring_masses(network), .rate = mspringi_relative_rate(network)};
+    deriving with = {.mass = network->mass, .rate = mspringi_relative_rate(network)};
     for (mspring_id s = 0; s < network->topology.spring_count; ++s) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
         const mspringi_relative fractions = mspringi_fractions_of(&network->fractions, s);
@@ -262,6 +274,15 @@ void mspringi_renew_relative(mspring_network *network) {
             derive_in_lattice(network, &with, spring_slot, fractions);
         else
             mspringi_spring_set_nominal(network, s, spring_slot, fractions);
+    }
+}
+
+void mspringi_renew_relative_around(mspring_network *network, mspring_id particle) {
+    mspringi_incident_springs around = mspringi_incident_springs_begin(network, particle);
+    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;) {
+        const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
+        if (mspringi_spring_is_relative(network, s) && mspringi_spring_slot_is_live(network, spring_slot))
+            mspringi_spring_set_nominal(network, s, spring_slot, mspringi_fractions_of(&network->fractions, s));
     }
 }
 

@@ -8,6 +8,7 @@
 #include <float.h>
 
 #include "store/fractions.h"
+#include "store/selection.h"
 
 /// Values of a spring in force, m, N/m and N s/m, and the slots that it joins.
 typedef struct mspringi_spring_values {
@@ -16,6 +17,9 @@ typedef struct mspringi_spring_values {
 } mspringi_spring_values;
 mspringi_spring_values mspringi_spring_slot_get(const mspring_network *network, mspringi_spring_slot spring_slot);
 mspringi_spring_values mspringi_spring_get(const mspring_network *network, mspring_id spring);
+/// Those of the springs of a selection from the first-th on, in a third of the time of one by one.
+void mspringi_springs_get(const mspring_network *network, const mspringi_selection *at, uint32_t first,
+                          uint32_t count, mspringi_spring_values *values);
 /// Set stiffness and damping in force, wherever the spring has records.
 void mspringi_spring_slot_set(mspring_network *network, mspringi_spring_slot spring_slot, float stiffness,
                               float damping);
@@ -29,6 +33,20 @@ typedef struct mspringi_ends {
     uint32_t a, b;
 } mspringi_ends;
 mspringi_ends mspringi_spring_ends(const mspring_network *network, mspring_id spring);
+/// True if a spring was given with the particle at its tip first.
+static inline bool mspringi_spring_is_from_tip(const mspring_network *network, mspring_id spring, uint32_t base,
+                                               uint32_t tip) {
+    const uint32_t first_spare = network->topology.reserve.first_spring,
+                   *of_slot = network->topology.particle_of_slot;
+    bool is_reversed = false; // the higher id first
+    if (spring >= first_spare) {
+        const mspring_id *ends = network->growth.particle_of_end + 2 * (size_t)(spring - first_spare);
+        is_reversed = ends[0] > ends[1];
+    } else if (network->is_reversed) {
+        is_reversed = network->is_reversed[spring / 8] >> spring % 8 & 1;
+    }
+    return (of_slot[base] > of_slot[tip]) != is_reversed;
+}
 
 /// The ramp of the spring in a spring slot, or NULL; and its rest length at the end of its ramp.
 const struct mspringi_ramp *mspringi_spring_slot_ramp(const mspring_network *network,
@@ -49,11 +67,8 @@ static inline bool mspringi_is_slack(int side, double stretch) {
 
 /// MSPRING_SPRING_PULL_ONLY or _PUSH_ONLY, or 0.
 uint32_t mspringi_side_flags(const mspring_network *network, mspring_id spring);
-/// These with MSPRING_SPRING_RELATIVE, _BROKEN and _STRESSED.
+/// These with MSPRING_SPRING_RELATIVE, _METRES, _BROKEN and _STRESSED.
 uint32_t mspringi_spring_flags(const mspring_network *network, mspring_id spring);
-
-/// Let mspring_network_get_extents() know which end of a spring is the first, if it has been called before.
-void mspringi_extents_turn(mspring_network *network, mspring_id spring);
 
 /// (length - rest_length) / rest_length, now; of a broken spring 0.
 float mspringi_spring_strain(const mspring_network *network, mspring_id spring);
@@ -74,11 +89,6 @@ static inline bool mspringi_spring_slot_is_stressed(const mspring_network *netwo
 
 static inline bool mspringi_spring_is_relative(const mspring_network *network, mspring_id spring) {
     return network->fractions.values && mspringi_fractions_of(&network->fractions, spring).stiffness >= 0.0f;
-}
-
-/// By particle, the masses that relative springs go by.
-static inline const float *mspringi_spring_masses(const mspring_network *network) {
-    return network->spring_mass ? network->spring_mass : network->mass;
 }
 
 /// Mass, kg, and rate, 1/s, from which stiffness and damping of relative springs follow: the reduced mass of the
@@ -122,6 +132,8 @@ void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_
 void mspringi_derive_relative(mspring_network *network, float h);
 /// Derive them again, with other masses.
 void mspringi_renew_relative(mspring_network *network);
+/// Those of a particle; its lists of springs are there (mspringi_incidence_reserve()).
+void mspringi_renew_relative_around(mspring_network *network, mspring_id particle);
 
 /// Values of a spring outside lattices and chains: as mspringi_spring_slot_get(), without a search for its record.
 static inline mspringi_spring_values mspringi_irregular_spring(const mspring_network *network, uint32_t irregular) {

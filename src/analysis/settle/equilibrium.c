@@ -55,6 +55,7 @@ void mspringi_statics_destroy(mspringi_statics *statics, mspringi_memory *memory
     mspringi_free(memory, statics->end_block);
     mspringi_free(memory, statics->elements.sides);
     mspringi_free(memory, statics->elements.blocks);
+    mspringi_free(memory, statics->secants.block);
 }
 
 mspring_result mspringi_statics_prepare(mspringi_statics *statics, mspring_simd level, mspringi_memory *memory,
@@ -264,10 +265,81 @@ static void add_curvature(mspringi_statics *statics, uint32_t spring) {
     statics->curvature.y[b] -= fy;
 }
 
+/* ---------------------------------------------------------------------------------------------------- secants */
+
+static double *secant(const mspringi_statics *statics, uint32_t which) {
+    return statics->secants.block + 2 * (size_t)which * statics->particle_count;
+}
+
+static double dot(const mspringi_statics *statics, const double *a, const double *b) {
+    double sum = 0.0;
+    for (size_t i = 0; i < 2 * (size_t)statics->particle_count; ++i)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+static void add_times(const mspringi_statics *statics, double factor, const double *from, double *to) {
+    for (size_t i = 0; i < 2 * (size_t)statics->particle_count; ++i)
+        to[i] += factor * from[i];
+}
+
+static void clear_fixed(const mspringi_statics *statics, double *v) {
+    for (uint32_t p = 0; p < statics->particle_count; ++p)
+        if (statics->fixed[p])
+            v[p] = v[p + statics->particle_count] = 0.0;
+}
+
+// Keep the last move as a secant, if the forces fell along it.
+static void learn(mspringi_statics *statics) {
+    mspringi_secants *s = &statics->secants;
+    const size_t bytes = 2 * (size_t)statics->particle_count * sizeof(double);
+    double *last_moved = secant(statics, 2 * MSPRINGI_SECANTS),
+           *last_force = secant(statics, 2 * MSPRINGI_SECANTS + 1);
+    double *move = secant(statics, 2 * s->next), *less = secant(statics, 2 * s->next + 1);
+    if (s->has_last) {
+        memcpy(move, statics->moved.x, bytes);
+        add_times(statics, -1.0, last_moved, move);
+        memcpy(less, last_force, bytes);
+        add_times(statics, -1.0, statics->force.x, less);
+        clear_fixed(statics, less);
+        const double product = dot(statics, move, less);
+        if (product > 1e-10 * sqrt(dot(statics, move, move) * dot(statics, less, less))) {
+            s->inverse[s->next] = 1.0 / product;
+            s->next = (s->next + 1) % MSPRINGI_SECANTS;
+            s->count += s->count < MSPRINGI_SECANTS;
+        }
+    }
+    memcpy(last_moved, statics->moved.x, bytes);
+    memcpy(last_force, statics->force.x, bytes);
+    s->has_last = true;
+}
+
+// Limited memory BFGS (Nocedal 1980), around the factor of the present matrix.
+static void solve_by_secants(mspringi_statics *statics) {
+    const mspringi_secants *s = &statics->secants;
+    double shares[MSPRINGI_SECANTS], *step = statics->step.x;
+    clear_fixed(statics, step);
+    for (uint32_t i = 0; i < s->count; ++i) {
+        const uint32_t k = (s->next + MSPRINGI_SECANTS - 1 - i) % MSPRINGI_SECANTS;
+        shares[k] = s->inverse[k] * dot(statics, secant(statics, 2 * k), step);
+        add_times(statics, -shares[k], secant(statics, 2 * k + 1), step);
+    }
+    solve(statics, statics->step);
+    for (uint32_t i = s->count; i-- > 0;) {
+        const uint32_t k = (s->next + MSPRINGI_SECANTS - 1 - i) % MSPRINGI_SECANTS;
+        const double share = s->inverse[k] * dot(statics, secant(statics, 2 * k + 1), step);
+        add_times(statics, shares[k] - share, secant(statics, 2 * k), step);
+    }
+}
+
 void mspringi_statics_find_step(mspringi_statics *statics) {
     const size_t bytes = 2 * (size_t)statics->particle_count * sizeof *statics->step.x;
     memcpy(statics->step.x, statics->force.x, bytes);
-    solve(statics, statics->step);
+    if (statics->secants.block) {
+        learn(statics);
+        solve_by_secants(statics);
+    } else
+        solve(statics, statics->step);
     memset(statics->curvature.x, 0, bytes);
     for (uint32_t i = 0; i < statics->springs.count; ++i)
         add_curvature(statics, i);

@@ -33,6 +33,17 @@ typedef struct mspringi_statics_elements {
     mspringi_side_block *blocks; ///< [corners of the largest] scratch
 } mspringi_statics_elements;
 
+/// Past moves, and by how much they lowered the forces. They tell what the matrix lacks of areas: it has springs
+/// along their sides, but areas resist bending, too, and their pressure turns with the sides.
+enum { MSPRINGI_SECANTS = 12 };
+typedef struct mspringi_secants {
+    double
+        *block; ///< [MSPRINGI_SECANTS][move, fall of the forces], and the last place and its forces; NULL: no areas
+    double inverse[MSPRINGI_SECANTS]; ///< 1 / (move times fall)
+    uint32_t count, next;
+    bool has_last;
+} mspringi_secants;
+
 typedef struct mspringi_statics {
     uint32_t particle_count;
     bool *fixed;                ///< [particle_count] pinned or left floating
@@ -51,6 +62,7 @@ typedef struct mspringi_statics {
     mspringi_watcher watcher; ///< called before each iteration
     mspringi_statics_springs springs;
     mspringi_statics_elements elements;
+    mspringi_secants secants;
     mspringi_cholesky_symbolic plan;
     mspringi_cholesky_double factor;
 } mspringi_statics;

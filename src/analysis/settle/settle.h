@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-#include <massspring/massspring_tools.h>
+#include "base/structs.h"
 
 /// Callback that returns false to stop a search. fn NULL: none.
 typedef struct mspringi_watcher {

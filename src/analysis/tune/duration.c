@@ -104,20 +104,20 @@ static uint32_t run_one_period(mspringi_tuning *tuning, mspring_network *clone, 
 mspring_result mspringi_tune_choose_duration(mspringi_tuning *tuning) {
     double affordable = 0.0;
     mspring_network *clone = NULL;
-    mspring_solver_def solver;
+    mspring_settings solver;
     tuning->step_count = MSPRINGI_TUNE_MOMENTS;
     if (!mspringi_tuning_has_time(tuning, 0.0))
         return MSPRING_OK;
     mspring_result result = count_affordable(tuning, &affordable);
     if (result == MSPRING_OK)
-        result = mspringi_tune_clone(tuning, tuning->base, 0, &clone);
+        result = mspringi_tune_clone(tuning, tuning->base, false, &clone);
     if (result != MSPRING_OK)
         return result;
-    (void)mspring_solver_def_init(&solver, sizeof solver);
+    (void)mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver);
     solver.solver = MSPRING_SOLVER_IMPLICIT;
     tuning->step_count = MSPRINGI_TUNE_MIN_STEPS;
     const bool has_implicit = mspringi_solver_ops_of(MSPRING_SOLVER_IMPLICIT) != NULL;
-    result = has_implicit ? mspring_network_set_solver(clone, &solver) : MSPRING_ERROR_LIMIT;
+    result = has_implicit ? mspringi_tune_set_solver(clone, &solver) : MSPRING_ERROR_LIMIT;
     if (result == MSPRING_OK) {
         const double most = fmin(affordable, MSPRINGI_TUNE_MAX_STEPS);
         const uint32_t steps = run_one_period(tuning, clone, most);

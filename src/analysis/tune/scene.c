@@ -46,7 +46,7 @@ static void perturb(mspring_network *network, uint32_t start, double most) {
 static mspring_result make_start(mspringi_tuning *tuning, uint32_t start, mspring_network **made) {
     const mspring_tune_scene *scene = &tuning->scene;
     *made = NULL;
-    const uint32_t kept = scene->flags & MSPRING_TUNE_SCENE_HOOKS ? MSPRING_CLONE_HOOKS : 0;
+    const bool kept = scene->flags & MSPRING_TUNE_SCENE_HOOKS;
     mspring_result result = mspringi_tune_clone(tuning, tuning->network, kept, made);
     if (result != MSPRING_OK)
         return result;
@@ -71,13 +71,14 @@ static double count_live(const mspring_network *network) {
 }
 
 static void measure_run(const mspring_network *network, double live_before, mspringi_scene_run *run) {
-    double kinetic = 0.0, elastic = 0.0, left = 0.0, low = 0.0, right = 0.0, high = 0.0;
-    if (mspring_network_energy(network, &kinetic, &elastic, NULL) != MSPRING_OK ||
-        mspring_network_bounds(network, &left, &low, &right, &high) != MSPRING_OK)
+    mspring_energy energy = {.struct_size = sizeof energy};
+    mspring_body all = {.struct_size = sizeof all};
+    if (mspring_network_get_energy(network, &energy) != MSPRING_OK ||
+        mspring_network_get_body(network, NULL, 0, MSPRING_ALL, &all) != MSPRING_OK)
         return;
     run->quantities[MSPRING_TUNE_BROKEN] = live_before - count_live(network);
-    run->quantities[MSPRING_TUNE_ENERGY] = kinetic + elastic;
-    run->quantities[MSPRING_TUNE_EXTENT] = fmax(right - left, high - low);
+    run->quantities[MSPRING_TUNE_ENERGY] = energy.kinetic + energy.elastic;
+    run->quantities[MSPRING_TUNE_EXTENT] = fmax(all.max_x - all.min_x, all.max_y - all.min_y);
 }
 
 static mspring_result forward_error(mspringi_tuning *tuning, const mspring_network *clone, mspring_result result) {
@@ -86,14 +87,14 @@ static mspring_result forward_error(mspringi_tuning *tuning, const mspring_netwo
 }
 
 // Call the host's prepare, then set the solver. set: false if this kind of solver cannot take the network.
-static mspring_result prepare(mspringi_tuning *tuning, mspring_network *clone, const mspring_solver_def *solver,
+static mspring_result prepare(mspringi_tuning *tuning, mspring_network *clone, const mspring_settings *solver,
                               uint32_t start, bool *set) {
     const mspring_tune_scene *scene = &tuning->scene;
     mspring_result result = scene->prepare ? scene->prepare(clone, start, tuning->def.user) : MSPRING_OK;
     if (result != MSPRING_OK)
         return mspringi_fail(&tuning->network->message, result, "the scene's prepare returned %d at start %u",
                              (int)result, (unsigned)start);
-    result = mspring_network_set_solver(clone, solver);
+    result = mspringi_tune_set_solver(clone, solver);
     *set = result == MSPRING_OK;
     return result == MSPRING_OK || result == MSPRING_ERROR_LIMIT ? MSPRING_OK
                                                                  : forward_error(tuning, clone, result);
@@ -123,11 +124,11 @@ static mspring_result take_steps(mspringi_tuning *tuning, mspring_network *clone
 }
 
 static mspring_result run_solver(mspringi_tuning *tuning, mspring_network *from, uint32_t start,
-                                 const mspring_solver_def *solver, mspringi_scene_run *run, run_outcome *end) {
+                                 const mspring_settings *solver, mspringi_scene_run *run, run_outcome *end) {
     mspring_network *clone = NULL;
     bool set = false;
     *end = REJECTED;
-    mspring_result result = mspringi_tune_clone(tuning, from, MSPRING_CLONE_HOOKS, &clone);
+    mspring_result result = mspringi_tune_clone(tuning, from, true, &clone);
     if (result == MSPRING_OK)
         result = prepare(tuning, clone, solver, start, &set);
     if (result == MSPRING_OK && set)
@@ -144,16 +145,16 @@ static bool can_run(const mspringi_trial *trial) {
 }
 
 // Choose the solver of the fine run. substeps 0: no fine run is possible.
-static mspring_result choose_fine(mspringi_tuning *tuning, mspring_solver_def *solver) {
+static mspring_result choose_fine(mspringi_tuning *tuning, mspring_settings *solver) {
     double any_shape = 0.0;
-    (void)mspring_solver_def_init(solver, sizeof *solver);
-    const mspring_result result = mspring_network_stable_dt(tuning->base, NULL, &any_shape);
+    (void)mspring_init(MSPRING_STRUCT_SETTINGS, solver, sizeof *solver);
+    const mspring_result result = mspring_network_get_stable_dt(tuning->base, NULL, &any_shape);
     if (result != MSPRING_OK)
         return forward_error(tuning, tuning->base, result);
     double substeps = floor(tuning->def.dt / (FINE_PART_OF_STABLE * any_shape)) + 1.0;
     for (uint32_t i = 0; i < tuning->trial_count; ++i)
-        if (can_run(&tuning->trials[i]) && tuning->trials[i].row.solver == MSPRING_SOLVER_EXPLICIT)
-            substeps = fmax(substeps, FINE_TIMES_SETTINGS * tuning->trials[i].row.substeps);
+        if (can_run(&tuning->trials[i]) && tuning->trials[i].row.settings.solver == MSPRING_SOLVER_EXPLICIT)
+            substeps = fmax(substeps, FINE_TIMES_SETTINGS * tuning->trials[i].row.settings.substeps);
     solver->substeps = substeps <= MSPRING_MAX_SUBSTEPS ? (uint32_t)substeps : 0;
     return MSPRING_OK;
 }
@@ -166,7 +167,7 @@ static bool can_any_run(const mspringi_tuning *tuning) {
 }
 
 // Run one start with the fine run and all settings. Unless it ends WHOLE, there is no next start.
-static mspring_result run_start(mspringi_tuning *tuning, const mspring_solver_def *fine, uint32_t start,
+static mspring_result run_start(mspringi_tuning *tuning, const mspring_settings *fine, uint32_t start,
                                 mspringi_scene_run *fine_runs, run_outcome *end) {
     mspring_network *from = NULL;
     mspring_result result = make_start(tuning, start, &from);
@@ -223,7 +224,7 @@ static void fill_row(mspringi_trial *trial, const mspringi_scene_run *fine_runs,
 
 mspring_result mspringi_tune_scenes(mspringi_tuning *tuning) {
     mspringi_scene_run *fine_runs = tuning->runs + (size_t)tuning->trial_count * tuning->scene.start_count;
-    mspring_solver_def fine;
+    mspring_settings fine;
     run_outcome end = WHOLE;
     mspring_result result = choose_fine(tuning, &fine);
     if (result != MSPRING_OK || fine.substeps == 0)

@@ -32,16 +32,22 @@ static mspring_result forward_error(mspringi_tuning *tuning, const mspringi_tria
     return result;
 }
 
-mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
+mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, bool copy_hooks,
                                    mspring_network **clone) {
     mspring_clone_def def;
-    (void)mspring_clone_def_init(&def, sizeof def);
-    def.flags = flags;
+    (void)mspring_init(MSPRING_STRUCT_CLONE_DEF, &def, sizeof def);
+    def.copy_hooks = copy_hooks;
     const mspring_result result = mspring_network_clone(from, &def, clone);
     if (result != MSPRING_OK)
         return mspringi_fail(&tuning->network->message, result, "no memory for a clone of the network");
     (*clone)->tasks = from->tasks;
     return mspring_network_set_contact(*clone, NULL);
+}
+
+mspring_result mspringi_tune_set_solver(mspring_network *clone, const mspring_settings *solver) {
+    const mspring_settings own = mspringi_settings_of(clone);
+    const mspring_settings wanted = mspringi_settings_with_solver_of(&own, solver);
+    return mspring_network_set_settings(clone, &wanted);
 }
 
 void mspringi_tune_destroy_clone(mspring_network *clone) {
@@ -55,10 +61,10 @@ static mspring_result make_clone(mspringi_tuning *tuning, mspringi_trial *trial,
                                  mspring_network **clone) {
     *clone = NULL;
     mspring_network *made = NULL;
-    mspring_result result = mspringi_tune_clone(tuning, from, 0, &made);
+    mspring_result result = mspringi_tune_clone(tuning, from, false, &made);
     if (result != MSPRING_OK)
         return result;
-    result = mspring_network_set_solver(made, &trial->setting);
+    result = mspringi_tune_set_solver(made, &trial->setting);
     if (result == MSPRING_OK) {
         *clone = made;
         return MSPRING_OK;
@@ -116,7 +122,7 @@ static mspring_result run(mspringi_tuning *tuning, mspringi_trial *trial, msprin
             after(tuning, clone, done, context);
     }
     if (clone && done > 0) {
-        trial->row.substeps = clone->substeps;
+        trial->row.settings.substeps = clone->substeps;
         trial->relative_h = clone->fractions.values ? clone->relative_h : 0.0f;
     }
     mspringi_tune_destroy_clone(clone);
@@ -194,8 +200,9 @@ static double fine_substeps(const mspringi_tuning *tuning, const mspringi_refere
     double most = 0.0;
     for (uint32_t i = 0; i < tuning->trial_count; ++i) {
         const mspringi_trial *trial = &tuning->trials[i];
-        if (trial->row.solver == MSPRING_SOLVER_EXPLICIT && trial->relative_h == relative_h && !is_rejected(trial))
-            most = fmax(most, trial->row.substeps);
+        if (trial->row.settings.solver == MSPRING_SOLVER_EXPLICIT && trial->relative_h == relative_h &&
+            !is_rejected(trial))
+            most = fmax(most, trial->row.settings.substeps);
     }
     return fmin(fmax(stable, FINE_TIMES_EXPLICIT * most), 1e9);
 }
@@ -423,9 +430,7 @@ static mspring_result run_rest(mspringi_tuning *tuning, mspringi_trial *trial, m
 // Remove forces that act in the first step only, and stop pinned particles.
 static void stop_motion(mspring_network *network) {
     const size_t bytes = 2 * mspringi_slot_count(network) * sizeof(float);
-    if (network->forces.held_any)
-        memset(network->forces.held.x, 0, bytes);
-    network->forces.held_any = false;
+    mspringi_forces_forget(network);
     memset(network->state.vx, 0, bytes); // vy follows vx in memory
 }
 
@@ -440,7 +445,7 @@ static mspring_result rests_of_group(mspringi_tuning *tuning, float relative_h) 
     mspring_result result = mspringi_tune_clone(tuning, tuning->base, 0, &settled);
     if (result != MSPRING_OK)
         return result;
-    (void)mspring_settle_def_init(&def, sizeof def);
+    (void)mspring_init(MSPRING_STRUCT_SETTLE_DEF, &def, sizeof def);
     def.relative_substep = (double)relative_h;
     stop_motion(settled);
     const mspringi_watcher watcher = {has_time, tuning};

@@ -97,14 +97,13 @@ static mspring_result check_def(const mspring_tune_def **given, mspring_tune_def
     return MSPRING_OK;
 }
 
-static mspring_result check_settings(const mspring_solver_def *settings, uint32_t count,
-                                     mspringi_message *message) {
+static mspring_result check_settings(const mspring_settings *settings, uint32_t count, mspringi_message *message) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; result == MSPRING_OK && i < count; ++i) {
-        mspring_solver_def setting;
-        result = mspringi_take_solver_def_at(message, settings, i, &setting);
+        mspring_settings setting;
+        result = mspringi_take_settings_at(message, settings, i, &setting);
         if (result == MSPRING_OK)
-            result = mspringi_check_solver(&setting, message);
+            result = mspringi_check_settings(&setting, message);
         result = mspringi_prefix(message, result, "setting", i);
     }
     return result;
@@ -115,7 +114,7 @@ static mspring_result check_rows(const mspring_tune_row *rows, uint32_t capacity
     if (capacity < needed)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "there is room for %u rows, but %u settings",
                              (unsigned)capacity, (unsigned)needed);
-    return mspringi_check_outputs(message, &mspringi_struct_tune_row, rows, needed);
+    return mspringi_check_output(message, &mspringi_struct_tune_row, rows);
 }
 
 /* -------------------------------------------------------------------------------------------------------- time */
@@ -179,6 +178,9 @@ static mspring_result make_base(mspringi_tuning *tuning) {
     if (result != MSPRING_OK)
         return result;
     mspring_network *base = tuning->base;
+    if (base->forces.first_any) // another blow with each substep length
+        mspringi_field_clear(base, base->forces.first);
+    base->forces.first_any = false;
     result = mspring_network_set_floor(base, NULL);
     if (result != MSPRING_OK)
         return result;
@@ -231,23 +233,17 @@ static mspring_result allocate(mspringi_tuning *tuning) {
     return MSPRING_OK;
 }
 
-static void fill_trials(mspringi_tuning *tuning, const mspring_solver_def *settings) {
+static void fill_trials(mspringi_tuning *tuning, const mspring_settings *settings) {
+    const mspring_settings own = mspringi_settings_of(tuning->network);
     for (uint32_t i = 0; i < tuning->trial_count; ++i) {
         mspringi_trial *trial = &tuning->trials[i];
-        const mspring_solver_def *setting = &trial->setting;
-        (void)mspringi_take_solver_def_at(NULL, settings, i, &trial->setting);
+        (void)mspringi_take_settings_at(NULL, settings, i, &trial->setting);
         trial->times = tuning->times + (size_t)2 * i * tuning->time_capacity;
         trial->rest_times = trial->times + tuning->time_capacity;
         trial->runs = tuning->runs + (size_t)i * tuning->scene.start_count;
         trial->row = (mspring_tune_row){
             .setting = i,
-            .solver = setting->solver,
-            .integrator = setting->integrator,
-            .substeps = setting->substeps,
-            .iterations = setting->iterations,
-            .tile_size = setting->tile_size,
-            .coarse_period = setting->coarse_period,
-            .residual = setting->residual,
+            .settings = mspringi_settings_with_solver_of(&own, &trial->setting),
         };
     }
 }
@@ -285,7 +281,7 @@ static mspring_result measure(mspringi_tuning *tuning) {
     return result == MSPRING_OK ? mspringi_tune_more_costs(tuning) : result;
 }
 
-static mspring_result tune(mspringi_tuning *tuning, const mspring_solver_def *settings) {
+static mspring_result tune(mspringi_tuning *tuning, const mspring_settings *settings) {
     mspring_result result = allocate(tuning);
     if (result == MSPRING_OK)
         result = make_base(tuning);
@@ -298,7 +294,7 @@ static mspring_result tune(mspringi_tuning *tuning, const mspring_solver_def *se
     return result;
 }
 
-static mspring_result run(mspring_network *network, const mspring_tune_def *def, const mspring_solver_def *settings,
+static mspring_result run(mspring_network *network, const mspring_tune_def *def, const mspring_settings *settings,
                           uint32_t setting_count, mspring_tune_row *rows, uint32_t *count) {
     mspringi_tuning tuning = {
         .network = network,
@@ -332,7 +328,7 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
                                     uint32_t capacity, uint32_t *count) {
     mspring_tune_def taken;
     mspring_tune_scene scene;
-    mspring_solver_def usual[MSPRINGI_TUNE_DEFAULT_SETTINGS];
+    mspring_settings usual[MSPRINGI_TUNE_DEFAULT_SETTINGS];
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
         return result;
@@ -343,7 +339,7 @@ mspring_result mspring_network_tune(mspring_network *network, const mspring_tune
         result = check_scene(&taken.scene, &scene, taken.dt, network);
     if (result != MSPRING_OK)
         return result;
-    const mspring_solver_def *settings = def->settings;
+    const mspring_settings *settings = def->settings;
     uint32_t setting_count = def->setting_count;
     if (!settings) {
         settings = usual;

@@ -11,16 +11,16 @@
 #define MAX_DIRECT_PARTICLES 20000
 
 typedef struct settings {
-    mspring_solver_def list[MSPRINGI_TUNE_DEFAULT_SETTINGS];
+    mspring_settings list[MSPRINGI_TUNE_DEFAULT_SETTINGS];
     uint32_t count;
 } settings;
 
 static void add(settings *s, mspring_solver solver, mspring_integrator integrator, uint32_t substeps,
                 float residual) {
-    mspring_solver_def def;
+    mspring_settings def;
     if (!mspringi_solver_ops_of(solver))
         return; // not in this build
-    (void)mspring_solver_def_init(&def, sizeof def);
+    (void)mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def);
     def.solver = solver;
     def.integrator = integrator;
     def.substeps = substeps;
@@ -31,7 +31,7 @@ static void add(settings *s, mspring_solver solver, mspring_integrator integrato
 // Add explicit settings, in increasing order of substeps.
 static void add_explicit(settings *s, uint32_t substeps) {
     if (substeps <= MAX_SUBSTEPS && (s->count == 0 || s->list[s->count - 1].substeps < substeps))
-        add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, substeps, 0.0f);
+        add(s, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_ALPHA, substeps, 0.0f);
 }
 
 static void list_settings(settings *s, const mspring_network *network, uint32_t least) {
@@ -49,18 +49,18 @@ static void list_settings(settings *s, const mspring_network *network, uint32_t 
     for (uint32_t substeps = 1; substeps <= 2; ++substeps) {
         for (size_t i = 0; i < sizeof residuals / sizeof residuals[0]; ++i) {
             add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, substeps, residuals[i]);
-            add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, substeps, residuals[i]);
+            add(s, MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_ALPHA, substeps, residuals[i]);
         }
     }
     for (uint32_t substeps = 1; network->topology.particle_count <= MAX_DIRECT_PARTICLES && substeps <= 2;
          ++substeps) {
         add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, substeps, 0.0f);
-        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, substeps, 0.0f);
+        add(s, MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_ALPHA, substeps, 0.0f);
     }
 }
 
-mspring_result mspring_tune_settings(mspring_network *network, double dt, mspring_solver_def *list,
-                                     uint32_t capacity, uint32_t *count) {
+mspring_result mspring_tune_settings(mspring_network *network, double dt, mspring_settings *list, uint32_t capacity,
+                                     uint32_t *count) {
     settings s = {.count = 0};
     uint32_t least = MSPRING_MAX_SUBSTEPS;
     mspring_result result = mspringi_check_call(network);
@@ -79,30 +79,8 @@ mspring_result mspring_tune_settings(mspring_network *network, double dt, msprin
         return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                              "there is room for %u settings, but there are %u", (unsigned)capacity,
                              (unsigned)s.count);
-    result = mspringi_check_outputs(&network->message, &mspringi_struct_solver_def, list, s.count);
+    result = mspringi_check_output(&network->message, &mspringi_struct_settings, list);
     for (uint32_t i = 0; result == MSPRING_OK && i < s.count; ++i)
-        mspringi_put_solver_def_at(list, i, &s.list[i]);
+        mspringi_put_settings_at(list, i, &s.list[i]);
     return result;
-}
-
-mspring_result mspring_tune_row_solver(const mspring_tune_row *row, mspring_solver_def *solver) {
-    mspring_solver_def made;
-    mspring_tune_row taken;
-    const bool has_residual = row && row->struct_size > offsetof(mspring_tune_row, residual); // it came later
-    mspring_result result = mspringi_take_tune_row(NULL, &row, &taken);
-    if (result == MSPRING_OK)
-        result = mspringi_check_output(NULL, &mspringi_struct_solver_def, solver);
-    if (result != MSPRING_OK)
-        return result;
-    (void)mspring_solver_def_init(&made, sizeof made);
-    made.solver = row->solver;
-    made.integrator = row->integrator;
-    made.substeps = row->substeps;
-    made.iterations = row->iterations;
-    made.tile_size = row->tile_size;
-    made.coarse_period = row->coarse_period;
-    if (has_residual)
-        made.residual = row->residual;
-    mspringi_put_solver_def(solver, &made);
-    return MSPRING_OK;
 }

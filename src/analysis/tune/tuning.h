@@ -32,7 +32,7 @@ typedef struct mspringi_scene_run {
 
 /// A setting and its results.
 typedef struct mspringi_trial {
-    mspring_solver_def setting;
+    mspring_settings setting;
     mspring_tune_row row;
     float relative_h; ///< substep of the relative springs, s; 0 if there are none
     bool has_run;     ///< its trajectory or rest is complete in the present pass
@@ -84,11 +84,13 @@ double mspringi_tune_median(double *values, uint32_t count);
 /// Mark the rows on the Pareto front and the recommended one. Call it after all measurements.
 void mspringi_tune_rank(const mspringi_tuning *tuning);
 
-/// Clone a network, with MSPRING_CLONE_HOOKS or 0. The clone shares its workers, so do not step the original
+/// Clone a network, with its hooks or without. The clone shares its workers, so do not step the original
 /// meanwhile. Errors go to the host's message.
-mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, uint32_t flags,
+mspring_result mspringi_tune_clone(mspringi_tuning *tuning, mspring_network *from, bool copy_hooks,
                                    mspring_network **clone);
 void mspringi_tune_destroy_clone(mspring_network *clone);
+/// Have a clone the solver of these settings; its guard, gravity and so on stay.
+mspring_result mspringi_tune_set_solver(mspring_network *clone, const mspring_settings *solver);
 
 /// Wake a clone for good, and disable all fallbacks of its solver.
 void mspringi_tune_disable_fallbacks(mspring_network *clone);

@@ -4,6 +4,7 @@
 #include "features/actuators/actuators.h"
 
 #include "store/feature.h"
+#include "store/metres.h"
 #include "store/rest_lengths.h"
 #include "store/spring_limits.h"
 #include "store/springs.h"
@@ -17,8 +18,10 @@ float mspringi_actuator_length(const mspring_network *network, uint32_t actuator
 void mspringi_actuator_set_length(mspring_network *network, uint32_t actuator, float length) {
     const mspringi_spring_slot spring_slot =
         mspringi_slot_of_spring(&network->topology, network->actuators->spring[actuator]);
-    if (mspringi_spring_slot_given_length(network, spring_slot) != length)
-        mspringi_spring_slot_give_length(network, spring_slot, length);
+    if (mspringi_spring_slot_given_length(network, spring_slot) == length)
+        return;
+    mspringi_spring_slot_give_length(network, spring_slot, length);
+    mspringi_metres_renew(network, network->actuators->spring[actuator]);
 }
 
 /* ----------------------------------------------------------------------------------------------- all at once */

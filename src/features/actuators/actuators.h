@@ -11,7 +11,6 @@ typedef struct mspringi_actuators {
     uint32_t count;
     uint32_t changes;    ///< in a step
     bool are_pending;    ///< signals came since the last step
-    bool have_moved;     ///< some came ever
     mspring_id *spring;  ///< [count]
     uint32_t *of_spring; ///< [springs] number of the actuator, or MSPRING_NONE
     float *nominal;      ///< [count] rest length at signal 1, m
@@ -31,7 +30,7 @@ void mspringi_actuator_set_length(mspring_network *network, uint32_t actuator, f
 
 /// Whether rest lengths are to be set where they lie, and nobody has to be told.
 static inline bool mspringi_actuators_are_plain(const mspring_network *network) {
-    return network->rest_lengths.shared_count == 0 && !network->job && !network->tested.nominal;
+    return network->rest_lengths.shared_count == 0 && !network->job && !network->tested.nominal && !network->metres;
 }
 
 #endif

@@ -11,7 +11,6 @@
 #include "store/rest_lengths.h"
 #include "store/springs.h"
 
-#define MIN_SIGNAL 0.01f
 #define MAX_SIGNAL 100.0f
 #define MAX_CHANGES 256u
 
@@ -84,14 +83,25 @@ static mspring_result fill(mspring_network *network, mspringi_actuators *a, cons
     return MSPRING_OK;
 }
 
+// Told by the state, not by what happened: a network that loaded it must go on as the one that was saved.
+static bool have_moved(const mspring_network *network) {
+    const mspringi_actuators *a = network->actuators;
+    bool moved = false;
+    for (uint32_t i = 0; a && !moved && i < a->count; ++i)
+        moved = mspringi_spring_exists(network, a->spring[i]) &&
+                (a->to[i] != a->nominal[i] || mspringi_actuator_length(network, i) != a->nominal[i]);
+    return moved;
+}
+
 // The rest lengths of former actuators become parameters: no earlier frame fits any more.
 static void leave_lengths(mspring_network *network) {
     const mspringi_actuators *a = network->actuators;
-    if (!a || !a->have_moved)
+    if (!have_moved(network))
         return;
     mspringi_fingerprint(network, MSPRINGI_EDIT_PARTS + MSPRINGI_REST_LENGTH, a->count);
     for (uint32_t i = 0; i < a->count; ++i)
-        mspringi_fingerprint_floats(network, mspringi_actuator_length(network, i), 0.0f);
+        if (mspringi_spring_exists(network, a->spring[i]))
+            mspringi_fingerprint_floats(network, mspringi_actuator_length(network, i), 0.0f);
 }
 
 // Make them; on error there is a message, and nothing of them.
@@ -172,53 +182,49 @@ static mspring_result actuators_load(mspring_network *network, mspringi_io *io) 
 const mspringi_chunk mspringi_chunk_actuators = {"acts", "signals of actuators", actuators_save, actuators_load,
                                                  &mspringi_section_actuators};
 
-uint32_t mspring_network_actuator_count(const mspring_network *network) {
-    return network ? mspringi_actuator_count(network) : 0;
+/* -------------------------------------------------------------------------------------------------- properties */
+
+static uint32_t total(const mspring_network *network) {
+    return mspringi_actuator_count(network);
 }
 
-/* ------------------------------------------------------------------------------------------------------ signals */
-
-static bool is_signal(float value) {
-    return value >= MIN_SIGNAL && value <= MAX_SIGNAL;
+static bool exists(const mspring_network *network, mspring_id id) {
+    return id < mspringi_actuator_count(network);
 }
 
-static mspring_result check_signals(mspring_network *network, uint32_t first, uint32_t count, const float *signals,
-                                    uint32_t stride) {
-    mspring_result result =
-        mspringi_check_range(network, "actuator", first, count, mspringi_actuator_count(network));
-    if (result != MSPRING_OK)
-        return result;
-    if (!signals && count > 0)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the signals are NULL");
-    bool are_good = true;
-    for (size_t i = 0; i < count; ++i)
-        are_good &= is_signal(signals[i * stride]);
-    for (size_t i = 0; !are_good && i < count; ++i)
-        if (!is_signal(signals[i * stride]))
-            return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                                 "actuator %u: the signal is %g, it must be 0.01 to 100",
-                                 (unsigned)(first + (uint32_t)i), (double)signals[i * stride]);
-    return MSPRING_OK;
+static double get(const mspring_network *network, mspring_property property, mspring_id id) {
+    (void)property; // MSPRING_SIGNAL
+    return (double)network->actuators->to[id] / (double)network->actuators->nominal[id];
 }
 
-mspring_result mspring_network_set_signals(mspring_network *network, uint32_t first, uint32_t count,
-                                           const float *signals, uint32_t stride) {
-    mspring_result result = mspringi_check_call(network);
-    if (result == MSPRING_OK)
-        result = check_signals(network, first, count, signals, stride);
-    if (result != MSPRING_OK || count == 0)
-        return result;
+static uint32_t get_integer(const mspring_network *network, mspring_property property, mspring_id id) {
+    (void)property; // MSPRING_ACTUATOR_SPRING
+    return network->actuators->spring[id];
+}
+
+static mspring_result set_signals(mspring_network *network, const mspringi_selection *at,
+                                  const mspringi_values *values) {
     mspringi_actuators *a = network->actuators;
-    const float *nominal = a->nominal + first;
-    float *to = a->to + first;
-    const mspringi_fp_state before = mspringi_fp_enter();
-    for (size_t i = 0; i < count; ++i) {
-        to[i] = nominal[i] * signals[i * stride];
-        mspringi_note_rest_length(network, to[i]);
+    bool any = false;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const uint32_t actuator = mspringi_selected(at, i);
+        const float to = a->nominal[actuator] * values->first[i * values->stride];
+        any = any || a->to[actuator] != to || mspringi_actuator_length(network, actuator) != to;
+        a->to[actuator] = to;
+        mspringi_note_rest_length(network, to);
     }
-    mspringi_fp_leave(before);
-    a->are_pending = a->have_moved = true;
+    if (!any)
+        return MSPRING_OK;
+    a->are_pending = true;
     if (network->sleep.sleeping > 0)
         mspringi_notify_change(network, MSPRINGI_CHANGED_SIGNALS, 0);
     return MSPRING_OK;
 }
+
+const mspringi_thing_ops mspringi_things_actuators = {.kind = MSPRING_ACTUATORS,
+                                                      .name = "actuator",
+                                                      .total = total,
+                                                      .exists = exists,
+                                                      .get = get,
+                                                      .get_integer = get_integer,
+                                                      .set = set_signals};

@@ -1,5 +1,6 @@
 /// Snapshot of actuators.
 #include "features/actuators/actuators.h"
+#include "store/metres.h"
 #include "store/properties.h"
 #include "store/sections.h"
 #include "store/spring_limits.h"
@@ -57,7 +58,6 @@ static void actuators_load(mspring_network *network, const uint8_t *from, size_t
         return;
     from = mspringi_get(from, head, 2, sizeof head[0]);
     a->are_pending = head[0] != 0;
-    a->have_moved = true;
     for (uint32_t i = 0; i < a->count; ++i) {
         const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, a->spring[i]);
         float values[VALUES];
@@ -65,9 +65,11 @@ static void actuators_load(mspring_network *network, const uint8_t *from, size_t
         a->to[i] = values[1];
         mspringi_note_rest_length(network, values[1]);
         mspringi_spring_slot_set_rest_length(network, spring_slot, values[0]);
+        if (network->tested.nominal)
+            network->tested.nominal[spring_slot] = values[2];
+        mspringi_metres_renew(network, a->spring[i]);
         if (!network->tested.nominal)
             continue;
-        network->tested.nominal[spring_slot] = values[2];
         mspringi_limits_renew(network, spring_slot);
     }
 }

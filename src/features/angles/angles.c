@@ -106,6 +106,15 @@ static double angle_between_arms(const mspring_network *network, const mspringi_
                                   mspringi_area_slot(network, angle, 1), mspringi_area_slot(network, angle, 2));
 }
 
+static void set_value(mspringi_area *angle, mspring_property property, float value) {
+    if (property == MSPRING_ELEMENT_STIFFNESS)
+        angle->stiffness = value;
+    else if (property == MSPRING_ELEMENT_DAMPING)
+        angle->damping = value;
+    else
+        mspringi_angle_set_rest(angle, (double)value);
+}
+
 /* -------------------------------------------------------------------------------------------------- as elements */
 
 static arm arm_at(const mspringi_element_ref *e, const mspringi_positions *at, uint32_t from) {
@@ -203,4 +212,5 @@ const mspringi_angle_law mspringi_law_of_angles = {{.size = angle_size,
                                                     .rest = angle_rest,
                                                     .bound = angle_bound},
                                                    push_corners,
-                                                   angle_between_arms};
+                                                   angle_between_arms,
+                                                   set_value};

@@ -142,21 +142,8 @@ static void note_change(mspring_network *network) {
     a->hinge_count = 0;
 }
 
-void mspringi_areas_drop(mspring_network *network, mspringi_area *area) {
-    mspringi_areas *a = network->areas;
-    const uint32_t first = area->first, count = area->count;
-    const size_t behind = (size_t)(a->list + --a->count - area);
-    a->corner_count -= count;
-    a->angle_count -= area->is_angle;
-    memmove(a->corners + first, a->corners + first + count, (a->corner_count - first) * sizeof *a->corners);
-    memmove(area, area + 1, behind * sizeof *area);
-    for (size_t i = 0; i < behind; ++i)
-        area[i].first -= count;
-    note_change(network);
-}
-
 static bool has_all_corners(const mspring_network *network, const mspringi_area *area) {
-    bool has_all = true;
+    bool has_all = area->count > 0;
     for (uint32_t i = 0; i < area->count; ++i)
         has_all &= mspringi_particle_exists(network, network->areas->corners[area->first + i].particle);
     return has_all;

@@ -54,8 +54,8 @@ mspring_result mspringi_areas_reserve(mspring_network *network, size_t areas, si
 /// Add one to the list, for which there is room: its corners in the order in which its area is positive. Its rest
 /// area is set.
 void mspringi_areas_append(mspring_network *network, const mspringi_area *area, const mspring_id *particles);
-/// Take one out of the list.
-void mspringi_areas_drop(mspring_network *network, mspringi_area *area);
+/// Take those out of the list that lack a corner, or have none.
+void mspringi_areas_forget(mspring_network *network);
 /// There is none any more; after mspringi_areas_make().
 void mspringi_areas_clear(mspring_network *network);
 
@@ -117,6 +117,7 @@ typedef struct mspringi_angle_law {
     mspringi_element_law of_element;
     void (*push)(const mspring_network *network, const mspringi_area *angle, double share, mspringi_field field);
     double (*between_arms)(const mspring_network *network, const mspringi_area *angle); ///< rad
+    void (*set)(mspringi_area *angle, mspring_property property, float value); ///< stiffness, damping, rest angle
 } mspringi_angle_law;
 
 #define ANGLES(table) extern const mspringi_angle_law table;

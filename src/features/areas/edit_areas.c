@@ -8,6 +8,7 @@
 #include "base/shoelace.h"
 #include "features/areas/areas.h"
 #include "store/changed.h"
+#include "store/properties.h"
 
 #define STRONGEST 1e30f
 #define MIN_FILL 0.01f
@@ -42,8 +43,6 @@ static mspring_result check_numbers(const mspring_area_def *def, mspringi_messag
 static mspring_result check_def(mspring_network *network, const mspring_area_def **given, mspring_area_def *def) {
     mspringi_message *message = &network->message;
     mspring_result result = mspringi_take_area_def(message, given, def);
-    if (result == MSPRING_OK)
-        result = mspringi_check_reserved(message, "mspring_area_def", def->reserved);
     if (result != MSPRING_OK)
         return result;
     if (def->kind != MSPRING_AREA_ELASTIC && def->kind != MSPRING_AREA_GAS)
@@ -85,23 +84,24 @@ static mspring_result check_size(mspring_network *network, const char *what, con
         what, (unsigned)of->particles[0], (unsigned)of->particles[1], (unsigned)of->particles[2], size, least);
 }
 
-// Rest area of a definition; by default the present area of the polygon.
-static mspring_result choose_rest_area(mspring_network *network, const mspring_area_def *def, const polygon *of,
-                                       double *rest_area) {
-    *rest_area = def->rest_area == 0.0 ? of->size : def->rest_area;
-    if (def->rest_area == 0.0 && of->size < 0.0)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "the polygon is inside out, with %g m^2: give a rest area", of->size);
-    const mspring_result result = check_size(network, "rest area", of, *rest_area);
-    if (result != MSPRING_OK)
-        return result;
-    return (double)def->stiffness / *rest_area <= (double)STRONGEST
+static mspring_result check_firmness(mspring_network *network, const mspring_area_def *def, double rest_area) {
+    return (double)def->stiffness / rest_area <= (double)STRONGEST
                ? MSPRING_OK
                : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                "the area's stiffness is %g N/m for %g m^2, at most 1e30 N/m^3",
-                               (double)def->stiffness, *rest_area);
+                               (double)def->stiffness, rest_area);
 }
 
+// Rest area of a definition; by default the present area of the polygon.
+static mspring_result choose_rest_area(mspring_network *network, const mspring_area_def *def, const polygon *of,
+                                       double *rest_area) {
+    *rest_area = def->rest_area == 0.0f ? of->size : (double)def->rest_area;
+    if (def->rest_area == 0.0f && of->size < 0.0)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                             "the polygon is inside out, with %g m^2: give a rest area", of->size);
+    const mspring_result result = check_size(network, "rest area", of, *rest_area);
+    return result == MSPRING_OK ? check_firmness(network, def, *rest_area) : result;
+}
 mspring_result mspringi_check_corners(mspring_network *network, const char *what, const mspring_id *particles,
                                       uint32_t count) {
     mspringi_message *message = &network->message;
@@ -159,7 +159,7 @@ double mspringi_area_within(const mspring_network *network, const mspring_id *pa
 }
 
 static MSPRINGI_NOINLINE mspring_result add_area(mspring_network *network, const mspring_area_def *def,
-                                                 const mspring_id *particles, uint32_t count, mspring_id *area) {
+                                                 const mspring_id *particles, uint32_t count, mspring_id *element) {
     mspring_area_def taken;
     mspring_id ordered[MSPRING_MAX_AREA_PARTICLES];
     double rest_area;
@@ -181,16 +181,16 @@ static MSPRINGI_NOINLINE mspring_result add_area(mspring_network *network, const
         return result;
     for (uint32_t i = 0; i < count; ++i)
         ordered[i] = particles[size > 0.0 ? i : count - 1 - i];
-    if (area)
-        *area = mspringi_area_next_id(network);
+    if (element)
+        *element = mspringi_area_next_id(network);
     add(network, def, rest_area, ordered, count);
     return MSPRING_OK;
 }
 
 mspring_result mspring_network_add_area(mspring_network *network, const mspring_area_def *def,
-                                        const mspring_id *particles, uint32_t count, mspring_id *area) {
+                                        const mspring_id *particles, uint32_t count, mspring_id *element) {
     const mspringi_fp_state before = mspringi_fp_enter();
-    const mspring_result result = add_area(network, def, particles, count, area);
+    const mspring_result result = add_area(network, def, particles, count, element);
     mspringi_fp_leave(before);
     return result;
 }
@@ -217,21 +217,21 @@ static mspring_result take_cell(mspring_network *network, const mspring_id corne
 }
 
 static MSPRINGI_NOINLINE mspring_result add_cell_areas(mspring_network *network, const mspring_area_def *def,
-                                                       mspring_id *first_area, uint32_t *count) {
+                                                       mspring_id *first_element, uint32_t *count) {
     mspring_area_def taken;
     cell_areas cells = {.def = &taken};
     mspring_result result = mspringi_check_call(network);
     if (result == MSPRING_OK)
         result = check_def(network, &def, &taken);
-    if (result == MSPRING_OK && def->rest_area != 0.0)
+    if (result == MSPRING_OK && def->rest_area != 0.0f)
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                               "the cells' rest area is %g m^2, it must be 0", def->rest_area);
+                               "the cells' rest area is %g m^2, it must be 0", (double)def->rest_area);
     if (result == MSPRING_OK)
         result = mspringi_each_cell(network, take_cell, &cells);
     if (result == MSPRING_OK && cells.count > 0)
         result = mspringi_areas_check_room(network, cells.count, 4 * cells.count, 0);
-    if (result == MSPRING_OK && first_area)
-        *first_area = mspringi_area_next_id(network);
+    if (result == MSPRING_OK && first_element)
+        *first_element = mspringi_area_next_id(network);
     if (result == MSPRING_OK && count)
         *count = (uint32_t)cells.count;
     for (size_t i = 0; result == MSPRING_OK && i < cells.count; ++i)
@@ -242,17 +242,18 @@ static MSPRINGI_NOINLINE mspring_result add_cell_areas(mspring_network *network,
 }
 
 mspring_result mspring_network_add_cell_areas(mspring_network *network, const mspring_area_def *def,
-                                              mspring_id *first_area, uint32_t *count) {
+                                              mspring_id *first_element, uint32_t *count) {
     const mspringi_fp_state before = mspringi_fp_enter();
-    const mspring_result result = add_cell_areas(network, def, first_area, count);
+    const mspring_result result = add_cell_areas(network, def, first_element, count);
     mspringi_fp_leave(before);
     return result;
 }
 
 /* ------------------------------------------------------------------------------------------- changing, reading */
 
-// Find an area or angle by id; NULL if there is none.
-static mspringi_area *find(const mspring_network *network, mspring_id id, bool is_angle) {
+// Find an element by id; NULL if there is none.
+// Index of the first one in the list with that id or a higher one.
+static size_t place_of(const mspring_network *network, mspring_id id) {
     const mspringi_areas *a = network->areas;
     size_t low = 0, high = mspringi_area_count(network);
     while (low < high) {
@@ -262,162 +263,204 @@ static mspringi_area *find(const mspring_network *network, mspring_id id, bool i
         else
             high = middle;
     }
-    return low < mspringi_area_count(network) && a->list[low].id == id && a->list[low].is_angle == is_angle
-               ? &a->list[low]
+    return low;
+}
+
+static mspringi_area *find(const mspring_network *network, mspring_id id) {
+    const size_t place = place_of(network, id);
+    return place < mspringi_area_count(network) && network->areas->list[place].id == id
+               ? &network->areas->list[place]
                : NULL;
 }
 
-#define NONE_THERE "there is no %s %s"
-
-static const char *name_of(bool is_angle) {
-    return is_angle ? "angle" : "area";
+// Index of the first existing one from i on. Ids are never given again, so a range may be of billions.
+static uint32_t next_existing(const mspring_network *network, const mspringi_selection *at, uint32_t i) {
+    if (at->list || i >= at->count)
+        return i;
+    const size_t place = place_of(network, at->first + i);
+    if (place == mspringi_area_count(network) || network->areas->list[place].id - at->first >= at->count)
+        return at->count;
+    return network->areas->list[place].id - at->first;
 }
 
-mspring_result mspringi_area_find(mspring_network *network, mspring_id id, bool is_angle, mspringi_area **found) {
-    *found = find(network, id, is_angle);
-    return *found
-               ? MSPRING_OK
-               : mspringi_fail(&network->message, MSPRING_ERROR_ID, NONE_THERE, name_of(is_angle), MSPRINGI_ID(id));
-}
-
-static mspring_result enter_and_find(mspring_network *network, mspring_id id, mspringi_area **found) {
-    const mspring_result result = mspringi_check_call(network);
-    return result == MSPRING_OK ? mspringi_area_find(network, id, false, found) : result;
-}
-
-mspring_result mspringi_area_remove(mspring_network *network, mspring_id id, bool is_angle) {
-    mspringi_area *found;
-    mspring_result result = mspringi_check_call(network);
-    if (result == MSPRING_OK)
-        result = mspringi_area_find(network, id, is_angle, &found);
+mspring_result mspring_network_remove_elements(mspring_network *network, const mspring_id *ids, mspring_id first,
+                                               uint32_t count) {
+    mspringi_selection at;
+    const mspring_result result = mspringi_select(network, MSPRING_ELEMENTS, ids, first, count, &at);
     if (result != MSPRING_OK)
         return result;
-    const mspringi_area had = *found;
     const mspringi_fp_state before = mspringi_fp_enter();
-    mspringi_areas_drop(network, found);
-    mspringi_area_tell(network, MSPRINGI_EDIT_REMOVED_AREA, &had); // rounds
+    for (uint32_t i = next_existing(network, &at, 0); i < at.count; i = next_existing(network, &at, i + 1)) {
+        mspringi_area *found = find(network, mspringi_selected(&at, i));
+        if (found->count == 0)
+            continue;                                                   // listed twice
+        found->count = 0;                                               // without corners it is forgotten
+        mspringi_area_tell(network, MSPRINGI_EDIT_REMOVED_AREA, found); // rounds
+    }
     mspringi_fp_leave(before);
+    mspringi_areas_forget(network);
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_remove_area(mspring_network *network, mspring_id area) {
-    return mspringi_area_remove(network, area, false);
-}
-
-static MSPRINGI_NOINLINE mspring_result set_area(mspring_network *network, mspring_id area,
-                                                 const mspring_area_def *def) {
-    mspring_area_def taken;
-    mspringi_area *found;
-    mspring_id particles[MSPRING_MAX_AREA_PARTICLES];
-    double rest_area = 0.0;
-    mspring_result result = enter_and_find(network, area, &found);
-    if (result == MSPRING_OK)
-        result = check_def(network, &def, &taken);
-    if (result != MSPRING_OK)
-        return result;
-    for (uint32_t i = 0; i < found->count; ++i)
-        particles[i] = network->areas->corners[found->first + i].particle;
-    const polygon of = {particles, found->count, mspringi_area_size(network, found)};
-    result = choose_rest_area(network, def, &of, &rest_area);
-    if (result != MSPRING_OK)
-        return result;
-    fill(found, def, rest_area);
-    network->areas->changes++;
-    mspringi_area_tell(network, MSPRINGI_EDIT_SET_AREA, found);
-    return MSPRING_OK;
-}
-
-mspring_result mspring_network_set_area(mspring_network *network, mspring_id area, const mspring_area_def *def) {
-    const mspringi_fp_state before = mspringi_fp_enter();
-    const mspring_result result = set_area(network, area, def);
-    mspringi_fp_leave(before);
-    return result;
-}
-
-const mspringi_area *mspringi_area_look_up(const mspring_network *network, mspring_id id, bool is_angle) {
-    const mspringi_area *found = find(network, id, is_angle);
-    if (!found)
-        (void)mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, NONE_THERE, name_of(is_angle),
-                                   MSPRINGI_ID(id));
-    return found;
-}
-
-mspring_result mspring_network_get_area(const mspring_network *network, mspring_id area, mspring_area_def *def) {
-    const mspring_result result = mspringi_check_report(network, &mspringi_struct_area_def, def);
-    if (result != MSPRING_OK)
-        return result;
-    const mspringi_area *found = mspringi_area_look_up(network, area, false);
-    if (!found)
-        return MSPRING_ERROR_ID;
-    const mspring_area_def had = {.kind = found->kind,
-                                  .stiffness = found->stiffness,
-                                  .pressure = found->pressure,
-                                  .fill = found->fill,
-                                  .rest_area = found->rest_area};
-    mspringi_put_area_def(def, &had);
-    return MSPRING_OK;
-}
-
-mspring_result mspring_network_get_area_info(const mspring_network *network, mspring_id area,
-                                             mspring_area_info *info) {
-    const mspring_result result = mspringi_check_report(network, &mspringi_struct_area_info, info);
-    if (result != MSPRING_OK)
-        return result;
-    const mspringi_area *found = mspringi_area_look_up(network, area, false);
-    if (!found)
-        return MSPRING_ERROR_ID;
-    const bool is_open = mspringi_area_is_open(network, found);
-    const double size = mspringi_area_size(network, found);
-    const mspring_area_info made = {.particle_count = found->count,
-                                    .is_open = is_open,
-                                    .area = size,
-                                    .pressure = is_open ? 0.0 : mspringi_area_pressure(found, size),
-                                    .energy = is_open ? 0.0 : mspringi_area_energy(found, size)};
-    mspringi_put_area_info(info, &made);
-    return MSPRING_OK;
-}
-
-mspring_result mspring_network_get_area_particles(const mspring_network *network, mspring_id area,
-                                                  mspring_id *particles, uint32_t capacity, uint32_t *count) {
+mspring_result mspring_network_get_element_particles(const mspring_network *network, mspring_id element,
+                                                     mspring_id *particles, uint32_t capacity, uint32_t *count) {
     if (!network)
         return MSPRING_ERROR_ARGUMENT;
     if (!count || (!particles && capacity > 0))
         return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT,
                                     "the place for particles, or their count, is NULL");
-    const mspringi_area *found = mspringi_area_look_up(network, area, false);
+    const mspringi_area *found = find(network, element);
     if (!found)
-        return MSPRING_ERROR_ID;
+        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ID, "there is no element %s",
+                                    MSPRINGI_ID(element));
     for (uint32_t i = 0; i < found->count && i < capacity; ++i)
         particles[i] = network->areas->corners[found->first + i].particle;
     *count = found->count;
     return MSPRING_OK;
 }
 
-mspring_result mspringi_areas_measure(const mspring_network *network, bool is_angle, mspring_id *ids, double *sizes,
-                                      double *pressures, uint32_t capacity, uint32_t *count) {
-    uint32_t found = 0;
-    if (!network)
-        return MSPRING_ERROR_ARGUMENT;
-    if (!count)
-        return mspringi_shared_fail(network->shared, MSPRING_ERROR_ARGUMENT, "the place for the count is NULL");
-    for (size_t i = 0; i < mspringi_area_count(network); ++i) {
-        const mspringi_area *a = &network->areas->list[i];
-        if (a->is_angle != is_angle || found++ >= capacity)
-            continue;
-        const double size = mspringi_area_size(network, a);
-        if (ids)
-            ids[found - 1] = a->id;
-        if (sizes)
-            sizes[found - 1] = is_angle ? mspringi_angles->between_arms(network, a) : size;
-        if (pressures)
-            pressures[found - 1] =
-                mspringi_area_is_open(network, a) ? 0.0 : mspringi_area_element(network, a).law->force(a, size);
+/* -------------------------------------------------------------------------------------------------- properties */
+
+static uint32_t total(const mspring_network *network) {
+    return mspringi_area_next_id(network);
+}
+
+static bool exists(const mspring_network *network, mspring_id id) {
+    return find(network, id) != NULL;
+}
+
+static double force_of(const mspring_network *network, const mspringi_area *a) {
+    return mspringi_area_element(network, a).law->force(a, mspringi_area_size(network, a));
+}
+
+static double energy_of(const mspring_network *network, const mspringi_area *a) {
+    return mspringi_area_element(network, a).law->energy(a, mspringi_area_size(network, a));
+}
+
+// What an area has and an angle has not reads as 0, and the reverse.
+static double get(const mspring_network *network, mspring_property property, mspring_id id) {
+    const mspringi_area *a = find(network, id);
+    const bool is_open = mspringi_area_is_open(network, a);
+    switch (property) {
+    case MSPRING_ELEMENT_STIFFNESS:
+        return (double)a->stiffness;
+    case MSPRING_ELEMENT_DAMPING:
+        return a->is_angle ? (double)a->damping : 0.0;
+    case MSPRING_PRESSURE:
+        return a->is_angle ? 0.0 : (double)a->pressure;
+    case MSPRING_FILL:
+        return a->is_angle ? 0.0 : (double)a->fill;
+    case MSPRING_REST_AREA:
+        return a->is_angle ? 0.0 : a->rest_area;
+    case MSPRING_REST_ANGLE:
+        return a->is_angle ? a->rest_angle : 0.0;
+    case MSPRING_AREA:
+        return a->is_angle ? 0.0 : mspringi_area_size(network, a);
+    case MSPRING_ACTIVE_PRESSURE:
+        return a->is_angle || is_open ? 0.0 : force_of(network, a);
+    case MSPRING_ANGLE:
+        return a->is_angle ? mspringi_angles->between_arms(network, a) : 0.0;
+    case MSPRING_TORQUE:
+        return !a->is_angle || is_open ? 0.0 : force_of(network, a);
+    default:
+        return is_open ? 0.0 : energy_of(network, a);
     }
-    *count = found;
+}
+
+static uint32_t get_integer(const mspring_network *network, mspring_property property, mspring_id id) {
+    const mspringi_area *a = find(network, id);
+    (void)property; // MSPRING_ELEMENT_FLAGS
+    return (a->is_angle ? (uint32_t)MSPRING_ELEMENT_ANGLE : (uint32_t)MSPRING_ELEMENT_AREA) |
+           (mspringi_area_is_open(network, a) ? (uint32_t)MSPRING_ELEMENT_OPEN : 0u);
+}
+
+// Choose the rest area that a value asks for.
+static mspring_result rest_area_by(mspring_network *network, const mspringi_area *of, const mspring_area_def *def,
+                                   double *rest_area) {
+    mspring_id particles[MSPRING_MAX_AREA_PARTICLES];
+    for (uint32_t i = 0; i < of->count; ++i)
+        particles[i] = network->areas->corners[of->first + i].particle;
+    const polygon shape = {particles, of->count, mspringi_area_size(network, of)};
+    return choose_rest_area(network, def, &shape, rest_area);
+}
+
+// Give an area another value, or only check it.
+static mspring_result change(mspring_network *network, mspringi_area *of, mspring_property property, float value,
+                             bool is_tried) {
+    mspring_area_def def = {
+        .kind = of->kind, .stiffness = of->stiffness, .pressure = of->pressure, .fill = of->fill};
+    double rest_area = of->rest_area;
+    if (property == MSPRING_ELEMENT_STIFFNESS)
+        def.stiffness = value;
+    else if (property == MSPRING_PRESSURE)
+        def.pressure = value;
+    else if (property == MSPRING_FILL)
+        def.fill = value;
+    else
+        def.rest_area = value;
+    mspring_result result = check_numbers(&def, &network->message);
+    if (result == MSPRING_OK)
+        result = property == MSPRING_REST_AREA ? rest_area_by(network, of, &def, &rest_area)
+                                               : check_firmness(network, &def, rest_area);
+    if (result == MSPRING_OK && !is_tried)
+        fill(of, &def, rest_area);
+    return result;
+}
+
+static mspring_result set_one(mspring_network *network, mspringi_area *found, mspring_property property,
+                              float value, bool is_tried) {
+    const bool of_angles = property == MSPRING_REST_ANGLE || property == MSPRING_ELEMENT_DAMPING;
+    if (property != MSPRING_ELEMENT_STIFFNESS && found->is_angle != of_angles)
+        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "element %u is an %s, which has no %s",
+                             (unsigned)found->id, found->is_angle ? "angle" : "area",
+                             mspringi_property_of(property)->name);
+    if (!found->is_angle)
+        return change(network, found, property, value, is_tried);
+    if (!is_tried)
+        mspringi_angles->set(found, property, value);
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_get_areas(const mspring_network *network, mspring_id *ids, double *areas,
-                                         double *pressures, uint32_t capacity, uint32_t *count) {
-    return mspringi_areas_measure(network, false, ids, areas, pressures, capacity, count);
+static bool all_have(const mspring_network *network, const mspringi_selection *at, const mspringi_values *values) {
+    for (uint32_t i = next_existing(network, at, 0); i < at->count; i = next_existing(network, at, i + 1))
+        if ((float)get(network, values->property, mspringi_selected(at, i)) != values->first[i * values->stride])
+            return false;
+    return true;
 }
+
+// All are checked before any is set. Rest angles are no edit; frames hold them.
+static mspring_result set(mspring_network *network, const mspringi_selection *at, const mspringi_values *values) {
+    const mspring_property property = values->property;
+    bool any = false;
+    if (all_have(network, at, values))
+        return MSPRING_OK;
+    for (int pass = 0; pass < 2; ++pass)
+        for (uint32_t i = next_existing(network, at, 0); i < at->count; i = next_existing(network, at, i + 1)) {
+            mspringi_area *found = find(network, mspringi_selected(at, i));
+            const float value = values->first[i * values->stride];
+            const mspring_result result = set_one(network, found, property, value, pass == 0);
+            if (result != MSPRING_OK)
+                return result;
+            any = true;
+            if (pass == 1 && property != MSPRING_REST_ANGLE)
+                mspringi_area_tell(network, MSPRINGI_EDIT_SET_AREA, found);
+        }
+    if (any && property == MSPRING_REST_ANGLE)
+        mspringi_notify_change(network, MSPRINGI_CHANGED_REST_ANGLES, 0);
+    else if (any)
+        network->areas->changes++;
+    return MSPRING_OK;
+}
+
+static mspring_id first_particle(const mspring_network *network, mspring_id id) {
+    return network->areas->corners[find(network, id)->first].particle;
+}
+
+const mspringi_thing_ops mspringi_things_elements = {.kind = MSPRING_ELEMENTS,
+                                                     .name = "element",
+                                                     .total = total,
+                                                     .exists = exists,
+                                                     .get = get,
+                                                     .get_integer = get_integer,
+                                                     .set = set,
+                                                     .first_particle = first_particle};

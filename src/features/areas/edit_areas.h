@@ -19,14 +19,5 @@ mspring_result mspringi_each_cell(mspring_network *network, mspringi_cell_fn fn,
 /// Check that particles exist, are distinct, and are in one group. what: "area" or "angle".
 mspring_result mspringi_check_corners(mspring_network *network, const char *what, const mspring_id *particles,
                                       uint32_t count);
-mspring_result mspringi_area_remove(mspring_network *network, mspring_id id, bool is_angle);
-
-/// Find an area or angle, or fail. The second is for calls that only read: NULL, with a message, if there is none.
-mspring_result mspringi_area_find(mspring_network *network, mspring_id id, bool is_angle, mspringi_area **found);
-const mspringi_area *mspringi_area_look_up(const mspring_network *network, mspring_id id, bool is_angle);
-
-/// Measure all areas or all angles: ids, sizes or angles, pressures or torques, each unless NULL.
-mspring_result mspringi_areas_measure(const mspring_network *network, bool is_angle, mspring_id *ids, double *sizes,
-                                      double *pressures, uint32_t capacity, uint32_t *count);
 
 #endif

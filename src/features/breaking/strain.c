@@ -97,7 +97,7 @@ static void look_at(mspring_network *network, mspringi_spring_slot spring_slot) 
     const mspringi_spring_values values = mspringi_spring_slot_get(network, spring_slot);
     const float whole = mspringi_strain_length(values.rest_length);
     float stretch = stretch_of(network, &values);
-    const float stress_at = strain->stress_strain ? strain->stress_strain[spring_slot] * whole : INFINITY;
+    const float stress_at = strain->warn_strain ? strain->warn_strain[spring_slot] * whole : INFINITY;
     const bool is_stressed = has_bit(strain->stressed, spring_slot);
     const float nominal = nominal_of(network, spring_slot, values.rest_length);
     const bool slack = is_slack(network, spring_slot); // what it does not feel neither breaks nor stresses it
@@ -186,7 +186,7 @@ static void compare(mspring_network *network, double dt) {
         .live = network->live,
         .stressed = strain->stressed,
         .break_strain = strain->break_strain,
-        .stress = is_plain(network) ? strain->stress_strain : NULL,
+        .stress = is_plain(network) ? strain->warn_strain : NULL,
         .relax = strain->relax_strain,
         .relax_fraction = network->settings.relax_fraction,
     };
@@ -223,13 +223,13 @@ static mspring_result reserve_layout(mspring_network *network) {
 
 mspring_result mspringi_strain_reserve_stress(mspring_network *network) {
     const mspringi_strain *strain = &network->strain;
-    if (strain->stress_strain)
+    if (strain->warn_strain)
         return MSPRING_OK;
     if (!mspringi_store_reserve(network, MSPRINGI_STORE_STRESS))
         return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY,
                              "no memory for the stress strains of %u springs",
                              (unsigned)network->topology.spring_count);
-    fill(network, strain->stress_strain, INFINITY);
+    fill(network, strain->warn_strain, INFINITY);
     memcpy(strain->least, strain->break_strain,
            mspringi_spring_slot_words(&network->topology) * MSPRINGI_WIDTH * sizeof *strain->least);
     mspringi_notify_change(network, MSPRINGI_CHANGED_PLACES, 0);
@@ -269,13 +269,13 @@ static mspring_result reserve_for(mspring_network *network, mspring_property pro
     if (property == MSPRING_RELAX_STRAIN)
         return reserve_relax(network);
     mspring_result result = reserve(network);
-    return result == MSPRING_OK && property == MSPRING_STRESS_STRAIN ? mspringi_strain_reserve_stress(network)
-                                                                     : result;
+    return result == MSPRING_OK && property == MSPRING_WARN_STRAIN ? mspringi_strain_reserve_stress(network)
+                                                                   : result;
 }
 
 static mspring_result match_layout(mspring_network *to, const mspring_network *from) {
     mspring_result result = from->strain.break_strain ? reserve_layout(to) : MSPRING_OK;
-    if (result == MSPRING_OK && from->strain.stress_strain)
+    if (result == MSPRING_OK && from->strain.warn_strain)
         result = mspringi_strain_reserve_stress(to);
     return result == MSPRING_OK && from->strain.relax_strain ? reserve_relax(to) : result;
 }
@@ -293,8 +293,7 @@ void mspringi_strain_renew_least(mspring_network *network, mspringi_spring_slot 
     const mspringi_strain *strain = &network->strain;
     if (strain->least)
         // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): one is there if the other is
-        strain->least[spring_slot] =
-            fminf(least_to_break(network, spring_slot), strain->stress_strain[spring_slot]);
+        strain->least[spring_slot] = fminf(least_to_break(network, spring_slot), strain->warn_strain[spring_slot]);
 }
 
 static void store_limit(mspring_network *network, mspringi_spring_slot spring_slot, mspring_property property,
@@ -305,10 +304,10 @@ static void store_limit(mspring_network *network, mspringi_spring_slot spring_sl
         strain->relax_strain[spring_slot] = value;
         strain->relaxes = strain->relaxes || value != MSPRING_RELAX_STRAIN_DEFAULT;
     } else {
-        const bool stress = property == MSPRING_STRESS_STRAIN;
-        MSPRINGI_ASSERT(strain->break_strain && (strain->stress_strain || !stress));
+        const bool stress = property == MSPRING_WARN_STRAIN;
+        MSPRINGI_ASSERT(strain->break_strain && (strain->warn_strain || !stress));
         if (stress)
-            strain->stress_strain[spring_slot] = value;
+            strain->warn_strain[spring_slot] = value;
         else
             strain->break_strain[spring_slot] = value;
         strain->stresses = strain->stresses || (stress && value < INFINITY);
@@ -325,8 +324,8 @@ static void forget(mspring_network *network, mspring_id spring) {
         strain->stressed[spring_slot / MSPRINGI_WIDTH] &= (uint16_t) ~(1u << spring_slot % MSPRINGI_WIDTH);
     if (strain->break_strain)
         store_limit(network, spring_slot, MSPRING_BREAK_STRAIN, INFINITY);
-    if (strain->stress_strain)
-        store_limit(network, spring_slot, MSPRING_STRESS_STRAIN, INFINITY);
+    if (strain->warn_strain)
+        store_limit(network, spring_slot, MSPRING_WARN_STRAIN, INFINITY);
     if (strain->relax_strain)
         store_limit(network, spring_slot, MSPRING_RELAX_STRAIN, MSPRING_RELAX_STRAIN_DEFAULT);
 }
@@ -337,23 +336,25 @@ static void put(mspring_network *network, mspring_id spring, mspringi_limits lim
         return;
     if (limits.break_strain < MSPRING_NEVER)
         store_limit(network, spring_slot, MSPRING_BREAK_STRAIN, limits.break_strain);
-    if (limits.stress_strain < MSPRING_NEVER)
-        store_limit(network, spring_slot, MSPRING_STRESS_STRAIN, limits.stress_strain);
+    if (limits.warn_strain < MSPRING_NEVER)
+        store_limit(network, spring_slot, MSPRING_WARN_STRAIN, limits.warn_strain);
     if (limits.relax_strain != MSPRING_RELAX_STRAIN_DEFAULT)
         store_limit(network, spring_slot, MSPRING_RELAX_STRAIN, mspringi_broken_value(limits.relax_strain));
     mspringi_fingerprint_floats(network, mspringi_read_value(limits.break_strain),
-                                mspringi_read_value(limits.stress_strain));
+                                mspringi_read_value(limits.warn_strain));
     mspringi_fingerprint_floats(network, limits.relax_strain, 0.0f);
 }
 
 const mspringi_limit_ops mspringi_limits_of_breaking = {
-    .properties = 1u << MSPRING_BREAK_STRAIN | 1u << MSPRING_STRESS_STRAIN | 1u << MSPRING_RELAX_STRAIN,
+    .first = MSPRING_BREAK_STRAIN,
+    .last = MSPRING_RELAX_STRAIN,
     .reserve = reserve_for,
     .match_layout = match_layout,
     .store = store_limit,
     .put = put,
     .forget = forget,
-    .renew = mspringi_strain_renew_least};
+    .renew = mspringi_strain_renew_least,
+};
 
 static bool is_used(const mspring_network *network) {
     return network->strain.break_strain != NULL;

@@ -44,8 +44,8 @@ static mspring_result check_points(const mspring_collider_def *def, mspringi_mes
     const uint32_t least = is_closed ? 3 : 2;
     if (def->point_count < least || def->point_count > MSPRING_MAX_COLLIDER_POINTS)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "the collider's points are %u, a%s chain must have %u to %u",
-                             (unsigned)def->point_count, is_closed ? " closed" : "n open", (unsigned)least,
+                             "the collider has %u points, a%s chain must have %u to %u", (unsigned)def->point_count,
+                             is_closed ? " closed" : "n open", (unsigned)least,
                              (unsigned)MSPRING_MAX_COLLIDER_POINTS);
     if (!def->points)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the collider's points are NULL");
@@ -124,7 +124,7 @@ static void number_points(mspringi_contacts *contacts) {
         const mspringi_collider *c = &all->list[i];
         for (uint32_t k = c->first; k < c->first + c->count; ++k) {
             all->owner[k] = i;
-            contacts->groups[contacts->particles + k] = c->def.groups;
+            contacts->layers[contacts->particles + k] = c->def.layers;
             contacts->masks[contacts->particles + k] = c->def.masks;
         }
     }

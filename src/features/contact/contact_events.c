@@ -20,8 +20,6 @@
 
 #include "store/changed.h"
 
-#define MOST_EVENTS 0x1000000u
-
 /* -------------------------------------------------------------------------------------------------------- list */
 
 static bool is_before(const mspringi_ongoing_contact *m, const mspringi_ongoing_contact *n) {
@@ -285,31 +283,41 @@ static mspring_result enter(mspring_network *network) {
         "contact events are of contact, and there is none: call mspring_network_set_contact() first");
 }
 
-mspring_result mspring_network_reserve_contact_events(mspring_network *network, uint32_t capacity) {
-    const mspring_result result = enter(network);
-    if (result != MSPRING_OK)
-        return result;
-    if (capacity > MOST_EVENTS)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                             "room for %u contact events is asked for, %u is the most", (unsigned)capacity,
-                             MOST_EVENTS);
+mspring_result mspringi_contact_events_make(mspring_network *network, uint32_t capacity,
+                                            mspringi_contact_events *made) {
     mspringi_memory *memory = &network->memory;
-    mspringi_contact_events made = {.capacity = capacity, .is_known = true};
+    *made = (mspringi_contact_events){.capacity = capacity, .is_known = true};
     if (capacity > 0) {
-        made.list = mspringi_alloc(memory, capacity, sizeof *made.list);
-        made.ring = mspringi_alloc(memory, capacity, sizeof *made.ring);
+        made->list = mspringi_alloc(memory, capacity, sizeof *made->list);
+        made->ring = mspringi_alloc(memory, capacity, sizeof *made->ring);
     }
-    if (capacity > 0 && (!made.list || !made.ring)) {
-        mspringi_free(memory, made.list);
-        mspringi_free(memory, made.ring);
-        return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u contact events",
-                             (unsigned)capacity);
-    }
-    mspringi_free(memory, network->contacts->events.list);
-    mspringi_free(memory, network->contacts->events.ring);
-    network->contacts->events = made;
+    if (capacity == 0 || (made->list && made->ring))
+        return MSPRING_OK;
+    mspringi_free(memory, made->list);
+    mspringi_free(memory, made->ring);
+    return mspringi_fail(&network->message, MSPRING_ERROR_MEMORY, "no memory for %u contact events",
+                         (unsigned)capacity);
+}
+
+void mspringi_contact_events_take(mspring_network *network, bool is_used, mspringi_contact_events *made) {
+    mspringi_memory *memory = &network->memory;
+    mspringi_contact_events *dropped = is_used ? &network->contacts->events : made;
+    mspringi_free(memory, dropped->list);
+    mspringi_free(memory, dropped->ring);
+    if (!is_used)
+        return;
+    network->contacts->events = *made;
     network->contacts->outline.are_bodies_found = false;
-    return MSPRING_OK;
+}
+
+mspring_result mspringi_contact_events_resize(mspring_network *network, uint32_t capacity) {
+    mspringi_contact_events made;
+    const mspring_result result = mspringi_contact_events_make(network, capacity, &made);
+    if (result == MSPRING_OK) {
+        mspringi_contact_events_take(network, true, &made);
+        network->contacts->def.event_capacity = capacity;
+    }
+    return result;
 }
 
 mspring_result mspring_network_read_contact_events(mspring_network *network, mspring_contact_event *events,
@@ -318,8 +326,8 @@ mspring_result mspring_network_read_contact_events(mspring_network *network, msp
     if (result == MSPRING_OK && (!count || (capacity > 0 && !events)))
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
                                "the place for contact events, or their count, is NULL");
-    if (result == MSPRING_OK)
-        result = mspringi_check_outputs(&network->message, &mspringi_struct_contact_event, events, capacity);
+    if (result == MSPRING_OK && capacity > 0)
+        result = mspringi_check_output(&network->message, &mspringi_struct_contact_event, events);
     if (result != MSPRING_OK)
         return result;
     mspringi_contact_events *all = &network->contacts->events;

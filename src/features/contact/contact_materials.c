@@ -1,9 +1,10 @@
-/// Friction and restitution of single particles.
+/// Friction and restitution, layers and masks of single particles.
 #include <math.h>
 
 #include "features/contact/contacts.h"
 #include "features/contact/floor.h"
 #include "store/changed.h"
+#include "store/properties.h"
 
 /* --------------------------------------------------------------------------------------------------------- rule */
 
@@ -33,17 +34,38 @@ mspringi_contact_material mspringi_contact_material_mix(const mspringi_contacts 
                                        (float)fmax((double)p.restitution, restitution)};
 }
 
-/* ------------------------------------------------------------------------------------------------------ setting */
-
-static mspring_result check(mspring_network *network, const char *name, float value, float most) {
-    if (value == -1.0f || (value >= 0.0f && value <= most))
-        return MSPRING_OK;
-    return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                         "the particles' %s is %g, it must be 0 to %g, or -1 for the contact's", name,
-                         (double)value, (double)most);
+const mspringi_contact_material *mspringi_contact_own(const mspring_network *network, size_t slot) {
+    static const mspringi_contact_material none = {-1.0f, -1.0f};
+    const mspring_id particle = network->topology.particle_of_slot[slot];
+    const mspringi_contact_material *materials = network->contacts ? network->contacts->materials : NULL;
+    return !materials ? NULL : particle == MSPRING_NONE ? &none : &materials[particle];
 }
 
-static mspring_result reserve(mspring_network *network) {
+/* -------------------------------------------------------------------------------------------------- properties */
+
+mspringi_contact_material mspringi_contact_material_of(const mspring_network *network, mspring_id particle) {
+    const mspringi_contacts *contacts = network->contacts;
+    return contacts && contacts->materials ? contacts->materials[particle]
+                                           : (mspringi_contact_material){-1.0f, -1.0f};
+}
+
+uint32_t mspringi_contact_layers_of(const mspring_network *network, mspring_id particle) {
+    return network->contacts ? network->contacts->layers[particle] : 1;
+}
+
+uint32_t mspringi_contact_masks_of(const mspring_network *network, mspring_id particle) {
+    return network->contacts ? network->contacts->masks[particle] : UINT32_MAX;
+}
+
+static mspring_result check_contact(mspring_network *network, mspring_property property) {
+    return network->contacts ? MSPRING_OK
+                             : mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
+                                             "the property %s is of contact, and there is none: call "
+                                             "mspring_network_set_contact() first",
+                                             mspringi_property_of(property)->name);
+}
+
+mspring_result mspringi_contact_reserve_materials(mspring_network *network) {
     mspringi_contacts *contacts = network->contacts;
     if (contacts->materials)
         return MSPRING_OK;
@@ -57,25 +79,60 @@ static mspring_result reserve(mspring_network *network) {
     return MSPRING_OK;
 }
 
-mspring_result mspring_network_set_contact_surface(mspring_network *network, mspring_id first, uint32_t count,
-                                                   float friction, float restitution) {
-    mspring_result result = mspringi_check_call(network);
-    if (result == MSPRING_OK && !network->contacts)
-        result =
-            mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT,
-                          "surfaces are of contact, and there is none: call mspring_network_set_contact() first");
-    if (result == MSPRING_OK)
-        result = mspringi_check_range(network, "particle", first, count, network->topology.particle_count);
-    if (result == MSPRING_OK)
-        result = check(network, "friction", friction, (float)MSPRINGI_MOST_FRICTION);
-    if (result == MSPRING_OK)
-        result = check(network, "restitution", restitution, 1.0f);
-    if (result == MSPRING_OK)
-        result = reserve(network);
-    if (result != MSPRING_OK)
+mspring_result mspringi_contact_set_material(mspring_network *network, const mspringi_selection *at,
+                                             const mspringi_values *values) {
+    const bool is_friction = values->property == MSPRING_FRICTION;
+    bool any = false;
+    mspring_result result = check_contact(network, values->property);
+    for (uint32_t i = 0; result == MSPRING_OK && !any && i < at->count; ++i) {
+        const mspring_id p = mspringi_selected(at, i);
+        const mspringi_contact_material had = mspringi_contact_material_of(network, p);
+        any = mspringi_particle_exists(network, p) &&
+              (is_friction ? had.friction : had.restitution) != values->first[i * values->stride];
+    }
+    if (any)
+        result = mspringi_contact_reserve_materials(network);
+    if (result != MSPRING_OK || !any)
         return result;
-    for (mspring_id p = first; p < first + count; ++p)
-        network->contacts->materials[p] = (mspringi_contact_material){friction, restitution};
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id p = mspringi_selected(at, i);
+        mspringi_contact_material *of = &network->contacts->materials[p];
+        if (mspringi_particle_exists(network, p))
+            *(is_friction ? &of->friction : &of->restitution) = values->first[i * values->stride];
+    }
     mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
     return MSPRING_OK;
+}
+
+mspring_result mspringi_contact_set_layers(mspring_network *network, mspring_property property,
+                                           const mspringi_selection *at, const uint32_t *values, size_t stride) {
+    bool any = false;
+    const mspring_result result = check_contact(network, property);
+    if (result != MSPRING_OK)
+        return result;
+    mspringi_contacts *contacts = network->contacts;
+    uint32_t *of = property == MSPRING_LAYERS ? contacts->layers : contacts->masks;
+    for (uint32_t i = 0; i < at->count; ++i) {
+        const mspring_id p = mspringi_selected(at, i);
+        if (!mspringi_particle_exists(network, p) || of[p] == values[i * stride])
+            continue;
+        of[p] = values[i * stride];
+        any = true;
+    }
+    if (any) {
+        contacts->is_listed = contacts->is_fresh = false;
+        mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
+    }
+    return MSPRING_OK;
+}
+
+void mspringi_contact_take_in(mspring_network *network, mspring_id particle) {
+    mspringi_contacts *contacts = network->contacts;
+    if (!contacts)
+        return;
+    contacts->layers[particle] = 1;
+    contacts->masks[particle] = UINT32_MAX;
+    if (contacts->materials)
+        contacts->materials[particle] = (mspringi_contact_material){-1.0f, -1.0f};
+    mspringi_outline_take_in(network, &contacts->outline, particle);
 }

@@ -5,7 +5,7 @@
 #ifndef MSPRINGI_CONTACT_STATE_H
 #define MSPRINGI_CONTACT_STATE_H
 
-#include <massspring/massspring_contact.h>
+#include <massspring/massspring.h>
 
 #include "features/contact/floor_support.h"
 #include "features/contact/inner_points.h"
@@ -228,11 +228,6 @@ typedef struct mspringi_contact_events {
     bool is_known;                  ///< false: contacts at rest get no begin event, as they began before
 } mspringi_contact_events;
 
-/// Friction and restitution of a contact.
-typedef struct mspringi_contact_material {
-    float friction, restitution; ///< of a particle, < 0 means the value of the definition
-} mspringi_contact_material;
-
 /// Remembered edges that a point never touches: neighbours on a straight outline.
 #define MSPRINGI_EXCLUDED_EDGES 6u
 
@@ -250,7 +245,7 @@ struct mspringi_contacts {
     mspring_contact_def def;
     double thickness, push; ///< m; largest speed of push-out, m/s
     bool touches_itself;
-    uint32_t *groups, *masks;             ///< [nodes]
+    uint32_t *layers, *masks;             ///< [nodes]
     mspringi_contact_material *materials; ///< [particles]; NULL without values of single particles
     mspringi_colliders colliders;
 

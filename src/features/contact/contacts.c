@@ -68,6 +68,11 @@ static mspring_result check_def(const mspring_network *network, mspring_contact_
     if (!(def->thickness <= THICKEST))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the contact's thickness is 0, and the network has no spring to tell it by");
+    if (def->event_capacity > MSPRINGI_MOST_CONTACT_EVENTS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "event_capacity is %u, it must be at most %u",
+                             (unsigned)def->event_capacity, MSPRINGI_MOST_CONTACT_EVENTS);
+    if (def->reserved != 0)
+        return mspringi_check_reserved(message, "mspring_contact_def", def->reserved);
     if (touches_itself && def->thickness > THICKNESS_SHARE * shortest)
         return mspringi_fail(
             message, MSPRING_ERROR_ARGUMENT,
@@ -85,7 +90,7 @@ static mspring_result check_def(const mspring_network *network, mspring_contact_
 #define ARRAY(member) MSPRINGI_ARRAY_ENTRY(mspringi_contacts, member, MSPRINGI_ARRAY)
 #define VIEW(member) MSPRINGI_ARRAY_ENTRY(mspringi_contacts, member, MSPRINGI_VIEW)
 static const mspringi_array_entry members[] = {
-    ARRAY(groups),
+    ARRAY(layers),
     VIEW(masks),
     ARRAY(materials),
     ARRAY(outline.is_edge),
@@ -180,7 +185,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
         &made->assumed_speed, &made->square_moved, &made->extra_speed};
     double **const motion[] = {&k->x,       &k->y,        &k->inverse_mass, &k->shift_x,
                                &k->shift_y, &k->extra_vx, &k->extra_vy};
-    made->groups = mspringi_alloc(memory, 2 * nodes, sizeof *made->groups);
+    made->layers = mspringi_alloc(memory, 2 * nodes, sizeof *made->layers);
     made->stamp = mspringi_alloc(memory, 3 * particles, sizeof *made->stamp);
     made->excluded_edges =
         mspringi_alloc(memory, MSPRINGI_EXCLUDED_EDGES * particles, sizeof *made->excluded_edges);
@@ -190,7 +195,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     k->v = mspringi_alloc(memory, 3 * nodes, sizeof *k->v);
     made->colours = mspringi_alloc(memory, 2 * nodes, sizeof *made->colours);
     made->supports = mspringi_alloc(memory, MSPRINGI_MAX_SUPPORTS * nodes, sizeof *made->supports);
-    if (!made->groups || !made->stamp || !made->excluded_edges || !o->is_known || !k->particles || !k->is_fast ||
+    if (!made->layers || !made->stamp || !made->excluded_edges || !o->is_known || !k->particles || !k->is_fast ||
         !k->v || !made->colours || !made->supports)
         return false;
     made->due.first = made->colours + nodes;
@@ -198,7 +203,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     k->v_before = k->v_start + nodes;
     made->inner.visited = made->stamp + particles;
     made->inner.watched = made->inner.visited + particles;
-    made->masks = made->groups + nodes;
+    made->masks = made->layers + nodes;
     k->number = k->particles + nodes;
     return reserve_doubles(memory, particles, shape, 2) && reserve_doubles(memory, nodes, places, 9) &&
            reserve_doubles(memory, nodes, motion, 7);
@@ -253,7 +258,7 @@ static void take_over(mspringi_contacts *made, const mspringi_contacts *had, siz
     const mspringi_outline *from = &had->outline;
     mspringi_colliders *c = &made->colliders;
     const mspringi_colliders was = *c;
-    memcpy(made->groups, had->groups, nodes * sizeof *made->groups);
+    memcpy(made->layers, had->layers, nodes * sizeof *made->layers);
     memcpy(made->masks, had->masks, nodes * sizeof *made->masks);
     memcpy(o->is_edge, from->is_edge, springs * sizeof *o->is_edge);
     memcpy(o->is_known, from->is_known, particles * sizeof *o->is_known);
@@ -331,7 +336,7 @@ static mspring_result make(mspring_network *network, const mspring_contact_def *
     bool ok = reserve_nodes(made, memory, particles, nodes) && reserve_edges(made, memory, nodes, springs) &&
               reserve_points(made, memory, points);
     for (size_t p = 0; ok && p < nodes; ++p) {
-        made->groups[p] = 1;
+        made->layers[p] = 1;
         made->masks[p] = UINT32_MAX;
         made->nodes.number[p] = MSPRING_NONE;
     }
@@ -374,7 +379,7 @@ bool mspringi_contacts_reserve_points(mspring_network *network, uint32_t points)
 
 static mspring_contact_def def_of(const mspring_network *network) {
     mspring_contact_def def;
-    (void)mspring_contact_def_init(&def, sizeof def);
+    (void)mspring_init(MSPRING_STRUCT_CONTACT_DEF, &def, sizeof def);
     return network->contacts ? network->contacts->def : def;
 }
 
@@ -406,9 +411,16 @@ static mspring_result use(mspring_network *network, const mspring_contact_def *d
     const bool is_new = !network->contacts || !are_alike(&network->contacts->def, def);
     const uint32_t points = network->contacts ? network->contacts->colliders.point_capacity : 0;
     const mspringi_fp_state before = mspringi_fp_enter();
+    const bool resizes = !network->contacts || network->contacts->events.capacity != def->event_capacity;
+    mspringi_contact_events events;
     mspring_result result = mspringi_incidence_reserve(network);
-    if (result == MSPRING_OK)
+    if (result == MSPRING_OK && resizes)
+        result = mspringi_contact_events_make(network, def->event_capacity, &events);
+    if (result == MSPRING_OK) {
         result = replace(network, def, points);
+        if (resizes)
+            mspringi_contact_events_take(network, result == MSPRING_OK, &events);
+    }
     if (result == MSPRING_ERROR_MEMORY)
         result = mspringi_fail(
             &network->message, MSPRING_ERROR_MEMORY, "no memory for contact of %u particles and %u springs",
@@ -430,26 +442,6 @@ mspring_result mspring_network_set_contact(mspring_network *network, const mspri
     if (result == MSPRING_OK)
         result = check_def(network, &used, &network->message);
     return result == MSPRING_OK ? use(network, &used) : result;
-}
-
-mspring_result mspring_network_set_contact_groups(mspring_network *network, mspring_id first, uint32_t count,
-                                                  uint32_t groups, uint32_t masks) {
-    mspring_result result = mspringi_check_call(network);
-    if (result == MSPRING_OK && !network->contacts)
-        result =
-            mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "groups are of contact, and there is none");
-    if (result == MSPRING_OK)
-        result = mspringi_check_range(network, "particle", first, count, network->topology.particle_count);
-    if (result != MSPRING_OK)
-        return result;
-    mspringi_contacts *contacts = network->contacts;
-    for (mspring_id p = first; p < first + count; ++p) {
-        contacts->groups[p] = groups;
-        contacts->masks[p] = masks;
-    }
-    contacts->is_listed = contacts->is_fresh = false;
-    mspringi_notify_change(network, MSPRINGI_CHANGED_CONTACT, 0);
-    return MSPRING_OK;
 }
 
 mspring_result mspring_network_get_contact_info(const mspring_network *network, mspring_contact_info *info) {

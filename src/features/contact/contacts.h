@@ -37,6 +37,7 @@
 #define MSPRINGI_CONTACTS_H
 
 #include "features/contact/contact_state.h"
+#include "store/things.h"
 
 static inline bool mspringi_contact_is_rejected(const mspringi_contacts *contacts) {
     return contacts->rejection != MSPRINGI_CONTACT_SOUND;
@@ -227,8 +228,28 @@ void mspringi_contact_events_end_interval(mspringi_contacts *contacts);
 void mspringi_contact_events_finish_step(const mspring_network *network, mspringi_contacts *contacts);
 /// Drop the events after a change of state. Bodies at rest on each other count as in contact already.
 void mspringi_contact_events_reset(mspringi_contacts *contacts);
+/// Most events that there may be room for.
+#define MSPRINGI_MOST_CONTACT_EVENTS 0x1000000u
+/// Make room for events; have the contact take it, or drop it. Make it and have it taken.
+mspring_result mspringi_contact_events_make(mspring_network *network, uint32_t capacity,
+                                            mspringi_contact_events *made);
+void mspringi_contact_events_take(mspring_network *network, bool is_used, mspringi_contact_events *made);
+mspring_result mspringi_contact_events_resize(mspring_network *network, uint32_t capacity);
 
 /* contact_materials.c */
+/// What a particle has of its own, or the defaults.
+mspringi_contact_material mspringi_contact_material_of(const mspring_network *network, mspring_id particle);
+uint32_t mspringi_contact_layers_of(const mspring_network *network, mspring_id particle);
+uint32_t mspringi_contact_masks_of(const mspring_network *network, mspring_id particle);
+/// Make room for the materials of particles, -1 at first.
+mspring_result mspringi_contact_reserve_materials(mspring_network *network);
+/// Set friction or restitution, layers or masks, by their property.
+mspring_result mspringi_contact_set_material(mspring_network *network, const mspringi_selection *at,
+                                             const mspringi_values *values);
+mspring_result mspringi_contact_set_layers(mspring_network *network, mspring_property property,
+                                           const mspringi_selection *at, const uint32_t *values, size_t stride);
+/// Take in a particle that was added, with the defaults: its id may have been another's.
+void mspringi_contact_take_in(mspring_network *network, mspring_id particle);
 /// Material of a pair, if particles have their own. collider: that of the pair, or NULL.
 mspringi_contact_material mspringi_contact_material_mix(const mspringi_contacts *contacts,
                                                         const mspringi_pair *pair,

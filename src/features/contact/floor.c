@@ -41,11 +41,9 @@ static mspring_result check_planes(const mspring_floor_def *def, mspringi_messag
 static mspring_result check_heights(const mspring_floor_def *def, mspringi_message *message) {
     if (def->height_count == 0)
         return MSPRING_OK;
-    if (def->height_count < 2 || def->height_count > MSPRING_MAX_HEIGHTS)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor has %u heights, it may have 0 or 2 to %u",
+    if (def->height_count > MSPRING_MAX_HEIGHTS)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor has %u heights, it may have 0 to %u",
                              (unsigned)def->height_count, (unsigned)MSPRING_MAX_HEIGHTS);
-    if (!def->heights)
-        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT, "the floor's heights are NULL");
     if (!(def->spacing >= SHORTEST_SPACING && def->spacing <= LONGEST_SPACING))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the floor's heights are %g m apart, it must be 1e-9 to 1e9", def->spacing);
@@ -55,7 +53,7 @@ static mspring_result check_heights(const mspring_floor_def *def, mspringi_messa
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the floor's heights go from (%g, %g) to x = %g, which is out of bounds",
                              def->heights_x, def->heights_y, end);
-    for (uint32_t i = 0; i < def->height_count; ++i)
+    for (uint32_t i = 0; def->heights && i < def->height_count; ++i)
         if (!mspringi_is_coordinate((double)def->heights[i]))
             return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                                  "height %u of the floor is %g m, which is out of bounds", (unsigned)i,
@@ -75,6 +73,10 @@ static mspring_result check_values(const float *values, uint32_t count, const ch
 #define MOST_RESTITUTION 1.0
 
 static mspring_result check_silt(const mspring_floor_def *def, mspringi_message *message) {
+    if (def->silt_depths && def->silt_depth != 0.0f)
+        return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
+                             "the floor has silt_depths, so its silt_depth must be 0, and it is %g m",
+                             (double)def->silt_depth);
     if (!(def->silt_depth >= 0.0f && (double)def->silt_depth <= MSPRING_MAX_COORDINATE))
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
                              "the floor's silt_depth is %g m, it must be 0 to 1e12", (double)def->silt_depth);
@@ -83,10 +85,10 @@ static mspring_result check_silt(const mspring_floor_def *def, mspringi_message 
                              (double)def->silt_rate);
     if (def->silt_depth > 0.0f && def->height_count == 0)
         return mspringi_fail(message, MSPRING_ERROR_ARGUMENT,
-                             "the floor has %g m of silt, but no heights that it could lie on: two heights make "
-                             "level ground",
+                             "the floor has %g m of silt, but no heights that it could lie on: one makes level "
+                             "ground",
                              (double)def->silt_depth);
-    return MSPRING_OK;
+    return check_values(def->silt_depths, def->height_count, "silt_depths", MSPRING_MAX_COORDINATE, message);
 }
 
 static mspring_result check_surface(const mspring_floor_def *def, mspringi_message *message) {
@@ -113,7 +115,8 @@ static mspring_result check_floor(const mspring_floor_def **given, mspring_floor
                                   mspringi_message *message) {
     mspring_result result = mspringi_take_floor_def(message, given, def);
     if (result == MSPRING_OK)
-        result = mspringi_check_reserved(message, "mspring_floor_def", def->reserved);
+        result =
+            mspringi_check_reserved(message, "mspring_floor_def", def->reserved | (def->reserved_pointer != NULL));
     if (result != MSPRING_OK)
         return result;
     if (def->plane_count == 0 && def->height_count == 0)
@@ -135,15 +138,16 @@ static uint32_t level_count(uint32_t count, uint32_t level) {
 // Copy the heights, and on top of them the highest of 2, of 4 and so on, until one is left: all in one block.
 static bool copy_heights(mspringi_heights *to, const mspring_floor_def *def, mspringi_memory *memory) {
     size_t total = 0;
-    for (uint32_t level = 0; level == 0 || level_count(def->height_count, level - 1) > 1; ++level)
-        total += level_count(def->height_count, level);
+    for (uint32_t level = 0; level == 0 || level_count(to->count, level - 1) > 1; ++level)
+        total += level_count(to->count, level);
     float *values = mspringi_alloc(memory, total, sizeof *values);
     if (!values)
         return false;
     to->heights = values;
-    memcpy(values, def->heights, def->height_count * sizeof *values);
+    for (uint32_t i = 0; def->heights && i < to->count; ++i)
+        values[i] = def->heights[i < def->height_count ? i : 0];
     for (uint32_t level = 0;; ++level) {
-        const uint32_t count = level_count(def->height_count, level);
+        const uint32_t count = level_count(to->count, level);
         to->highest[level] = values;
         values += count;
         if (count == 1)
@@ -166,6 +170,19 @@ static bool find_normals(mspringi_heights *h, mspringi_memory *memory) {
     return h->normals != NULL;
 }
 
+static bool copy_silt(mspringi_heights *to, const mspring_floor_def *def, mspringi_memory *memory) {
+    to->silt_depth = (double)def->silt_depth;
+    to->silt_rate = (double)def->silt_rate;
+    if (!def->silt_depths || def->height_count == 0)
+        return true;
+    to->silt_depths = mspringi_alloc(memory, to->count, sizeof *to->silt_depths);
+    for (uint32_t i = 0; to->silt_depths && i < to->count; ++i) {
+        to->silt_depths[i] = def->silt_depths[i < def->height_count ? i : 0];
+        to->silt_depth = fmax(to->silt_depth, (double)to->silt_depths[i]);
+    }
+    return to->silt_depths != NULL;
+}
+
 // Copy an array that the host may have given. False: there is no memory for it.
 static bool copy_values(float **to, const float *values, uint32_t count, mspringi_memory *memory) {
     if (!values || count == 0)
@@ -181,9 +198,8 @@ static bool copy_surface(mspringi_floor *to, const mspring_floor_def *def, mspri
     mspringi_heights *heights = &to->heights;
     to->friction = heights->friction = (double)def->friction;
     to->restitution = heights->restitution = (double)def->restitution;
-    heights->silt_depth = (double)def->silt_depth;
-    heights->silt_rate = (double)def->silt_rate;
-    return copy_values(&to->plane_frictions, def->plane_frictions, def->plane_count, memory) &&
+    return copy_silt(heights, def, memory) &&
+           copy_values(&to->plane_frictions, def->plane_frictions, def->plane_count, memory) &&
            copy_values(&to->plane_restitutions, def->plane_restitutions, def->plane_count, memory) &&
            copy_values(&heights->frictions, def->height_frictions, parts, memory) &&
            copy_values(&heights->restitutions, def->height_restitutions, parts, memory);
@@ -197,7 +213,8 @@ static bool copy_floor(mspringi_floor *to, const mspring_floor_def *def, mspring
         const double length = sqrt(plane[2] * plane[2] + plane[3] * plane[3]);
         to->planes[i] = (mspringi_half_plane){plane[0], plane[1], plane[2] / length, plane[3] / length};
     }
-    to->heights.count = def->height_count;
+    to->heights.count = def->height_count == 1 ? 2 : def->height_count; // a part between two of one height
+    to->heights.given = def->height_count;
     to->heights.x = def->heights_x;
     to->heights.y = def->heights_y;
     to->heights.spacing = def->spacing;
@@ -226,6 +243,7 @@ static void destroy_floor(mspringi_floor *floor, mspringi_memory *memory) {
     mspringi_free(memory, floor->heights.normals);
     mspringi_free(memory, floor->heights.frictions);
     mspringi_free(memory, floor->heights.restitutions);
+    mspringi_free(memory, floor->heights.silt_depths);
     mspringi_free(memory, floor->plane_frictions);
     mspringi_free(memory, floor->plane_restitutions);
     free_floor_layout(floor, memory);
@@ -326,7 +344,7 @@ static MSPRINGI_NOINLINE mspringi_floor *make_floor(mspring_network *network, co
 
 static mspring_floor_def def_of(const mspringi_floor *floor) {
     mspring_floor_def def;
-    (void)mspring_floor_def_init(&def, sizeof def);
+    (void)mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def);
     if (!floor)
         return def;
     def.plane_count = floor->plane_count;
@@ -335,14 +353,15 @@ static mspring_floor_def def_of(const mspringi_floor *floor) {
     def.heights_y = floor->heights.y;
     def.spacing = floor->heights.spacing;
     def.heights = floor->heights.count > 0 ? floor->heights.heights : NULL;
-    def.height_count = floor->heights.count;
+    def.height_count = floor->heights.given;
     def.friction = (float)floor->friction;
     def.restitution = (float)floor->restitution;
     def.plane_frictions = floor->plane_frictions;
     def.plane_restitutions = floor->plane_restitutions;
     def.height_frictions = floor->heights.frictions;
     def.height_restitutions = floor->heights.restitutions;
-    def.silt_depth = (float)floor->heights.silt_depth;
+    def.silt_depths = floor->heights.silt_depths;
+    def.silt_depth = def.silt_depths ? 0.0f : (float)floor->heights.silt_depth;
     def.silt_rate = (float)floor->heights.silt_rate;
     return def;
 }
@@ -360,6 +379,14 @@ static bool are_same(const float *a, const float *b, uint32_t count) {
     return count == 0 || (!a && !b) || (a && b && memcmp(a, b, count * sizeof *a) == 0);
 }
 
+// No heights in the definition are heights of 0.
+static bool are_same_heights(const float *had, const float *given, uint32_t count) {
+    for (uint32_t i = 0; i < count; ++i)
+        if (had[i] != (given ? given[i] : 0.0f))
+            return false;
+    return true;
+}
+
 // True if a floor equals the present one.
 static bool is_same(const mspringi_floor *floor, const mspring_floor_def *b) {
     if (!floor || !b)
@@ -372,10 +399,11 @@ static bool is_same(const mspringi_floor *floor, const mspring_floor_def *b) {
            are_same(a.plane_restitutions, b->plane_restitutions, a.plane_count) &&
            are_same(a.height_frictions, b->height_frictions, parts) &&
            are_same(a.height_restitutions, b->height_restitutions, parts) &&
+           are_same(a.silt_depths, b->silt_depths, a.height_count) &&
            (a.plane_count == 0 || memcmp(a.planes, b->planes, a.plane_count * sizeof floor->given[0]) == 0) &&
            (a.height_count == 0 ||
             (a.heights_x == b->heights_x && a.heights_y == b->heights_y && a.spacing == b->spacing &&
-             memcmp(a.heights, b->heights, a.height_count * sizeof *a.heights) == 0));
+             are_same_heights(a.heights, b->heights, a.height_count)));
 }
 
 mspring_result mspring_network_set_floor(mspring_network *network, const mspring_floor_def *def) {
@@ -445,19 +473,9 @@ void mspringi_floor_roll_back(mspringi_floor *floor) {
         exchange_impulses(floor);
 }
 
-mspring_result mspring_network_get_floor_impulses(const mspring_network *network, mspring_id first, uint32_t count,
-                                                  float *x, float *y, uint32_t stride) {
-    mspringi_selection at;
-    const mspring_result result =
-        mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, x, y, stride, &at);
-    if (result != MSPRING_OK)
-        return result;
-    for (uint32_t i = 0; i < count; ++i) {
-        const uint32_t slot = network->topology.slot_of_particle[first + i];
-        x[(size_t)i * stride] = network->floor ? network->floor->impulse.x[slot] : 0.0f;
-        y[(size_t)i * stride] = network->floor ? network->floor->impulse.y[slot] : 0.0f;
-    }
-    return MSPRING_OK;
+float mspringi_floor_impulse_of(const mspring_network *network, uint32_t slot, int axis) {
+    const mspringi_floor *floor = network->floor;
+    return !floor ? 0.0f : axis == 0 ? floor->impulse.x[slot] : floor->impulse.y[slot];
 }
 
 /* ------------------------------------------------------------------------------------------------------- stage */
@@ -508,6 +526,7 @@ static void relocate_floor(void *state, const mspringi_memory *from, const mspri
     RELOCATE(floor->heights.normals);
     RELOCATE(floor->heights.frictions);
     RELOCATE(floor->heights.restitutions);
+    RELOCATE(floor->heights.silt_depths);
     RELOCATE(floor->plane_frictions);
     RELOCATE(floor->plane_restitutions);
     for (uint32_t i = 0; i < MSPRINGI_HEIGHT_LEVELS; ++i)

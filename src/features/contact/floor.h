@@ -34,11 +34,13 @@ typedef struct mspringi_heights {
     double x, y, spacing; ///< world coordinates
     double local_x, local_y;
     uint32_t count; ///< 0: no heights
+    uint32_t given; ///< by the host: one is kept as two
     float *heights;
     double *normals;                        ///< [count - 1][2] of each straight part
     float *frictions, *restitutions;        ///< [count - 1] of each straight part; NULL: all have the floor's
     double friction, restitution;           ///< the floor's
-    double silt_depth, silt_rate;           ///< m and 1/s; no silt if either is 0
+    float *silt_depths;                     ///< [count] m; NULL: silt_depth everywhere
+    double silt_depth, silt_rate;           ///< m, the largest of silt_depths, and 1/s; no silt if either is 0
     float *highest[MSPRINGI_HEIGHT_LEVELS]; ///< [level][i]: the highest of 2^level of them from i 2^level on;
                                             ///< highest[0] is heights
 } mspringi_heights;
@@ -88,12 +90,29 @@ typedef struct mspringi_floor {
 /// Particle with its start and its end of a substep, local coordinates.
 typedef struct mspringi_moved_particle {
     double start_x, start_y, x, y, vx, vy;
+    const mspringi_contact_material *own; ///< NULL: none
 } mspringi_moved_particle;
 
 /// Restore the impulses of the previous step. NULL is allowed.
 void mspringi_floor_roll_back(mspringi_floor *floor);
 /// Clear the impulses of a slot, because another particle takes it.
 void mspringi_floor_clear_slot(const mspringi_floor *floor, uint32_t slot);
+
+/* contact_materials.c */
+
+/// What a particle has of its own; NULL if no particle has anything.
+const mspringi_contact_material *mspringi_contact_own(const mspring_network *network, size_t slot);
+static inline const mspringi_contact_material *mspringi_own_of(const mspring_network *network, size_t slot) {
+    return network->contacts ? mspringi_contact_own(network, slot) : NULL;
+}
+
+/// Friction and restitution of a surface and a particle.
+static inline double mspringi_friction_on(const mspringi_line *line, const mspringi_contact_material *own) {
+    return own ? mspringi_mixed_friction(line->friction, own) : line->friction;
+}
+static inline double mspringi_restitution_on(const mspringi_line *line, const mspringi_contact_material *own) {
+    return own ? mspringi_mixed_restitution(line->restitution, own) : line->restitution;
+}
 
 /* floor_surface.c */
 
@@ -225,5 +244,8 @@ void mspringi_floor_apply_all(mspring_network *network, float h);
 
 /// Brake particles in silt after mspringi_floor_apply_all().
 void mspringi_floor_apply_silt(const mspring_network *network, float h);
+
+/// Impulse that a slot had from the floor in the last step, N s, in x (axis 0) or y.
+float mspringi_floor_impulse_of(const mspring_network *network, uint32_t slot, int axis);
 
 #endif

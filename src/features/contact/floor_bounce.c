@@ -57,7 +57,8 @@ static bool is_free_way(const mspringi_floor *floor, double from_x, double from_
 /* ------------------------------------------------------------------------------------------------- with springs */
 
 static double bounce_at(const mspringi_line *line, double h, double allowed, mspringi_bouncing_particle *p) {
-    return mspringi_bounce(line->nx, line->ny, line->offset, line->friction, line->restitution, h, allowed, p);
+    return mspringi_bounce(line->nx, line->ny, line->offset, mspringi_friction_on(line, p->own),
+                           mspringi_restitution_on(line, p->own), h, allowed, p);
 }
 
 // Apply the part of the heights that the particle meets on its way, or else the one below its end.
@@ -227,9 +228,10 @@ bool mspringi_floor_move_free_particle(const mspringi_floor *floor, const msprin
             break;
         acts = true;
         has_slid |= turns > 1 && p->ax == 0.0 && p->ay == 0.0;
-        restitution = first.line.restitution;
-        mspringi_bounce_free(first.line.nx, first.line.ny, first.line.offset, first.line.friction, restitution, how,
-                             first.time, turns == MSPRINGI_MAX_DEFLECTIONS, p);
+        restitution = mspringi_restitution_on(&first.line, p->own);
+        mspringi_bounce_free(first.line.nx, first.line.ny, first.line.offset,
+                             mspringi_friction_on(&first.line, p->own), restitution, how, first.time,
+                             turns == MSPRINGI_MAX_DEFLECTIONS, p);
     }
     find_end(p, &x, &y);
     const double since = p->left - how->skew, keep = has_slid ? kept_of(&start, p, since, x, y) : 1.0;

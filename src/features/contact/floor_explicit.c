@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/cpu.h"
 #include "base/decay.h"
 #include "store/sleepers.h"
 
@@ -52,6 +53,7 @@ static void bounce_slot(const mspring_network *network, const mspringi_floor_arg
     mspringi_bouncing_particle p =
         mspringi_bouncing_particle_from((double)g->x[slot], (double)g->y[slot], (double)g->vx[slot],
                                         (double)g->vy[slot], from_vx, from_vy, g->damping, g->h, g->per_length);
+    p.own = mspringi_own_of(network, slot);
     if (mspringi_floor_bounce(network->floor, g->h, from_vx, from_vy, &p))
         store_slot(network, slot, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
 }
@@ -61,6 +63,7 @@ static void fly_slot(const mspring_network *network, const mspringi_floor_args *
     mspringi_free_particle p = mspringi_free_particle_from(
         (double)g->x[slot], (double)g->y[slot], (double)g->vx[slot], (double)g->vy[slot], (double)g->from_vx[slot],
         (double)g->from_vy[slot], g->damping, g->h);
+    p.own = mspringi_own_of(network, slot);
     double vx, vy;
     if (mspringi_floor_move_free_particle(network->floor, &how, &p, &vx, &vy))
         store_slot(network, slot, p.x, p.y, vx, vy);
@@ -108,12 +111,27 @@ static mspringi_floor_args args_of(const mspring_network *network, const mspring
         .before_vy = floor->before.vy,
         .silt_depth = floor->heights.silt_depth,
         .silt_rate = floor->heights.silt_rate,
+        .silt_depths = floor->heights.silt_depths,
         .damping = damping_of(network, h, substep->time, is_loose ? substep->damping_loss : substep->loss),
         .impulse_x = floor->impulse.x,
         .impulse_y = floor->impulse.y,
         .inverse_mass = network->inverse_mass,
         .active_inverse_mass = mspringi_active_inverse_mass(network),
+        .own = NULL, // all members are given, so nothing is cleared first
     };
+}
+
+// Apply the floor to a block whose particles may have friction and restitution of their own.
+static MSPRINGI_NOINLINE uint32_t act_with_own(const mspring_network *network, const mspringi_floor_args *args,
+                                               mspringi_floor_fn act, size_t block) {
+    if (!mspringi_contact_own(network, block))
+        return act(args, block);
+    mspringi_contact_material own[MSPRINGI_WIDTH];
+    mspringi_floor_args with = *args;
+    for (size_t i = 0; i < MSPRINGI_WIDTH; ++i)
+        own[i] = *mspringi_contact_own(network, block + i);
+    with.own = own;
+    return act(&with, block);
 }
 
 // Apply the floor to a block. bare: box without surface, but perhaps with silt. may_pass: a particle may have come
@@ -126,7 +144,7 @@ static void touch_block(const mspring_network *network, const mspringi_floor_arg
         if (!may_pass && network->kernels->beyond(args->x, args->y, block, block + MSPRINGI_WIDTH, bare) != block)
             return;
     }
-    uint32_t left = act(args, block);
+    uint32_t left = network->contacts ? act_with_own(network, args, act, block) : act(args, block);
     for (size_t slot = block; left != 0; ++slot, left >>= 1)
         if ((left & 1) && is_loose)
             fly_slot(network, args, slot);
@@ -318,7 +336,7 @@ static void fly_free(const mspring_network *network, size_t slot, const gliding 
     const double change_x = h * ax, change_y = h * ay;
     double to_vx = g->damping.keep * vx + change_x / g->damping.scale;
     double to_vy = g->damping.keep * vy + change_y / g->damping.scale;
-    mspringi_free_particle p = {.ax = ax, .ay = ay, .left = h};
+    mspringi_free_particle p = {.ax = ax, .ay = ay, .left = h, .own = mspringi_own_of(network, slot)};
     p.x = (double)s->x[slot] + (double)s->low_x[slot];
     p.y = (double)s->y[slot] + (double)s->low_y[slot];
     p.wx = g->how.skew > 0.0 ? to_vx - 0.5 * change_x : vx;

@@ -27,7 +27,7 @@ static bool collide_line(const mspringi_line *line, mspringi_moved_particle *b, 
     const bool approaches = across < 0.0;
     if (approaches) {
         const double along = line->nx * b->vy - line->ny * b->vx;
-        const double taken = mspringi_clamp_friction(along, line->friction * -across);
+        const double taken = mspringi_clamp_friction(along, mspringi_friction_on(line, b->own) * -across);
         b->vx += -across * line->nx + taken * line->ny;
         b->vy += -across * line->ny - taken * line->nx;
         b->x += h * taken * line->ny;
@@ -75,9 +75,9 @@ static void collide_slot(const mspring_network *network, size_t slot, double h) 
     const mspringi_state *s = &network->state;
     mspringi_floor *floor = network->floor;
     const double vx = (double)s->vx[slot], vy = (double)s->vy[slot];
-    mspringi_moved_particle b = {.x = (double)s->x[slot], .y = (double)s->y[slot], .vx = vx, .vy = vy};
-    b.start_x = (double)floor->start.x[slot];
-    b.start_y = (double)floor->start.y[slot];
+    mspringi_moved_particle b = {
+        (double)floor->start.x[slot],  (double)floor->start.y[slot], (double)s->x[slot], (double)s->y[slot], vx, vy,
+        mspringi_own_of(network, slot)};
     mspringi_floor_collide(floor, &b, h);
     if (b.vx == vx && b.vy == vy && b.x == (double)s->x[slot] && b.y == (double)s->y[slot])
         return;

@@ -12,17 +12,18 @@
 // Add the support of a particle by a surface, if it is within the thickness.
 static void add_support(mspringi_contacts *contacts, const mspringi_line *line, uint32_t p, uint32_t slot, double x,
                         double y, double vx, double vy) {
+    const mspringi_contact_material *materials = contacts->materials;
     const double gap = mspringi_distance_from_line(line, x, y);
     if (!(gap < contacts->thickness))
         return;
-    contacts->supports[contacts->support_count++] =
-        (mspringi_floor_support){.p = p,
-                                 .slot = slot,
-                                 .nx = line->nx,
-                                 .ny = line->ny,
-                                 .gap = gap > 0.0 ? gap : 0.0,
-                                 .free_speed = vx * line->nx + vy * line->ny,
-                                 .friction = line->friction};
+    contacts->supports[contacts->support_count++] = (mspringi_floor_support){
+        .p = p,
+        .slot = slot,
+        .nx = line->nx,
+        .ny = line->ny,
+        .gap = gap > 0.0 ? gap : 0.0,
+        .free_speed = vx * line->nx + vy * line->ny,
+        .friction = mspringi_friction_on(line, materials ? &materials[contacts->nodes.particles[p]] : NULL)};
 }
 
 void mspringi_floor_support_find(const mspring_network *network, mspringi_contacts *contacts) {

@@ -46,7 +46,7 @@ static bool are_in_one_group(const mspring_network *network, mspring_id p, mspri
 
 bool mspringi_may_touch(const mspring_network *network, mspring_id p, mspring_id q) {
     const mspringi_contacts *contacts = network->contacts;
-    return contacts->groups[p] & contacts->masks[q] && contacts->groups[q] & contacts->masks[p] &&
+    return contacts->layers[p] & contacts->masks[q] && contacts->layers[q] & contacts->masks[p] &&
            are_in_one_group(network, p, q);
 }
 

@@ -4,8 +4,11 @@
 double mspringi_silt_damping(const mspringi_heights *h, double x, double y, double seconds) {
     if (!mspringi_has_silt(h))
         return 0.0;
-    const double ground = h->local_y + mspringi_height_at(h->heights, h->count, (x - h->local_x) / h->spacing);
-    return mspringi_silt_damping_at(y - ground, h->silt_depth, h->silt_rate * seconds);
+    const double place = (x - h->local_x) / h->spacing, rate_h = h->silt_rate * seconds;
+    const double above = y - (h->local_y + mspringi_height_at(h->heights, h->count, place));
+    return h->silt_depths
+               ? mspringi_uneven_silt_damping_at(above, mspringi_height_at(h->silt_depths, h->count, place), rate_h)
+               : mspringi_silt_damping_at(above, h->silt_depth, rate_h);
 }
 
 // Only the velocity: to move positions behind an implicit solver's back would stretch springs.

@@ -216,8 +216,11 @@ static void apply_grips(mspring_network *network, mspringi_grips_of_particle *he
     held->vy = (double)s->vy[slot];
     const mspringi_force force = solve_bounded(held);
     const double vx = h * held->inverse_mass * force.x, vy = h * held->inverse_mass * force.y;
-    mspringi_moved_particle body = {
-        .start_x = held->x, .start_y = held->y, .vx = held->vx + vx, .vy = held->vy + vy};
+    mspringi_moved_particle body = {.start_x = held->x,
+                                    .start_y = held->y,
+                                    .vx = held->vx + vx,
+                                    .vy = held->vy + vy,
+                                    .own = mspringi_own_of(network, slot)};
     body.x = held->x + h * vx;
     body.y = held->y + h * vy;
     for (uint32_t i = 0; i < held->count; ++i) {

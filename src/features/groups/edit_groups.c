@@ -33,13 +33,11 @@ static mspring_result check_network(mspring_network *network, uint32_t count) {
     if (count == 0)
         return MSPRING_OK;
     const uint32_t had = network->groups.count;
-    mspring_solver_def solver = {.struct_size = sizeof solver};
-    mspring_result result = mspring_network_get_solver(network, &solver);
+    mspring_settings settings = {.struct_size = sizeof settings};
+    mspring_result result = mspring_network_get_settings(network, &settings);
     network->groups.count = count; // the checks need it
     if (result == MSPRING_OK)
-        result = mspringi_ops_of_groups.check_settings(network, &network->settings);
-    if (result == MSPRING_OK)
-        result = mspringi_ops_of_groups.check_solver(network, &solver);
+        result = mspringi_ops_of_groups.check_settings(network, &settings);
     network->groups.count = had;
     return result;
 }

@@ -3,7 +3,7 @@
 /// NaN may spread in the step in which it comes up: arithmetic with springs that are not there hands it to
 /// neighbouring lanes. So a group that has such numbers is to blame only if it has them when it steps with none of
 /// the others that had. Each of these is tried once. A group that is out of bounds by numbers is to blame for sure.
-#include "store/group_ops.h"
+#include "features/groups/edit_groups.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,14 +19,12 @@ static mspring_result refuse(mspring_network *network, const char *what) {
 static mspring_result check_settings(mspring_network *network, const mspring_settings *settings) {
     if (settings->guard != MSPRING_GUARD_BOUNDS)
         return refuse(network, "the guard MSPRING_GUARD_BOUNDS: others judge all of the network");
-    return settings->sleep_speed > 0.0f ? refuse(network, "sleep_speed 0") : MSPRING_OK;
-}
-
-static mspring_result check_solver(mspring_network *network, const mspring_solver_def *def) {
-    if (def->solver != MSPRING_SOLVER_EXPLICIT)
+    if (settings->sleep_speed > 0.0f)
+        return refuse(network, "sleep_speed 0");
+    if (settings->solver != MSPRING_SOLVER_EXPLICIT)
         return refuse(network, "the explicit solver: others solve for all of the network");
-    return def->substeps == MSPRING_SUBSTEPS_AUTO || def->substeps == MSPRING_SUBSTEPS_EVEN ||
-                   def->substep_length > 0.0
+    return settings->substeps == MSPRING_SUBSTEPS_AUTO || settings->substeps == MSPRING_SUBSTEPS_EVEN ||
+                   settings->substep_length > 0.0
                ? refuse(network, "a number of substeps: automatic ones follow the stiffest of them")
                : MSPRING_OK;
 }
@@ -149,5 +147,12 @@ static void end(mspring_network *network, bool is_taken) {
     }
 }
 
-const mspringi_group_ops mspringi_ops_of_groups = {check_settings, check_solver, begin,   suspect, hold_suspects,
-                                                   next_doubtful,  hold,         release, end};
+const mspringi_group_ops mspringi_ops_of_groups = {.check_settings = check_settings,
+                                                   .begin = begin,
+                                                   .suspect = suspect,
+                                                   .hold_suspects = hold_suspects,
+                                                   .next_doubtful = next_doubtful,
+                                                   .hold = hold,
+                                                   .release = release,
+                                                   .end = end,
+                                                   .find_frame = mspringi_group_find_frame};

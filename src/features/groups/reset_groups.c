@@ -8,7 +8,9 @@
 #include "store/changed.h"
 #include "store/group_ops.h"
 #include "store/id_pool.h"
+#include "store/metres.h"
 #include "store/rest_lengths.h"
+#include "store/selection.h"
 #include "store/spring_limits.h"
 #include "store/springs.h"
 
@@ -33,39 +35,13 @@ void mspringi_mark_take(mspring_network *network, mspringi_mark *mark, uint32_t 
     mark->origin[2 * (size_t)group + 1] = network->origin_y;
 }
 
-static mspring_result check_groups(mspring_network *network, const uint32_t *groups, uint32_t count) {
-    if (!groups && count > 0)
-        return mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "the list of groups is NULL");
-    for (uint32_t i = 0; i < count; ++i)
-        if (groups[i] >= network->groups.count)
-            return mspringi_fail(&network->message, MSPRING_ERROR_ID,
-                                 "index %u of the list: there is no group %s: numbers are below %u", (unsigned)i,
-                                 MSPRINGI_ID(groups[i]), (unsigned)network->groups.count);
-    return MSPRING_OK;
-}
-
-// A list of groups, or all of them.
-typedef struct choice {
-    const uint32_t *list; // NULL: all
-    uint32_t count;
-} choice;
-
-static choice choose(const mspring_network *network, const uint32_t *groups, uint32_t count) {
-    return (choice){groups, groups ? count : network->groups.count};
-}
-
-static uint32_t chosen(const choice *from, uint32_t i) {
-    return from->list ? from->list[i] : i;
-}
-
-mspring_result mspring_network_mark_groups(mspring_network *network, const uint32_t *groups, uint32_t count) {
-    mspring_result result = mspringi_check_call(network);
-    if (result == MSPRING_OK)
-        result = check_groups(network, groups, count);
+mspring_result mspring_network_mark_groups(mspring_network *network, const mspring_id *ids, mspring_id first,
+                                           uint32_t count) {
+    mspringi_selection marked;
+    mspring_result result = mspringi_select(network, MSPRING_GROUPS, ids, first, count, &marked);
     if (result != MSPRING_OK)
         return result;
     mspringi_groups *g = &network->groups;
-    const choice marked = choose(network, groups, count);
     if (!g->mark.motion && marked.count > 0) {
         result = mspringi_mark_allocate(network, &g->mark, g->count);
         if (result != MSPRING_OK)
@@ -78,7 +54,7 @@ mspring_result mspring_network_mark_groups(mspring_network *network, const uint3
         memcpy(g->mark.origin, g->start.origin, (size_t)g->count * 2 * sizeof *g->mark.origin);
     }
     for (uint32_t i = 0; i < marked.count; ++i)
-        mspringi_mark_take(network, &g->mark, chosen(&marked, i));
+        mspringi_mark_take(network, &g->mark, mspringi_selected(&marked, i));
     return MSPRING_OK;
 }
 
@@ -86,12 +62,12 @@ mspring_result mspring_network_mark_groups(mspring_network *network, const uint3
 
 // List the springs with the given state, live or broken, at the mark and the other one now. A group may be listed
 // twice.
-static uint32_t list_changed(mspring_network *network, const mspringi_mark *mark, const choice *of,
+static uint32_t list_changed(mspring_network *network, const mspringi_mark *mark, const mspringi_selection *of,
                              bool were_live) {
     mspringi_groups *g = &network->groups;
     uint32_t found = 0;
     for (uint32_t k = 0; k < of->count; ++k) {
-        const uint32_t group = chosen(of, k);
+        const uint32_t group = mspringi_selected(of, k);
         for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i)
             if (mark->live[i] == were_live && mspringi_spring_is_live(network, g->springs[i]) != were_live &&
                 mspringi_spring_exists(network, g->springs[i]) && found < network->topology.spring_count)
@@ -100,15 +76,16 @@ static uint32_t list_changed(mspring_network *network, const mspringi_mark *mark
     return found;
 }
 
-static mspring_result restore_links(mspring_network *network, const mspringi_mark *mark, const choice *of) {
+static mspring_result restore_links(mspring_network *network, const mspringi_mark *mark,
+                                    const mspringi_selection *of) {
     const mspring_id *changing = network->groups.changing;
     if (!network->edits.broke)
         return MSPRING_OK;
     const uint32_t restored = list_changed(network, mark, of, true);
     mspring_result result =
-        restored > 0 ? mspring_network_restore_springs(network, changing, restored, 0.0) : MSPRING_OK;
+        restored > 0 ? mspring_network_restore_springs(network, changing, 0, restored, 0.0) : MSPRING_OK;
     const uint32_t broken = result == MSPRING_OK ? list_changed(network, mark, of, false) : 0;
-    return broken > 0 ? mspring_network_break_springs(network, changing, broken) : result;
+    return broken > 0 ? mspring_network_break_springs(network, changing, 0, broken) : result;
 }
 
 static void restore_motion(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
@@ -144,10 +121,12 @@ static void put_length_back(mspring_network *network, mspring_id spring, const f
         network->rest_lengths.lengths[spring_slot] = lengths[0];
     else if (mspringi_spring_slot_get(network, spring_slot).rest_length != lengths[0])
         mspringi_spring_slot_set_rest_length(network, spring_slot, lengths[0]);
-    if (!nominal || !mspringi_spring_exists(network, spring))
-        return;
-    nominal[spring_slot] = lengths[1];
-    mspringi_limits_renew(network, spring_slot);
+    if (nominal) {
+        nominal[spring_slot] = lengths[1];
+        mspringi_limits_renew(network, spring_slot);
+    }
+    if (network->metres)
+        mspringi_metres_renew(network, spring);
 }
 
 static void put_back(mspring_network *network, const mspringi_mark *mark, uint32_t group) {
@@ -157,27 +136,26 @@ static void put_back(mspring_network *network, const mspringi_mark *mark, uint32
     restore_motion(network, mark, group);
     mspringi_sent_forget(&network->sent[mspringi_sent_index(MSPRING_REST_LENGTH)]);
     for (uint32_t i = g->first_spring[group]; i < g->first_spring[group + 1]; ++i)
-        put_length_back(network, g->springs[i], mark->lengths + 2 * (size_t)i);
+        if (mspringi_spring_exists(network, g->springs[i]))
+            put_length_back(network, g->springs[i], mark->lengths + 2 * (size_t)i);
 }
 
-mspring_result mspring_network_reset_groups(mspring_network *network, const uint32_t *groups, uint32_t count,
-                                            mspring_reset to) {
-    mspring_result result = mspringi_check_call(network);
+mspring_result mspring_network_reset_groups(mspring_network *network, mspring_reset to, const mspring_id *ids,
+                                            mspring_id first, uint32_t count) {
+    mspringi_selection reset;
+    mspring_result result = mspringi_select(network, MSPRING_GROUPS, ids, first, count, &reset);
     if (result == MSPRING_OK && to != MSPRING_RESET_START && to != MSPRING_RESET_MARK)
         result = mspringi_fail(&network->message, MSPRING_ERROR_ARGUMENT, "reset is %d, which is none", (int)to);
-    if (result == MSPRING_OK)
-        result = check_groups(network, groups, count);
     if (result != MSPRING_OK)
         return result;
     const mspringi_groups *g = &network->groups;
     const mspringi_mark *mark = to == MSPRING_RESET_MARK && g->mark.motion ? &g->mark : &g->start;
-    const choice reset = choose(network, groups, count);
     result = restore_links(network, mark, &reset);
     if (result != MSPRING_OK || reset.count == 0)
         return result;
     const mspringi_fp_state before = mspringi_fp_enter();
     for (uint32_t i = 0; i < reset.count; ++i)
-        put_back(network, mark, chosen(&reset, i));
+        put_back(network, mark, mspringi_selected(&reset, i));
     mspringi_fp_leave(before);
     network->edits.flows++;
     mspringi_notify_change(network, MSPRINGI_CHANGED_STATE, 0);

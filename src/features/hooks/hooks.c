@@ -1,5 +1,6 @@
 /// Host functions that are called in the course of a step.
 #include <math.h>
+#include <stdatomic.h>
 
 #include "features/hooks/reach.h"
 #include "store/feature.h"
@@ -8,6 +9,10 @@
 
 /// Fewest slots that are worth to be handed to another worker, if the host does not say.
 #define SMALLEST_RANGE 2048
+
+/// Global damping times dt above which a speed beyond MSPRING_MAX_SPEED could be below it again by the end of the
+/// step: exp(-20) is 2e-9, and at 1e24 m/s nothing overflows yet.
+#define STRONG_DAMPING 20.0
 
 /* ------------------------------------------------------------------------------------------- adding, removing */
 
@@ -84,6 +89,14 @@ mspring_result mspring_network_add_hook(mspring_network *network, const mspring_
     return MSPRING_OK;
 }
 
+static void take_out(mspring_network *network, size_t i) {
+    mspringi_hooks *hooks = network->hooks;
+    mspringi_free(&network->memory, hooks->list[i].held.x);
+    hooks->count--;
+    for (; i < hooks->count; ++i)
+        hooks->list[i] = hooks->list[i + 1];
+}
+
 mspring_result mspring_network_remove_hook(mspring_network *network, mspring_id hook) {
     mspring_result result = mspringi_check_call(network);
     if (result != MSPRING_OK)
@@ -94,11 +107,19 @@ mspring_result mspring_network_remove_hook(mspring_network *network, mspring_id 
         ++i;
     if (i == mspringi_hook_count(network))
         return mspringi_fail(&network->message, MSPRING_ERROR_ID, "there is no hook %s", MSPRINGI_ID(hook));
-    mspringi_free(&network->memory, hooks->list[i].held.x);
-    hooks->count--;
-    for (; i < hooks->count; ++i)
-        hooks->list[i] = hooks->list[i + 1];
+    const mspring_hook_def removed = hooks->list[i].def;
+    take_out(network, i);
+    if (removed.release)
+        removed.release(removed.user);
     return MSPRING_OK;
+}
+
+void mspringi_hooks_release(mspring_network *network) {
+    for (size_t i = 0; i < mspringi_hook_count(network); ++i) {
+        const mspring_hook_def *def = &network->hooks->list[i].def;
+        if (def->release)
+            def->release(def->user);
+    }
 }
 
 /* --------------------------------------------------------------------------------------- layouts and copies */
@@ -132,10 +153,21 @@ void mspringi_hooks_drop(const mspring_network *from, mspringi_memory *memory) {
 }
 
 void mspringi_hooks_clear(mspring_network *network) {
-    for (size_t i = 0; i < mspringi_hook_count(network); ++i)
-        mspringi_free(&network->memory, network->hooks->list[i].held.x);
-    if (network->hooks)
-        network->hooks->count = 0;
+    while (mspringi_hook_count(network) > 0)
+        take_out(network, mspringi_hook_count(network) - 1);
+}
+
+void mspringi_hooks_retain(mspring_network *network) {
+    for (size_t i = 0; i < mspringi_hook_count(network);) {
+        mspring_hook_def *def = &network->hooks->list[i].def;
+        if (def->release && !def->retain) {
+            take_out(network, i);
+            continue;
+        }
+        if (def->retain)
+            def->user = def->retain(def->user);
+        ++i;
+    }
 }
 
 static void relocate_fields(void *state, const mspringi_memory *from, const mspringi_memory *to) {
@@ -156,22 +188,36 @@ const mspringi_feature_state mspringi_state_of_hooks = {MSPRINGI_ARRAY_TABLE(arr
 typedef struct hook_call {
     const mspring_network *network;
     const mspring_hook_def *def;
-    mspring_hook_args args; ///< but for range, worker and storage
+    mspring_hook_args args; ///< but for range, worker, storage and result
     uint32_t slot_count, range;
+    _Atomic uint64_t refused; ///< first slot of the first run that a hook refused, and what with; UINT64_MAX: none
 } hook_call;
 
-static void call_run(const hook_call *call, mspringi_slot_run run, uint32_t worker) {
+// Of several runs, the first in the order of slots counts: workers may call in any order.
+static void note_refusal(hook_call *call, uint32_t first_slot, mspring_result result) {
+    const uint32_t code = (uint32_t)(result < 0 ? -(int64_t)result : -(int64_t)MSPRING_ERROR_REFUSED);
+    const uint64_t mine = (uint64_t)first_slot << 32 | code;
+    uint64_t seen = call->refused;
+    while (mine < seen && !atomic_compare_exchange_weak(&call->refused, &seen, mine))
+        ;
+}
+
+static void call_run(hook_call *call, mspringi_slot_run run, uint32_t worker) {
     mspring_hook_args args = call->args;
+    mspring_result result = MSPRING_OK;
+    args.result = &result;
     args.first_slot = run.first;
     args.slot_count = run.end - run.first;
     args.worker = worker;
     if (call->def->storage)
         args.storage = (char *)call->def->storage + worker * call->def->storage_stride;
     call->def->fn(&args, call->def->user);
+    if (result != MSPRING_OK)
+        note_refusal(call, run.first, result);
 }
 
 static void call_range(void *argument, uint32_t index, uint32_t worker) {
-    const hook_call *call = argument;
+    hook_call *call = argument;
     const uint32_t first = index * call->range;
     const uint32_t end = call->slot_count - first < call->range ? call->slot_count : first + call->range;
     mspringi_slot_run run = {first, end};
@@ -203,8 +249,38 @@ static hook_group group_of(const mspringi_attempt *attempt, uint32_t substep, ui
     return (hook_group){substep, count, (double)attempt->h * (double)count};
 }
 
-static void call_hook(mspring_network *network, const mspringi_attempt *attempt, const mspring_hook_def *def,
+static float bounded(float speed, float most) {
+    return fabsf(speed) > most && isfinite(speed) ? (speed < 0 ? -most : most) : speed;
+}
+
+// Refuse excessive speeds that a hook has written, and that strong damping would hide at the end of the step, or
+// bound them (the guard sees those that are not finite). Within it, rates of strain overflow, also of springs that
+// do not exist, of which wide vectors have more: levels would differ.
+static void judge_speeds(mspring_network *network, const mspringi_attempt *attempt, const mspringi_hook *hook) {
+    mspringi_hooks *hooks = network->hooks;
+    const mspringi_state *s = &network->state;
+    const float most = (float)MSPRING_MAX_SPEED, set = network->settings.max_speed;
+    if (!((double)network->settings.global_damping * attempt->dt > STRONG_DAMPING))
+        return;
+    for (mspring_id p = 0; p < network->topology.particle_count && hooks->refused == MSPRING_OK; ++p) {
+        const uint32_t slot = network->topology.slot_of_particle[p];
+        if (!mspringi_particle_exists(network, p) || (fabsf(s->vx[slot]) <= most && fabsf(s->vy[slot]) <= most))
+            continue;
+        if (network->settings.guard == MSPRING_GUARD_CLAMP_BOUNDS) {
+            mspringi_set_velocity(s, slot, bounded(s->vx[slot], set), bounded(s->vy[slot], set));
+            network->outcome.flags |= MSPRING_STEP_PUT_BACK;
+            continue;
+        }
+        hooks->refused = MSPRING_ERROR_UNSTABLE;
+        hooks->refused_by = hook->number;
+        hooks->hurled = network->outcome.particle = p;
+        hooks->is_hurled = true;
+    }
+}
+
+static void call_hook(mspring_network *network, const mspringi_attempt *attempt, const mspringi_hook *hook,
                       hook_group group, mspringi_field field) {
+    const mspring_hook_def *def = &hook->def;
     const uint32_t slot_count = (uint32_t)mspringi_used_slots(network);
     mspringi_slot_run lowest;
     if (mspringi_has_reach(def) && !mspringi_next_below(network, def, 0, slot_count, &lowest))
@@ -216,6 +292,7 @@ static void call_hook(mspring_network *network, const mspringi_attempt *attempt,
         .def = def,
         .slot_count = slot_count,
         .range = range_of(network, def, slot_count),
+        .refused = UINT64_MAX,
         .args =
             {
                 .struct_size = sizeof call.args,
@@ -235,12 +312,18 @@ static void call_hook(mspring_network *network, const mspringi_attempt *attempt,
                 .particle_of_slot = network->topology.particle_of_slot,
                 .slot_of_particle = network->topology.slot_of_particle,
                 .network = network,
-                .group_count = group.count,
+                .run_count = group.count,
             },
     };
     network->in_hook = def->flags & MSPRING_HOOK_CONCURRENT ? MSPRINGI_IN_HOOKS : MSPRINGI_IN_HOOK;
     mspringi_tasks_run(network->tasks, (slot_count + call.range - 1) / call.range, call_range, &call);
     network->in_hook = MSPRINGI_IN_NO_HOOK;
+    const uint64_t refused = call.refused;
+    if (refused != UINT64_MAX && network->hooks->refused == MSPRING_OK) {
+        network->hooks->refused = (mspring_result)(-(int64_t)(uint32_t)refused);
+        network->hooks->refused_by = hook->number;
+    }
+    judge_speeds(network, attempt, hook);
 }
 
 /* ------------------------------------------------------------------------------------------------ whose turn */
@@ -295,7 +378,7 @@ static void before_step(mspring_network *network, const mspringi_attempt *attemp
     const hook_group all = {0, 1, attempt->dt};
     for (size_t i = 0; i < mspringi_hook_count(network); ++i)
         if (is_due(network, attempt, &network->hooks->list[i], MSPRING_PHASE_BEFORE_STEP))
-            call_hook(network, attempt, &network->hooks->list[i].def, all, field);
+            call_hook(network, attempt, &network->hooks->list[i], all, field);
 }
 
 static void add(const mspring_network *network, mspringi_field from, mspringi_field to) {
@@ -331,13 +414,13 @@ static mspringi_field before_substep(mspring_network *network, const mspringi_at
         if (!is_due(network, attempt, hook, MSPRING_PHASE_BEFORE_SUBSTEP))
             continue;
         if (!hook->held.x) {
-            call_hook(network, attempt, &hook->def, group_of(attempt, substep, 1), driven);
+            call_hook(network, attempt, hook, group_of(attempt, substep, 1), driven);
             continue;
         }
         if (substep % hook->def.period == 0) {
             mspringi_field_clear(network, hook->held);
             const uint32_t count = hook->def.period < left ? hook->def.period : left;
-            call_hook(network, attempt, &hook->def, group_of(attempt, substep, count), hook->held);
+            call_hook(network, attempt, hook, group_of(attempt, substep, count), hook->held);
         }
         add(network, hook->held, driven);
     }
@@ -351,7 +434,7 @@ static void after_substep(mspring_network *network, const mspringi_attempt *atte
         const mspringi_field none = {NULL, NULL};
         if (is_due(network, attempt, hook, MSPRING_PHASE_AFTER_SUBSTEP) &&
             (group == hook->def.period || substep + 1 == attempt->substeps))
-            call_hook(network, attempt, &hook->def, group_of(attempt, substep, group), none);
+            call_hook(network, attempt, hook, group_of(attempt, substep, group), none);
     }
 }
 
@@ -371,8 +454,34 @@ static bool must_repeat(mspring_network *network, const mspringi_attempt *attemp
     return any;
 }
 
+// Fail if a hook has refused the step. All three stages ask; the first one clears it.
+static mspring_result verify(mspring_network *network) {
+    mspringi_hooks *hooks = network->hooks;
+    const mspring_result refused = hooks->refused;
+    const bool is_hurled = hooks->is_hurled;
+    hooks->refused = MSPRING_OK;
+    hooks->is_hurled = false;
+    hooks->ends_step = refused != MSPRING_OK && !is_hurled;
+    if (is_hurled)
+        return mspringi_fail(&network->message, refused,
+                             "unstable: hook %u gave particle %u a velocity beyond 1e15 m/s in x or y",
+                             (unsigned)hooks->refused_by, (unsigned)hooks->hurled);
+    return refused == MSPRING_OK ? MSPRING_OK
+                                 : mspringi_fail(&network->message, refused, "hook %u has refused the step: %s",
+                                                 (unsigned)hooks->refused_by, mspring_result_string(refused));
+}
+
+bool mspringi_hooks_end_step(const mspring_network *network) {
+    const bool ends = network->hooks && network->hooks->ends_step;
+    if (ends)
+        network->hooks->ends_step = false;
+    return ends;
+}
+
 // A step that is repeated is looked at in every substep.
 static void roll_back(mspring_network *network) {
+    network->hooks->refused = MSPRING_OK;
+    network->hooks->is_hurled = false;
     for (size_t i = 0; i < mspringi_hook_count(network); ++i)
         if (network->hooks->list[i].distance == MSPRINGI_AWAY)
             network->hooks->list[i].distance = MSPRINGI_CLOSE;
@@ -424,6 +533,7 @@ const mspringi_stage mspringi_stage_hooks_before_step = {.is_used = has_before_s
                                                          .is_quiet = is_before_step_quiet,
                                                          .is_needed = is_before_step_needed,
                                                          .forces = before_step,
+                                                         .verify = verify,
                                                          .roll_back = roll_back};
 const mspringi_stage mspringi_stage_hooks_before_substep = {.is_used = has_before_substep,
                                                             .writes_state = true,
@@ -433,6 +543,7 @@ const mspringi_stage mspringi_stage_hooks_before_substep = {.is_used = has_befor
                                                             .free_substeps = free_before,
                                                             .before_substep = before_substep,
                                                             .must_repeat = must_repeat,
+                                                            .verify = verify,
                                                             .roll_back = roll_back};
 const mspringi_stage mspringi_stage_hooks_after_substep = {.is_used = has_after_substep,
                                                            .writes_state = true,
@@ -442,6 +553,7 @@ const mspringi_stage mspringi_stage_hooks_after_substep = {.is_used = has_after_
                                                            .free_substeps = free_after,
                                                            .after_substep = after_substep,
                                                            .must_repeat = must_repeat,
+                                                           .verify = verify,
                                                            .roll_back = roll_back};
 
 bool mspringi_hooks_act(const mspring_network *network) {

@@ -23,13 +23,22 @@ typedef struct mspringi_hooks {
     mspringi_hook *list; ///< [count]
     size_t count, capacity;
     uint32_t next_number;
+    mspring_result refused; ///< in this attempt at a step, by a hook; MSPRING_OK: by none
+    uint32_t refused_by;
+    mspring_id hurled; ///< particle for which it is MSPRING_ERROR_UNSTABLE, if is_hurled
+    bool is_hurled;
+    bool ends_step; ///< a hook has refused the attempt that failed last
 } mspringi_hooks;
 
 static inline size_t mspringi_hook_count(const mspring_network *network) {
     return network->hooks ? network->hooks->count : 0;
 }
 
-/// Remove all hooks.
+/// True if a hook has refused the attempt that failed: no other one follows, whatever it refused with. Asked once.
+bool mspringi_hooks_end_step(const mspring_network *network);
+/// Forget all hooks of a copy, without a word to the host.
 void mspringi_hooks_clear(mspring_network *network);
+/// Make the hooks of a copy its own: those that cannot be retained are left out.
+void mspringi_hooks_retain(mspring_network *network);
 
 #endif

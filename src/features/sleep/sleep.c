@@ -466,6 +466,11 @@ static void move(mspring_network *to, const mspring_network *from) {
     s->masses = had->masses;
 }
 
+static bool is_idle(const mspring_network *network) {
+    return mspringi_sleep_is_whole(network) &&
+           mspringi_next_disturbed_sleeper(network, 0) == mspringi_slot_count(network);
+}
+
 const mspringi_sleep_ops mspringi_ops_of_sleep = {.begin = begin,
                                                   .hold = hold,
                                                   .put_back = put_back,
@@ -473,38 +478,9 @@ const mspringi_sleep_ops mspringi_ops_of_sleep = {.begin = begin,
                                                   .wake = wake,
                                                   .finish_waking = finish_waking,
                                                   .find_islands = mspringi_islands_find,
-                                                  .move = move};
-
-/* --------------------------------------------------------------------------------------------------------- API */
-
-mspring_result mspring_network_wake(mspring_network *network) {
-    mspring_result result = mspringi_check_call(network);
-    if (result == MSPRING_OK)
-        wake_all(network);
-    return result;
-}
-
-mspring_result mspring_network_get_sleepers(const mspring_network *network, mspring_id first, uint32_t count,
-                                            uint8_t *asleep, uint32_t stride) {
-    mspringi_selection at;
-    const mspring_result result =
-        mspringi_look_up_range(network, MSPRINGI_PARTICLES, first, count, asleep, asleep, stride, &at);
-    if (result != MSPRING_OK)
-        return result;
-    const mspringi_sleep *s = &network->sleep;
-    for (uint32_t i = 0; i < count; ++i)
-        asleep[(size_t)i * stride] =
-            s->sleeping > 0 && mspringi_particle_exists(network, first + i) &&
-                    s->still[s->island[network->topology.slot_of_particle[first + i]]] < 0.0
-                ? 1
-                : 0;
-    return MSPRING_OK;
-}
-
-uint32_t mspring_network_is_asleep(const mspring_network *network) {
-    return network && mspringi_sleep_is_whole(network) &&
-           mspringi_next_disturbed_sleeper(network, 0) == mspringi_slot_count(network);
-}
+                                                  .move = move,
+                                                  .wake_all = wake_all,
+                                                  .is_idle = is_idle};
 
 void mspringi_sleep_react(mspring_network *network, mspringi_change change, uint32_t index) {
     switch (change) {

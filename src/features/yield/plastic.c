@@ -162,14 +162,15 @@ static mspring_result reserve_property(mspring_network *network, mspring_propert
 }
 
 const mspringi_limit_ops mspringi_limits_of_yielding = {
-    .properties = 1u << MSPRING_YIELD_STRAIN | 1u << MSPRING_HARDENING | 1u << MSPRING_PLASTIC_LIMIT |
-                  1u << MSPRING_PLASTIC_STRAIN,
+    .first = MSPRING_YIELD_STRAIN,
+    .last = MSPRING_PLASTIC_STRAIN,
     .reserve = reserve_property,
     .match_layout = match_layout,
     .store = store,
     .put = put,
     .forget = forget,
-    .renew = renew};
+    .renew = renew,
+};
 
 /* ---------------------------------------------------------------------------------------------------- reports */
 
@@ -181,21 +182,9 @@ bool mspringi_plastic_is_finite(const mspring_network *network) {
     return finite;
 }
 
-mspring_result mspring_network_get_plasticity(const mspring_network *network, mspring_plasticity *report) {
-    const mspring_result result = mspringi_check_report(network, &mspringi_struct_plasticity, report);
-    if (result != MSPRING_OK)
-        return result;
-    const mspringi_tested *p = &network->tested;
-    mspring_plasticity made = {0};
-    if (network->plastic) {
-        made.yield_count = network->plastic->count;
-        made.dissipated = network->plastic->dissipated;
-    }
-    for (mspring_id s = 0; p->is_bent && s < network->topology.spring_count; ++s) {
-        const mspringi_spring_slot spring_slot = mspringi_slot_of_spring(&network->topology, s);
-        made.bent_springs += mspringi_spring_exists(network, s) &&
-                             mspringi_spring_slot_own_length(network, spring_slot) != p->nominal[spring_slot];
-    }
-    mspringi_put_plasticity(report, &made);
-    return MSPRING_OK;
+void mspringi_plastic_report(const mspring_network *network, mspring_energy *energy) {
+    if (!network->plastic)
+        return;
+    energy->yield_count = network->plastic->count;
+    energy->dissipated = network->plastic->dissipated;
 }

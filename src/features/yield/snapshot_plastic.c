@@ -18,6 +18,9 @@ typedef struct yielding {
 } yielding;
 enum { VALUES = 4 };
 
+// What a slot holds of a removed spring depends on when it was removed.
+static const yielding of_no_spring = {INFINITY, MSPRING_HARDENING_DEFAULT, MSPRING_PLASTIC_LIMIT_DEFAULT, 1.0f};
+
 static size_t yielding_size(const mspring_network *network) {
     return network->tested.yields ? network->topology.reserve.spring_end * sizeof(yielding) : 0;
 }
@@ -26,8 +29,10 @@ static void yielding_save(const mspring_network *network, mspringi_writer *to) {
     const mspringi_tested *p = &network->tested;
     for (mspring_id s = 0; s < network->topology.reserve.spring_end; ++s) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
-        const yielding values = {p->yield_strain[spring_slot], p->hardening[spring_slot],
-                                 p->plastic_limit[spring_slot], p->nominal[spring_slot]};
+        yielding values = of_no_spring;
+        if (mspringi_spring_exists(network, s))
+            values = (yielding){p->yield_strain[spring_slot], p->hardening[spring_slot],
+                                p->plastic_limit[spring_slot], p->nominal[spring_slot]};
         mspringi_put(to, &values, VALUES, sizeof(float));
     }
 }
@@ -59,8 +64,9 @@ static void yielding_load(mspring_network *network, const uint8_t *from, size_t 
     for (mspring_id s = 0; p->nominal && s < network->topology.reserve.spring_end; ++s) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
         const bool exists = mspringi_spring_exists(network, s);
-        yielding v = {INFINITY, MSPRING_HARDENING_DEFAULT, MSPRING_PLASTIC_LIMIT_DEFAULT,
-                      exists ? mspringi_spring_slot_own_length(network, spring_slot) : 1.0f};
+        yielding v = of_no_spring;
+        if (exists)
+            v.nominal = mspringi_spring_slot_own_length(network, spring_slot);
         if (size > 0)
             from = mspringi_get(from, &v, VALUES, sizeof(float));
         p->yield_strain[spring_slot] = mspringi_broken_value(v.yield_strain);

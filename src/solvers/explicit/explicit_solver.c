@@ -26,6 +26,8 @@ static bool whole(mspring_network *network, const mspringi_attempt *attempt, msp
         return true;
     memcpy(network->state.x, network->backup.x,
            mspringi_state_arrays(network) * mspringi_slot_count(network) * sizeof *network->state.x);
+    mspringi_clear_unused_slots(network); // the backup has nothing of slots that were not swept
+    mspringi_clear_empty_slots(network);
     mspringi_explicit_reset(network);
     return false;
 }

@@ -384,7 +384,7 @@ static const implicit_pass direct_passes[] = {
     MSPRINGI_ONCE(finish),
 };
 
-mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_settings *def, uint32_t tile_size,
                                        mspringi_implicit **begun) {
     mspringi_implicit *n = mspringi_alloc(&network->memory, 1, sizeof *n);
     making *m = mspringi_alloc(&network->memory, 1, sizeof *m);
@@ -421,7 +421,7 @@ mspring_result mspringi_implicit_make(mspringi_implicit *n, bool *is_done) {
     return result;
 }
 
-void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_solver_def *def) {
+void mspringi_implicit_adjust(mspringi_implicit *n, const mspring_settings *def) {
     const float residual = n->is_direct ? MSPRINGI_RESIDUAL : def->residual;
     const uint32_t usual = residual > 0.0f ? MOST_ITERATIONS_BY_DEFAULT : ITERATIONS_BY_DEFAULT;
     const uint32_t iterations = !n->is_direct && def->iterations > 0 ? def->iterations : usual;

@@ -62,7 +62,7 @@ typedef enum mspringi_contact_mode {
 typedef struct mspringi_implicit {
     mspring_integrator integrator;
     uint32_t iterations, coarse_period; ///< iterations: the most of a solution
-    float residual_share;               ///< that ends them: mspring_solver_def.residual
+    float residual_share;               ///< that ends them: mspring_settings.residual
     uint32_t tile_size;                 ///< as requested; 0: automatic
     uint32_t age;                       ///< substeps since the coarse matrix was factored; 0: factor it
     bool has_constraints_in_coarse;     ///< with bounds: they come and go, so it is not used again
@@ -133,10 +133,10 @@ static inline mspringi_implicit *mspringi_implicit_of(const mspring_network *net
 }
 
 /// Make an implicit solver, as the operations create and build of store/solver.h.
-mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+mspring_result mspringi_implicit_begin(mspring_network *network, const mspring_settings *def, uint32_t tile_size,
                                        mspringi_implicit **begun);
 mspring_result mspringi_implicit_make(mspringi_implicit *implicit, bool *is_done);
-void mspringi_implicit_adjust(mspringi_implicit *implicit, const mspring_solver_def *def);
+void mspringi_implicit_adjust(mspringi_implicit *implicit, const mspring_settings *def);
 void mspringi_implicit_destroy(mspringi_implicit *implicit, mspringi_memory *memory);
 /// Redirect a copied solver's pointers into the copy of its network.
 void mspringi_implicit_relocate(mspringi_implicit *implicit, const mspring_network *network,
@@ -235,7 +235,7 @@ static inline bool mspringi_is_coupled(const mspring_network *network, const msp
     return n->is_coupled && n->is_coupled[slot - (size_t)network->topology.loose_first * MSPRINGI_WIDTH];
 }
 
-/* work.c: in the unit of mspring_solver_def.most_work */
+/* work.c: in the unit of mspring_settings.most_work */
 
 /// Most iterations of a solution for which calm ones are multiplied by `times`.
 uint32_t mspringi_implicit_most_iterations(const mspringi_implicit *n, uint32_t times);

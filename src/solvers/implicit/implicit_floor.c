@@ -92,14 +92,15 @@ static void add_contact(mspring_network *network, const mover *m, const near_sur
     push->bounded = MSPRINGI_BOUND_PUSH;
     push->activity = depth > -slop ? MSPRINGI_STIFF : MSPRINGI_IDLE;
     push->bound = push->stiffness * slop;
-    if (line->friction == 0.0)
+    const double coefficient = mspringi_friction_on(line, mspringi_own_of(network, slot));
+    if (coefficient == 0.0)
         return;
     mspringi_constraint *friction =
         add_constraint(network, slot, -ny, nx, nx * (y - m->start_y) - ny * (x - m->start_x));
     friction->bounded = MSPRINGI_BOUND_FRICTION;
     friction->activity = fabs(slid) > slop ? MSPRINGI_AT_BOUND : MSPRINGI_STIFF;
-    friction->bound = line->friction;
-    const double force = line->friction * (double)n->mass[slot] * fmax(depth, 0.0);
+    friction->bound = coefficient;
+    const double force = coefficient * (double)n->mass[slot] * fmax(depth, 0.0);
     friction->bound_force = slid < 0.0 ? force : -force;
 }
 

@@ -128,7 +128,7 @@ void mspringi_implicit_load(mspring_network *network, mspringi_implicit *n, cons
     n->has_constraints_in_coarse = false;
 }
 
-/* ------------------------------------------------------------------------------------------------------- archives */
+/* --------------------------------------------------------------------------------------------------- archives */
 
 uint32_t mspringi_implicit_runs(const mspring_network *network, const mspringi_implicit *n, mspringi_io io,
                                 mspringi_run *runs) {

@@ -5,7 +5,7 @@
 #include "solvers/implicit/implicit.h"
 #include "store/sections.h"
 
-static mspring_result create(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+static mspring_result create(mspring_network *network, const mspring_settings *def, uint32_t tile_size,
                              void **object) {
     mspringi_implicit *made = NULL;
     mspring_result result = mspringi_implicit_begin(network, def, tile_size, &made);
@@ -17,12 +17,12 @@ static mspring_result build(void *object, bool *is_done) {
     return mspringi_implicit_make(object, is_done);
 }
 
-static bool fits(const void *object, const mspring_solver_def *def) {
+static bool fits(const void *object, const mspring_settings *def) {
     const mspringi_implicit *n = object;
     return n->integrator == def->integrator && (n->is_direct || n->tile_size == def->tile_size);
 }
 
-static void adjust(void *object, const mspring_solver_def *def) {
+static void adjust(void *object, const mspring_settings *def) {
     mspringi_implicit_adjust(object, def);
 }
 
@@ -41,9 +41,9 @@ static mspring_result reserve(void *object, mspring_network *network) {
 
 /* ----------------------------------------------------------------------------------------------- another layout */
 
-static void get_def(const void *object, mspring_solver_def *def) {
+static void get_def(const void *object, mspring_settings *def) {
     const mspringi_implicit *n = object;
-    (void)mspring_solver_def_init(def, sizeof *def);
+    (void)mspring_init(MSPRING_STRUCT_SETTINGS, def, sizeof *def);
     def->solver = n->is_direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
     def->integrator = n->integrator;
     def->iterations = n->iterations;
@@ -177,7 +177,7 @@ static bool has_isolated(const void *object) {
 
 /* ------------------------------------------------------------------------------------------------------- others */
 
-static void describe(const void *object, mspring_plan *plan) {
+static void describe(const void *object, mspringi_plan *plan) {
     const mspringi_implicit *n = object;
     plan->solver = n->is_direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
     plan->integrator = n->integrator;

@@ -60,7 +60,7 @@ static mspringi_prediction prepare_flight(const mspringi_implicit_substep *subst
     const mspring_network *network = substep->network;
     const mspringi_implicit *n = mspringi_implicit_of(network);
     const float h = substep->h, ratio = rescaling(n, h);
-    const float share = integrator == MSPRING_INTEGRATOR_GA0    ? 0.25f * h
+    const float share = integrator == MSPRING_INTEGRATOR_ALPHA  ? 0.25f * h
                         : integrator == MSPRING_INTEGRATOR_BDF2 ? -0.5f / h * (ratio * ratio)
                                                                 : 0.0f;
     return (mspringi_prediction){
@@ -121,7 +121,7 @@ static void prepare_outside(mspringi_implicit_substep *substep, double c, double
 
 static mspringi_history_kind choose_memory(const mspringi_implicit *n) {
     switch (n->integrator) {
-    case MSPRING_INTEGRATOR_GA0:
+    case MSPRING_INTEGRATOR_ALPHA:
         return starts_anew(n) ? MSPRINGI_HISTORY_VELOCITY_CHANGE : MSPRINGI_HISTORY_ACCELERATION;
     case MSPRING_INTEGRATOR_BDF2:
         return MSPRINGI_HISTORY_BDF2;

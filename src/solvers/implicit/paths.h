@@ -81,9 +81,9 @@ extern const mspringi_array_table mspringi_paths_columns;
 
 /* condense.c: of a solution, on all members of a team; nothing without paths */
 
-/// Turn path particles as the rotation of tiles has turned their ends, in equal steps from one to the other, between
-/// barriers. (If they stay, the spring at a hull that spins has a wrong direction: hulls with a rope of 2,000
-/// particles were up to 9 times as far from the direct solver as without condensation.)
+/// Turn path particles as the rotation of tiles has turned their ends, in equal steps from one to the other,
+/// between barriers. (If they stay, the spring at a hull that spins has a wrong direction: hulls with a rope of
+/// 2,000 particles were up to 9 times as far from the direct solver as without condensation.)
 void mspringi_condense_turn(const mspring_network *network, const mspringi_prediction *prediction,
                             mspringi_team_member *member);
 

@@ -266,7 +266,7 @@ static bool keep_out(const rigid_interval *o, rigid_body *a, size_t slot, double
     const double gap = mspringi_distance_from_line(line, x, y), least = gap < 0.0 ? 0.0 : -gap / o->h;
     double across_impulse, along_impulse;
     const double change = push_at(a, rx, ry, line->nx, line->ny, least, 0.0, INFINITY, sum, &across_impulse);
-    const double most = line->friction * (double)*sum;
+    const double most = mspringi_friction_on(line, mspringi_own_of(o->network, slot)) * (double)*sum;
     const double slip = push_at(a, rx, ry, -line->ny, line->nx, 0.0, -most, most, along, &along_impulse);
     to->x[slot] += (float)(across_impulse * line->nx - along_impulse * line->ny);
     to->y[slot] += (float)(across_impulse * line->ny + along_impulse * line->nx);

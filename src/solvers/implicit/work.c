@@ -1,4 +1,4 @@
-/// Work of a step, in the unit of mspring_solver_def.most_work: its passes, and its products with the matrix.
+/// Work of a step, in the unit of mspring_settings.most_work: its passes, and its products with the matrix.
 ///
 /// It is counted from what is computed, so it is the same for any number of workers. Beyond what a substep is
 /// allowed nothing is repeated: intervals are accepted by the energy budget, and bodies that touch are rigid

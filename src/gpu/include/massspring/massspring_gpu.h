@@ -2,19 +2,19 @@
 /// Batches of equal bodies on a graphics card, with the bits of the processor.
 ///
 ///     devices     gpu_describe_devices
-///     batch       gpu_def_init, gpu_create, gpu_destroy, gpu_error, gpu_body_count, gpu_step, gpu_reset
+///     batch       gpu_def_default, gpu_create, gpu_destroy, gpu_error, gpu_body_count, gpu_step, gpu_reset
 ///     actuators   gpu_set_signals
 ///     state       gpu_get_flags, gpu_observe, gpu_get_positions, gpu_get_velocities, gpu_get_state_hash
 ///
 /// These calls are a separate library, massspring_gpu: build with -DMASSSPRING_GPU=ON. It uses only public calls of
-/// massspring. The calls are not frozen yet: a later minor version may change them. massspring.h explains the notation.
+/// massspring, one of them of the part `lab`. The calls are not frozen yet: a later minor version may change them.
+/// massspring.h explains the notation.
 ///
-/// **How it works.** You make a network of one body or several on the processor, divide it into groups
-/// (massspring_batch.h), and set floor and settings. mspring_gpu_create() reads it, repeats its bodies as often as you
-/// ask, and copies them to a device. After that the network is no longer needed. Each step gives the bits of a network
-/// with that many groups: mspring_gpu_get_state_hash() equals its mspring_network_state_hash(). Before it returns,
-/// mspring_gpu_create() checks this: it steps a clone of the network and the batch from the same random velocities, and
-/// compares them.
+/// **How it works.** You make a network of one body or several on the processor, divide it into groups (batch.h), and
+/// set floor and settings. mspring_gpu_create() reads it, repeats its bodies as often as you ask, and copies them to a
+/// device. After that the network is no longer needed. Each step gives the bits of a network with that many groups:
+/// mspring_gpu_get_state_hash() equals its mspring_network_get_state_hash(). Before it returns, mspring_gpu_create()
+/// checks this: it steps a clone of the network and the batch from the same random velocities, and compares them.
 ///
 /// **What bodies may have.** Up to MSPRING_GPU_MAX_PARTICLES particles, pinned or not, each with a spring; springs with
 /// stiffness, damping and rest length, relative ones, welds; actuators; half-planes with friction and restitution;
@@ -40,7 +40,7 @@
 #ifndef MASSSPRING_MASSSPRING_GPU_H
 #define MASSSPRING_MASSSPRING_GPU_H
 
-#include <massspring/massspring_batch.h>
+#include <massspring/massspring.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -55,10 +55,10 @@ extern "C" {
 /// Value of mspring_gpu_def.device: the first suitable device, graphics cards first.
 #define MSPRING_GPU_ANY 0xffffffffu
 
-/// A batch on a device.
+/// A batch on a device: many equal bodies, and their state.
 typedef struct mspring_gpu mspring_gpu;
 
-/// Definition of a batch. Fill with mspring_gpu_def_init() first.
+/// Definition of a batch, as mspring_gpu_def_default() makes it.
 typedef struct mspring_gpu_def {
     uint32_t struct_size;
     uint32_t device;             ///< number of a device (mspring_gpu_describe_devices()); default MSPRING_GPU_ANY
@@ -72,15 +72,25 @@ typedef struct mspring_gpu_def {
     const char *library;         ///< path of the OpenCL library; default NULL: the system's
 } mspring_gpu_def;
 
-/// Fill a definition with its defaults. Pass the size that your header gives it: sizeof *def.
-/// @threads any   @allocates never   @errors ARGUMENT, STRUCT
-MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_def_init(mspring_gpu_def *def, size_t size);
+/// Fill a definition with its defaults, struct_size included. In C and C++ mspring_gpu_def_default() is shorter.
+/// @param size  sizeof the struct, as your header gives it
+/// Threads: any. Allocates: never. Errors: ARGUMENT, STRUCT.
+MSPRING_API mspring_result MSPRING_CALL mspring_gpu_def_init(mspring_gpu_def *def, size_t size);
+
+#if !defined(MSPRING_NO_INLINE)
+/// Return a definition with its defaults.
+static inline mspring_gpu_def mspring_gpu_def_default(void) {
+    mspring_gpu_def made;
+    (void)mspring_gpu_def_init(&made, sizeof made);
+    return made;
+}
+#endif
 
 /// Describe the devices, one line each: number, name and, if it is unsuitable, the reason.
 /// @param library  path of the OpenCL library, or NULL: the system's
 /// @param text     [size] receives as much of the lines as fits, or the error message
-/// @threads any   @allocates yes, and frees it; the OpenCL library stays loaded
-/// @errors ARGUMENT; MEMORY; DEVICE if there is no OpenCL
+/// Threads: any. Allocates: yes, and frees it; the OpenCL library stays loaded. Errors: ARGUMENT; MEMORY; DEVICE if
+/// there is no OpenCL.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_describe_devices(
     const char *library, char *text, size_t size);
 
@@ -88,77 +98,81 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_describe_d
 /// The present state is the start, to which mspring_gpu_reset() goes back. The network's own actuators and signals are
 /// not read: def has those of the batch.
 /// @param batch  receives the batch; free it with mspring_gpu_destroy()
-/// @threads shared for the network, which must not step meanwhile
-/// @allocates yes; on the device 48 bytes for each particle of the batch, and 24 for each of the network
-/// @errors ARGUMENT also for a network with something that a batch cannot have (the message names it); STRUCT; LIMIT
-///         for more than MSPRING_GPU_MAX_PARTICLES, 65534 springs in a body, 2^32 - 1 particles or actuators, or the
-///         local memory of the device; ID or DUPLICATE for an actuator; MEMORY; DEVICE
+/// Threads: shared for the network, which must not step meanwhile. Allocates: yes; on the device 48 bytes for each
+/// particle of the batch, and 24 for each of the network. Errors: ARGUMENT also for a network with something that a
+/// batch cannot have (the message names it); STRUCT; LIMIT for more than MSPRING_GPU_MAX_PARTICLES, 65534 springs in a
+/// body, 2^32 - 1 particles or actuators, or the local memory of the device; ID or DUPLICATE for an actuator; MEMORY;
+/// DEVICE.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_create(
     const mspring_network *network, const mspring_gpu_def *def, mspring_gpu **batch);
 
 /// Destroy a batch. NULL is allowed.
-/// @threads exclusive   @allocates never
+/// Threads: exclusive. Allocates: never.
 MSPRING_API void MSPRING_CALL mspring_gpu_destroy(mspring_gpu *batch);
 
 /// Return the message of the last call that failed, or "". It is valid until the next call on the batch. NULL gives "".
-/// @threads exclusive   @allocates never
+/// Threads: exclusive. Allocates: never.
 MSPRING_API const char *MSPRING_CALL mspring_gpu_error(const mspring_gpu *batch);
 
 /// Return the number of bodies. NULL gives 0.
-/// @threads shared   @allocates never
+/// Threads: shared. Allocates: never.
 MSPRING_API uint32_t MSPRING_CALL mspring_gpu_body_count(const mspring_gpu *batch);
 
 /// Step all bodies that are not held, with the network's number of substeps. Waits for the device.
 /// If a step takes a body out of bounds (max_speed, MSPRING_MAX_COORDINATE, NaN), the body is held, as a group is. It
 /// stays where it was before the step, at rest, until mspring_gpu_reset().
 /// @param dt  s, finite, > 0
-/// @threads exclusive   @allocates never   @errors ARGUMENT, DEVICE, MEMORY
+/// Threads: exclusive. Allocates: never. Errors: ARGUMENT, DEVICE, MEMORY.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_step(mspring_gpu *batch, double dt);
 
 /// Put bodies back to their start, and release those that are held. Their signals that no step has used are dropped.
 /// @param mask  [mspring_gpu_body_count()] resets bodies whose mask is not 0; NULL: all
-/// @threads exclusive   @allocates never   @errors ARGUMENT, DEVICE, MEMORY
+/// Threads: exclusive. Allocates: never. Errors: ARGUMENT, DEVICE, MEMORY.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_reset(mspring_gpu *batch, const uint8_t *mask);
 
-/// Set signals for the next step, as mspring_network_set_signals(). Actuator a of body b has number
+/// Set signals for the next step, as mspring_network_set() of MSPRING_SIGNAL. Actuator a of body b has number
 /// b * actuator_count + a.
 /// @param signals  that of actuator first + i in signals[i * stride], 0.01 to 100
 /// @param stride   elements from one signal to the next; 0: all have signals[0]
-/// @threads exclusive   @allocates never   @errors ID, ARGUMENT (the message names the actuator)
+/// Threads: exclusive. Allocates: never. Errors: ID, ARGUMENT (the message names the actuator).
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_set_signals(
     mspring_gpu *batch, uint32_t first, uint32_t count, const float *signals, uint32_t stride);
 
 /// Read the flags of the bodies first ... first + count - 1: MSPRING_GROUP_HELD.
 /// @param flags   receives those of body first + i in flags[i * stride]
 /// @param stride  elements from one body to the next, at least 1
-/// @threads exclusive   @allocates yes, and frees it   @errors ID, ARGUMENT, MEMORY, DEVICE
+/// Threads: exclusive. Allocates: yes, and frees it. Errors: ID, ARGUMENT, MEMORY, DEVICE.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_get_flags(
     mspring_gpu *batch, uint32_t first, uint32_t count, uint32_t *flags, uint32_t stride);
 
-/// Observe the bodies first ... first + count - 1 on the device, bit for bit as mspring_network_observe_groups().
-/// @param particles       [particle_count] chosen particles, counted from the first of each body; may be NULL if
-///                        particle_count is 0
-/// @param rows            receives column c of body first + i in rows[i * stride + c]
-/// @param stride          elements from one row to the next, at least MSPRING_OBSERVE_PARTICLES + 4 * particle_count
-/// @threads exclusive   @allocates yes, and keeps a buffer on the device   @errors ID, ARGUMENT, MEMORY, DEVICE
+/// Observe the bodies first ... first + count - 1 on the device: a row for each, bit for bit that of
+/// mspring_network_observe_groups().
+/// Columns may be MSPRING_MASS, MSPRING_X to MSPRING_VY and MSPRING_RELATIVE_X to MSPRING_RELATIVE_VY of particles, and
+/// all properties of groups. The index of a particle is counted from the first of each body.
+/// @param columns  [column_count]; may be NULL if column_count is 0
+/// @param rows     receives column c of body first + i in rows[i * stride + c]
+/// @param stride   numbers from one row to the next, at least column_count
+/// Threads: exclusive. Allocates: yes, and keeps a buffer on the device. Errors: ID; ARGUMENT also for another property
+/// (the message names the column); MEMORY, DEVICE.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_observe(mspring_gpu *batch, uint32_t first,
-    uint32_t count, const uint32_t *particles, uint32_t particle_count, double *rows, uint32_t stride);
+    uint32_t count, const mspring_observation *columns, uint32_t column_count, double *rows, uint32_t stride);
 
 /// Read world positions (m) of the particles first ... first + count - 1. Particle p of body b has the id
 /// b * particles + p, as in a network with as many bodies.
-/// @param x, y    receive those of particle first + i in x[i * stride] and y[i * stride]
+/// @param x       receives that of particle first + i in x[i * stride]
+/// @param y       the same in y
 /// @param stride  elements from one particle to the next, at least 1
-/// @threads exclusive   @allocates yes, and frees it   @errors ID, ARGUMENT, MEMORY, DEVICE
+/// Threads: exclusive. Allocates: yes, and frees it. Errors: ID, ARGUMENT, MEMORY, DEVICE.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_get_positions(
     mspring_gpu *batch, mspring_id first, uint32_t count, double *x, double *y, uint32_t stride);
 
 /// Read velocities (m/s), half a substep old, as mspring_gpu_get_positions().
-/// @threads exclusive   @allocates yes, and frees it   @errors ID, ARGUMENT, MEMORY, DEVICE
+/// Threads: exclusive. Allocates: yes, and frees it. Errors: ID, ARGUMENT, MEMORY, DEVICE.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_get_velocities(
     mspring_gpu *batch, mspring_id first, uint32_t count, float *vx, float *vy, uint32_t stride);
 
-/// Hash the state. It is the mspring_network_state_hash() of a network with as many bodies. Reads the whole state.
-/// @threads exclusive   @allocates yes, and frees it   @errors ARGUMENT, MEMORY, DEVICE
+/// Hash the state. It is the mspring_network_get_state_hash() of a network with as many bodies. Reads the whole state.
+/// Threads: exclusive. Allocates: yes, and frees it. Errors: ARGUMENT, MEMORY, DEVICE.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gpu_get_state_hash(mspring_gpu *batch, uint64_t *hash);
 
 #ifdef __cplusplus
