@@ -1,7 +1,8 @@
 #!/bin/sh
 # What the built libraries are made of, seen from outside.
 #
-#   exports.sh symbols      LIBRARY.so HEADER...   it exports what the headers declare, and nothing else
+#   exports.sh symbols      LIBRARY.so HEADER...   it exports what the headers declare, and nothing else; what may
+#                                               change under a version of its own, this minor one
 #   exports.sh dependencies LIBRARY.so          it needs libc, libm and threads at most
 #   exports.sh instructions LIBRARY.a           no fused multiply-add, no approximate reciprocal, but in the inverse of
 #                                               src/kernels/inverse_avx512.h; wide registers only in the files that
@@ -27,10 +28,14 @@ trap 'rm -rf "$scratch"' EXIT
 
 case $check in
 symbols)
-  # Version nodes (type A) are names of versions, not of symbols.
-  "$NM" -D --defined-only "$library" | awk '$2 != "A" { sub(/@.*/, "", $3); print $3 }' | sort >"$scratch/exported"
   # Declarations: names before a parenthesis, outside of comments.
-  sed -e 's|///.*||' -e 's|//.*||' -e 's|(MSPRING_CALL [*]|*|g' -e 's|([*]|*|g' "$@" | grep -o 'mspring_[a-z0-9_]* *(' | tr -d ' (' | sort -u >"$scratch/declared"
+  declared() {
+    sed -e 's|//.*||' -e 's|(MSPRING_CALL [*]|*|g' -e 's|([*]|*|g' "$@" | grep -o 'mspring_[a-z0-9_]* *(' | tr -d ' (' | sort -u
+  }
+  # Version nodes (type A) are names of versions, not of symbols.
+  "$NM" -D --defined-only "$library" | awk '$2 != "A" { sub(/@@?/, " ", $3); print $3 }' | sort >"$scratch/versions"
+  cut -d ' ' -f 1 "$scratch/versions" >"$scratch/exported"
+  declared "$@" >"$scratch/declared"
   count=$(wc -l <"$scratch/declared")
   echo "$count functions declared, $(wc -l <"$scratch/exported") symbols exported"
   [ "$count" -ge 50 ] # or the pattern above has gone blind
@@ -42,6 +47,13 @@ symbols)
     echo "these do not begin with mspring_"
     exit 1
   fi
+  include=$(dirname "$1")
+  version=$(sed -n 's/^#define MSPRING_VERSION_M[A-Z]* //p' "$include/version.h" | paste -sd.)
+  declared "$include/lab.h" "$include/massspring_gradient.h" | sed "s/\$/ MASSSPRING_LAB_$version/" >"$scratch/lab"
+  grep MASSSPRING_LAB_ "$scratch/versions" | diff "$scratch/lab" - || {
+    echo "src/massspring.map has other functions under MASSSPRING_LAB_$version"
+    exit 1
+  }
   ;;
 dependencies)
   "$READELF" -d "$library" | sed -n 's/.*(NEEDED).*\[\(.*\)\].*/\1/p' >"$scratch/needed"
@@ -52,7 +64,7 @@ dependencies)
     exit 1
   fi
   "$READELF" -d "$library" | grep -E 'RPATH|RUNPATH' && exit 1
-  "$READELF" -d "$library" | grep -E 'SONAME.*\[libmassspring\.so\.[0-9]+\]'
+  "$READELF" -d "$library" | grep -E 'SONAME.*\[libmassspring\.so\.[0-9.]+\]'
   ;;
 instructions)
   "$OBJDUMP" -d --no-show-raw-insn "$library" >"$scratch/code"

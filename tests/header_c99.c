@@ -1,15 +1,14 @@
 // The public headers alone, as strict C99: they name everything that they use, and need no other header before
 // them. SPDX-License-Identifier: MIT
-#include <massspring/massspring_batch.h>
-#include <massspring/massspring_contact.h>
 #include <massspring/massspring_gradient.h>
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
+
+#define MSPRING_EXPERIMENTAL // later than it might be
+#include <massspring/massspring.h>
 
 int main(void) {
-    mspring_network_def def;
-    mspring_tune_def tune;
-    if (mspring_tune_def_init(&tune, sizeof tune) != MSPRING_OK)
+    mspring_network_def def = mspring_network_def_default();
+    mspring_tune_def tune = mspring_tune_def_default();
+    if (def.struct_size != sizeof def || def.settings.struct_size != sizeof def.settings || tune.struct_size != sizeof tune)
         return 1;
-    return mspring_network_def_init(&def, sizeof def) == MSPRING_OK && mspring_version() == MSPRING_VERSION ? 0 : 1;
+    return mspring_version() == MSPRING_VERSION ? 0 : 2;
 }

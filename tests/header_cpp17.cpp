@@ -5,10 +5,9 @@
 int main() {
     mspring_builder *builder = nullptr;
     mspring_network *network = nullptr;
-    mspring_particle_def particle;
-    bool ok = mspring_particle_def_init(&particle, sizeof particle) == MSPRING_OK &&
-              mspring_builder_create(nullptr, &builder) == MSPRING_OK &&
-              mspring_builder_add_particle(builder, &particle, nullptr) == MSPRING_OK &&
+    const mspring_particle_def particle = mspring_particle_def_default();
+    bool ok = mspring_builder_create(nullptr, &builder) == MSPRING_OK &&
+              mspring_builder_add_particles(builder, &particle, 1, nullptr) == MSPRING_OK &&
               mspring_network_create(builder, nullptr, &network) == MSPRING_OK &&
               mspring_network_step(network, 0.015625) == MSPRING_OK;
     mspring_network_destroy(network);

@@ -35,7 +35,7 @@ use_package() {
 # Make a package of that program, as another project would, and see what it depends on.
 package_a_program() {
   mkdir -p "$work/swing/debian/swing/usr/bin" "$work/swing/debian/swing/DEBIAN"
-  dpkg-deb --raw-extract "$work"/built/libmassspring0_*.deb "$work/swing/debian/libmassspring0"
+  dpkg-deb --raw-extract "$work"/built/libmassspring0.3_*.deb "$work/swing/debian/libmassspring0.3"
   cd "$work/swing"
   cp "$work/shared" debian/swing/usr/bin/swing
   # shellcheck disable=SC2016 # for dpkg
@@ -43,11 +43,11 @@ package_a_program() {
     'Depends: ${shlibs:Depends}' 'Description: a swing' >debian/control
   printf '%s\n' 'swing (1-1) unstable; urgency=medium' '' '  * A swing.' '' \
     ' -- Some One <one@some.example>  Sun, 22 Nov 2026 12:00:00 +0000' >debian/changelog
-  dpkg-shlibdeps -Sdebian/libmassspring0 debian/swing/usr/bin/swing
+  dpkg-shlibdeps -Sdebian/libmassspring0.3 debian/swing/usr/bin/swing
   dpkg-gencontrol -pswing -Pdebian/swing
   dpkg-deb --root-owner-group --build debian/swing swing.deb
   dpkg-deb --field swing.deb Package Depends
-  dpkg-deb --field swing.deb Depends | grep -qF 'libmassspring0 (>= 0.2.0)'
+  dpkg-deb --field swing.deb Depends | grep -qF 'libmassspring0.3 (>= 0.3.0)'
   cd "$work"
 }
 
@@ -68,7 +68,7 @@ archive)
     echo "these are in the wrong place"
     exit 1
   fi
-  for file in include/massspring/massspring.h include/massspring/massspring_batch.h include/massspring/massspring_contact.h include/massspring/massspring_gradient.h include/massspring/massspring_laws.h include/massspring/massspring_tools.h include/massspring/export.h share/doc/massspring/LICENSE share/doc/massspring/CHANGELOG.md; do
+  for file in $(cd "$source" && ls include/*.h include/massspring/*.h) share/doc/massspring/LICENSE share/doc/massspring/CHANGELOG.md; do
     grep -q "^massspring-[^/]*/$file\$" "$work/files"
   done
   mkdir "$work/root"
@@ -90,12 +90,12 @@ deb)
     dpkg-deb --extract "$package" "$work/root"
   done
   # The runtime package is the library alone, and what is to be said of it.
-  cat "$work/libmassspring0.files"
-  if grep -vE '/lib/[^/]+/libmassspring\.so\.[0-9.]+$|/doc/libmassspring0/' "$work/libmassspring0.files"; then
+  cat "$work/libmassspring0.3.files"
+  if grep -vE '/lib/[^/]+/libmassspring\.so\.[0-9.]+$|/doc/libmassspring0.3/' "$work/libmassspring0.3.files"; then
     echo "these belong into the package for building"
     exit 1
   fi
-  for name in libmassspring0 libmassspring-dev libmassspring-doc; do
+  for name in libmassspring0.3 libmassspring-dev libmassspring-doc; do
     grep -q "/usr/share/doc/$name/copyright" "$work/$name.files"
     grep -q "/usr/share/doc/$name/changelog.gz" "$work/$name.files"
   done

@@ -6,7 +6,8 @@
 # - A folder includes only folders above it in the map of src/README.md. Headers of features/ are as high as store/.
 # - Headers include each other in no cycle.
 # - The base name of a file is unique; a file has at most 600 lines, a function 60.
-# - No identifier is in use that was replaced by the field's name (tests/old_names.txt).
+# - No identifier is in use that was replaced by the field's name (tests/old_names.txt), and no public name of 0.2 that is
+#   gone, but in the history and in what takes programs over.
 # - Subjects of commits have at most 60 characters, from FIRST on. A shallow clone is not checked for that.
 set -eu
 FIRST=e1369fbbf87335dc2525e58c932e01728e43f0a0
@@ -82,6 +83,13 @@ expect_none "$(find . -name '*.[ch]' -exec awk '
 
 cd ..
 expect_none "$(grep -rnowFf tests/old_names.txt src tests --include='*.[ch]' --include='*.def')" 'an old name'
+
+public_names() {
+  cat "$@" | grep -oE '\b(mspring|MSPRING)_[A-Za-z0-9_]+' | sort -u
+}
+gone=$(public_names tests/abi/old_calls.c | grep -vxF "$(public_names include/massspring/*.h)")
+expect_none "$(grep -rInowF "$gone" ./*.md src include tests examples bench pkgconfig --exclude=CHANGELOG.md \
+  --exclude=old_calls.c --exclude='*migrate*')" 'a name of 0.2'
 
 if git rev-parse --quiet --verify "$FIRST^{commit}" >/dev/null 2>&1; then
   expect_none "$(git log --no-merges --format='%h %s' "$FIRST..HEAD" | awk 'length($0) - index($0, " ") > 60')" 'a long subject'

@@ -1,9 +1,10 @@
 /// @file old_program.c
-/// A program of the stored ABI's time: built with the header of then (header/), it runs with the library of today
+/// A program of the stored ABI's time: built with the headers of then (header/), it runs with the library of today
 /// and says what it said then (old_program.txt).
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_tools.h>
+#define MSPRING_EXPERIMENTAL
+#include <massspring/massspring.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -44,48 +45,75 @@ static void push(const mspring_hook_args *args, void *user) {
     *(int *)user = 1;
 }
 
-int main(void) {
-    size_t calls = 0;
-    int pushed = 0;
-    mspring_allocator allocator;
-    mspring_builder *builder = NULL;
-    mspring_network *network = NULL;
-    mspring_material materials[2];
-    mspring_lattice_def lattice;
-    mspring_network_def def;
-    mspring_hook_def hook;
-    mspring_view view;
-    mspring_plan plan;
-    mspring_spring_info info;
+/// A cantilever of 10 x 3 cells.
+static mspring_network *build(mspring_builder *builder, const mspring_allocator *allocator) {
     const uint16_t cells[3][10] = {{1}, {1}, {1}};
-    double x[30], y[30];
-    uint64_t hash = 0;
-
-    memset(&allocator, 0, sizeof allocator);
-    allocator.struct_size = sizeof allocator;
-    allocator.alloc = count_alloc;
-    allocator.free = count_free;
-    allocator.user = &calls;
-    CALL(mspring_builder_create(&allocator, &builder));
+    mspring_material materials[2] = {mspring_material_default(), mspring_material_default()};
+    mspring_lattice_def lattice = mspring_lattice_def_default();
+    mspring_network_def def = mspring_network_def_default();
+    mspring_network *network = NULL;
     for (int i = 0; i < 2; i++) {
-        CALL(mspring_material_init(&materials[i], sizeof materials[i]));
         materials[i].stiffness = 5000.0f;
         materials[i].damping = 2.0f;
     }
     materials[1].particle_flags = MSPRING_PARTICLE_PINNED;
-    CALL(mspring_lattice_def_init(&lattice, sizeof lattice));
     lattice.width = 10;
     lattice.height = 3;
     lattice.cells = cells[0];
     lattice.materials = materials;
     lattice.material_count = 2;
     CALL(mspring_builder_add_lattice(builder, &lattice, NULL));
-
-    CALL(mspring_network_def_init(&def, sizeof def));
-    def.substeps = 10;
-    def.allocator = &allocator;
+    def.settings.substeps = 10; // behind the fields of the definition, which may be more by now
+    def.settings.most_work = 5;
+    def.allocator = allocator;
     CALL(mspring_network_create(builder, &def, &network));
-    CALL(mspring_hook_def_init(&hook, sizeof hook));
+    return network;
+}
+
+static void read(mspring_network *network) {
+    double x[30], y[30];
+    uint64_t hash = 0;
+    uint32_t ends[2] = {0, 0};
+    float rest = 0;
+    mspring_view view = mspring_view_default();
+    mspring_settings settings = mspring_settings_default();
+    mspring_step_info info = mspring_step_info_default();
+    mspring_body body = mspring_body_default();
+    const mspring_column columns[3] = {
+        {MSPRING_END_A, 1, &ends[0]}, {MSPRING_END_B, 1, &ends[1]}, {MSPRING_REST_LENGTH, 1, &rest}};
+
+    CALL(mspring_network_get_positions(network, NULL, 0, 30, x, y, 1));
+    CALL(mspring_network_get_state_hash(network, &hash));
+    printf("hash %08lx%08lx\n", (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffffu));
+    printf("the free end is at %.6f %.6f\n", x[9], y[9]);
+    CALL(mspring_network_get_view(network, &view));
+    printf("the view agrees: %d\n", view.y[view.slot_of_particle[9]] == (float)(y[9] - view.origin_y));
+    CALL(mspring_network_get_settings(network, &settings));
+    CALL(mspring_network_get_step_info(network, &info));
+    printf("%u substeps, work %u, step %u\n", (unsigned)settings.substeps, (unsigned)settings.most_work,
+        (unsigned)info.step_count);
+    CALL(mspring_network_get_body(network, NULL, 0, MSPRING_ALL, &body));
+    printf("%u particles of %.0f kg, %u springs\n", (unsigned)body.particle_count, body.mass,
+        (unsigned)mspring_network_count(network, MSPRING_SPRINGS));
+    CALL(mspring_network_get_columns(network, NULL, 0, 1, columns, 3));
+    printf("spring 0 joins %u and %u at %.1f m\n", (unsigned)ends[0], (unsigned)ends[1], (double)rest);
+}
+
+int main(void) {
+    size_t calls = 0;
+    int pushed = 0;
+    mspring_allocator allocator = mspring_allocator_default();
+    mspring_hook_def hook = mspring_hook_def_default();
+    mspring_network_def def;
+    mspring_settle_result settled = mspring_settle_result_default();
+    mspring_builder *builder = NULL;
+    mspring_network *network;
+
+    allocator.alloc = count_alloc;
+    allocator.free = count_free;
+    allocator.user = &calls;
+    CALL(mspring_builder_create(&allocator, &builder));
+    network = build(builder, &allocator);
     hook.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
     hook.fn = push;
     hook.user = &pushed;
@@ -93,33 +121,17 @@ int main(void) {
     for (int step = 0; step < 64; step++) {
         CALL(mspring_network_step(network, 1.0 / 64));
     }
-    CALL(mspring_network_get_positions(network, 0, 30, x, y, 1));
-    CALL(mspring_network_state_hash(network, &hash));
-    printf("hash %08lx%08lx\n", (unsigned long)(hash >> 32), (unsigned long)(hash & 0xffffffffu));
-    printf("the free end is at %.6f %.6f\n", x[9], y[9]);
+    read(network);
+    CALL(mspring_network_settle(network, NULL, &settled));
+    printf("hook called: %d, allocator called: %d, settles: %d\n", pushed, calls > 0, (int)settled.is_stable);
 
-    memset(&view, 0, sizeof view);
-    view.struct_size = sizeof view;
-    CALL(mspring_network_view(network, &view));
-    printf("the view agrees: %d\n", view.y[view.slot_of_particle[9]] == (float)(y[9] - view.origin_y));
-    memset(&plan, 0, sizeof plan);
-    plan.struct_size = sizeof plan;
-    CALL(mspring_network_get_plan(network, &plan));
-    printf("%u particles, %u springs, %u lattice\n", (unsigned)plan.particle_count, (unsigned)plan.spring_count,
-           (unsigned)plan.lattice_count);
-    memset(&info, 0, sizeof info);
-    info.struct_size = sizeof info;
-    CALL(mspring_network_get_spring(network, 0, &info));
-    printf("spring 0 joins %u and %u at %.1f m\n", (unsigned)info.a, (unsigned)info.b, (double)info.rest_length);
-    printf("hook called: %d, allocator called: %d\n", pushed, calls > 0);
-
-    // Of a later header: its struct is larger than this library knows. (It is the header of today that has to name
+    // Of a later header: its struct is larger than any that a library has. (It is the header of today that has to name
     // a size that no library of its own has.)
-    expect("init of a larger struct", mspring_network_def_init(&def, 4096), MSPRING_ERROR_STRUCT);
-    CALL(mspring_network_def_init(&def, sizeof def));
-    def.struct_size = 4096;
-    expect("a larger struct", mspring_network_create(builder, &def, &network), MSPRING_ERROR_STRUCT);
-    printf("a larger struct: %.32s...\n", mspring_builder_error(builder));
+    expect("init of too large a struct", mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, 1 << 20), MSPRING_ERROR_STRUCT);
+    def = mspring_network_def_default();
+    def.struct_size = 1 << 20;
+    expect("too large a struct", mspring_network_create(builder, &def, &network), MSPRING_ERROR_STRUCT);
+    printf("too large a struct: %.32s...\n", mspring_builder_error(builder));
 
     mspring_network_destroy(network);
     mspring_builder_destroy(builder);

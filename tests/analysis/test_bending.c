@@ -42,8 +42,8 @@ static double settled_bending(const bar *b) {
     // faster ones die out as exp(-omega t) or (1 + omega t) exp(-omega t).
     const double omega = 1.24 * sqrt(gravity / b->bending);
     mspring_network_def def = support_def((float)-gravity, b->substeps > 0 ? b->substeps : 1);
-    def.solver = b->solver;
-    def.global_damping = (float)(2 * omega);
+    def.settings.solver = b->solver;
+    def.settings.global_damping = (float)(2 * omega);
     mspring_network *network = recipe_network(&made, &def);
 
     // At omega t = 13 there are 3e-5 of the bending left to go.

@@ -24,8 +24,8 @@
 
 /// The network in the tests' own reference.
 static reference reference_of_network(const mspring_network *network) {
-    reference net = {.particle_count = mspring_network_particle_count(network),
-                     .spring_count = mspring_network_spring_count(network),
+    reference net = {.particle_count = mspring_network_count(network, MSPRING_PARTICLES),
+                     .spring_count = mspring_network_count(network, MSPRING_SPRINGS),
                      .gravity_y = -9.8f};
     net.particles = calloc(net.particle_count, sizeof *net.particles);
     net.springs = calloc(net.spring_count, sizeof *net.springs);
@@ -33,18 +33,18 @@ static reference reference_of_network(const mspring_network *network) {
     for (mspring_id p = 0; p < net.particle_count; p++) {
         reference_particle *particle = &net.particles[p];
         float mass, scale, vx, vy;
-        check_ok(mspring_network_get_positions(network, p, 1, &particle->x, &particle->y, 1));
-        check_ok(mspring_network_get_velocities(network, p, 1, &vx, &vy, 1));
-        check_ok(mspring_network_get(network, MSPRING_MASS, p, 1, &mass, 1));
-        check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, p, 1, &scale, 1));
+        check_ok(mspring_network_get_positions(network, NULL, p, 1, &particle->x, &particle->y, 1));
+        check_ok(mspring_network_get_velocities(network, NULL, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_get(network, MSPRING_MASS, NULL, p, 1, &mass, 1));
+        check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, NULL, p, 1, &scale, 1));
         particle->vx = (double)vx;
         particle->vy = (double)vy;
         particle->mass = (double)mass;
         particle->pinned = scale == 0;
     }
     for (mspring_id s = 0; s < net.spring_count; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        check_ok(mspring_network_get_spring(network, s, &info));
+        support_spring_info info;
+        check_ok(support_get_spring(network, s, &info));
         net.springs[s] = (reference_spring){.a = info.a,
                                             .b = info.b,
                                             .stiffness = (double)info.stiffness,
@@ -59,11 +59,9 @@ static reference reference_of_network(const mspring_network *network) {
 static double find_share(mspring_network *network, const mspring_tune_row *row, const mspring_tune_def *def,
                          uint32_t fine_substeps) {
     const uint32_t steps = (uint32_t)(row->duration / def->dt + 0.5);
-    mspring_solver_def solver = {.struct_size = sizeof solver};
     reference net = reference_of_network(network), start = reference_of_network(network);
     double error = 0, motion = 0;
-    check_ok(mspring_tune_row_solver(row, &solver));
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(mspring_network_set_settings(network, &row->settings));
     for (uint32_t step = 1; step <= steps; step++) {
         support_steps(network, 1, def->dt);
         for (uint32_t i = 0; i < fine_substeps; i++) {
@@ -88,7 +86,7 @@ static double find_share(mspring_network *network, const mspring_tune_row *row, 
 
 static void trajectory_errors_are_those_of_an_independent_reference(void **state) {
     (void)state;
-    const mspring_solver_def settings[] = {
+    const mspring_settings settings[] = {
         tunes_setting(MSPRING_SOLVER_EXPLICIT, 9, 0), tunes_setting(MSPRING_SOLVER_EXPLICIT, 18, 0),
         tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 8), tunes_setting(MSPRING_SOLVER_IMPLICIT, 2, 8)};
     tunes_watch w = {.tick = 1e-3};
@@ -103,7 +101,7 @@ static void trajectory_errors_are_those_of_an_independent_reference(void **state
             assert_int_equal(out.count, COUNT_OF(settings));
             const mspring_tune_row *row = &out.rows[i];
             assert_true(tunes_has(row, MSPRING_TUNE_HAS_COST | MSPRING_TUNE_HAS_TRAJECTORY));
-            assert_int_equal(row->substeps, settings[i].substeps);
+            assert_int_equal(row->settings.substeps, settings[i].substeps);
             // The tuner's reference has three substeps or more for one of an explicit row's, so it lacks a ninth of
             // its error at most; this one lacks 1/1296. Positions of 14 m are rounded to 5e-7 m in each substep.
             const double share = find_share(network, row, &def, 36 * 18), rounding = 1e-6;
@@ -136,7 +134,7 @@ static mspring_network *swinging_mass(double period) {
 /// At the four moments it is back where it was; half a period before, it was twice as far away as where it rests.
 static void who_comes_back_has_moved(void **state) {
     (void)state;
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 100, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 100, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 4, 8)};
     tunes_watch w = {.tick = 1e-3};
     mspring_tune_def def = tunes_def(&w);
@@ -160,7 +158,7 @@ static void who_comes_back_has_moved(void **state) {
 /// As long as one swing takes: to a fifth, which a few steps of a swing that is damped by the solver leave open.
 static void the_motion_says_how_long(void **state) {
     (void)state;
-    const mspring_solver_def setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 4, 0);
+    const mspring_settings setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 4, 0);
     tunes_watch w = {.tick = 1e-6};
     mspring_tune_def def = tunes_def(&w);
     def.settings = &setting;
@@ -189,7 +187,7 @@ static void the_motion_says_how_long(void **state) {
 /// for the fine run and all solvers. With those of then, the explicit setting had a share of 5e-4.
 static void who_moves_starts_with_velocities_of_now(void **state) {
     (void)state;
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 18, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 18, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 32, 15)};
     tunes_watch w = {.tick = 1e-3};
     mspring_tune_def def = tunes_def(&w);
@@ -201,7 +199,7 @@ static void who_moves_starts_with_velocities_of_now(void **state) {
     const uint64_t before = support_hash(network);
     const tunes_table out = tunes_run(network, &def);
     for (uint32_t i = 0; i < out.count; i++) {
-        printf("%u substeps: %g of the motion\n", (unsigned)out.rows[i].substeps, out.rows[i].trajectory_share);
+        printf("%u substeps: %g of the motion\n", (unsigned)out.rows[i].settings.substeps, out.rows[i].trajectory_share);
         assert_true(out.rows[i].trajectory_share < 1e-4);
         assert_true(fabs(out.rows[i].energy_drift) < 1e-4);
     }
@@ -212,9 +210,9 @@ static void who_moves_starts_with_velocities_of_now(void **state) {
 static void the_fine_run_is_of_second_order(void **state) {
     (void)state;
     mspring_network_def def = support_def(-9.8f, 1);
-    def.global_damping = 2;
+    def.settings.global_damping = 2;
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 300, 0, &def);
-    const uint32_t count = mspring_network_particle_count(network);
+    const uint32_t count = mspring_network_count(network, MSPRING_PARTICLES);
     double *last[4];
     mspringi_reference r;
     for (uint32_t i = 0; i < 4; i++) {
@@ -244,7 +242,7 @@ static void the_fine_run_is_of_second_order(void **state) {
 
 static void rest_is_where_settle_finds_it(void **state) {
     (void)state;
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 9, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 9, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 8)};
     tunes_watch w = {.tick = 1e-3};
     mspring_tune_def def = tunes_def(&w);
@@ -289,7 +287,7 @@ static void rest_is_where_settle_finds_it(void **state) {
 
 static void relative_springs_are_as_firm_as_their_substeps(void **state) {
     (void)state;
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 10, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 10, 0),
                                            tunes_setting(MSPRING_SOLVER_EXPLICIT, 20, 0),
                                            tunes_setting(MSPRING_SOLVER_EXPLICIT, 40, 0)};
     tunes_watch w = {.tick = 1e-3};
@@ -398,7 +396,7 @@ static void recommended_is_what_is_asked_for(void **state) {
 
 static void settings_that_are_unstable_are_marked(void **state) {
     (void)state;
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 3, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 3, 0),
                                            tunes_setting(MSPRING_SOLVER_EXPLICIT, MSPRING_SUBSTEPS_AUTO, 0)};
     tunes_watch w = {.tick = 1e-3};
     mspring_tune_def def = tunes_def(&w);
@@ -406,7 +404,7 @@ static void settings_that_are_unstable_are_marked(void **state) {
     def.setting_count = COUNT_OF(settings);
     def.max_error = 1;
     mspring_network_def stands_in = support_def(-9.8f, 1);
-    stands_in.guard = MSPRING_GUARD_IMPLICIT; // not while settings are measured
+    stands_in.settings.guard = MSPRING_GUARD_IMPLICIT; // not while settings are measured
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, &stands_in);
     const tunes_table out = tunes_run(network, &def);
     assert_int_equal(out.rows[0].flags, MSPRING_TUNE_REJECTED);
@@ -414,14 +412,14 @@ static void settings_that_are_unstable_are_marked(void **state) {
     assert_true(
         tunes_has(&out.rows[1], MSPRING_TUNE_PARETO | MSPRING_TUNE_RECOMMENDED | MSPRING_TUNE_HAS_TRAJECTORY));
     assert_int_equal(out.rows[1].setting, 1);
-    assert_in_range(out.rows[1].substeps, 6, 12); // what AUTO chose
+    assert_in_range(out.rows[1].settings.substeps, 6, 12); // what AUTO chose
     mspring_network_destroy(network);
 }
 
 static void usual_settings_are_tried_where_none_are_given(void **state) {
     (void)state;
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, NULL);
-    mspring_solver_def settings[TUNES_MOST];
+    mspring_settings settings[TUNES_MOST];
     uint32_t count = 0, least = 0;
     for (int i = 0; i < TUNES_MOST; i++)
         settings[i].struct_size = sizeof settings[i];
@@ -434,7 +432,7 @@ static void usual_settings_are_tried_where_none_are_given(void **state) {
     assert_int_equal(settings[0].substeps, least);
     uint32_t implicit = 0, bdf2 = 0, coarse = 0, fine = 0;
     for (uint32_t i = 0; i < count; i++) {
-        check_ok(mspring_network_set_solver(network, &settings[i]));
+        check_ok(support_set_solver(network, &settings[i]));
         support_steps(network, 1, 1.0 / 64);
         implicit += settings[i].solver == MSPRING_SOLVER_IMPLICIT;
         bdf2 += settings[i].integrator == MSPRING_INTEGRATOR_BDF2;
@@ -520,7 +518,7 @@ static void the_budget_and_the_watcher_are_heeded(void **state) {
 static void the_systems_clock_does(void **state) {
     (void)state;
     mspring_tune_def def;
-    check_ok(mspring_tune_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_TUNE_DEF, &def, sizeof def));
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, NULL);
     const tunes_table out = tunes_run(network, &def);
     for (uint32_t i = 0; i < out.count; i++) {
@@ -547,7 +545,7 @@ static void the_ship_keeps_the_promise(void **state) {
     }
     mspring_network *network = NULL;
     check_ok(mspring_network_create(ship.builder, NULL, &network));
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 26, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 26, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 8)};
     tunes_watch w = {.tick = 1e-3};
     mspring_tune_def def = tunes_def(&w);

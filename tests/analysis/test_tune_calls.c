@@ -30,13 +30,13 @@ static void nothing_happens_to_the_network(void **state) {
     for (uint32_t i = 0; i < 2; i++) {
         check_ok(support_add_hook(both[i], MSPRING_PHASE_AFTER_SUBSTEP, count_call, &calls, NULL));
         check_ok(mspring_network_reserve_events(both[i], 100));
-        check_ok(mspring_network_break_springs(both[i], &first, 1));
-        check_ok(mspring_network_restore_springs(both[i], &first, 1, 0.1));
-        check_ok(mspring_network_set(both[i], MSPRING_BREAK_STRAIN, 0, mspring_network_spring_count(both[i]),
-                                     strains, 1));
+        check_ok(mspring_network_break_springs(both[i], &first, 0, 1));
+        check_ok(mspring_network_restore_springs(both[i], &first, 0, 1, 0.1));
+        check_ok(mspring_network_set(both[i], MSPRING_BREAK_STRAIN, NULL, 0,
+                                     mspring_network_count(both[i], MSPRING_SPRINGS), strains, 1));
         check_ok(mspring_network_apply_force(both[i], 17, 1000, 500));
     }
-    const size_t used = mspring_network_memory_used(network);
+    const size_t used = support_memory_used(network);
     tunes_watch w = {.tick = 1e-3};
     mspring_tune_def def = tunes_def(&w);
     const tunes_table out = tunes_run(network, &def);
@@ -45,11 +45,11 @@ static void nothing_happens_to_the_network(void **state) {
         assert_true(out.rows[i].trajectory_share < 0.5 && out.rows[i].rest_share < 0.01);
     }
     assert_int_equal(calls, 0);
-    assert_int_equal(mspring_network_memory_used(network), used);
+    assert_int_equal(support_memory_used(network), used);
     assert_string_equal(mspring_network_error(network), "");
-    mspring_solver_def solver = tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0);
+    mspring_settings solver = tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0);
     for (uint32_t i = 0; i < 2; i++) {
-        check_ok(mspring_network_set_solver(both[i], &solver));
+        check_ok(support_set_solver(both[i], &solver));
         support_steps(both[i], 5, 1.0 / 64);
     }
     assert_int_equal(support_hash(network), support_hash(untouched));
@@ -60,12 +60,12 @@ static void nothing_happens_to_the_network(void **state) {
 static void networks_that_may_sleep_stay_awake(void **state) {
     (void)state;
     mspring_network_def how = support_def(-9.8f, 12);
-    how.sleep_speed = 1e6f; // it sleeps whatever it does
-    how.sleep_time = 0;
+    how.settings.sleep_speed = 1e6f; // it sleeps whatever it does
+    how.settings.sleep_time = 0;
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, &how),
                     *awake = tunes_bar(TUNES_STIFFNESS, 0, 0, NULL);
     support_steps(network, 1, 1e-6);
-    assert_true(mspring_network_is_asleep(network));
+    assert_true(support_is_asleep(network));
     tunes_watch w = {.tick = 1e-3};
     mspring_tune_def def = tunes_def(&w);
     const tunes_table out = tunes_run(network, &def), expected = tunes_run(awake, &def);
@@ -74,14 +74,14 @@ static void networks_that_may_sleep_stay_awake(void **state) {
         check_near(out.rows[i].trajectory_share, expected.rows[i].trajectory_share,
                    0.01 * expected.rows[i].trajectory_share + 1e-6);
     }
-    assert_true(mspring_network_is_asleep(network));
+    assert_true(support_is_asleep(network));
     mspring_network_destroy(network);
     mspring_network_destroy(awake);
 }
 
 static void every_allocation_may_fail(void **state) {
     (void)state;
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 9, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 9, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 2)};
     size_t failures = 0;
     for (size_t fail_at = 1;; fail_at++) {
@@ -100,7 +100,7 @@ static void every_allocation_may_fail(void **state) {
         def.setting_count = COUNT_OF(settings);
         def.duration = 4 * def.dt;
         mspring_tune_scene scene;
-        check_ok(mspring_tune_scene_init(&scene, sizeof scene));
+        check_ok(mspring_init(MSPRING_STRUCT_TUNE_SCENE, &scene, sizeof scene));
         scene.start_count = 4;
         scene.duration = 2 * def.dt;
         def.scene = &scene;
@@ -143,19 +143,19 @@ static void bad_calls_are_refused(void **state) {
     uint32_t count = 77;
     tunes_clear(&out);
     const mspring_tune_def good = tunes_def(&w);
-    check_error(mspring_tune_def_init(NULL, sizeof good), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_init(MSPRING_STRUCT_TUNE_DEF, NULL, sizeof good), MSPRING_ERROR_ARGUMENT);
     mspring_tune_def def;
-    check_error(mspring_tune_def_init(&def, sizeof def + 2), MSPRING_ERROR_STRUCT);
+    check_error(mspring_init(MSPRING_STRUCT_TUNE_DEF, &def, sizeof def + 2), MSPRING_ERROR_STRUCT);
     check_error(mspring_network_tune(NULL, &good, out.rows, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_tune(network, &good, NULL, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_tune(network, &good, out.rows, TUNES_MOST, NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_tune(network, &good, out.rows, 2, &count), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "room for 2 rows");
-    out.rows[3].struct_size = 8;
+    out.rows[0].struct_size = 8; // that of the first counts
     check_error(mspring_network_tune(network, &good, out.rows, TUNES_MOST, &count), MSPRING_ERROR_STRUCT);
     tunes_clear(&out);
 
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 1, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 1, 0),
                                            tunes_setting(MSPRING_SOLVER_EXPLICIT, 0, 0)};
     for (int bad = 0; bad < 18; bad++) {
         def = good;
@@ -224,16 +224,11 @@ static void bad_calls_are_refused(void **state) {
     def = good;
     def.struct_size -= 8;
     check_error(mspring_network_tune(network, &def, out.rows, TUNES_MOST, &count), MSPRING_ERROR_STRUCT);
-    mspring_solver_def solver = {.struct_size = sizeof solver};
-    check_error(mspring_tune_row_solver(NULL, &solver), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_tune_row_solver(&out.rows[0], NULL), MSPRING_ERROR_ARGUMENT);
-    out.rows[0].struct_size = 3;
-    check_error(mspring_tune_row_solver(&out.rows[0], &solver), MSPRING_ERROR_STRUCT);
     assert_int_equal(count, 77);
 
     check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, tune_in_hook, network, NULL));
-    solver = tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0);
-    check_ok(mspring_network_set_solver(network, &solver));
+    const mspring_settings solver = tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0);
+    check_ok(support_set_solver(network, &solver));
     support_steps(network, 1, 1.0 / 64);
     check_error(in_hook_result, MSPRING_ERROR_BUSY);
     mspring_network_destroy(network);
@@ -249,16 +244,16 @@ static void bad_scenes_are_refused(void **state) {
     (void)state;
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, NULL);
     const uint64_t hash = support_hash(network);
-    const size_t used = mspring_network_memory_used(network);
+    const size_t used = support_memory_used(network);
     tunes_watch w = {.tick = 1e-3};
     tunes_table out;
     uint32_t count = 77;
     tunes_clear(&out);
     mspring_tune_def def = tunes_def(&w);
     mspring_tune_scene good, scene;
-    check_error(mspring_tune_scene_init(NULL, sizeof good), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_tune_scene_init(&good, sizeof good - 8), MSPRING_ERROR_STRUCT);
-    check_ok(mspring_tune_scene_init(&good, sizeof good));
+    check_error(mspring_init(MSPRING_STRUCT_TUNE_SCENE, NULL, sizeof good), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_init(MSPRING_STRUCT_TUNE_SCENE, &good, sizeof good - 8), MSPRING_ERROR_STRUCT);
+    check_ok(mspring_init(MSPRING_STRUCT_TUNE_SCENE, &good, sizeof good));
     def.measure = MSPRING_TUNE_BY_SCENE;
     check_error(mspring_network_tune(network, &def, out.rows, TUNES_MOST, &count), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "scene");
@@ -321,7 +316,7 @@ static void bad_scenes_are_refused(void **state) {
     check_contains(mspring_network_error(network), "prepare returned");
     assert_int_equal(count, 77);
     assert_int_equal(support_hash(network), hash);
-    assert_int_equal(mspring_network_memory_used(network), used);
+    assert_int_equal(support_memory_used(network), used);
     mspring_network_destroy(network);
 
     network = tunes_bar(0.5, 0, MSPRING_SPRING_RELATIVE, NULL);

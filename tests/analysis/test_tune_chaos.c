@@ -23,7 +23,7 @@ static mspring_network *pendulum(bool is_high) {
 static mspring_tune_row row_of(mspring_network *network, double duration, double max_error) {
     tunes_watch watch = {.tick = 1e-9};
     mspring_tune_def def = tunes_def(&watch);
-    const mspring_solver_def setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 32, 1);
+    const mspring_settings setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 32, 1);
     def.settings = &setting;
     def.setting_count = 1;
     def.flags = MSPRING_TUNE_NOTHING_ELSE;

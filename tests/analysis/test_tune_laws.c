@@ -16,8 +16,8 @@ static mspring_network *made(bool has_laws) {
     mspring_angle_def angle;
     if (!has_laws)
         return network;
-    check_ok(mspring_area_def_init(&area, sizeof area));
-    check_ok(mspring_angle_def_init(&angle, sizeof angle));
+    check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &area, sizeof area));
+    check_ok(mspring_init(MSPRING_STRUCT_ANGLE_DEF, &angle, sizeof angle));
     area.stiffness = (float)TUNES_STIFFNESS / 8;
     check_ok(mspring_network_add_cell_areas(network, &area, NULL, NULL));
     area.kind = MSPRING_AREA_GAS;
@@ -28,7 +28,7 @@ static mspring_network *made(bool has_laws) {
     angle.damping = 100;
     for (mspring_id p = 0; p < 12; p++) {
         const mspring_id three[] = {p, p + 1, p + 2};
-        check_ok(mspring_network_add_angles(network, &angle, three, 1, NULL));
+        check_ok(mspring_network_add_angles(network, &angle, three, 1, 3, NULL));
     }
     return network;
 }
@@ -41,7 +41,7 @@ static void the_reference_has_the_laws(void **state) {
     tunes_watch watch = {0};
     mspring_network *network = made(true);
     mspring_tune_def def = tunes_def(&watch);
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 32, 1),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 32, 1),
                                            tunes_setting(MSPRING_SOLVER_EXPLICIT, 64, 1)};
     def.settings = settings;
     def.setting_count = 2;

@@ -25,15 +25,15 @@ static mspring_network *falling_lattice(const mspring_network_def *how) {
     mspring_network *network = recipe_network(&made, how);
     const double slope[4] = {0, -2, 0.1, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = slope, floor.plane_count = 1, floor.friction = 0.3f, floor.restitution = 0.2f;
     check_ok(mspring_network_set_floor(network, &floor));
-    const uint32_t count = mspring_network_spring_count(network);
+    const uint32_t count = mspring_network_count(network, MSPRING_SPRINGS);
     float *strains = malloc(count * sizeof *strains);
     for (uint32_t s = 0; s < count; s++) {
         strains[s] = 0.01f;
     }
-    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, count, strains, 1));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, 0, count, strains, 1));
     free(strains);
     recipe_free(&made);
     return network;
@@ -41,13 +41,13 @@ static mspring_network *falling_lattice(const mspring_network_def *how) {
 
 static mspring_tune_scene short_scene(void) {
     mspring_tune_scene scene;
-    check_ok(mspring_tune_scene_init(&scene, sizeof scene));
+    check_ok(mspring_init(MSPRING_STRUCT_TUNE_SCENE, &scene, sizeof scene));
     scene.start_count = 5;
     scene.duration = 24 * dt;
     return scene;
 }
 
-static mspring_tune_def def_of(tunes_watch *w, const mspring_tune_scene *scene, const mspring_solver_def *settings,
+static mspring_tune_def def_of(tunes_watch *w, const mspring_tune_scene *scene, const mspring_settings *settings,
                                uint32_t count) {
     mspring_tune_def def = tunes_def(w);
     def.scene = scene;
@@ -70,7 +70,7 @@ static void what_is_switched_on_acts(void **state) {
     uint32_t calls = 0;
     mspring_network *network = falling_lattice(NULL);
     check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, count_call, &calls, NULL));
-    const mspring_solver_def setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0);
+    const mspring_settings setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0);
     const uint64_t hash = support_hash(network);
     for (uint32_t flags = 0; flags < 8; flags++) {
         mspring_tune_scene scene = short_scene();
@@ -103,37 +103,37 @@ static void what_is_switched_on_acts(void **state) {
 static mspring_result drop(mspring_network *run, uint32_t start, void *user) {
     (void)user;
     const mspring_id spring = 7;
-    const uint32_t count = mspring_network_particle_count(run);
+    const uint32_t count = mspring_network_count(run, MSPRING_PARTICLES);
     for (mspring_id p = 0; p < count; p++) {
         const float vx = 0, vy = -8 - 0.3f * (float)start;
-        check_ok(mspring_network_set_velocities(run, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(run, NULL, p, 1, &vx, &vy, 1));
     }
-    return mspring_network_break_springs(run, &spring, 1);
+    return mspring_network_break_springs(run, &spring, 0, 1);
 }
 
 static uint32_t count_broken(const mspring_network *network) {
     uint32_t broken = 0;
-    for (mspring_id s = 0; s < mspring_network_spring_count(network); s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        check_ok(mspring_network_get_spring(network, s, &info));
+    for (mspring_id s = 0; s < mspring_network_count(network, MSPRING_SPRINGS); s++) {
+        support_spring_info info;
+        check_ok(support_get_spring(network, s, &info));
         broken += (info.flags & MSPRING_SPRING_BROKEN) != 0;
     }
     return broken;
 }
 
 /// Mean and standard deviation of the three quantities, by runs of a network's clones.
-static void run_by_hand(const mspring_network *network, const mspring_solver_def *solver, uint32_t starts,
+static void run_by_hand(const mspring_network *network, const mspring_settings *solver, uint32_t starts,
                         uint32_t steps, double mean[3], double spread[3]) {
     double of[64][3];
     for (uint32_t start = 0; start < starts; start++) {
         mspring_network *run = NULL;
         check_ok(mspring_network_clone(network, NULL, &run));
         check_ok(drop(run, start, NULL));
-        check_ok(mspring_network_set_solver(run, solver));
+        check_ok(support_set_solver(run, solver));
         support_steps(run, steps, dt);
         double kinetic, elastic, left, low, right, high;
-        check_ok(mspring_network_energy(run, &kinetic, &elastic, NULL));
-        check_ok(mspring_network_bounds(run, &left, &low, &right, &high));
+        check_ok(support_get_energy(run, &kinetic, &elastic, NULL));
+        check_ok(support_get_bounds(run, &left, &low, &right, &high));
         of[start][MSPRING_TUNE_BROKEN] = count_broken(run) - 1;
         of[start][MSPRING_TUNE_ENERGY] = kinetic + elastic;
         of[start][MSPRING_TUNE_EXTENT] = fmax(right - left, high - low);
@@ -155,7 +155,7 @@ static void run_by_hand(const mspring_network *network, const mspring_solver_def
 static void rows_tell_what_runs_by_hand_give(void **state) {
     (void)state;
     mspring_network *network = falling_lattice(NULL);
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 8),
                                            tunes_setting(MSPRING_SOLVER_DIRECT, 2, 0)};
     mspring_tune_scene scene = short_scene();
@@ -168,7 +168,7 @@ static void rows_tell_what_runs_by_hand_give(void **state) {
         assert_true(tunes_has(row, MSPRING_TUNE_HAS_SCENE));
         assert_false(row->flags & (MSPRING_TUNE_HAS_TRAJECTORY | MSPRING_TUNE_HAS_REST));
         assert_int_equal(row->scene_starts, scene.start_count);
-        const mspring_solver_def fine = tunes_setting(MSPRING_SOLVER_EXPLICIT, row->fine_substeps, 0);
+        const mspring_settings fine = tunes_setting(MSPRING_SOLVER_EXPLICIT, row->fine_substeps, 0);
         double mean[3], spread[3], fine_mean[3], fine_spread[3], distance = 0;
         run_by_hand(network, &settings[i], scene.start_count, 24, mean, spread);
         run_by_hand(network, &fine, scene.start_count, 24, fine_mean, fine_spread);
@@ -190,10 +190,10 @@ static void rows_tell_what_runs_by_hand_give(void **state) {
 /// The starts differ, all but the first, and the pinned particles' do not.
 static mspring_result note_velocities(mspring_network *run, uint32_t start, void *user) {
     (void)user;
-    for (mspring_id p = 0; p < mspring_network_particle_count(run); p++) {
+    for (mspring_id p = 0; p < mspring_network_count(run, MSPRING_PARTICLES); p++) {
         float vx, vy, scale;
-        check_ok(mspring_network_get_velocities(run, p, 1, &vx, &vy, 1));
-        check_ok(mspring_network_get(run, MSPRING_INVERSE_MASS_SCALE, p, 1, &scale, 1));
+        check_ok(mspring_network_get_velocities(run, NULL, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_get(run, MSPRING_INVERSE_MASS_SCALE, NULL, p, 1, &scale, 1));
         if (start == 0 || scale == 0) {
             assert_true(vx == 0 && vy == 0);
         } else {
@@ -206,7 +206,7 @@ static mspring_result note_velocities(mspring_network *run, uint32_t start, void
 static void starts_are_kicked(void **state) {
     (void)state;
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, NULL);
-    const mspring_solver_def setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0);
+    const mspring_settings setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0);
     mspring_tune_scene scene = short_scene();
     scene.prepare = note_velocities;
     scene.kick = 0.25;
@@ -223,7 +223,7 @@ static void scenes_are_the_same_everywhere(void **state) {
     (void)state;
     mspring_simd levels[MSPRING_SIMD_AVX512];
     const uint32_t level_count = support_levels(levels);
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 4)};
     const mspring_tune_scene scene = short_scene();
     tunes_table first = {.count = 0};
@@ -247,7 +247,7 @@ static void scenes_are_the_same_everywhere(void **state) {
 static void the_budget_is_heeded(void **state) {
     (void)state;
     mspring_network *network = falling_lattice(NULL);
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
                                            tunes_setting(MSPRING_SOLVER_EXPLICIT, 20, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 4)};
     const mspring_tune_scene scene = short_scene();
@@ -275,7 +275,7 @@ static void the_budget_is_heeded(void **state) {
 static void a_scene_leaves_the_rest_as_it_is(void **state) {
     (void)state;
     mspring_network *network = tunes_bar(TUNES_STIFFNESS, 0, 0, NULL);
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
                                            tunes_setting(MSPRING_SOLVER_EXPLICIT, 3, 0)}; // unstable
     const mspring_tune_scene scene = short_scene();
     for (mspring_tune_measure measure = 0; measure <= MSPRING_TUNE_BY_SCENE; measure++) {
@@ -309,7 +309,7 @@ static mspring_result count_run(mspring_network *run, uint32_t start, void *user
 static void who_is_rejected_is_out(void **state) {
     (void)state;
     mspring_network *network = falling_lattice(NULL);
-    const mspring_solver_def setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 3, 0);
+    const mspring_settings setting = tunes_setting(MSPRING_SOLVER_EXPLICIT, 3, 0);
     mspring_tune_scene scene = short_scene();
     scene.prepare = count_run;
     tunes_watch w = {.tick = 1e-3};
@@ -335,13 +335,13 @@ static void hooks_have_their_storage(void **state) {
     how.worker_count = 3;
     mspring_network *network = falling_lattice(&how);
     mspring_hook_def hook;
-    check_ok(mspring_hook_def_init(&hook, sizeof hook));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &hook, sizeof hook));
     hook.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
     hook.fn = sum_up;
     hook.flags = MSPRING_HOOK_CONCURRENT;
     hook.storage = storage, hook.storage_stride = sizeof storage[0], hook.range_slots = 16;
     check_ok(mspring_network_add_hook(network, &hook, NULL));
-    const mspring_solver_def settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
+    const mspring_settings settings[] = {tunes_setting(MSPRING_SOLVER_EXPLICIT, 12, 0),
                                            tunes_setting(MSPRING_SOLVER_IMPLICIT, 1, 4)};
     mspring_tune_scene scene = short_scene();
     scene.flags |= MSPRING_TUNE_SCENE_HOOKS;

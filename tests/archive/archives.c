@@ -35,12 +35,12 @@ mspring_network *archives_read(const archived *from, uint32_t workers) {
     mspring_network_def def = {.struct_size = sizeof def};
     uint32_t skipped = 99;
     if (mspring_builder_read(builder, from->bytes, from->size, &skipped) != MSPRING_OK)
-        fail_msg("%s", mspring_builder_error(builder));
+        fail_msg("%s", support_builder_error(builder));
     assert_int_equal(skipped, 0);
     check_ok(mspring_builder_get_network_def(builder, &def));
     def.worker_count = workers;
     if (mspring_network_create(builder, &def, &network) != MSPRING_OK)
-        fail_msg("%s", mspring_builder_error(builder));
+        fail_msg("%s", support_builder_error(builder));
     mspring_builder_destroy(builder);
     return network;
 }
@@ -65,8 +65,8 @@ void archives_check_goes_on(mspring_network *network, mspring_network *other, ui
         support_steps(network, 1, 1.0 / 64);
         support_steps(other, 1, 1.0 / 64);
     }
-    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &sizes[0]));
-    check_ok(mspring_network_snapshot_size(other, MSPRING_SNAPSHOT_ALL, &sizes[1]));
+    check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &sizes[0]));
+    check_ok(mspring_network_get_snapshot_size(other, MSPRING_SNAPSHOT_ALL, &sizes[1]));
     assert_int_equal(sizes[0], sizes[1]);
     uint8_t *bytes[2] = {malloc(sizes[0]), malloc(sizes[1])};
     check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, bytes[0], sizes[0], NULL));
@@ -81,13 +81,16 @@ void archives_check_goes_on(mspring_network *network, mspring_network *other, ui
 static recipe make_recipe(int kind) {
     uint64_t seed = 70 + (uint64_t)kind;
     const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {50, 100}, .damping = {0, kind & 1 ? 1 : 0}};
-    const recipe_stuff relative = {
-        .mass = {1, 2}, .stiffness = {0.1, 0.2}, .spring_flags = MSPRING_SPRING_RELATIVE, .pinned = 0.1, .holes = 0.1};
+    const recipe_stuff relative = {.mass = {1, 2},
+                                   .stiffness = {0.1, 0.2},
+                                   .spring_flags = MSPRING_SPRING_RELATIVE,
+                                   .pinned = 0.1,
+                                   .holes = 0.1};
     recipe_stuff cable = stuff;
     recipe made = {0};
     recipe_lattice(&made, 5, 3, 0, 0, 1, kind & 1 ? &relative : &stuff, &seed);
     recipe_particle(&made, 8, 1, 1, MSPRING_PARTICLE_PINNED);
-    cable.spring_flags = kind < 4 ? 0 : MSPRING_SPRING_PULL_ONLY;
+    cable.spring_flags = (kind < 4 ? 0u : MSPRING_SPRING_PULL_ONLY) | (kind & 2 ? MSPRING_SPRING_METRES : 0u);
     recipe_rope(&made, 0, made.particle_count - 1, 6, &cable, &seed);
     recipe_random_springs(&made, 5, &stuff, &seed);
     recipe_particle(&made, 0, 9, 1, 0);
@@ -103,19 +106,19 @@ static void add_and_remove(mspring_network *network) {
     mspring_id added[3], joints[2];
     const mspring_id removed = 7, removed_spring = 30;
     for (int i = 0; i < 3; i++) {
-        check_ok(mspring_particle_def_init(&particles[i], sizeof particles[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particles[i], sizeof particles[i]));
         particles[i].x = -2 - i;
     }
     check_ok(mspring_network_add_particles(network, particles, 3, added));
     for (uint32_t i = 0; i < 2; i++) {
-        check_ok(mspring_spring_def_init(&springs[i], sizeof springs[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &springs[i], sizeof springs[i]));
         springs[i].a = i, springs[i].b = added[i], springs[i].stiffness = 30;
     }
     check_ok(mspring_network_add_springs(network, springs, 2, joints));
-    check_ok(mspring_network_remove_particles(network, &removed, 1));
-    check_ok(mspring_network_remove_springs(network, &removed_spring, 1));
-    check_ok(mspring_network_remove_particles(network, &added[1], 1));
-    check_ok(mspring_network_remove_springs(network, &joints[0], 1));
+    check_ok(mspring_network_remove_particles(network, &removed, 0, 1));
+    check_ok(mspring_network_remove_springs(network, &removed_spring, 0, 1));
+    check_ok(mspring_network_remove_particles(network, &added[1], 0, 1));
+    check_ok(mspring_network_remove_springs(network, &joints[0], 0, 1));
 }
 
 static void add_laws(mspring_network *network) {
@@ -123,17 +126,18 @@ static void add_laws(mspring_network *network) {
     const mspring_id corners[3] = {0, 2, 6}, arms[6] = {0, 1, 2, 1, 2, 3};
     mspring_area_def area;
     mspring_angle_def angle;
-    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, mspring_network_spring_count(network), &yield, 0));
-    check_ok(mspring_network_set(network, MSPRING_PLASTIC_STRAIN, 5, 2, bend, 1));
-    check_ok(mspring_area_def_init(&area, sizeof area));
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, NULL, 0,
+                                 mspring_network_count(network, MSPRING_SPRINGS), &yield, 0));
+    check_ok(mspring_network_set(network, MSPRING_PLASTIC_STRAIN, NULL, 5, 2, bend, 1));
+    check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &area, sizeof area));
     area.stiffness = 20;
     check_ok(mspring_network_add_cell_areas(network, &area, NULL, NULL));
     area = (mspring_area_def){
         .struct_size = sizeof area, .kind = MSPRING_AREA_GAS, .pressure = 1, .fill = 1, .rest_area = 1};
     check_ok(mspring_network_add_area(network, &area, corners, 3, NULL));
-    check_ok(mspring_angle_def_init(&angle, sizeof angle));
+    check_ok(mspring_init(MSPRING_STRUCT_ANGLE_DEF, &angle, sizeof angle));
     angle.stiffness = 3;
-    check_ok(mspring_network_add_angles(network, &angle, arms, 2, NULL));
+    check_ok(mspring_network_add_angles(network, &angle, arms, 2, 3, NULL));
 }
 
 static void add_contact(mspring_network *network) {
@@ -143,15 +147,15 @@ static void add_contact(mspring_network *network) {
     mspring_collider_def collider;
     mspring_grip_def grip;
     mspring_floor_def ground;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.friction = 0.4f, contact.sweeps = 6;
     check_ok(mspring_network_set_contact(network, &contact));
-    check_ok(mspring_network_set_contact_groups(network, 2, 3, 6, 3));
-    check_ok(mspring_network_set_contact_surface(network, 1, 4, 0.5f, 0.25f));
-    check_ok(mspring_network_reserve_contact_events(network, 50));
+    check_ok(support_set_layers(network, 2, 3, 6, 3));
+    check_ok(support_set_surface(network, 1, 4, 0.5f, 0.25f));
+    check_ok(support_reserve_contact_events(network, 50));
     for (int i = 0; i < 4; i++) {
         mspring_id id;
-        check_ok(mspring_collider_def_init(&collider, sizeof collider));
+        check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &collider, sizeof collider));
         collider.kind = i < 3 ? (mspring_collider_kind)i : MSPRING_COLLIDER_CIRCLE;
         collider.x = 4 * i, collider.y = -3, collider.radius = 1, collider.friction = 0.3f;
         collider.points = points, collider.point_count = i == 0 ? 3 : 0;
@@ -162,10 +166,10 @@ static void add_contact(mspring_network *network) {
         if (i == 3)
             check_ok(mspring_network_remove_collider(network, id));
     }
-    check_ok(mspring_grip_def_init(&grip, sizeof grip));
+    check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &grip, sizeof grip));
     grip.particle = 3, grip.x = 3, grip.y = 1, grip.stiffness = 20, grip.max_force = 50;
     check_ok(mspring_network_add_grip(network, &grip, NULL));
-    check_ok(mspring_floor_def_init(&ground, sizeof ground));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &ground, sizeof ground));
     ground.planes = planes, ground.plane_count = 2, ground.plane_frictions = frictions;
     ground.heights = heights, ground.height_count = 4, ground.height_restitutions = bounces;
     ground.heights_x = -10, ground.spacing = 5, ground.silt_depth = 0.5f, ground.silt_rate = 1;
@@ -173,28 +177,28 @@ static void add_contact(mspring_network *network) {
 }
 
 static void add_batch(mspring_network *network) {
-    const mspring_id firsts[2] = {0, mspring_network_particle_count(network)}, moved[2] = {8, 9};
+    const mspring_id firsts[2] = {0, mspring_network_count(network, MSPRING_PARTICLES)}, moved[2] = {8, 9};
     const float signals[2] = {0.5f, 1.25f};
     check_ok(support_set_guard(network, MSPRING_GUARD_BOUNDS)); // groups need it
     check_ok(mspring_network_set_groups(network, firsts, 1));
     check_ok(mspring_network_set_actuators(network, moved, 2, 3));
     support_steps(network, 1, 1.0 / 64);
-    check_ok(mspring_network_mark_groups(network, NULL, 0));
+    check_ok(mspring_network_mark_groups(network, NULL, 0, MSPRING_ALL));
     support_steps(network, 1, 1.0 / 64);
-    check_ok(mspring_network_set_signals(network, 0, 2, signals, 1));
+    check_ok(mspring_network_set(network, MSPRING_SIGNAL, NULL, 0, 2, signals, 1));
 }
 
 static void edit(mspring_network *network, int kind) {
     const float strains[2] = {0.5f, 0.7f}, lower[2] = {0.2f, 0.3f}, mass = 3, scale = 0.5f;
     const mspring_id broken[3] = {1, 4, 11};
-    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 2, 2, strains, 1));
-    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 2, 2, lower, 1));
-    check_ok(mspring_network_break_springs(network, broken, 3));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, 2, 2, strains, 1));
+    check_ok(mspring_network_set(network, MSPRING_WARN_STRAIN, NULL, 2, 2, lower, 1));
+    check_ok(mspring_network_break_springs(network, broken, 0, 3));
     support_steps(network, 1, 1.0 / 64);
-    check_ok(mspring_network_restore_springs(network, broken, 1, 1.0)); // on a ramp
-    check_ok(mspring_network_set(network, MSPRING_MASS, 3, 1, &mass, 1));
+    check_ok(mspring_network_restore_springs(network, broken, 0, 1, 1.0)); // on a ramp
+    check_ok(mspring_network_set(network, MSPRING_MASS, NULL, 3, 1, &mass, 1));
     if (kind % 4 < 2)
-        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 5, 1, &scale, 1));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, 5, 1, &scale, 1));
     if (kind >= 4)
         add_laws(network);
     if (kind % 3 == 0)
@@ -208,6 +212,9 @@ static void edit(mspring_network *network, int kind) {
     if (kind == 6)
         check_ok(mspring_network_compact(network));
     check_ok(mspring_network_apply_force(network, 6, 3, -2));
+    const float blow = 40;
+    if (kind % 3 == 1)
+        check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_SUBSTEP, NULL, 2, 3, &blow, &blow, 0));
 }
 
 mspring_network *archives_make(int kind) {
@@ -215,21 +222,21 @@ mspring_network *archives_make(int kind) {
                                             MSPRING_GUARD_GROWTH};
     recipe from = make_recipe(kind);
     mspring_network_def def = support_def(-9.8f, 4);
-    mspring_solver_def solver;
-    def.guard = guards[kind % 4];
+    mspring_settings solver;
+    def.settings.guard = guards[kind % 4];
     def.spare_particles = def.spare_springs = kind % 3 == 0 ? 4 : 0;
-    def.sleep_speed = kind % 2 == 0 ? 1e-3f : 0;
-    def.sleep_time = 0;
+    def.settings.sleep_speed = kind % 2 == 0 ? 1e-3f : 0;
+    def.settings.sleep_time = 0;
     def.flags = kind == 9 ? MSPRING_NETWORK_PRECISE : kind == 10 ? MSPRING_NETWORK_POSES : 0;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.substeps = kind == 4 ? MSPRING_SUBSTEPS_EVEN : 4;
     solver.solver = kind == 10                 ? MSPRING_SOLVER_DIRECT
                     : kind & 2 && kind != 11 ? MSPRING_SOLVER_IMPLICIT
                                              : MSPRING_SOLVER_EXPLICIT;
-    solver.integrator = kind & 1 ? MSPRING_INTEGRATOR_BDF2 : MSPRING_INTEGRATOR_GA0;
+    solver.integrator = kind & 1 ? MSPRING_INTEGRATOR_BDF2 : MSPRING_INTEGRATOR_ALPHA;
     solver.coarse_period = kind == 2 ? 8 : 0;
     mspring_network *network = recipe_network(&from, &def);
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     recipe_free(&from);
     edit(network, kind);
     return network;
@@ -274,13 +281,13 @@ const char *archives_refused(const archived *from) {
         def.allocator = &allocator;
         result = mspring_network_create(builder, &def, &network);
     } else {
-        assert_int_equal(mspring_builder_particle_count(builder), 0);
-        assert_int_equal(mspring_builder_spring_count(builder), 0);
+        assert_int_equal(mspring_builder_count(builder, MSPRING_PARTICLES), 0);
+        assert_int_equal(mspring_builder_count(builder, MSPRING_SPRINGS), 0);
     }
     if (result != MSPRING_ERROR_SNAPSHOT)
-        fail_msg("result %d: %s", (int)result, mspring_builder_error(builder));
+        fail_msg("result %d: %s", (int)result, support_builder_error(builder));
     assert_null(network);
-    strcpy(message, mspring_builder_error(builder));
+    strcpy(message, support_builder_error(builder));
     mspring_builder_destroy(builder);
     check_watched_clean(&watched);
     return message;

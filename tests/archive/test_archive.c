@@ -100,8 +100,9 @@ static void a_compact_network_goes_on(void **state) {
         growth_use(network, kinds[solver], MSPRING_INTEGRATOR_EULER, 0);
         support_steps(network, 3, 1.0 / 64);
         for (int i = 0; i < 40; i++) {
-            const mspring_id spring = (mspring_id)(support_random(&seed) % mspring_network_spring_count(network));
-            check_ok(mspring_network_break_springs(network, &spring, 1));
+            const mspring_id spring =
+                (mspring_id)(support_random(&seed) % mspring_network_count(network, MSPRING_SPRINGS));
+            check_ok(mspring_network_break_springs(network, &spring, 0, 1));
         }
         check_ok(mspring_network_compact(network));
         support_steps(network, 3, 1.0 / 64);
@@ -117,12 +118,12 @@ static void a_compact_network_has_the_layout_of_its_solver_then(void **state) {
     (void)state;
     recipe made = recipe_mixed(8);
     mspring_network_def def = support_def(-9.8f, 4);
-    def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.settings.solver = MSPRING_SOLVER_IMPLICIT;
     mspring_network *network = recipe_network(&made, &def);
     for (mspring_id spring = 0; spring < 40; spring++)
-        check_ok(mspring_network_break_springs(network, &spring, 1));
+        check_ok(mspring_network_break_springs(network, &spring, 0, 1));
     check_ok(mspring_network_compact(network));
-    growth_use(network, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, 0);
+    growth_use(network, MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_ALPHA, 0);
     support_steps(network, 3, 1.0 / 64);
     mspring_network *other = archives_check_same(network, 1);
     archives_check_goes_on(network, other, 10);
@@ -137,7 +138,8 @@ static void floor_and_colliders_are_as_given(void **state) {
     (void)state;
     mspring_network *network = archives_make(9), *other = archives_check_same(network, 1);
     mspring_floor_def floors[2] = {{.struct_size = sizeof floors[0]}, {.struct_size = sizeof floors[0]}};
-    mspring_collider_def colliders[2] = {{.struct_size = sizeof colliders[0]}, {.struct_size = sizeof colliders[0]}};
+    mspring_collider_def colliders[2] = {{.struct_size = sizeof colliders[0]},
+                                         {.struct_size = sizeof colliders[0]}};
     mspring_contact_def contacts[2] = {{.struct_size = sizeof contacts[0]}, {.struct_size = sizeof contacts[0]}};
     mspring_network *const both[2] = {network, other};
     for (int i = 0; i < 2; i++) {
@@ -158,7 +160,7 @@ static void floor_and_colliders_are_as_given(void **state) {
     // ids go on: 0 to 2 are there, 3 was removed
     mspring_collider_def circle;
     mspring_id id = 0;
-    check_ok(mspring_collider_def_init(&circle, sizeof circle));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &circle, sizeof circle));
     circle.kind = MSPRING_COLLIDER_CIRCLE, circle.radius = 1, circle.x = 50;
     check_error(mspring_network_get_collider(other, 3, &circle), MSPRING_ERROR_ID);
     check_ok(mspring_network_add_collider(other, &circle, &id));
@@ -167,17 +169,43 @@ static void floor_and_colliders_are_as_given(void **state) {
     mspring_network_destroy(network);
 }
 
+/// Silt by sample comes behind all that older files have, and only if there is some.
+static void floors_have_their_silt(void **state) {
+    (void)state;
+    static const float depths[4] = {0.5f, 0, 3, 1.25f};
+    mspring_network *network = archives_make(9);
+    mspring_floor_def def = {.struct_size = sizeof def};
+    size_t sizes[2];
+    for (int i = 0; i < 2; i++) {
+        mspring_network *other = archives_check_same(network, 1);
+        const archived archive = archives_write(network);
+        (void)archives_chunk(&archive, "floo", &sizes[i]);
+        free(archive.bytes);
+        check_ok(mspring_network_get_floor(other, &def));
+        assert_true(def.silt_depth == (i == 0 ? 0.5f : 0) && (def.silt_depths != NULL) == i);
+        if (def.silt_depths)
+            assert_memory_equal(def.silt_depths, depths, sizeof depths);
+        mspring_network_destroy(other);
+        check_ok(mspring_network_get_floor(network, &def));
+        def.silt_depth = 0, def.silt_depths = depths;
+        check_ok(mspring_network_set_floor(network, &def));
+    }
+    assert_int_equal(sizes[1] - sizes[0], sizeof(uint32_t) + sizeof depths);
+    mspring_network_destroy(network);
+}
+
 static void groups_go_back_to_their_marks(void **state) {
     (void)state;
     for (int to = 0; to < 2; to++) {
         mspring_network *network = archives_make(11), *other = archives_check_same(network, 1);
-        assert_int_equal(mspring_network_group_count(other), 1);
-        assert_int_equal(mspring_network_actuator_count(other), 2);
+        assert_int_equal(mspring_network_count(other, MSPRING_GROUPS), 1);
+        assert_int_equal(mspring_network_count(other, MSPRING_ACTUATORS), 2);
         const float signals[2] = {1.5f, 0.75f};
         for (int i = 0; i < 2; i++) {
             mspring_network *one = i == 0 ? network : other;
-            check_ok(mspring_network_reset_groups(one, NULL, 0, to == 0 ? MSPRING_RESET_START : MSPRING_RESET_MARK));
-            check_ok(mspring_network_set_signals(one, 0, 2, signals, 1));
+            check_ok(mspring_network_reset_groups(one, to == 0 ? MSPRING_RESET_START : MSPRING_RESET_MARK, NULL, 0,
+                                                  MSPRING_ALL));
+            check_ok(mspring_network_set(one, MSPRING_SIGNAL, NULL, 0, 2, signals, 1));
         }
         archives_check_goes_on(network, other, 10);
         mspring_network_destroy(other);
@@ -189,7 +217,7 @@ static void sleepers_sleep_on(void **state) {
     (void)state;
     recipe made = recipe_bar(12, 3, 1e5);
     mspring_network_def def = support_def(0, 4);
-    def.sleep_speed = 0.1f, def.sleep_time = 0.1f;
+    def.settings.sleep_speed = 0.1f, def.settings.sleep_time = 0.1f;
     mspring_network *network = recipe_network(&made, &def);
     support_fall_asleep(network, 1.0 / 64);
     mspring_network *other = archives_check_same(network, 1);
@@ -224,7 +252,7 @@ static void events_have_room(void **state) {
     const mspring_id spring = 6;
     check_ok(mspring_network_read_events(other, events, 20, &count, NULL));
     assert_int_equal(count, 0);
-    check_ok(mspring_network_break_springs(other, &spring, 1));
+    check_ok(mspring_network_break_springs(other, &spring, 0, 1));
     check_ok(mspring_network_read_events(other, events, 20, &count, NULL));
     assert_int_equal(count, 1);
     mspring_network_destroy(other);
@@ -260,11 +288,11 @@ static void a_definition_may_change_the_rest(void **state) {
     mspring_network_def def = {.struct_size = sizeof def};
     check_ok(mspring_builder_read(builder, archive.bytes, archive.size, NULL));
     check_ok(mspring_builder_get_network_def(builder, &def));
-    assert_int_equal(def.solver, MSPRING_SOLVER_IMPLICIT);
-    assert_int_equal(def.coarse_period, 8);
-    assert_true(def.gravity_y == -9.8f);
-    def.gravity_y = -1;
-    def.solver = MSPRING_SOLVER_EXPLICIT;
+    assert_int_equal(def.settings.solver, MSPRING_SOLVER_IMPLICIT);
+    assert_int_equal(def.settings.coarse_period, 8);
+    assert_true(def.settings.gravity_y == -9.8f);
+    def.settings.gravity_y = -1;
+    def.settings.solver = MSPRING_SOLVER_EXPLICIT;
     def.worker_count = 2;
     def.simd_level = MSPRING_SIMD_SCALAR;
     check_ok(mspring_network_create(builder, &def, &other));
@@ -274,10 +302,10 @@ static void a_definition_may_change_the_rest(void **state) {
     mspring_network_destroy(other);
     def.spare_springs++;
     check_error(mspring_network_create(builder, &def, &other), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_builder_error(builder), "mspring_builder_get_network_def()");
+    check_contains(support_builder_error(builder), "mspring_builder_get_network_def()");
     support_particle(builder, 0, 0, 1);
     check_error(mspring_network_create(builder, NULL, &other), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_builder_error(builder), "others were added");
+    check_contains(support_builder_error(builder), "others were added");
     check_error(mspring_builder_read(builder, archive.bytes, archive.size, NULL), MSPRING_ERROR_ARGUMENT);
     mspring_builder_destroy(builder);
     free(archive.bytes);
@@ -285,6 +313,43 @@ static void a_definition_may_change_the_rest(void **state) {
 }
 
 // It has the tiles that suited the springs there were. Others may suit those that are left.
+// What archives do not hold must not show in later ones.
+static void later_edits_meet_the_same(void **state) {
+    (void)state;
+    const mspring_observation columns[2] = {{MSPRING_END_A, 3}, {MSPRING_ACTUATOR_SPRING, 1}};
+    const mspring_id removed = 9;
+    const float limit = 0.25f;
+    mspring_network *networks[2] = {archives_make(11), NULL};
+    double rows[2][2];
+    check_ok(mspring_network_remove_springs(networks[0], &removed, 0, 1)); // that of an actuator
+    check_ok(support_set_guard(networks[0], MSPRING_GUARD_BOUNDS));
+    networks[1] = archives_check_same(networks[0], 1);
+    for (int i = 0; i < 2; i++) {
+        check_ok(mspring_network_observe_groups(networks[i], NULL, 0, 1, columns, 2, rows[i], 2));
+        check_ok(mspring_network_set_groups(networks[i], NULL, 0));
+        check_ok(mspring_network_set(networks[i], MSPRING_PLASTIC_LIMIT, NULL, 0, MSPRING_ALL, &limit, 0));
+        check_ok(mspring_network_set_actuators(networks[i], NULL, 0, 1));
+        check_ok(support_set_guard(networks[i], MSPRING_GUARD_IMPLICIT));
+    }
+    assert_memory_equal(rows[0], rows[1], sizeof rows[0]);
+    archives_check_goes_on(networks[0], networks[1], 5);
+    mspring_network_destroy(networks[1]);
+    mspring_network_destroy(networks[0]);
+}
+
+// It is made anew when the guard is chosen again: one of before would fit the shape of then.
+static void a_fallback_is_of_its_guard(void **state) {
+    (void)state;
+    mspring_network *network = archives_make(1); // with this guard
+    check_ok(support_set_guard(network, MSPRING_GUARD_CLAMP));
+    mspring_network *other = archives_check_same(network, 1);
+    check_ok(support_set_guard(network, MSPRING_GUARD_IMPLICIT));
+    check_ok(support_set_guard(other, MSPRING_GUARD_IMPLICIT));
+    archives_check_goes_on(network, other, 3);
+    mspring_network_destroy(other);
+    mspring_network_destroy(network);
+}
+
 static void a_fallback_keeps_its_tiles(void **state) {
     (void)state;
     for (uint64_t start = 0; start < 40; start++) {
@@ -295,11 +360,11 @@ static void a_fallback_keeps_its_tiles(void **state) {
             recipe_particle(&made, i % 5, 3 * (i % 3) + i, 1, 0);
         recipe_random_springs(&made, 7, &stuff, &seed);
         mspring_network_def def = support_def(-9.8f, 4);
-        def.guard = MSPRING_GUARD_IMPLICIT;
-        def.solver = start % 2 == 0 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_EXPLICIT;
+        def.settings.guard = MSPRING_GUARD_IMPLICIT;
+        def.settings.solver = start % 2 == 0 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_EXPLICIT;
         mspring_network *network = recipe_network(&made, &def);
         for (mspring_id spring = 0; spring < 4 && spring < made.spring_count; spring++)
-            check_ok(mspring_network_remove_springs(network, &spring, 1));
+            check_ok(mspring_network_remove_springs(network, &spring, 0, 1));
         mspring_network *other = archives_check_same(network, 1);
         if (start % 2 == 1)
             archives_check_goes_on(network, other, 3);
@@ -341,16 +406,16 @@ static void a_builder_gives_back_what_it_has(void **state) {
     // lists, and what is wrong with a call
     const mspring_id ids[2] = {springs - 1, 0};
     mspring_spring_def two[2] = {{.struct_size = sizeof two[0]}, {.struct_size = sizeof two[0]}};
-    check_ok(mspring_builder_get_springs(builder, ids, 99, 2, two));
+    check_ok(mspring_builder_get_springs(builder, ids, 0, 2, two));
     assert_memory_equal(&two[0], &s[springs - 1], sizeof two[0]);
     assert_memory_equal(&two[1], &s[0], sizeof two[0]);
     check_error(mspring_builder_get_springs(builder, NULL, springs, 1, two), MSPRING_ERROR_ID);
-    check_contains(mspring_builder_error(builder), "1 from id");
+    check_contains(support_builder_error(builder), "1 from id");
     const mspring_id far_one = particles;
     check_error(mspring_builder_get_particles(builder, &far_one, 0, 1, p), MSPRING_ERROR_ID);
     check_error(mspring_builder_get_particles(builder, NULL, 0, 1, NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_builder_get_particles(NULL, NULL, 0, 1, p), MSPRING_ERROR_ARGUMENT);
-    two[1].struct_size = 3;
+    two[0].struct_size = 3; // that of the first counts
     check_error(mspring_builder_get_springs(builder, ids, 0, 2, two), MSPRING_ERROR_STRUCT);
     free(a.bytes);
     free(b.bytes);
@@ -363,6 +428,17 @@ static void a_builder_gives_back_what_it_has(void **state) {
     recipe_free(&made);
 }
 
+// Flow stretches the longest rest length that may be given beyond it.
+static void the_longest_springs_go_on(void **state) {
+    (void)state;
+    const float longest = 4e12f, strain = 0.9f;
+    mspring_network *network = archives_make(0);
+    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, 0, MSPRING_ALL, &longest, 0));
+    check_ok(mspring_network_set(network, MSPRING_PLASTIC_STRAIN, NULL, 0, MSPRING_ALL, &strain, 0));
+    mspring_network_destroy(archives_check_same(network, 1));
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_scene_goes_on),
@@ -371,14 +447,18 @@ int main(void) {
         cmocka_unit_test(a_compact_network_goes_on),
         cmocka_unit_test(a_compact_network_has_the_layout_of_its_solver_then),
         cmocka_unit_test(floor_and_colliders_are_as_given),
+        cmocka_unit_test(floors_have_their_silt),
         cmocka_unit_test(groups_go_back_to_their_marks),
         cmocka_unit_test(sleepers_sleep_on),
         cmocka_unit_test(particles_without_springs_fall_on),
         cmocka_unit_test(events_have_room),
         cmocka_unit_test(the_hosts_function_may_refuse),
         cmocka_unit_test(a_definition_may_change_the_rest),
+        cmocka_unit_test(later_edits_meet_the_same),
+        cmocka_unit_test(a_fallback_is_of_its_guard),
         cmocka_unit_test(a_fallback_keeps_its_tiles),
         cmocka_unit_test(a_builder_gives_back_what_it_has),
+        cmocka_unit_test(the_longest_springs_go_on),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,7 +39,7 @@ static void counted_free(void *memory, size_t size, void *user) {
 
 void costs_open(costs *c) {
     memset(c, 0, sizeof *c);
-    check_ok(mspring_allocator_init(&c->allocator, sizeof c->allocator));
+    check_ok(mspring_init(MSPRING_STRUCT_ALLOCATOR, &c->allocator, sizeof c->allocator));
     c->allocator.alloc = counted_alloc;
     c->allocator.free = counted_free;
     c->allocator.user = c;

@@ -5,11 +5,8 @@
 #ifndef TEST_HOSTILE_H
 #define TEST_HOSTILE_H
 
-#include <massspring/massspring_batch.h>
-#include <massspring/massspring_contact.h>
+#include <massspring/massspring.h>
 #include <massspring/massspring_gradient.h>
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
 
 enum { OUTS = 6, OUT_BYTES = 512, STRUCT_BYTES = 512, SNAPSHOT_BYTES = 8192 };
 
@@ -44,7 +41,8 @@ typedef struct arguments {
 /// Kinds: capitals have to be refused when they are spoilt, small letters may be accepted.
 ///   N  network, of a call that is refused inside a hook      n  network of another call; both leave messages
 ///   v  network or builder that may be NULL        B  builder
-///   I  id        R  first and count       A  ids        C  count of structs (size)
+///   I  id        R  first and count       r  the same, where the count may be MSPRING_ALL
+///   A  ids       a  ids, where NULL means a range      C  count of structs (size)
 ///   X  x, Y  y   T  dt   L  safety   J  ramp            K  enumerator
 ///   F f  G g     arrays of floats, where only small letters allow infinity    D E  arrays of doubles
 ///   S  struct, NULL refused    s  struct, NULL accepted; impossible sizes are refused for both

@@ -17,7 +17,7 @@ mspring_network *shapes_network_of(mspring_builder *builder, costs *c, uint32_t 
     mspring_network_def def = support_def(0, 1);
     def.allocator = &c->allocator;
     def.spare_particles = def.spare_springs = spares;
-    def.solver = MSPRING_SOLVER_EXPLICIT;
+    def.settings.solver = MSPRING_SOLVER_EXPLICIT;
     return support_network(builder, &def);
 }
 

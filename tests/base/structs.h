@@ -20,7 +20,8 @@ extern const struct input {
     const char *name; ///< without mspring_
     size_t size;      ///< as this program's header has it
     size_t grown;     ///< bytes of it that the version that introduced it did not have
-    mspring_result (*init)(void *out, size_t size);
+    size_t settings;  ///< where the settings are that it ends with; 0: it has none
+    mspring_struct kind;
     mspring_result (*give)(subject *s, void *given); ///< sets what init leaves unset, and makes the call
     size_t reserved;                                 ///< where a reserved field is; 0: there is none
 } inputs[];
@@ -29,7 +30,8 @@ extern const size_t input_count;
 extern const struct output {
     const char *name;
     size_t size;
-    size_t grown; ///< bytes of it that the version that introduced it did not have
+    size_t grown;    ///< bytes of it that the version that introduced it did not have
+    size_t settings; ///< where the settings are that it ends with; 0: it has none
     mspring_result (*fill)(subject *s, void *out);
     bool repeats; ///< the next call gives the same
 } outputs[];

@@ -19,6 +19,7 @@ typedef struct input {
     uint16_t cells[WIDTH * HEIGHT];
     mspring_lattice_def lattice;
     mspring_rope_def rope;
+    mspring_material rope_material;
 } input;
 
 static void make_input(input *in) {
@@ -30,22 +31,24 @@ static void make_input(input *in) {
         recipe_particle(&in->loose, 100 + i % 17 * 1.37, i * 0.71, 1, 0);
     }
     recipe_random_springs(&in->loose, 400, &stuff, &seed);
-    check_ok(mspring_material_init(&in->material, sizeof in->material));
+    check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &in->material, sizeof in->material));
     in->material.stiffness = 100;
     for (size_t i = 0; i < COUNT_OF(in->cells); i++) {
         in->cells[i] = support_random(&seed) % 5 == 0 ? MSPRING_CELL_EMPTY : 0;
     }
-    check_ok(mspring_lattice_def_init(&in->lattice, sizeof in->lattice));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &in->lattice, sizeof in->lattice));
     in->lattice.width = WIDTH;
     in->lattice.height = HEIGHT;
     in->lattice.cells = in->cells;
     in->lattice.materials = &in->material;
     in->lattice.material_count = 1;
-    check_ok(mspring_rope_def_init(&in->rope, sizeof in->rope));
+    check_ok(mspring_init(MSPRING_STRUCT_ROPE_DEF, &in->rope, sizeof in->rope));
     in->rope.from = 5;
     in->rope.to = 250;
     in->rope.segment_count = 200;
-    in->rope.stiffness = 50;
+    in->rope_material = mspring_material_default();
+    in->rope_material.stiffness = 50;
+    in->rope.material = &in->rope_material;
 }
 
 typedef struct counts {
@@ -53,16 +56,17 @@ typedef struct counts {
 } counts;
 
 static counts counts_of(const mspring_builder *builder) {
-    return (counts){mspring_builder_particle_count(builder), mspring_builder_spring_count(builder)};
+    return (counts){mspring_builder_count(builder, MSPRING_PARTICLES),
+                    mspring_builder_count(builder, MSPRING_SPRINGS)};
 }
 
 /// The result of a call on a builder: if it was out of memory, the builder says so and holds what it held before.
-static bool done(const mspring_builder *builder, counts before, mspring_result result) {
+static bool done(mspring_builder *builder, counts before, mspring_result result) {
     if (result == MSPRING_OK) {
         return true;
     }
     check_error(result, MSPRING_ERROR_MEMORY);
-    check_contains(mspring_builder_error(builder), "memory");
+    check_contains(support_builder_error(builder), "memory");
     assert_int_equal(counts_of(builder).particles, before.particles);
     assert_int_equal(counts_of(builder).springs, before.springs);
     return false;
@@ -85,17 +89,17 @@ static void fill(mspring_builder *builder, const input *in) {
         check_ok(mspring_builder_add_lattice(builder, &in->lattice, NULL));
     }
     before = counts_of(builder);
-    if (!done(builder, before, mspring_builder_add_rope(builder, &in->rope, NULL, 0, NULL))) {
-        check_ok(mspring_builder_add_rope(builder, &in->rope, NULL, 0, NULL));
+    if (!done(builder, before, mspring_builder_add_rope(builder, &in->rope, NULL, NULL))) {
+        check_ok(mspring_builder_add_rope(builder, &in->rope, NULL, NULL));
     }
     // One by one until the arrays have to grow again.
     for (uint32_t i = 0; i < 1000; i++) {
         mspring_particle_def particle;
-        check_ok(mspring_particle_def_init(&particle, sizeof particle));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
         particle.x = i;
         particle.y = -10;
-        if (!done(builder, counts_of(builder), mspring_builder_add_particle(builder, &particle, NULL))) {
-            check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+        if (!done(builder, counts_of(builder), mspring_builder_add_particles(builder, &particle, 1, NULL))) {
+            check_ok(mspring_builder_add_particles(builder, &particle, 1, NULL));
         }
     }
 }
@@ -178,7 +182,7 @@ static void failed_networks_leave_nothing_behind(void **state) {
         if (result == MSPRING_OK) {
             assert_true(of_network.calls < fail_at);
             assert_int_equal(hash_after_steps(network), expected);
-            assert_true(mspring_network_memory_used(network) > 0);
+            assert_true(support_memory_used(network) > 0);
             mspring_network_destroy(network);
         } else {
             assert_ptr_equal(network, untouched);
@@ -284,23 +288,23 @@ static void check_change_to(mspring_solver kind) {
         watched_allocator watched = {0}, unwatched = {0};
         mspring_network *network = watched_network(&made, &watched, 0);
         mspring_network *twin = watched_network(&made, &unwatched, 0);
-        mspring_solver_def solver;
-        check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        mspring_settings solver;
+        check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
         solver.solver = MSPRING_SOLVER_IMPLICIT;
-        check_ok(mspring_network_set_solver(network, &solver));
-        check_ok(mspring_network_set_solver(twin, &solver));
+        check_ok(support_set_solver(network, &solver));
+        check_ok(support_set_solver(twin, &solver));
         support_steps(network, 3, 0.01);
         support_steps(twin, 3, 0.01);
-        const size_t used = mspring_network_memory_used(network);
+        const size_t used = support_memory_used(network);
         solver.solver = kind;
         solver.integrator = MSPRING_INTEGRATOR_BDF2;
         watched.fail_at = watched.calls + ++fail_at;
-        result = mspring_network_set_solver(network, &solver);
+        result = support_set_solver(network, &solver);
         watched.fail_at = 0;
         if (result != MSPRING_OK) {
             check_error(result, MSPRING_ERROR_MEMORY);
             check_contains(mspring_network_error(network), "memory");
-            assert_int_equal(mspring_network_memory_used(network), used);
+            assert_int_equal(support_memory_used(network), used);
             support_steps(network, 5, 0.01);
             support_steps(twin, 5, 0.01);
             assert_int_equal(support_hash(network), support_hash(twin));
@@ -325,7 +329,7 @@ static void no_step_allocates(void **state) {
     recipe made = small_recipe();
     watched_allocator watched = {0};
     mspring_network *network = watched_network(&made, &watched, 0);
-    const size_t calls = watched.calls, used = mspring_network_memory_used(network);
+    const size_t calls = watched.calls, used = support_memory_used(network);
     assert_true(used > 0 && used <= watched.live_bytes);
     support_steps(network, 10, 0.01);
     assert_int_equal(watched.calls, calls);
@@ -336,42 +340,42 @@ static void no_step_allocates(void **state) {
     }
     check_ok(mspring_network_apply_force(network, 3, 1, 1));
     const size_t calls_now = watched.calls;
-    assert_true(mspring_network_memory_used(network) >= used);
+    assert_true(support_memory_used(network) >= used);
     float f[10] = {0};
     double x[10], y[10];
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     for (int step = 0; step < 10; step++) {
         solver.substeps = 1 + step;
-        check_ok(mspring_network_set_solver(network, &solver));
+        check_ok(support_set_solver(network, &solver));
         check_ok(support_set_gravity(network, 0, (float)-step));
         check_ok(support_set_global_damping(network, 0.1f));
-        check_ok(mspring_network_apply_forces(network, 0, 10, f, f, 1));
-        check_ok(mspring_network_get_positions(network, 0, 10, x, y, 1));
-        check_ok(mspring_network_set_positions(network, 0, 10, x, y, 1));
-        check_ok(mspring_network_set_velocities(network, 0, 10, f, f, 1));
+        check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, 10, f, f, 1));
+        check_ok(mspring_network_get_positions(network, NULL, 0, 10, x, y, 1));
+        check_ok(mspring_network_set_positions(network, NULL, 0, 10, x, y, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, 0, 10, f, f, 1));
         support_steps(network, 1, 0.01);
         (void)support_hash(network);
     }
     assert_int_equal(watched.calls, calls_now);
     assert_true(hook_calls > 0);
     solver.solver = MSPRING_SOLVER_IMPLICIT;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     const size_t calls_implicit = watched.calls;
     for (uint32_t step = 0; step < 10; step++) {
         solver.iterations = step;
-        check_ok(mspring_network_set_solver(network, &solver));
+        check_ok(support_set_solver(network, &solver));
         support_steps(network, 1, 0.01);
     }
     assert_int_equal(watched.calls, calls_implicit);
     solver.solver = MSPRING_SOLVER_DIRECT;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     const size_t calls_direct = watched.calls;
     for (uint32_t step = 0; step < 10; step++) {
         // Soft and stiff: in single and in double precision.
         const float stiffness = step % 2 == 0 ? 100.0f : 1e12f;
-        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, 1, &stiffness, 1));
-        check_ok(mspring_network_set_solver(network, &solver));
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 0, 1, &stiffness, 1));
+        check_ok(support_set_solver(network, &solver));
         support_steps(network, 1, 0.01);
     }
     assert_int_equal(watched.calls, calls_direct);
@@ -393,14 +397,14 @@ static void stable_dt_survives_every_failure(void **state) {
     def.allocator = &allocator;
     mspring_network *network = recipe_network(&in.loose, &def);
     double expected = 0, now = -1;
-    check_ok(mspring_network_stable_dt(network, &expected, NULL));
+    check_ok(mspring_network_get_stable_dt(network, &expected, NULL));
     const uint64_t hash = support_hash(network);
     const size_t live = watched.live, first = watched.calls;
     size_t fail_at = 0;
     for (mspring_result result = MSPRING_ERROR_MEMORY; result != MSPRING_OK;) {
         watched.fail_at = first + ++fail_at;
         watched.calls = first;
-        result = mspring_network_stable_dt(network, &now, NULL);
+        result = mspring_network_get_stable_dt(network, &now, NULL);
         assert_int_equal(watched.live, live);
         assert_int_equal(support_hash(network), hash);
         if (result != MSPRING_OK) {

@@ -11,9 +11,9 @@ static mspring_simd level_with(const char *variable, mspring_simd setting) {
     mspring_network_def def = support_def(0, 1);
     def.simd_level = setting;
     mspring_network *network = support_network(builder, &def);
-    mspring_simd level = mspring_network_simd_level(network);
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
+    mspring_simd level = support_simd_level(network);
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     assert_int_equal(plan.simd_level, level);
     check_ok(mspring_network_step(network, 0.01)); // the machine does have it
     mspring_network_destroy(network);
@@ -31,7 +31,7 @@ static mspring_simd lower(mspring_simd level, mspring_simd limit) {
 
 static void each_lowers_and_neither_raises(void **state) {
     (void)state;
-    const mspring_simd best = mspring_simd_supported();
+    const mspring_simd best = support_best_level();
     for (mspring_simd setting = MSPRING_SIMD_AUTO; setting <= MSPRING_SIMD_WASM; setting++) {
         mspring_simd alone = lower(best, setting);
         assert_int_equal(level_with(NULL, setting), alone);
@@ -45,7 +45,7 @@ static void other_values_change_nothing(void **state) {
     (void)state;
     const char *const values[] = {"", "auto", "AVX2 ", "scalarx", "sse", "4", "neon64"};
     for (size_t i = 0; i < COUNT_OF(values); i++) {
-        assert_int_equal(level_with(values[i], MSPRING_SIMD_AUTO), mspring_simd_supported());
+        assert_int_equal(level_with(values[i], MSPRING_SIMD_AUTO), support_best_level());
     }
 }
 
@@ -57,7 +57,7 @@ static void the_variable_is_read_when_a_network_is_made(void **state) {
     mspring_network *network = support_network(builder, NULL);
     support_set_variable("MSPRING_SIMD", "scalar");
     check_ok(mspring_network_step(network, 0.01));
-    assert_int_equal(mspring_network_simd_level(network), mspring_simd_supported());
+    assert_int_equal(support_simd_level(network), support_best_level());
     mspring_network_destroy(network);
 }
 

@@ -32,9 +32,9 @@ static const v2 default_2 = {.a = 7, .b = 1.5f, .d = 2};
 static const v3 default_3 = {.a = 7, .b = 1.5f, .d = 2, .e = 3, .f = 4};
 
 static const mspringi_struct libraries[] = {
-    {"some", sizeof(v1), sizeof(v1), &default_1},
-    {"some", sizeof(v1), sizeof(v2), &default_2},
-    {"some", sizeof(v1), sizeof(v3), &default_3},
+    {"some", sizeof(v1), sizeof(v1), 0, &default_1},
+    {"some", sizeof(v1), sizeof(v2), 0, &default_2},
+    {"some", sizeof(v1), sizeof(v3), 0, &default_3},
 };
 static const uint32_t programs[] = {sizeof(v1), sizeof(v2), sizeof(v3)};
 
@@ -57,7 +57,9 @@ static void every_program_runs_with_every_library(void **state) {
             memset(given, 0xaa, ROOM);
             memset(taken, 0xaa, ROOM);
             memset(out, 0xaa, ROOM);
-            check_ok(mspringi_init_struct(library, given, size));
+            memset(given, 0, size); // as mspring_init() does it
+            memcpy(given, &size, sizeof size);
+            mspringi_put_struct(library, given, library->defaults);
             check_behind(given, size);
             assert_memory_equal(given, &size, sizeof size);
             assert_memory_equal(given + 4, (const char *)library->defaults + 4, shared - 4);
@@ -112,8 +114,56 @@ static void sizes_that_are_none_are_refused(void **state) {
                 check_contains(message.text, "some.struct_size is");
                 check_contains(message.text, "from 16 to 4000");
             }
-            check_error(mspringi_init_struct(&libraries[l], given, size), expected);
             memset(given, 0, sizeof given);
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ nested ones */
+
+/// A struct that ends with another, which has grown: both have.
+typedef struct inner {
+    uint32_t struct_size, e;
+} inner;
+typedef struct outer {
+    uint32_t struct_size, a;
+    inner last;
+    uint32_t grown; ///< of the inner one
+} outer;
+
+static const outer default_outer = {.a = 7, .last = {.e = 8}, .grown = 9};
+static const mspringi_struct outers[] = {
+    {"outer", offsetof(outer, grown), offsetof(outer, grown), offsetof(outer, last), &default_outer},
+    {"outer", offsetof(outer, grown), sizeof(outer), offsetof(outer, last), &default_outer},
+};
+
+static void nested_structs_grow_with_the_outer_one(void **state) {
+    (void)state;
+    for (size_t l = 0; l < COUNT_OF(outers); l++) {
+        for (size_t p = 0; p < COUNT_OF(outers); p++) {
+            const uint32_t size = outers[p].known, known = outers[l].known;
+            outer given = {.struct_size = size, .a = 1, .last = {size - (uint32_t)offsetof(outer, last), 2}}, taken,
+                  out;
+            memset(&taken, 0xaa, sizeof taken);
+            memset(&out, 0xaa, sizeof out);
+            check_ok(mspringi_take_struct(NULL, &outers[l], &given, &taken));
+            assert_int_equal(taken.struct_size, known);
+            assert_int_equal(taken.last.struct_size, known - offsetof(outer, last));
+            assert_int_equal(taken.last.e, 2);
+            if (known == sizeof taken)
+                assert_int_equal(taken.grown, size == sizeof given ? 0 : 9); // what a program lacks is the default
+            out.struct_size = size;
+            mspringi_put_struct(&outers[l], &out, &taken);
+            assert_int_equal(out.struct_size, size);
+            assert_int_equal(out.last.struct_size, size - offsetof(outer, last));
+            // One that does not fill its place.
+            mspringi_message message;
+            const uint32_t wrong[] = {0, 4, given.last.struct_size - 4, given.last.struct_size + 4, size};
+            for (size_t i = 0; i < COUNT_OF(wrong); i++) {
+                given.last.struct_size = wrong[i];
+                check_error(mspringi_take_struct(&message, &outers[l], &given, &taken), MSPRING_ERROR_STRUCT);
+                check_contains(message.text, "outer.settings.struct_size is ");
+            }
         }
     }
 }
@@ -122,6 +172,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_program_runs_with_every_library),
         cmocka_unit_test(null_gives_defaults),
+        cmocka_unit_test(nested_structs_grow_with_the_outer_one),
         cmocka_unit_test(sizes_that_are_none_are_refused),
     };
     return cmocka_run_group_tests_name("struct_sizes", tests, NULL, NULL);

@@ -81,33 +81,41 @@ static void list_impossible(uint32_t sizes[IMPOSSIBLE_COUNT], size_t size, size_
 static void check_message(const subject *s, const char *name, uint32_t size) {
     char expected[80];
     snprintf(expected, sizeof expected, "mspring_%s.struct_size is %u, it must be", name, (unsigned)size);
-    if (!strstr(mspring_builder_error(s->builder), expected)) {
+    if (!strstr(support_builder_error(s->builder), expected)) {
         check_contains(mspring_network_error(s->network), expected);
     }
 }
 
-/* -------------------------------------------------------------------------------------------------------- inputs
- */
+/// Settings at the end of a struct have its other bytes, and say so.
+static void check_nested(const unsigned char *bytes, size_t settings, uint32_t size) {
+    const uint32_t nested = size - (uint32_t)settings;
+    if (settings > 0)
+        assert_memory_equal(bytes + settings, &nested, sizeof nested);
+}
+
+/* ------------------------------------------------------------------------------------------------------ inputs */
 
 static void check_given(const struct input *input, uint32_t more) {
     subject s = make_subject();
     const uint32_t size = (uint32_t)input->size + more, known = (uint32_t)KNOWN(input->size);
     unsigned char *bytes = fenced(size);
-    check_ok(input->init(bytes, size));
+    check_ok(mspring_init(input->kind, bytes, size));
     assert_memory_equal(bytes, &size, sizeof size);
+    check_nested(bytes, input->settings, size);
     for (uint32_t i = known; i < size; i++) {
         assert_int_equal(bytes[i], 0);
     }
     if (input->give(&s, bytes) != MSPRING_OK) {
-        print_error("%s: %s%s\n", input->name, mspring_builder_error(s.builder), mspring_network_error(s.network));
+        print_error("%s: %s%s\n", input->name, support_builder_error(s.builder), mspring_network_error(s.network));
         fail();
     }
     assert_memory_equal(bytes, &size, sizeof size);
-    check_ok(input->init(bytes, size));
-    for (uint32_t i = known; i<size; i += size - known - 1> 0 ? size - known - 1 : 1) {
-        bytes[i] = 1;
+    check_ok(mspring_init(input->kind, bytes, size));
+    const uint32_t later[] = {known, size - 1};
+    for (size_t i = 0; i < COUNT_OF(later) && size > known; i++) {
+        bytes[later[i]] = 1;
         check_error(input->give(&s, bytes), MSPRING_ERROR_STRUCT);
-        bytes[i] = 0;
+        bytes[later[i]] = 0;
     }
     check_fence(bytes);
     free_subject(&s);
@@ -130,9 +138,9 @@ static void impossible_sizes_are_refused(void **state) {
         for (size_t i = 0; i < IMPOSSIBLE_COUNT; i++) {
             subject s = make_subject();
             unsigned char *bytes = fenced(input->size);
-            check_error(input->init(bytes, sizes[i]), MSPRING_ERROR_STRUCT);
+            check_error(mspring_init(input->kind, bytes, sizes[i]), MSPRING_ERROR_STRUCT);
             check_untouched(bytes, input->size);
-            check_ok(input->init(bytes, input->size));
+            check_ok(mspring_init(input->kind, bytes, input->size));
             set_size(bytes, sizes[i]);
             check_error(input->give(&s, bytes), MSPRING_ERROR_STRUCT);
             check_message(&s, input->name, sizes[i]);
@@ -142,12 +150,52 @@ static void impossible_sizes_are_refused(void **state) {
     }
 }
 
+static void check_wrong_nested(const struct input *input, uint32_t more) {
+    const uint32_t size = (uint32_t)input->size + more, left = size - (uint32_t)input->settings;
+    const uint32_t wrong[] = {0, 4, left - 4, left + 4, left + 8, size, UINT32_MAX - 3};
+    subject s = make_subject();
+    unsigned char *bytes = fenced(size);
+    check_ok(mspring_init(input->kind, bytes, size));
+    for (size_t i = 0; i < COUNT_OF(wrong); i++) {
+        set_size(bytes + input->settings, wrong[i]);
+        check_error(input->give(&s, bytes), MSPRING_ERROR_STRUCT);
+        check_contains(support_builder_error(s.builder), ".settings.struct_size is ");
+    }
+    free_subject(&s);
+}
+
+/// Settings in a struct are as long as it says, neither shorter nor longer.
+static void nested_settings_have_the_size_that_is_left(void **state) {
+    (void)state;
+    for (const struct input *input = inputs; input < inputs + input_count; input++)
+        for (size_t k = 0; input->settings > 0 && k < COUNT_OF(longer); k++)
+            check_wrong_nested(input, longer[k]);
+}
+
+/// Structs that a host gets, changes and gives: settings of a network or of a row are those of another's
+/// definition.
+static void settings_move_between_structs(void **state) {
+    (void)state;
+    subject s = make_subject();
+    mspring_network_def def = mspring_network_def_default();
+    mspring_network *made = NULL;
+    check_ok(mspring_network_get_settings(s.network, &def.settings));
+    assert_int_equal(def.settings.struct_size, sizeof def.settings);
+    def.settings.gravity_y = -3;
+    check_ok(mspring_network_create(s.builder, &def, &made));
+    check_ok(mspring_network_set_settings(s.network, &def.settings));
+    assert_true(support_settings(made).gravity_y == -3);
+    assert_true(support_settings(s.network).gravity_y == -3);
+    mspring_network_destroy(made);
+    free_subject(&s);
+}
+
 static void reserved_fields_must_be_0(void **state) {
     (void)state;
     for (const struct input *input = inputs; input < inputs + input_count; input++) {
         subject s = make_subject();
         unsigned char *bytes = fenced(input->size);
-        check_ok(input->init(bytes, input->size));
+        check_ok(mspring_init(input->kind, bytes, input->size));
         if (input->reserved != 0) {
             bytes[input->reserved] = 1;
             check_error(input->give(&s, bytes), MSPRING_ERROR_ARGUMENT);
@@ -156,8 +204,7 @@ static void reserved_fields_must_be_0(void **state) {
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------- outputs
- */
+/* ----------------------------------------------------------------------------------------------------- outputs */
 
 static void check_filled(const struct output *output, uint32_t more) {
     subject s = make_subject();
@@ -167,6 +214,7 @@ static void check_filled(const struct output *output, uint32_t more) {
     set_size(bytes, size);
     check_ok(output->fill(&s, bytes));
     assert_memory_equal(bytes, &size, sizeof size);
+    check_nested(bytes, output->settings, size);
     for (uint32_t i = known; i < size; i++) {
         assert_int_equal(bytes[i], 0);
     }
@@ -175,6 +223,8 @@ static void check_filled(const struct output *output, uint32_t more) {
     if (output->repeats) {
         set_size(whole, (uint32_t)output->size + LONGEST);
         check_ok(output->fill(&s, whole));
+        if (output->settings > 0)
+            memcpy(whole + output->settings, bytes + output->settings, sizeof size);
         assert_memory_equal(bytes + sizeof size, whole + sizeof size, (size < known ? size : known) - sizeof size);
     }
     free_subject(&s);
@@ -214,8 +264,7 @@ static void hooks_see_how_long_their_arguments_are(void **state) {
     free_subject(&s);
 }
 
-/* -------------------------------------------------------------------------------------------------------- arrays
- */
+/* ------------------------------------------------------------------------------------------------------ arrays */
 
 #define AT(type, array, size, i) ((type *)(void *)((array) + (size_t)(size) * (i)))
 
@@ -223,7 +272,7 @@ static unsigned char *make_particles(uint32_t size, uint32_t count) {
     unsigned char *array = fenced((size_t)size * count);
     for (uint32_t i = 0; i < count; i++) {
         mspring_particle_def *particle = AT(mspring_particle_def, array, size, i);
-        check_ok(mspring_particle_def_init(particle, size));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, particle, size));
         particle->x = i * i;
         particle->mass = 1 + (float)i;
     }
@@ -234,7 +283,7 @@ static unsigned char *make_springs(uint32_t size, uint32_t count) {
     unsigned char *array = fenced((size_t)size * count);
     for (uint32_t i = 0; i < count; i++) {
         mspring_spring_def *spring = AT(mspring_spring_def, array, size, i);
-        check_ok(mspring_spring_def_init(spring, size));
+        check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, spring, size));
         spring->a = i;
         spring->b = i + 1;
         spring->stiffness = 1 + (float)i;
@@ -256,35 +305,32 @@ static mspring_network *build(uint32_t more) {
     spoil(array, particle, 2);
     check_error(mspring_builder_add_particles(builder, AT(mspring_particle_def, array, 0, 0), 4, NULL),
                 MSPRING_ERROR_STRUCT);
-    check_contains(mspring_builder_error(builder), "definition 2");
-    assert_int_equal(mspring_builder_particle_count(builder), 4);
+    check_contains(support_builder_error(builder), "definition 2");
+    assert_int_equal(mspring_builder_count(builder, MSPRING_PARTICLES), 4);
     array = make_springs(spring, 3);
     check_ok(mspring_builder_add_springs(builder, AT(mspring_spring_def, array, 0, 0), 3, NULL));
     spoil(array, spring, 1);
     check_error(mspring_builder_add_springs(builder, AT(mspring_spring_def, array, 0, 0), 3, NULL),
                 MSPRING_ERROR_STRUCT);
-    check_contains(mspring_builder_error(builder), "definition 1");
+    check_contains(support_builder_error(builder), "definition 1");
     mspring_network_def def = support_def(0, 1);
     def.spare_particles = def.spare_springs = 8;
     return support_network(builder, &def);
 }
 
 static void check_components(mspring_network *network, uint32_t more, mspring_id head) {
-    const uint32_t size = sizeof(mspring_component) + more;
+    const uint32_t size = sizeof(mspring_body) + more;
     unsigned char *array = fenced((size_t)size * 2);
     check_ok(mspring_network_update_components(network, NULL, NULL));
-    set_size(array, size);
-    set_size(array + size, size);
-    check_ok(mspring_network_get_components(network, 0, 2, AT(mspring_component, array, 0, 0)));
-    assert_int_equal(AT(mspring_component, array, size, 0)->particle_count, 4);
-    assert_int_equal(AT(mspring_component, array, size, 1)->head, head);
-    assert_int_equal(AT(mspring_component, array, size, 1)->struct_size, size);
-    check_near(AT(mspring_component, array, size, 0)->mass, 10, 0); // small whole numbers
-    check_near(AT(mspring_component, array, size, 1)->mass, 3, 0);
-    check_fence(array);
+    set_size(array, size); // the others get it
     spoil(array, size, 1);
-    check_error(mspring_network_get_components(network, 0, 2, AT(mspring_component, array, 0, 0)),
-                MSPRING_ERROR_STRUCT);
+    check_ok(mspring_network_get_components(network, 0, 2, AT(mspring_body, array, 0, 0)));
+    assert_int_equal(AT(mspring_body, array, size, 0)->particle_count, 4);
+    assert_int_equal(AT(mspring_body, array, size, 1)->head, head);
+    assert_int_equal(AT(mspring_body, array, size, 1)->struct_size, size);
+    check_near(AT(mspring_body, array, size, 0)->mass, 10, 0); // small whole numbers
+    check_near(AT(mspring_body, array, size, 1)->mass, 3, 0);
+    check_fence(array);
 }
 
 static void arrays_go_by_the_size_of_their_structs(void **state) {
@@ -294,9 +340,9 @@ static void arrays_go_by_the_size_of_their_structs(void **state) {
         const uint32_t size = sizeof(mspring_particle_def) + longer[k];
         mspring_id ids[4], spring_id[2];
         float read[4];
-        check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, 0, 3, read, 1));
+        check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, NULL, 0, 3, read, 1));
         assert_true(read[0] == 1 && read[1] == 3 && read[2] == 5);
-        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, 0, 3, read, 1));
+        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, NULL, 0, 3, read, 1));
         assert_true(read[0] == 2 && read[1] == 3 && read[2] == 4);
         // Added to a network, and read from it.
         unsigned char *array = make_particles(size, 4);
@@ -305,7 +351,7 @@ static void arrays_go_by_the_size_of_their_structs(void **state) {
         check_error(mspring_network_add_particles(network, AT(mspring_particle_def, array, 0, 0), 4, ids),
                     MSPRING_ERROR_STRUCT);
         check_contains(mspring_network_error(network), "definition 2");
-        check_ok(mspring_network_get(network, MSPRING_MASS, ids[0], 4, read, 1));
+        check_ok(mspring_network_get(network, MSPRING_MASS, NULL, ids[0], 4, read, 1));
         assert_true(read[0] == 1 && read[1] == 2 && read[2] == 3 && read[3] == 4);
         const uint32_t spring = sizeof(mspring_spring_def) + longer[k];
         array = make_springs(spring, 2);
@@ -314,10 +360,10 @@ static void arrays_go_by_the_size_of_their_structs(void **state) {
             AT(mspring_spring_def, array, spring, i)->b = ids[1 + i];
         }
         check_ok(mspring_network_add_springs(network, AT(mspring_spring_def, array, 0, 0), 2, spring_id));
-        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, spring_id[0], 2, read, 1));
+        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, NULL, spring_id[0], 2, read, 1));
         assert_true(read[0] == 2 && read[1] == 3);
-        check_ok(mspring_network_remove_particles(network, ids + 3, 1));
-        check_ok(mspring_network_remove_particles(network, ids + 2, 1));
+        check_ok(mspring_network_remove_particles(network, ids + 3, 0, 1));
+        check_ok(mspring_network_remove_particles(network, ids + 2, 0, 1));
         check_components(network, longer[k], ids[0]);
         mspring_network_destroy(network);
     }
@@ -330,10 +376,11 @@ static void lattices_go_by_the_size_of_their_materials(void **state) {
         const uint16_t cells[] = {0, 1};
         unsigned char *array = fenced((size_t)size * 2);
         mspring_lattice_def lattice;
-        check_ok(mspring_lattice_def_init(&lattice, sizeof lattice));
+        check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &lattice, sizeof lattice));
         for (uint32_t i = 0; i < 2; i++) {
             mspring_material *material = AT(mspring_material, array, size, i);
-            check_ok(mspring_material_preset(material, size, MSPRING_PRESET_WOOD, 1, 0.01));
+            check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, material, size));
+            check_ok(mspring_material_preset(material, MSPRING_PRESET_WOOD, 1, 0.01));
             material->mass = 2 + (float)i;
             material->break_strain = 3 - (float)i;
         }
@@ -347,11 +394,11 @@ static void lattices_go_by_the_size_of_their_materials(void **state) {
         check_ok(mspring_builder_add_lattice(builder, &lattice, NULL));
         spoil(array, size, 1);
         check_error(mspring_builder_add_lattice(builder, &lattice, NULL), MSPRING_ERROR_STRUCT);
-        check_contains(mspring_builder_error(builder), "material 1");
+        check_contains(support_builder_error(builder), "material 1");
         mspring_network *network = support_network(builder, NULL);
         float mass[2], strain;
-        check_ok(mspring_network_get(network, MSPRING_MASS, 0, 2, mass, 1));
-        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, 0, 1, &strain, 1));
+        check_ok(mspring_network_get(network, MSPRING_MASS, NULL, 0, 2, mass, 1));
+        check_ok(mspring_network_get(network, MSPRING_BREAK_STRAIN, NULL, 0, 1, &strain, 1));
         assert_true(mass[0] == 2 && mass[1] == 3 && strain == 2);
         mspring_network_destroy(network);
     }
@@ -362,44 +409,35 @@ static void tuning_goes_by_the_size_of_its_structs(void **state) {
     for (size_t k = 0; k < COUNT_OF(longer); k++) {
         enum { MOST = 24 };
         subject s = make_subject();
-        const uint32_t size = sizeof(mspring_solver_def) + longer[k], row = sizeof(mspring_tune_row) + longer[k];
+        const uint32_t size = sizeof(mspring_settings) + longer[k], row = sizeof(mspring_tune_row) + longer[k];
         mspring_tune_def tune;
         uint32_t count = 0, all;
         check_ok(mspring_tune_settings(s.network, 0.01, NULL, 0, &count));
         unsigned char *array = fenced((size_t)size * count);
-        for (uint32_t i = 0; i < count; i++) {
-            set_size(array + (size_t)size * i, size);
-        }
+        set_size(array, size);
         assert_true(count > 2 && count <= MOST);
-        check_ok(mspring_tune_settings(s.network, 0.01, AT(mspring_solver_def, array, 0, 0), count, &all));
-        assert_int_equal(AT(mspring_solver_def, array, size, 1)->struct_size, size);
-        assert_int_equal(AT(mspring_solver_def, array, size, 0)->solver, MSPRING_SOLVER_EXPLICIT);
-        assert_int_equal(AT(mspring_solver_def, array, size, count - 1)->solver, MSPRING_SOLVER_DIRECT);
+        check_ok(mspring_tune_settings(s.network, 0.01, AT(mspring_settings, array, 0, 0), count, &all));
+        assert_int_equal(AT(mspring_settings, array, size, 1)->struct_size, size);
+        assert_int_equal(AT(mspring_settings, array, size, 0)->solver, MSPRING_SOLVER_EXPLICIT);
+        assert_int_equal(AT(mspring_settings, array, size, count - 1)->solver, MSPRING_SOLVER_DIRECT);
         check_fence(array);
         // Two of them are tried.
-        _Alignas(8) unsigned char tried[2 * (sizeof(mspring_solver_def) + LONGEST)];
+        _Alignas(8) unsigned char tried[2 * (sizeof(mspring_settings) + LONGEST)];
         memcpy(tried, array + (size_t)size * (count - 2), 2 * (size_t)size);
-        check_ok(mspring_tune_def_init(&tune, sizeof tune));
-        tune.settings = AT(mspring_solver_def, tried, 0, 0);
+        check_ok(mspring_init(MSPRING_STRUCT_TUNE_DEF, &tune, sizeof tune));
+        tune.settings = AT(mspring_settings, tried, 0, 0);
         tune.setting_count = 2;
         tune.duration = tune.dt * 4;
         array = fenced((size_t)row * 2);
         set_size(array, row);
-        set_size(array + row, row);
         check_ok(mspring_network_tune(s.network, &tune, AT(mspring_tune_row, array, 0, 0), 2, &all));
         check_fence(array);
         assert_int_equal(AT(mspring_tune_row, array, row, 1)->setting, 1);
-        assert_int_equal(AT(mspring_tune_row, array, row, 1)->integrator,
-                         AT(mspring_solver_def, tried, size, 1)->integrator);
-        // A row is given back to get its setting.
-        mspring_solver_def of_row = {.struct_size = sizeof of_row};
-        check_ok(mspring_tune_row_solver(AT(mspring_tune_row, array, row, 1), &of_row));
-        assert_int_equal(of_row.solver, MSPRING_SOLVER_DIRECT);
-        spoil(array, row, 1);
-        check_error(mspring_network_tune(s.network, &tune, AT(mspring_tune_row, array, 0, 0), 2, &all),
-                    MSPRING_ERROR_STRUCT);
+        assert_int_equal(AT(mspring_tune_row, array, row, 1)->settings.integrator,
+                         AT(mspring_settings, tried, size, 1)->integrator);
+        assert_int_equal(AT(mspring_tune_row, array, row, 1)->settings.solver, MSPRING_SOLVER_DIRECT);
+        check_nested(array + row, offsetof(mspring_tune_row, settings), row);
         spoil(tried, size, 1);
-        set_size(array + row, row);
         check_error(mspring_network_tune(s.network, &tune, AT(mspring_tune_row, array, 0, 0), 2, &all),
                     MSPRING_ERROR_STRUCT);
         check_contains(mspring_network_error(s.network), "setting 1");
@@ -407,8 +445,7 @@ static void tuning_goes_by_the_size_of_its_structs(void **state) {
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------- the table
- */
+/* --------------------------------------------------------------------------------------------------- the table */
 
 static bool is_tried(const char *name) {
     for (size_t i = 0; i < input_count; i++) {
@@ -427,7 +464,7 @@ static bool is_tried(const char *name) {
 // headers.sh checks that the table has each struct of the headers.
 static void every_struct_of_the_table_is_tried(void **state) {
     (void)state;
-#define INPUT_STRUCT(name, on_64_bits, on_32_bits)                                                                 \
+#define INPUT_STRUCT(name, KIND, on_64_bits, on_32_bits, settings)                                                 \
     if (!is_tried(#name)) {                                                                                        \
         fail_msg("mspring_%s is not tried", #name);                                                                \
     }
@@ -441,6 +478,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(structs_are_taken_as_far_as_they_go),
         cmocka_unit_test(impossible_sizes_are_refused),
+        cmocka_unit_test(nested_settings_have_the_size_that_is_left),
+        cmocka_unit_test(settings_move_between_structs),
         cmocka_unit_test(reserved_fields_must_be_0),
         cmocka_unit_test(structs_are_filled_as_far_as_they_go),
         cmocka_unit_test(hooks_see_how_long_their_arguments_are),

@@ -24,13 +24,13 @@ static int make_builder(void **state) {
 /// Whatever was refused has left the ten particles and the spring as they were, and the builder works.
 static int check_builder(void **state) {
     mspring_builder *builder = *state;
-    assert_int_equal(mspring_builder_particle_count(builder), 10);
-    assert_int_equal(mspring_builder_spring_count(builder), 1);
+    assert_int_equal(mspring_builder_count(builder, MSPRING_PARTICLES), 10);
+    assert_int_equal(mspring_builder_count(builder, MSPRING_SPRINGS), 1);
     assert_int_equal(support_particle(builder, 20, 20, 1), 10);
     assert_int_equal(support_spring(builder, 3, 10, 1, 0), 1);
     mspring_network *network = support_network(builder, NULL);
-    assert_int_equal(mspring_network_particle_count(network), 11);
-    assert_int_equal(mspring_network_spring_count(network), 2);
+    assert_int_equal(mspring_network_count(network, MSPRING_PARTICLES), 11);
+    assert_int_equal(mspring_network_count(network, MSPRING_SPRINGS), 2);
     mspring_network_destroy(network);
     return 0;
 }
@@ -39,9 +39,9 @@ static int check_builder(void **state) {
 #define check_refused(builder, call, code, part)                                                                   \
     do {                                                                                                           \
         check_error((call), (code));                                                                               \
-        check_contains(mspring_builder_error(builder), (part));                                                    \
-        assert_int_equal(mspring_builder_particle_count(builder), 10);                                             \
-        assert_int_equal(mspring_builder_spring_count(builder), 1);                                                \
+        check_contains(support_builder_error(builder), (part));                                                    \
+        assert_int_equal(mspring_builder_count(builder, MSPRING_PARTICLES), 10);                                   \
+        assert_int_equal(mspring_builder_count(builder, MSPRING_SPRINGS), 1);                                      \
     } while (0)
 
 static const float not_finite[] = {NAN, INFINITY, -INFINITY};
@@ -72,7 +72,7 @@ static particle_case *bad_particles(size_t *count) {
     static particle_case cases[64];
     size_t n = 0;
     mspring_particle_def good;
-    check_ok(mspring_particle_def_init(&good, sizeof good));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &good, sizeof good));
 #define BAD(field, value, wrong, word)                                                                             \
     do {                                                                                                           \
         assert_true(n < COUNT_OF(cases));                                                                          \
@@ -111,12 +111,12 @@ static void bad_particle_is_refused(void **state) {
     const particle_case *cases = bad_particles(&count);
     for (size_t i = 0; i < count; i++) {
         mspring_id id = 4711;
-        check_refused(builder, mspring_builder_add_particle(builder, &cases[i].def, &id), cases[i].code,
+        check_refused(builder, mspring_builder_add_particles(builder, &cases[i].def, 1, &id), cases[i].code,
                       cases[i].part);
         assert_int_equal(id, 4711);
     }
-    check_refused(builder, mspring_builder_add_particle(builder, NULL, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
-    check_error(mspring_builder_add_particle(NULL, &cases[0].def, NULL), MSPRING_ERROR_ARGUMENT);
+    check_refused(builder, mspring_builder_add_particles(builder, NULL, 1, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_particles(NULL, &cases[0].def, 1, NULL), MSPRING_ERROR_ARGUMENT);
 }
 
 static void bulk_particles_are_all_or_nothing(void **state) {
@@ -126,7 +126,7 @@ static void bulk_particles_are_all_or_nothing(void **state) {
     enum { MANY = 50, CULPRIT = 37 };
     mspring_particle_def defs[MANY];
     for (size_t i = 0; i < MANY; i++) {
-        check_ok(mspring_particle_def_init(&defs[i], sizeof defs[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &defs[i], sizeof defs[i]));
     }
     const mspring_particle_def good = defs[CULPRIT];
     for (size_t i = 0; i < count; i++) {
@@ -150,14 +150,14 @@ static void particles_at_the_ends_of_the_ranges_are_accepted(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     mspring_particle_def def;
-    check_ok(mspring_particle_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def));
     def.x = MSPRING_MAX_COORDINATE;
     def.y = -MSPRING_MAX_COORDINATE;
     def.mass = 1e-30f;
-    check_ok(mspring_builder_add_particle(builder, &def, NULL));
+    check_ok(mspring_builder_add_particles(builder, &def, 1, NULL));
     def.mass = 1e30f;
     def.x = -MSPRING_MAX_COORDINATE;
-    check_ok(mspring_builder_add_particle(builder, &def, NULL));
+    check_ok(mspring_builder_add_particles(builder, &def, 1, NULL));
     mspring_network *network = support_network(builder, NULL);
     mspring_network_destroy(network);
 }
@@ -174,7 +174,7 @@ static spring_case *bad_springs(size_t *count) {
     static spring_case cases[64];
     size_t n = 0;
     mspring_spring_def good;
-    check_ok(mspring_spring_def_init(&good, sizeof good));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &good, sizeof good));
     good.a = 2;
     good.b = 3;
 #define BAD(field, value, wrong, word)                                                                             \
@@ -197,7 +197,7 @@ static spring_case *bad_springs(size_t *count) {
     BAD(rest_length, -0.5f, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, -2, MSPRING_ERROR_ARGUMENT, "rest length");
     BAD(rest_length, 4.1e12f, MSPRING_ERROR_ARGUMENT, "rest length");
-    BAD(flags, MSPRING_SPRING_PUSH_ONLY << 1, MSPRING_ERROR_ARGUMENT, "flags");
+    BAD(flags, MSPRING_SPRING_METRES << 1, MSPRING_ERROR_ARGUMENT, "flags");
     BAD(flags, MSPRING_SPRING_PULL_ONLY | MSPRING_SPRING_PUSH_ONLY, MSPRING_ERROR_ARGUMENT, "exclude");
     BAD(b, 2, MSPRING_ERROR_ARGUMENT, "particle 2");   // to itself
     BAD(b, 10, MSPRING_ERROR_ID, "10");                // to nowhere
@@ -218,12 +218,12 @@ static void bad_spring_is_refused(void **state) {
     const spring_case *cases = bad_springs(&count);
     for (size_t i = 0; i < count; i++) {
         mspring_id id = 4711;
-        check_refused(builder, mspring_builder_add_spring(builder, &cases[i].def, &id), cases[i].code,
+        check_refused(builder, mspring_builder_add_springs(builder, &cases[i].def, 1, &id), cases[i].code,
                       cases[i].part);
         assert_int_equal(id, 4711);
     }
-    check_refused(builder, mspring_builder_add_spring(builder, NULL, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
-    check_error(mspring_builder_add_spring(NULL, &cases[0].def, NULL), MSPRING_ERROR_ARGUMENT);
+    check_refused(builder, mspring_builder_add_springs(builder, NULL, 1, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_springs(NULL, &cases[0].def, 1, NULL), MSPRING_ERROR_ARGUMENT);
 }
 
 static void bulk_springs_are_all_or_nothing(void **state) {
@@ -233,7 +233,7 @@ static void bulk_springs_are_all_or_nothing(void **state) {
     enum { MANY = 40, CULPRIT = 33 };
     mspring_spring_def defs[MANY];
     for (size_t i = 0; i < MANY; i++) {
-        check_ok(mspring_spring_def_init(&defs[i], sizeof defs[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &defs[i], sizeof defs[i]));
         defs[i].a = (mspring_id)(i % 7);
         defs[i].b = (mspring_id)(i % 7 + 1);
     }
@@ -257,11 +257,11 @@ static void coincident_particles_may_have_a_spring_with_a_rest_length(void **sta
     support_particle(builder, 1, 1, 1);
     support_particle(builder, 1, 1, 1);
     mspring_spring_def def;
-    check_ok(mspring_spring_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
     def.a = 1;
     def.b = 0;
     def.rest_length = 2;
-    check_ok(mspring_builder_add_spring(builder, &def, NULL));
+    check_ok(mspring_builder_add_springs(builder, &def, 1, NULL));
     mspring_builder_destroy(builder);
 }
 
@@ -275,9 +275,9 @@ static void bad_lattice_is_refused(void **state) {
     mspring_id ids[12];
     memset(ids, 0x33, sizeof ids);
     for (int i = 0; i < 2; i++) {
-        check_ok(mspring_material_init(&materials[i], sizeof materials[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &materials[i], sizeof materials[i]));
     }
-    check_ok(mspring_lattice_def_init(&good, sizeof good));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &good, sizeof good));
     good.width = 4;
     good.height = 3;
     good.cells = cells;
@@ -312,8 +312,15 @@ static void bad_lattice_is_refused(void **state) {
     REFUSED(width, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");
     REFUSED(height, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");
     REFUSED(width, MSPRING_MAX_PARTICLES / 2, MSPRING_ERROR_LIMIT, "limit"); // times 3 rows
-    REFUSED(cells, NULL, MSPRING_ERROR_ARGUMENT, "cells");
     REFUSED(materials, NULL, MSPRING_ERROR_ARGUMENT, "materials");
+    // Springs that nobody could add again.
+    materials[1].stiffness = 1e29f;
+    REFUSED(shear_share, 11, MSPRING_ERROR_ARGUMENT, "material 1: times 11");
+    REFUSED(bend_share, 11, MSPRING_ERROR_ARGUMENT, "material 1: times 11");
+    materials[1].stiffness = 0;
+    materials[0].damping = 1e29f;
+    REFUSED(shear_share, 11, MSPRING_ERROR_ARGUMENT, "damping of 1e+29");
+    materials[0].damping = 0;
     REFUSED(material_count, 65536, MSPRING_ERROR_LIMIT, "65536");
     REFUSED(material_count, 1, MSPRING_ERROR_ARGUMENT, "column 1, row 0"); // cells of material 1
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_lattice_def");
@@ -343,7 +350,7 @@ static void bad_material_is_refused_and_named(void **state) {
     const uint16_t cells[2] = {0, 1};
     mspring_material materials[2];
     mspring_lattice_def def;
-    check_ok(mspring_lattice_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &def, sizeof def));
     def.width = 2;
     def.height = 1;
     def.cells = cells;
@@ -351,8 +358,8 @@ static void bad_material_is_refused_and_named(void **state) {
     def.material_count = 2;
 #define REFUSED(field, value, code, part)                                                                          \
     do {                                                                                                           \
-        check_ok(mspring_material_init(&materials[0], sizeof materials[0]));                                       \
-        check_ok(mspring_material_init(&materials[1], sizeof materials[1]));                                       \
+        check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &materials[0], sizeof materials[0]));                       \
+        check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &materials[1], sizeof materials[1]));                       \
         materials[1].field = (value);                                                                              \
         check_refused(builder, mspring_builder_add_lattice(builder, &def, NULL), (code), (part));                  \
     } while (0)
@@ -366,8 +373,8 @@ static void bad_material_is_refused_and_named(void **state) {
     REFUSED(stiffness, -3, MSPRING_ERROR_ARGUMENT, "material 1: stiffness");
     REFUSED(damping, -3, MSPRING_ERROR_ARGUMENT, "material 1: damping");
     REFUSED(particle_flags, 2, MSPRING_ERROR_ARGUMENT, "material 1");
-    REFUSED(spring_flags, 16, MSPRING_ERROR_ARGUMENT, "material 1");
-    REFUSED(spring_flags, MSPRING_SPRING_RELATIVE, MSPRING_ERROR_ARGUMENT, "material 1"); // material 0 is not
+    REFUSED(spring_flags, 32, MSPRING_ERROR_ARGUMENT, "material 1");
+    REFUSED(spring_flags, MSPRING_SPRING_RELATIVE, MSPRING_ERROR_ARGUMENT, "spring_flags are 0x1");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_material");
     REFUSED(struct_size, sizeof materials[0] + 2, MSPRING_ERROR_STRUCT, "mspring_material");
 #undef REFUSED
@@ -378,49 +385,54 @@ static void bad_material_is_refused_and_named(void **state) {
 static void bad_rope_is_refused(void **state) {
     mspring_builder *builder = *state;
     mspring_rope_def good;
-    check_ok(mspring_rope_def_init(&good, sizeof good));
+    check_ok(mspring_init(MSPRING_STRUCT_ROPE_DEF, &good, sizeof good));
     good.from = 2;
     good.to = 6;
     good.segment_count = 3;
+    const mspring_material good_material = mspring_material_default();
+    good.material = &good_material;
     mspring_id ids[2] = {4711, 4711}, first_spring = 4712;
 #define REFUSED(field, value, code, part)                                                                          \
     do {                                                                                                           \
         mspring_rope_def def = good;                                                                               \
-        def.field = (value);                                                                                       \
-        check_refused(builder, mspring_builder_add_rope(builder, &def, ids, 2, &first_spring), (code), (part));    \
+        mspring_material material = good_material;                                                                 \
+        def.material = &material;                                                                                  \
+        field = (value);                                                                                           \
+        check_refused(builder, mspring_builder_add_rope(builder, &def, ids, &first_spring), (code), (part));       \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
-        REFUSED(mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "mass");
-        REFUSED(stiffness, not_finite[i], MSPRING_ERROR_ARGUMENT, "stiffness");
-        REFUSED(damping, not_finite[i], MSPRING_ERROR_ARGUMENT, "damping");
-        REFUSED(slack, not_finite[i], MSPRING_ERROR_ARGUMENT, "slack");
+        REFUSED(material.mass, not_finite[i], MSPRING_ERROR_ARGUMENT, "mass");
+        REFUSED(material.stiffness, not_finite[i], MSPRING_ERROR_ARGUMENT, "stiffness");
+        REFUSED(material.damping, not_finite[i], MSPRING_ERROR_ARGUMENT, "damping");
+        REFUSED(def.length_ratio, not_finite[i], MSPRING_ERROR_ARGUMENT, "length_ratio");
     }
-    REFUSED(mass, 0, MSPRING_ERROR_ARGUMENT, "mass");
-    REFUSED(stiffness, -1, MSPRING_ERROR_ARGUMENT, "stiffness");
-    REFUSED(damping, -1, MSPRING_ERROR_ARGUMENT, "damping");
-    REFUSED(slack, 0, MSPRING_ERROR_ARGUMENT, "slack");
-    REFUSED(slack, 0.0009f, MSPRING_ERROR_ARGUMENT, "slack");
-    REFUSED(slack, 1001, MSPRING_ERROR_ARGUMENT, "slack");
-    REFUSED(spring_flags, 16, MSPRING_ERROR_ARGUMENT, "flags");
-    REFUSED(segment_count, 0, MSPRING_ERROR_ARGUMENT, "segment");
-    REFUSED(segment_count, MSPRING_MAX_PARTICLES + 2, MSPRING_ERROR_LIMIT, "limit");
-    REFUSED(segment_count, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");
-    REFUSED(to, 2, MSPRING_ERROR_ARGUMENT, "particle 2");
-    REFUSED(to, 10, MSPRING_ERROR_ID, "10");
-    REFUSED(from, 77777, MSPRING_ERROR_ID, "77777");
-    REFUSED(from, MSPRING_NONE, MSPRING_ERROR_ID, "not set");
-    REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_rope_def");
-    REFUSED(struct_size, sizeof good + 2, MSPRING_ERROR_STRUCT, "mspring_rope_def");
+    REFUSED(material.mass, 0, MSPRING_ERROR_ARGUMENT, "material of the rope: mass");
+    REFUSED(material.stiffness, -1, MSPRING_ERROR_ARGUMENT, "material of the rope: stiffness");
+    REFUSED(material.damping, -1, MSPRING_ERROR_ARGUMENT, "damping");
+    REFUSED(def.length_ratio, 0, MSPRING_ERROR_ARGUMENT, "length_ratio");
+    REFUSED(def.length_ratio, 0.0009f, MSPRING_ERROR_ARGUMENT, "length_ratio");
+    REFUSED(def.length_ratio, 1001, MSPRING_ERROR_ARGUMENT, "length_ratio");
+    REFUSED(material.spring_flags, 32, MSPRING_ERROR_ARGUMENT, "flags");
+    REFUSED(def.segment_count, 0, MSPRING_ERROR_ARGUMENT, "segment");
+    REFUSED(def.segment_count, MSPRING_MAX_PARTICLES + 2, MSPRING_ERROR_LIMIT, "limit");
+    REFUSED(def.segment_count, UINT32_MAX, MSPRING_ERROR_LIMIT, "limit");
+    REFUSED(def.to, 2, MSPRING_ERROR_ARGUMENT, "particle 2");
+    REFUSED(def.to, 10, MSPRING_ERROR_ID, "10");
+    REFUSED(def.from, 77777, MSPRING_ERROR_ID, "77777");
+    REFUSED(def.from, MSPRING_NONE, MSPRING_ERROR_ID, "not set");
+    REFUSED(def.struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_rope_def");
+    REFUSED(def.struct_size, sizeof good + 2, MSPRING_ERROR_STRUCT, "mspring_rope_def");
 #undef REFUSED
     // Between two particles in the same place: segments of no length.
     mspring_rope_def def = good;
     def.from = 8;
     def.to = 9;
-    check_refused(builder, mspring_builder_add_rope(builder, &def, NULL, 0, NULL), MSPRING_ERROR_ARGUMENT,
-                  "8 to 9");
-    check_refused(builder, mspring_builder_add_rope(builder, NULL, NULL, 0, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
-    check_error(mspring_builder_add_rope(NULL, &good, NULL, 0, NULL), MSPRING_ERROR_ARGUMENT);
-    check_refused(builder, mspring_builder_add_rope(builder, &good, NULL, 1, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_refused(builder, mspring_builder_add_rope(builder, &def, NULL, NULL), MSPRING_ERROR_ARGUMENT, "8 to 9");
+    check_refused(builder, mspring_builder_add_rope(builder, NULL, NULL, NULL), MSPRING_ERROR_ARGUMENT, "NULL");
+    check_error(mspring_builder_add_rope(NULL, &good, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    good.material = NULL;
+    check_refused(builder, mspring_builder_add_rope(builder, &good, NULL, NULL), MSPRING_ERROR_ARGUMENT,
+                  "material is NULL");
     assert_int_equal(ids[0], 4711);
     assert_int_equal(first_spring, 4712);
 }
@@ -443,36 +455,36 @@ static void reserved_fields_must_be_zero(void **state) {
     mspring_network *network = NULL, *other = NULL;
     mspring_particle_def particle;
     check_ok(mspring_builder_create(NULL, &builder));
-    check_ok(mspring_particle_def_init(&particle, sizeof particle));
-    check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
+    check_ok(mspring_builder_add_particles(builder, &particle, 1, NULL));
     mspring_network_def def;
-    check_ok(mspring_network_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def));
     mspring_tasks tasks = {
         .struct_size = sizeof tasks, .worker_count = 1, .concurrent_count = 1, .reserved = 7, .run = no_tasks};
     def.tasks = &tasks;
     check_error(mspring_network_create(builder, &def, &network), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_builder_error(builder), "mspring_tasks.reserved is 7");
+    check_contains(support_builder_error(builder), "mspring_tasks.reserved is 7");
     tasks.reserved = 0;
     check_ok(mspring_network_create(builder, &def, &network));
 
     mspring_hook_def hook;
-    check_ok(mspring_hook_def_init(&hook, sizeof hook));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &hook, sizeof hook));
     hook.fn = no_hook, hook.reserved = 3;
     check_error(mspring_network_add_hook(network, &hook, NULL), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "mspring_hook_def.reserved is 3");
     mspring_settle_def settle;
-    check_ok(mspring_settle_def_init(&settle, sizeof settle));
+    check_ok(mspring_init(MSPRING_STRUCT_SETTLE_DEF, &settle, sizeof settle));
     settle.reserved = 1;
     check_error(mspring_network_settle(network, &settle, NULL), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "mspring_settle_def.reserved is 1");
     const double ground[4] = {0, 0, 0, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = ground, floor.plane_count = 1, floor.reserved = UINT32_MAX;
     check_error(mspring_network_set_floor(network, &floor), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "mspring_floor_def.reserved is 4294967295");
     mspring_clone_def clone;
-    check_ok(mspring_clone_def_init(&clone, sizeof clone));
+    check_ok(mspring_init(MSPRING_STRUCT_CLONE_DEF, &clone, sizeof clone));
     clone.reserved = 1;
     check_error(mspring_network_clone(network, &clone, &other), MSPRING_ERROR_ARGUMENT);
     assert_null(other);

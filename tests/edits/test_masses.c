@@ -15,11 +15,11 @@ static mspring_network *make_particles(uint32_t pinned) {
     mspring_builder *builder = support_builder();
     for (uint32_t p = 0; p < COUNT; p++) {
         mspring_particle_def def;
-        check_ok(mspring_particle_def_init(&def, sizeof def));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def));
         def.x = p;
         def.mass = 16;
         def.flags = p == pinned ? MSPRING_PARTICLE_PINNED : 0;
-        check_ok(mspring_builder_add_particle(builder, &def, NULL));
+        check_ok(mspring_builder_add_particles(builder, &def, 1, NULL));
     }
     const mspring_network_def def = support_def(0, 1);
     return support_network(builder, &def);
@@ -34,10 +34,9 @@ static void set_masses(mspring_network *network, int way) {
         wide[2 * i + 1] = -1;
     }
     if (way == BY_LIST) {
-        check_ok(mspring_network_set_at(network, MSPRING_MASS, backwards, COUNT, listed, 1));
+        check_ok(mspring_network_set(network, MSPRING_MASS, backwards, 0, COUNT, listed, 1));
     } else {
-        check_ok(mspring_network_set(network, MSPRING_MASS, 0, COUNT, way == BY_STRIDE ? wide : masses,
-                                     way == BY_STRIDE ? 2 : 1));
+        check_ok(mspring_network_set(network, MSPRING_MASS, NULL, 0, COUNT, way == BY_STRIDE ? wide : masses, way == BY_STRIDE ? 2 : 1));
     }
 }
 
@@ -49,7 +48,7 @@ static void impulses_move_particles_by_their_new_masses(void **state) {
             set_masses(network, way);
             for (mspring_id p = 0; p < COUNT; p++) {
                 const float x = 1, y = 2;
-                check_ok(mspring_network_apply_impulses_at(network, &p, 1, &x, &y, 1));
+                check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_IMPULSE, &p, 0, 1, &x, &y, 1));
                 const support_point v = support_velocity(network, p);
                 assert_true(v.x == (p == pinned ? 0 : 1 / (double)masses[p])); // powers of two: exact
                 assert_true(v.y == (p == pinned ? 0 : 2 / (double)masses[p]));

@@ -26,7 +26,7 @@ static void make(batch *b, uint32_t groups, uint64_t *seed) {
     b->firsts[0] = 0;
     for (uint32_t g = 0; g <= groups; g++) {
         const uint32_t size = 1 + (uint32_t)(support_random(seed) % 12);
-        const mspring_id first = mspring_builder_particle_count(builder);
+        const mspring_id first = mspring_builder_count(builder, MSPRING_PARTICLES);
         for (uint32_t i = 0; i < size; i++)
             (void)support_particle(builder, 20.0 * g + i, 0.3 * (double)(i * i % 5), 1);
         for (uint32_t i = 0; i + 1 < size; i++)
@@ -49,7 +49,7 @@ static void make(batch *b, uint32_t groups, uint64_t *seed) {
     for (uint32_t s = 0; s < b->spring_count; s++)
         (void)support_spring(builder, ends[s][0], ends[s][1], 100, 0);
     mspring_network_def def = support_def(0, 4);
-    def.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
     b->network = support_network(builder, &def);
     check_ok(mspring_network_set_groups(b->network, b->firsts, groups));
 }
@@ -63,25 +63,25 @@ static void disturb_and_reset(batch *b, uint64_t *seed) {
     bool is_whole[MOST_SPRINGS], is_reset[MOST_GROUPS + 1] = {0};
     float lengths[MOST_SPRINGS], had[MOST_SPRINGS], has;
     uint32_t list[MOST_GROUPS], listed = 0;
-    check_ok(mspring_network_get(b->network, MSPRING_REST_LENGTH, 0, b->spring_count, had, 1));
+    check_ok(mspring_network_get(b->network, MSPRING_REST_LENGTH, NULL, 0, b->spring_count, had, 1));
     memcpy(lengths, had, sizeof lengths);
     for (mspring_id s = 0; s < b->spring_count; s++) {
         is_whole[s] = !one_in(3, seed);
         if (!is_whole[s])
-            check_ok(mspring_network_break_springs(b->network, &s, 1));
+            check_ok(mspring_network_break_springs(b->network, &s, 0, 1));
         if (one_in(3, seed))
             lengths[s] *= 1.25f;
-        check_ok(mspring_network_set(b->network, MSPRING_REST_LENGTH, s, 1, &lengths[s], 1));
+        check_ok(mspring_network_set(b->network, MSPRING_REST_LENGTH, NULL, s, 1, &lengths[s], 1));
     }
     for (uint32_t g = 0; g < b->group_count; g++)
         if (one_in(2, seed))
             is_reset[list[listed++] = g] = true;
-    check_ok(mspring_network_reset_groups(b->network, list, listed, MSPRING_RESET_START));
+    check_ok(mspring_network_reset_groups(b->network, MSPRING_RESET_START, list, 0, listed));
     for (mspring_id s = 0; s < b->spring_count; s++) {
         const bool is_back = is_reset[b->group_of[s]];
         uint32_t flags = 0;
-        check_ok(mspring_network_get_spring_flags(b->network, s, 1, &flags, 1));
-        check_ok(mspring_network_get(b->network, MSPRING_REST_LENGTH, s, 1, &has, 1));
+        check_ok(mspring_network_get_integers(b->network, MSPRING_SPRING_FLAGS, NULL, s, 1, &flags, 1));
+        check_ok(mspring_network_get(b->network, MSPRING_REST_LENGTH, NULL, s, 1, &has, 1));
         assert_int_equal(!(flags & MSPRING_SPRING_BROKEN), is_whole[s] || is_back);
         assert_true(has == (is_back ? had[s] : lengths[s]));
     }
@@ -113,10 +113,10 @@ static void clones_and_layouts_reset_alike(void **state) {
         mspring_network_destroy(b.network);
         b.network = clone;
         if (b.spring_count > 0 && round % 2) {
-            check_ok(mspring_network_break_springs(clone, &first, 1));
+            check_ok(mspring_network_break_springs(clone, &first, 0, 1));
             check_ok(mspring_network_compact(clone));
-            check_ok(mspring_network_reset_groups(clone, NULL, 0, MSPRING_RESET_START));
-            check_ok(mspring_network_restore_springs(clone, &first, 1, 0.0));
+            check_ok(mspring_network_reset_groups(clone, MSPRING_RESET_START, NULL, 0, MSPRING_ALL));
+            check_ok(mspring_network_restore_springs(clone, &first, 0, 1, 0.0));
         }
         disturb_and_reset(&b, &seed);
         mspring_network_destroy(clone);
@@ -127,7 +127,7 @@ static void clones_and_layouts_reset_alike(void **state) {
 static void let_yield(batch *b) {
     for (mspring_id s = 0; s < b->spring_count; s += 3) {
         const float strain = 0.01f;
-        check_ok(mspring_network_set(b->network, MSPRING_YIELD_STRAIN, s, 1, &strain, 1));
+        check_ok(mspring_network_set(b->network, MSPRING_YIELD_STRAIN, NULL, s, 1, &strain, 1));
     }
 }
 
@@ -137,10 +137,10 @@ static void run_ramps(batch *b, uint64_t *seed) {
         const float longer = 3;
         if (b->group_of[s] == b->group_count)
             continue; // no reset restores it
-        check_ok(mspring_network_break_springs(b->network, &s, 1));
-        check_ok(mspring_network_restore_springs(b->network, &s, 1, one_in(2, seed) ? 0.01 : 10));
+        check_ok(mspring_network_break_springs(b->network, &s, 0, 1));
+        check_ok(mspring_network_restore_springs(b->network, &s, 0, 1, one_in(2, seed) ? 0.01 : 10));
         if (one_in(4, seed))
-            check_ok(mspring_network_set(b->network, MSPRING_REST_LENGTH, s, 1, &longer, 1));
+            check_ok(mspring_network_set(b->network, MSPRING_REST_LENGTH, NULL, s, 1, &longer, 1));
     }
     for (int step = 0; step < 4; step++)
         check_ok(mspring_network_step(b->network, 0.01));
@@ -156,15 +156,15 @@ static void resets_undo_ramps(void **state) {
         make(&b, 1 + (uint32_t)(round % 5), &seed);
         if (round % 2)
             let_yield(&b);
-        for (mspring_id p = 0; p < mspring_network_particle_count(b.network); p++)
-            check_ok(mspring_network_set_velocities(b.network, p, 1, &(float){1}, &(float){(float)(p % 5)}, 1));
+        for (mspring_id p = 0; p < mspring_network_count(b.network, MSPRING_PARTICLES); p++)
+            check_ok(mspring_network_set_velocities(b.network, NULL, p, 1, &(float){1}, &(float){(float)(p % 5)}, 1));
         check_ok(mspring_network_set_groups(b.network, b.firsts, b.group_count)); // the start has the velocities
         check_ok(mspring_network_clone(b.network, NULL, &fresh));
         for (int step = 0; step < 4; step++)
             check_ok(mspring_network_step(fresh, 0.01));
-        check_ok(mspring_network_reset_groups(fresh, NULL, 0, MSPRING_RESET_START));
+        check_ok(mspring_network_reset_groups(fresh, MSPRING_RESET_START, NULL, 0, MSPRING_ALL));
         run_ramps(&b, &seed);
-        check_ok(mspring_network_reset_groups(b.network, NULL, 0, MSPRING_RESET_START));
+        check_ok(mspring_network_reset_groups(b.network, MSPRING_RESET_START, NULL, 0, MSPRING_ALL));
         for (int step = 0; step < 5; step++) {
             assert_true(support_hash(b.network) == support_hash(fresh));
             check_ok(mspring_network_step(b.network, 0.01));

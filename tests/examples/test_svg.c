@@ -61,17 +61,17 @@ static mspring_network *row(double step) {
     mspring_particle_def particle;
     mspring_spring_def spring;
     check_ok(mspring_builder_create(NULL, &builder));
-    check_ok(mspring_particle_def_init(&particle, sizeof particle));
-    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
     spring.stiffness = 100;
     for (mspring_id p = 0; p < 4; p++) {
         particle.x = step * p;
         particle.flags = p == 0 ? MSPRING_PARTICLE_PINNED : 0;
-        check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+        check_ok(mspring_builder_add_particles(builder, &particle, 1, NULL));
     }
     for (spring.b = 1; spring.b < 3; spring.b++) {
         spring.a = spring.b - 1;
-        check_ok(mspring_builder_add_spring(builder, &spring, NULL));
+        check_ok(mspring_builder_add_springs(builder, &spring, 1, NULL));
     }
     check_ok(mspring_network_create(builder, NULL, &network));
     mspring_builder_destroy(builder);
@@ -97,15 +97,15 @@ static void it_has_live_springs_pins_and_loose_particles(void **state) {
     free(text);
 
     const mspring_id last = 1;
-    check_ok(mspring_network_break_springs(network, &last, 1));
+    check_ok(mspring_network_break_springs(network, &last, 0, 1));
     text = picture_of(network);
     assert_int_equal(count_of(text, "L"), 1);
     assert_int_equal(count_of(text, "<circle"), 2);
     free(text);
 
     const mspring_id loose = 3;
-    check_ok(mspring_network_remove_springs(network, &last, 1));
-    check_ok(mspring_network_remove_particles(network, &loose, 1));
+    check_ok(mspring_network_remove_springs(network, &last, 0, 1));
+    check_ok(mspring_network_remove_particles(network, &loose, 0, 1));
     text = picture_of(network);
     assert_int_equal(count_of(text, "L"), 1);
     assert_int_equal(count_of(text, "<circle"), 1);
@@ -119,7 +119,7 @@ static void it_has_the_floor(void **state) {
     static const float heights[] = {-1, 1e9f};
     mspring_network *network = row(1);
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = planes;
     floor.plane_count = 2;
     check_ok(mspring_network_set_floor(network, &floor));
@@ -146,7 +146,7 @@ static void all_sizes_are_drawn(void **state) {
         assert_int_equal(count_of(text, "L"), 2);
         free(text);
         const double origin[4] = {0};
-        check_ok(mspring_network_set_positions(network, 0, 4, origin, origin, 1));
+        check_ok(mspring_network_set_positions(network, NULL, 0, 4, origin, origin, 1));
         free(picture_of(network));
         mspring_network_destroy(network);
     }
@@ -154,11 +154,11 @@ static void all_sizes_are_drawn(void **state) {
     mspring_network *empty;
     mspring_particle_def particle;
     check_ok(mspring_builder_create(NULL, &builder));
-    check_ok(mspring_particle_def_init(&particle, sizeof particle));
-    check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
+    check_ok(mspring_builder_add_particles(builder, &particle, 1, NULL));
     check_ok(mspring_network_create(builder, NULL, &empty));
     const mspring_id only = 0;
-    check_ok(mspring_network_remove_particles(empty, &only, 1));
+    check_ok(mspring_network_remove_particles(empty, &only, 0, 1));
     free(picture_of(empty));
     mspring_network_destroy(empty);
     mspring_builder_destroy(builder);
@@ -168,7 +168,7 @@ static void stretched_springs_are_red(void **state) {
     (void)state;
     mspring_network *network = row(1);
     const double x = 1.2, y = 0;
-    check_ok(mspring_network_set_positions(network, 1, 1, &x, &y, 1));
+    check_ok(mspring_network_set_positions(network, NULL, 1, 1, &x, &y, 1));
     char *text = picture_of(network);
     assert_int_equal(count_of(text, "stroke='#c81e14'"), 1); // + 20 %
     assert_int_equal(count_of(text, "stroke='#143cbe'"), 1); // - 20 %

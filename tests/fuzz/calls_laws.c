@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-#include <massspring/massspring_batch.h>
-#include <massspring/massspring_laws.h>
+#include <massspring/massspring.h>
 
 #include "fuzz.h"
 #include "support.h"
@@ -16,12 +15,12 @@ enum { MOST = 64 };
 
 static mspring_area_def area_of(const call *c) {
     mspring_area_def def;
-    FUZZ_CHECK(mspring_area_def_init(&def, sizeof def) == MSPRING_OK);
+    FUZZ_CHECK(mspring_init(MSPRING_STRUCT_AREA_DEF, &def, sizeof def) == MSPRING_OK);
     def.kind = c->spring % 4 == 3 ? MSPRING_AREA_GAS : MSPRING_AREA_ELASTIC;
     def.stiffness = def.kind == MSPRING_AREA_GAS ? 0 : c->a;
     def.pressure = c->b;
     def.fill = c->count == 2 ? 1.25f : 1;
-    def.rest_area = c->count == 1 ? fabs((double)c->b) : 0;
+    def.rest_area = c->count == 1 ? fabsf(c->b) : 0;
     return def;
 }
 
@@ -32,9 +31,9 @@ static mspring_result change_area(mspring_network *network, const call *c) {
     case 0:
         return mspring_network_add_cell_areas(network, &def, NULL, NULL);
     case 1:
-        return mspring_network_set_area(network, c->particle % 32, &def);
+        return support_set_area(network, c->particle % 32, &def);
     case 2:
-        return mspring_network_remove_area(network, c->particle % 32);
+        return mspring_network_remove_elements(network, NULL, c->particle % 32, 1);
     default:
         return mspring_network_add_area(network, &def, corners, 3 + c->count % 2, NULL);
     }
@@ -45,20 +44,19 @@ static mspring_result change_angle(mspring_network *network, const call *c) {
                                 c->particle + 1, c->spring,       c->particle};
     const double rest[2] = {(double)c->a, (double)c->b};
     mspring_angle_def def;
-    FUZZ_CHECK(mspring_angle_def_init(&def, sizeof def) == MSPRING_OK);
+    FUZZ_CHECK(mspring_init(MSPRING_STRUCT_ANGLE_DEF, &def, sizeof def) == MSPRING_OK);
     def.stiffness = c->a;
     def.damping = c->spring % 3 ? 0 : c->b;
-    def.flags = c->count == 1 ? MSPRING_ANGLE_REST_GIVEN : 0;
-    def.rest_angle = c->count == 1 ? (double)c->b : 0;
+    def.rest_angle = c->count == 1 ? c->b : MSPRING_REST_ANGLE_PRESENT;
     switch (c->spring % 5) {
     case 0:
-        return mspring_network_set_angle(network, c->particle % 8, &def);
+        return support_set_angle(network, c->particle % 8, &def);
     case 1:
-        return mspring_network_set_rest_angles(network, c->particle % 8, c->count, rest, 1);
+        return support_set_rest_angles(network, c->particle % 8, c->count, rest, 1);
     case 2:
-        return mspring_network_remove_angle(network, c->particle % 8);
+        return mspring_network_remove_elements(network, NULL, c->particle % 8, 1);
     default:
-        return mspring_network_add_angles(network, &def, arms, c->count, NULL);
+        return mspring_network_add_angles(network, &def, arms, c->count, 3, NULL);
     }
 }
 
@@ -68,13 +66,13 @@ mspring_result call_laws(mspring_network *network, const call *c) {
 
 bool call_has_laws(const mspring_network *network) {
     uint32_t areas = 0, angles = 0;
-    FUZZ_CHECK(mspring_network_get_areas(network, NULL, NULL, NULL, 0, &areas) == MSPRING_OK);
-    FUZZ_CHECK(mspring_network_get_angles(network, NULL, NULL, NULL, 0, &angles) == MSPRING_OK);
+    FUZZ_CHECK(support_get_areas(network, NULL, NULL, NULL, 0, &areas) == MSPRING_OK);
+    FUZZ_CHECK(support_get_angles(network, NULL, NULL, NULL, 0, &angles) == MSPRING_OK);
     return areas + angles > 0;
 }
 
 mspring_result call_batch(mspring_network *network, const call *c) {
-    const uint32_t all = mspring_network_particle_count(network);
+    const uint32_t all = mspring_network_count(network, MSPRING_PARTICLES);
     const mspring_id firsts[3] = {0, c->count == 2 ? c->particle : all, all}, springs[2] = {c->spring, c->spring / 2};
     const uint32_t groups[2] = {c->particle % 3, c->spring % 2};
     const float signals[2] = {c->a, c->b};
@@ -84,11 +82,11 @@ mspring_result call_batch(mspring_network *network, const call *c) {
     case 1:
         return mspring_network_set_actuators(network, springs, c->count, c->particle % 4);
     case 2:
-        return mspring_network_mark_groups(network, groups, c->count);
+        return mspring_network_mark_groups(network, groups, 0, c->count);
     case 3:
-        return mspring_network_reset_groups(network, groups, c->count, (mspring_reset)(c->particle % 2));
+        return mspring_network_reset_groups(network, (mspring_reset)(c->particle % 2), groups, 0, c->count);
     default:
-        return mspring_network_set_signals(network, c->particle % 2, c->count, signals, 1);
+        return mspring_network_set(network, MSPRING_SIGNAL, NULL, c->particle % 2, c->count, signals, 1);
     }
 }
 
@@ -96,23 +94,23 @@ void call_look(const mspring_network *network, uint64_t *look, void (*mix)(uint6
     static mspring_id ids[MOST];
     static double first[MOST], second[MOST];
     uint32_t count = 0;
-    mspring_plasticity bent = {.struct_size = sizeof bent};
-    FUZZ_CHECK(mspring_network_get_areas(network, NULL, NULL, NULL, 0, &count) == MSPRING_OK);
+    mspring_energy bent = {.struct_size = sizeof bent};
+    FUZZ_CHECK(support_get_areas(network, NULL, NULL, NULL, 0, &count) == MSPRING_OK);
     count = count < MOST ? count : MOST;
-    FUZZ_CHECK(mspring_network_get_areas(network, ids, first, second, count, &count) == MSPRING_OK);
-    count = count < MOST ? count : MOST;
-    mix(look, ids, count * sizeof *ids);
-    mix(look, first, count * sizeof *first);
-    FUZZ_CHECK(mspring_network_get_angles(network, ids, first, second, MOST, &count) == MSPRING_OK);
+    FUZZ_CHECK(support_get_areas(network, ids, first, second, count, &count) == MSPRING_OK);
     count = count < MOST ? count : MOST;
     mix(look, ids, count * sizeof *ids);
     mix(look, first, count * sizeof *first);
-    FUZZ_CHECK(mspring_network_get_plasticity(network, &bent) == MSPRING_OK);
+    FUZZ_CHECK(support_get_angles(network, ids, first, second, MOST, &count) == MSPRING_OK);
+    count = count < MOST ? count : MOST;
+    mix(look, ids, count * sizeof *ids);
+    mix(look, first, count * sizeof *first);
+    FUZZ_CHECK(mspring_network_get_energy(network, &bent) == MSPRING_OK);
     FUZZ_CHECK(bent.dissipated >= 0);
     mix(look, &bent, sizeof bent);
-    for (uint32_t group = 0; group < mspring_network_group_count(network); group++) {
+    for (uint32_t group = 0; group < mspring_network_count(network, MSPRING_GROUPS); group++) {
         uint32_t flags = 0;
-        FUZZ_CHECK(mspring_network_get_group_flags(network, group, 1, &flags, 1) == MSPRING_OK);
+        FUZZ_CHECK(mspring_network_get_integers(network, MSPRING_GROUP_FLAGS, NULL, group, 1, &flags, 1) == MSPRING_OK);
         mix(look, &flags, sizeof flags);
     }
 }

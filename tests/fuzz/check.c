@@ -10,7 +10,7 @@
 
 fuzz_saved fuzz_save(const mspring_network *network) {
     fuzz_saved saved = {NULL, 0};
-    FUZZ_CHECK(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &saved.size) == MSPRING_OK);
+    FUZZ_CHECK(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &saved.size) == MSPRING_OK);
     saved.bytes = malloc(saved.size);
     FUZZ_CHECK(saved.bytes != NULL);
     FUZZ_CHECK(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, saved.bytes, saved.size, NULL) == MSPRING_OK);

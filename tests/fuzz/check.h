@@ -5,7 +5,7 @@
 #ifndef FUZZ_CHECK_H
 #define FUZZ_CHECK_H
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "fuzz.h"
 

@@ -15,7 +15,7 @@ static void check_scene(scene *made) {
     mspring_result result = mspring_network_create(made->builder, NULL, &network);
     FUZZ_CHECK(result == MSPRING_OK || strlen(mspring_builder_error(made->builder)) > 0);
     if (result == MSPRING_OK) {
-        const uint32_t count = mspring_network_particle_count(network);
+        const uint32_t count = mspring_network_count(network, MSPRING_PARTICLES);
         FUZZ_CHECK(made->probe == MSPRING_NONE || made->probe < count);
         result = fuzz_step(network, 1e-4);
         FUZZ_CHECK(result == MSPRING_OK || result == MSPRING_ERROR_UNSTABLE);

@@ -12,8 +12,7 @@ enum { BODIES = 3, PARTICLES = 3, SPRINGS = 3 };
 static char message[1024];
 
 static mspring_gpu_def plain_def(void) {
-    mspring_gpu_def def;
-    check_ok(mspring_gpu_def_init(&def, sizeof def));
+    mspring_gpu_def def = mspring_gpu_def_default();
     def.message = message;
     def.message_size = sizeof message;
     message[0] = '\0';
@@ -43,7 +42,7 @@ static mspring_network *triangles(oddity odd) {
             (void)support_particle(builder, i, i % 2, odd == OTHER_MASS && body == 1 && i == 2 ? 2 : 1);
         for (mspring_id i = 0; i < SPRINGS; i++) {
             mspring_spring_def def;
-            check_ok(mspring_spring_def_init(&def, sizeof def));
+            check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
             def.a = first + i;
             def.b = first + (i + 1) % PARTICLES;
             def.stiffness = odd == OTHER_STIFFNESS && body == 2 && i == 1 ? 90 : 100;
@@ -55,11 +54,11 @@ static mspring_network *triangles(oddity odd) {
                 def.b = first;
             }
             if (odd != LOOSE || i == 0)
-                check_ok(mspring_builder_add_spring(builder, &def, NULL));
+                check_ok(mspring_builder_add_springs(builder, &def, 1, NULL));
         }
     }
     mspring_network_def def = support_def(-9.8f, 8);
-    def.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
     def.flags = odd == IS_PRECISE ? MSPRING_NETWORK_PRECISE : 0;
     mspring_network *network = support_network(builder, &def);
     check_ok(mspring_network_set_groups(network, firsts, BODIES));
@@ -100,16 +99,16 @@ static void changed_networks(void **state) {
     mspring_area_def area;
     mspring_floor_def floor_def;
     mspring_contact_def contact;
-    check_ok(mspring_network_break_springs(network, &spring, 1));
+    check_ok(mspring_network_break_springs(network, &spring, 0, 1));
     check_not_taken(network, plain_def(), MSPRING_ERROR_ARGUMENT, "broken, but spring 4 is");
-    check_ok(mspring_network_restore_springs(network, &spring, 1, 0));
-    check_ok(mspring_floor_def_init(&floor_def, sizeof floor_def));
+    check_ok(mspring_network_restore_springs(network, &spring, 0, 1, 0));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor_def, sizeof floor_def));
     floor_def.heights = heights;
     floor_def.height_count = 2;
     check_ok(mspring_network_set_floor(network, &floor_def));
     check_not_taken(network, plain_def(), MSPRING_ERROR_ARGUMENT, "2 heights");
     check_ok(mspring_network_set_floor(network, NULL));
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     check_ok(mspring_network_set_contact(network, &contact));
     check_not_taken(network, plain_def(), MSPRING_ERROR_ARGUMENT, "no contact");
     check_ok(mspring_network_set_contact(network, NULL));
@@ -117,11 +116,11 @@ static void changed_networks(void **state) {
     check_not_taken(network, plain_def(), MSPRING_ERROR_ARGUMENT, "differ after a step");
     mspring_network_destroy(network);
     network = triangles(NOTHING);
-    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, particle, 1, &scale, 1));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, particle, 1, &scale, 1));
     check_not_taken(network, plain_def(), MSPRING_ERROR_ARGUMENT, "particle 4 has another scale");
     mspring_network_destroy(network);
     network = triangles(NOTHING);
-    check_ok(mspring_area_def_init(&area, sizeof area));
+    check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &area, sizeof area));
     area.stiffness = 1;
     check_ok(mspring_network_add_area(network, &area, corners, 3, NULL));
     check_not_taken(network, plain_def(), MSPRING_ERROR_ARGUMENT, "the network has 1");
@@ -191,9 +190,10 @@ static void bad_calls(void **state) {
     mspring_gpu *gpu = NULL;
     mspring_gpu_def def = plain_def();
     const mspring_id actuator = 1;
-    const uint32_t particle = PARTICLES;
+    const mspring_observation strain = {MSPRING_STRAIN, 0}, none = {(mspring_property)0x3f, 0},
+                              second = {MSPRING_GROUP_Y, 1}, middle[] = {{MSPRING_GROUP_X, 0}, second};
     const float good = 1, bad = 200;
-    double row[MSPRING_OBSERVE_PARTICLES + 4], x, y;
+    double row[2] = {7, 7}, x, y;
     float vx, vy;
     uint32_t flags;
     uint64_t hash;
@@ -215,12 +215,19 @@ static void bad_calls(void **state) {
     check_error(mspring_gpu_get_flags(gpu, 0, 1, NULL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_gpu_get_flags(gpu, 0, 1, &flags, 0), MSPRING_ERROR_ARGUMENT);
     check_ok(mspring_gpu_get_flags(gpu, BODIES, 0, NULL, 1));
-    check_error(mspring_gpu_observe(gpu, 0, 1, &particle, 1, row, MSPRING_OBSERVE_PARTICLES + 4), MSPRING_ERROR_ID);
-    check_contains(mspring_gpu_error(gpu), "none with number 3");
-    check_error(mspring_gpu_observe(gpu, 0, 1, NULL, 1, row, MSPRING_OBSERVE_PARTICLES + 4), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_gpu_observe(gpu, 0, 1, NULL, 0, row, 5), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_gpu_observe(gpu, 0, 1, NULL, UINT32_MAX, row, 5), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_gpu_observe(gpu, UINT32_MAX, 1, NULL, 0, row, 9), MSPRING_ERROR_ID);
+    check_error(mspring_gpu_observe(gpu, 0, 1, &strain, 1, row, 1), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_gpu_error(gpu), "column 0: a device cannot observe property 0x113");
+    check_error(mspring_gpu_observe(gpu, 0, 1, &none, 1, row, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gpu_observe(gpu, 0, 1, middle, 2, row, 2), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_gpu_error(gpu), "column 1 is of the body itself: its index is 1");
+    check_error(mspring_gpu_observe(gpu, 0, 1, middle, 2, row, 1), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_gpu_error(gpu), "a row has 2 columns");
+    check_error(mspring_gpu_observe(gpu, 0, 1, NULL, 1, row, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gpu_observe(gpu, 0, 1, middle, 1, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_gpu_observe(gpu, UINT32_MAX, 1, middle, 1, row, 1), MSPRING_ERROR_ID);
+    check_ok(mspring_gpu_observe(gpu, 0, BODIES, NULL, 0, row, 1));
+    check_ok(mspring_gpu_observe(gpu, 0, 0, middle, 1, NULL, 1));
+    assert_true(row[0] == 7 && row[1] == 7);
     check_error(mspring_gpu_get_positions(gpu, 8, 2, &x, &y, 1), MSPRING_ERROR_ID);
     check_error(mspring_gpu_get_positions(gpu, 8, 1, &x, NULL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_gpu_get_velocities(gpu, 8, 1, NULL, &vy, 1), MSPRING_ERROR_ARGUMENT);

@@ -24,7 +24,7 @@ static void send_signals(batch *b, mspring_gpu *gpu) {
     assert_non_null(signals);
     for (uint32_t i = 0; i < count; i++)
         signals[i] = (float)support_random_between(&b->seed, 0.8, 1.2);
-    check_ok(mspring_network_set_signals(b->network, first, count, signals, 1));
+    check_ok(mspring_network_set(b->network, MSPRING_SIGNAL, NULL, first, count, signals, 1));
     for (uint32_t time = 0; time < times; time++)
         check_ok(mspring_gpu_set_signals(gpu, time * all + first, count, signals, 1));
     free(signals);
@@ -41,7 +41,7 @@ static void reset_some(batch *b, mspring_gpu *gpu) {
             for (uint32_t body = g; body < all; body += b->body_count)
                 mask[body] = (uint8_t)(1 + g % 255);
         }
-    check_ok(mspring_network_reset_groups(b->network, groups, count, MSPRING_RESET_START));
+    check_ok(mspring_network_reset_groups(b->network, MSPRING_RESET_START, groups, 0, count));
     check_ok(mspring_gpu_reset(gpu, mask));
     free(mask);
     free(groups);
@@ -80,7 +80,7 @@ static bool check_seed(uint64_t seed) {
         check_ok(mspring_gpu_step(gpu, dt));
         batch_check_equal(&b, gpu);
         uint32_t flags;
-        check_ok(mspring_network_get_group_flags(b.network, 0, 1, &flags, 1));
+        check_ok(mspring_network_get_integers(b.network, MSPRING_GROUP_FLAGS, NULL, 0, 1, &flags, 1));
         held += flags;
     }
     check_repeated(&b, gpu);

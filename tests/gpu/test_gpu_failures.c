@@ -23,8 +23,7 @@ static void find(void *library, const char *name, void *function) {
 }
 
 static mspring_result create(const batch *b, mspring_gpu **gpu, char *message, uint32_t size) {
-    mspring_gpu_def def;
-    check_ok(mspring_gpu_def_init(&def, sizeof def));
+    mspring_gpu_def def = mspring_gpu_def_default();
     def.library = FAILING_OPENCL;
     def.actuators = b->actuators;
     def.actuator_count = b->actuator_count;
@@ -83,9 +82,9 @@ static mspring_result reset(mspring_gpu *gpu, const batch *b) {
 }
 
 static mspring_result observe(mspring_gpu *gpu, const batch *b) {
-    double row[MSPRING_OBSERVE_PARTICLES + 4];
-    const uint32_t chosen = b->particle_count - 1;
-    return mspring_gpu_observe(gpu, 0, 1, &chosen, 1, row, MSPRING_OBSERVE_PARTICLES + 4);
+    double row[2];
+    const mspring_observation columns[] = {{MSPRING_GROUP_X, 0}, {MSPRING_RELATIVE_X, b->particle_count - 1}};
+    return mspring_gpu_observe(gpu, 0, 1, columns, 2, row, 2);
 }
 
 static mspring_result read_all(mspring_gpu *gpu, const batch *b) {
@@ -133,7 +132,7 @@ static void acting(void **state) {
     let_fail(0, 0);
     check_ok(create(&b, &gpu, message, sizeof message));
     for (int i = 0; i < 5; i++) {
-        check_ok(mspring_network_set_signals(b.network, 0, b.actuator_count, signals, 1));
+        check_ok(mspring_network_set(b.network, MSPRING_SIGNAL, NULL, 0, b.actuator_count, signals, 1));
         check_action(gpu, &b, step, signals);
         check_ok(mspring_network_step(b.network, b.dt));
         batch_check_equal(&b, gpu);
@@ -142,7 +141,7 @@ static void acting(void **state) {
         batch_check_equal(&b, gpu);
     }
     check_action(gpu, &b, reset, signals);
-    check_ok(mspring_network_reset_groups(b.network, NULL, 0, MSPRING_RESET_START));
+    check_ok(mspring_network_reset_groups(b.network, MSPRING_RESET_START, NULL, 0, MSPRING_ALL));
     batch_check_equal(&b, gpu);
     mspring_gpu_destroy(gpu);
     assert_int_equal(live(), 0);

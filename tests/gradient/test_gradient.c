@@ -46,7 +46,7 @@ static void read_floats(const mspring_network *n, mspring_property of, uint32_t 
     float *values = malloc((count + 1) * sizeof *values);
     assert_non_null(values);
     if (count > 0)
-        check_ok(mspring_network_get(n, of, 0, count, values, 1));
+        check_ok(mspring_network_get(n, of, NULL, 0, count, values, 1));
     for (uint32_t i = 0; i < count; i++)
         to[i] = (double)values[i];
     free(values);
@@ -55,8 +55,8 @@ static void read_floats(const mspring_network *n, mspring_property of, uint32_t 
 static void read_motion(const mspring_network *n, reference *r) {
     const uint32_t p = r->particles;
     mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(n, &view));
-    check_ok(mspring_network_get_positions(n, 0, p, r->values + r->first[BY_X], r->values + r->first[BY_Y], 1));
+    check_ok(mspring_network_get_view(n, &view));
+    check_ok(mspring_network_get_positions(n, NULL, 0, p, r->values + r->first[BY_X], r->values + r->first[BY_Y], 1));
     for (uint32_t i = 0; i < p; i++) {
         const uint32_t slot = view.slot_of_particle[i];
         r->values[r->first[BY_VX] + i] = (double)view.vx[slot];
@@ -68,8 +68,8 @@ static void read_motion(const mspring_network *n, reference *r) {
 // What the scene is, and signals, forces and weights of the loss by chance.
 static reference reference_of(scene *s) {
     const mspring_settings settings = support_settings(s->network);
-    reference sizes = {.particles = mspring_network_particle_count(s->network),
-                       .springs = mspring_network_spring_count(s->network),
+    reference sizes = {.particles = mspring_network_count(s->network, MSPRING_PARTICLES),
+                       .springs = mspring_network_count(s->network, MSPRING_SPRINGS),
                        .steps = s->steps,
                        .most_substeps = MOST_SUBSTEPS,
                        .actuators = s->actuators,
@@ -84,7 +84,7 @@ static reference reference_of(scene *s) {
     sizes.planes_of[0][1] = s->plane[3] / length;
     sizes.planes_of[0][2] = (s->plane[0] * s->plane[2] + s->plane[1] * s->plane[3]) / length;
     reference r = reference_make(&sizes);
-    check_ok(mspring_network_get_ends(s->network, 0, r.springs, MSPRING_ENDS_IDS, r.a, r.b, 1));
+    check_ok(mspring_network_get_columns(s->network, NULL, 0, r.springs, (const mspring_column[]){{MSPRING_END_A, 1, r.a}, {MSPRING_END_B, 1, r.b}}, 2));
     read_floats(s->network, MSPRING_ACTIVE_STIFFNESS, r.springs, r.values + r.first[BY_STIFFNESS]);
     read_floats(s->network, MSPRING_ACTIVE_DAMPING, r.springs, r.values + r.first[BY_DAMPING]);
     read_floats(s->network, MSPRING_REST_LENGTH, r.springs, r.values + r.first[BY_LENGTH]);
@@ -118,11 +118,11 @@ static void add_seeds(mspring_gradient *g, const reference *r, int at, const dou
 
 // x, y, vx and vy of all particles, one after another.
 static void read_state(const mspring_network *n, double *z) {
-    const uint32_t count = mspring_network_particle_count(n);
-    check_ok(mspring_network_get_positions(n, 0, count, z, z + count, 1));
+    const uint32_t count = mspring_network_count(n, MSPRING_PARTICLES);
+    check_ok(mspring_network_get_positions(n, NULL, 0, count, z, z + count, 1));
     for (uint32_t p = 0; p < count; p++) {
         float vx, vy;
-        check_ok(mspring_network_get_velocities(n, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_get_velocities(n, NULL, p, 1, &vx, &vy, 1));
         z[2 * count + p] = (double)vx;
         z[3 * count + p] = (double)vy;
     }
@@ -141,7 +141,7 @@ static double *state_of(const states *s, uint32_t particles, uint32_t step, uint
 static void MSPRING_CALL see(const mspring_hook_args *args, void *user) {
     const states *s = user;
     read_state(args->network,
-               state_of(s, mspring_network_particle_count(args->network), s->step, args->substep + 1));
+               state_of(s, mspring_network_count(args->network, MSPRING_PARTICLES), s->step, args->substep + 1));
 }
 
 static double dt_of(const scene *s, uint32_t step) {
@@ -173,9 +173,9 @@ static states play(const scene *s, reference *r) {
         read_state(clone, state_of(&seen, r->particles, seen.step, 0));
         read_inputs(r, seen.step, signals, forces);
         if (r->actuators > 0)
-            check_ok(mspring_network_set_signals(clone, 0, r->actuators, signals, 1));
+            check_ok(mspring_network_set(clone, MSPRING_SIGNAL, NULL, 0, r->actuators, signals, 1));
         if (r->forced > 0)
-            check_ok(mspring_network_apply_forces_at(clone, s->forced, r->forced, forces, forces + 1, 2));
+            check_ok(mspring_network_apply_forces(clone, MSPRING_PUSH_STEP, s->forced, 0, r->forced, forces, forces + 1, 2));
         check_ok(mspring_network_step(clone, dt_of(s, seen.step)));
         const mspring_step_info after = support_step_info(clone);
         const double time = dt_of(s, seen.step) + before.time_left - after.time_left;
@@ -264,13 +264,13 @@ static double worst_error(scene *s, const char *name, bool follows) {
 static void join(mspring_builder *b, mspring_id from, mspring_id to, double length, double damping,
                  uint64_t *seed) {
     mspring_spring_def def;
-    check_ok(mspring_spring_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
     def.a = from;
     def.b = to;
     def.stiffness = (float)support_random_between(seed, 100, 300);
     def.damping = (float)(damping * support_random_between(seed, 0.5, 1.5));
     def.rest_length = (float)(length * support_random_between(seed, 0.98, 1.02));
-    check_ok(mspring_builder_add_spring(b, &def, NULL));
+    check_ok(mspring_builder_add_springs(b, &def, 1, NULL));
 }
 
 // A lattice of width times height cells with springs of chance.
@@ -295,15 +295,15 @@ static mspring_builder *lattice(uint32_t width, uint32_t height, double damping,
 }
 
 static void push_all(mspring_network *n, uint64_t *seed, double most) {
-    for (mspring_id p = 0; p < mspring_network_particle_count(n); p++) {
+    for (mspring_id p = 0; p < mspring_network_count(n, MSPRING_PARTICLES); p++) {
         const float vx = (float)support_random_between(seed, -most, most);
         const float vy = (float)support_random_between(seed, -most, most);
-        check_ok(mspring_network_set_velocities(n, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(n, NULL, p, 1, &vx, &vy, 1));
     }
 }
 
 static void set_actuators(scene *s, uint32_t every) {
-    for (uint32_t i = 0; i < mspring_network_spring_count(s->network) && s->actuators < 10; i += every)
+    for (uint32_t i = 0; i < mspring_network_count(s->network, MSPRING_SPRINGS) && s->actuators < 10; i += every)
         s->springs[s->actuators++] = i;
     check_ok(mspring_network_set_actuators(s->network, s->springs, s->actuators, s->changes));
 }
@@ -311,7 +311,7 @@ static void set_actuators(scene *s, uint32_t every) {
 static void set_plane(scene *s, double x, double y, double nx, double ny) {
     const double plane[4] = {x, y, nx, ny};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.plane_count = 1;
     floor.planes = plane;
     check_ok(mspring_network_set_floor(s->network, &floor));
@@ -344,12 +344,12 @@ static void make_web(scene *s, uint32_t flags) {
                 join(b, k, i, length, 2, &s->seed);
         }
     mspring_network_def def = support_def(-9.8f, s->substeps);
-    def.gravity_x = 1.5f;
-    def.global_damping = 0.7f;
+    def.settings.gravity_x = 1.5f;
+    def.settings.global_damping = 0.7f;
     def.flags = flags;
     s->network = support_network(b, &def);
     const float vx = 0.4f, vy = -0.2f;
-    check_ok(mspring_network_set_velocities(s->network, 0, 1, &vx, &vy, 1));
+    check_ok(mspring_network_set_velocities(s->network, NULL, 0, 1, &vx, &vy, 1));
 }
 
 // Muscles whose lengths change four times a step.
@@ -369,7 +369,7 @@ static void make_pushed(scene *s, uint32_t flags) {
         join(b, 15 + i, 16 + i, i == 0 ? 1.1 : 1, 1, &s->seed);
     }
     mspring_network_def def = support_def(-9.8f, s->substeps);
-    def.global_damping = 0.3f;
+    def.settings.global_damping = 0.3f;
     def.flags = flags;
     s->network = support_network(b, &def);
     for (uint32_t i = 0; i < 5; i++)
@@ -381,7 +381,7 @@ static void make_pushed(scene *s, uint32_t flags) {
 static void make_floor(scene *s, uint32_t flags) {
     mspring_builder *b = lattice(5, 2, 2, &s->seed, false);
     mspring_network_def def = support_def(-9.8f, s->substeps);
-    def.gravity_x = 3;
+    def.settings.gravity_x = 3;
     def.flags = flags;
     s->network = support_network(b, &def);
     set_plane(s, 0, -0.05, 0.01, 1);

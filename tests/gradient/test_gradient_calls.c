@@ -29,8 +29,8 @@ static mspring_builder *truss(void) {
 
 static mspring_network *make(mspring_solver solver) {
     mspring_network_def def = support_def(-9.8f, 8);
-    def.solver = solver;
-    def.guard = MSPRING_GUARD_CLAMP;
+    def.settings.solver = solver;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
     def.spare_particles = 1;
     return support_network(truss(), &def);
 }
@@ -48,7 +48,7 @@ static mspring_network *with_floor(float friction, float restitution, bool has_h
     static const float heights[2] = {-1, -1};
     mspring_network *n = make(MSPRING_SOLVER_EXPLICIT);
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.plane_count = !has_heights;
     floor.planes = plane;
     floor.height_count = has_heights ? 2 : 0;
@@ -61,7 +61,7 @@ static mspring_network *with_floor(float friction, float restitution, bool has_h
 
 static mspring_network *with_value(mspring_property property, float value) {
     mspring_network *n = make(MSPRING_SOLVER_EXPLICIT);
-    check_ok(mspring_network_set(n, property, 3, 1, &value, 1));
+    check_ok(mspring_network_set(n, property, NULL, 3, 1, &value, 1));
     return n;
 }
 
@@ -89,9 +89,9 @@ static void what_has_no_gradient_is_named(void **state) {
     check_refused(with_flag(MSPRING_SPRING_PULL_ONLY), "one-way");
     mspring_network *n = make(MSPRING_SOLVER_EXPLICIT);
     const mspring_id spring = 3, corners[4] = {0, 2, 3, 1};
-    check_ok(mspring_network_break_springs(n, &spring, 1));
+    check_ok(mspring_network_break_springs(n, &spring, 0, 1));
     support_steps(n, 10, DT);
-    check_ok(mspring_network_restore_springs(n, &spring, 1, 1.0));
+    check_ok(mspring_network_restore_springs(n, &spring, 0, 1, 1.0));
     check_refused(n, "spring 3 has a ramp");
     n = make(MSPRING_SOLVER_EXPLICIT);
     mspring_settings settings = support_settings(n);
@@ -100,26 +100,26 @@ static void what_has_no_gradient_is_named(void **state) {
     check_refused(n, "sleep_speed");
     n = make(MSPRING_SOLVER_EXPLICIT);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     check_ok(mspring_network_set_contact(n, &contact));
     check_refused(n, "contact");
     n = make(MSPRING_SOLVER_EXPLICIT);
     mspring_grip_def grip;
-    check_ok(mspring_grip_def_init(&grip, sizeof grip));
+    check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &grip, sizeof grip));
     grip.particle = 4;
     grip.stiffness = 10;
     check_ok(mspring_network_add_grip(n, &grip, NULL));
     check_refused(n, "grips");
     n = make(MSPRING_SOLVER_EXPLICIT);
     mspring_area_def area;
-    check_ok(mspring_area_def_init(&area, sizeof area));
+    check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &area, sizeof area));
     check_ok(mspring_network_add_area(n, &area, corners, 4, NULL));
     check_refused(n, "areas");
     n = make(MSPRING_SOLVER_EXPLICIT);
     check_ok(support_add_hook(n, MSPRING_PHASE_BEFORE_STEP, do_nothing, NULL, NULL));
     check_refused(n, "hooks");
     mspring_network_def def = support_def(-9.8f, 8);
-    def.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
     const mspring_id firsts[2] = {0, 12};
     n = support_network(truss(), &def);
     if (mspring_network_set_groups(n, firsts, 1) != MSPRING_OK)
@@ -127,7 +127,7 @@ static void what_has_no_gradient_is_named(void **state) {
     check_refused(n, "groups");
     n = make(MSPRING_SOLVER_EXPLICIT);
     mspring_particle_def particle;
-    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
     mspring_id id;
     check_ok(mspring_network_add_particles(n, &particle, 1, &id));
     check_refused(n, "particle 12 has no spring");
@@ -178,11 +178,11 @@ static void a_step_may_be_tried_again(void **state) {
     assert_true(strlen(mspring_gradient_error(g)) > 0);
     check_ok(mspring_gradient_step(g, DT, NULL, forces[0]));
     for (int step = 0; step < 2; step++) {
-        check_ok(mspring_network_apply_forces_at(plain, pushed, 2, forces[0], forces[0] + 1, 2));
+        check_ok(mspring_network_apply_forces(plain, MSPRING_PUSH_STEP, pushed, 0, 2, forces[0], forces[0] + 1, 2));
         support_steps(plain, 1, DT);
     }
-    check_ok(mspring_network_state_hash(n, &hash));
-    check_ok(mspring_network_state_hash(plain, &expected));
+    check_ok(mspring_network_get_state_hash(n, &hash));
+    check_ok(mspring_network_get_state_hash(plain, &expected));
     assert_int_equal(hash, expected);
     check_ok(mspring_gradient_add_seeds(g, pushed, 0, 1, seed, NULL));
     check_ok(mspring_gradient_reverse(g, 2));
@@ -203,11 +203,11 @@ static void what_is_done_between_steps_is_noticed(void **state) {
         check_ok(mspring_gradient_create(n, 20, NULL, 0, &g));
         go(g, 7);
         if (kind == 0)
-            check_ok(mspring_network_set(n, MSPRING_STIFFNESS, 4, 1, &value, 1));
+            check_ok(mspring_network_set(n, MSPRING_STIFFNESS, NULL, 4, 1, &value, 1));
         else if (kind == 1)
-            check_ok(mspring_network_set_velocities(n, 8, 1, &speed, &speed, 1));
+            check_ok(mspring_network_set_velocities(n, NULL, 8, 1, &speed, &speed, 1));
         else if (kind == 2)
-            check_ok(mspring_network_set_positions(n, 11, 1, &x, &y, 1));
+            check_ok(mspring_network_set_positions(n, NULL, 11, 1, &x, &y, 1));
         else if (kind == 3)
             check_ok(mspring_network_apply_force(n, 9, 1, 1));
         else if (kind == 4)
@@ -275,7 +275,7 @@ static void MSPRING_CALL give(void *memory, size_t size, void *user) {
 
 static mspring_network *make_in(pool *p) {
     mspring_allocator allocator;
-    check_ok(mspring_allocator_init(&allocator, sizeof allocator));
+    check_ok(mspring_init(MSPRING_STRUCT_ALLOCATOR, &allocator, sizeof allocator));
     allocator.alloc = take;
     allocator.free = give;
     allocator.user = p;

@@ -7,7 +7,7 @@
 
 static mspring_result set_contact(game *it, place *p, const call *c) {
     mspring_contact_def def;
-    JUDGE(it, mspring_contact_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_CONTACT_DEF, &def, sizeof def) == MSPRING_OK);
     def.flags = c->pick & 1 ? MSPRING_CONTACT_SELF : 0;
     def.thickness = c->pick & 2 ? 0.3 * c->d[0] : 0.1;
     def.friction = c->pick & 4 ? c->f[0] : 0;
@@ -20,9 +20,9 @@ static mspring_result set_contact(game *it, place *p, const call *c) {
 static mspring_result set_who_touches(game *it, place *p, const call *c) {
     (void)it;
     if (c->pick & 1)
-        return mspring_network_set_contact_surface(p->network, c->particle, c->count, c->f[0],
+        return support_set_surface(p->network, c->particle, c->count, c->f[0],
                                                    c->pick & 2 ? -1 : c->f[1]);
-    return mspring_network_set_contact_groups(p->network, c->particle, c->count, c->pick / 2, c->pick / 4 | 1);
+    return support_set_layers(p->network, c->particle, c->count, c->pick / 2, c->pick / 4 | 1);
 }
 
 static mspring_result read_contact(game *it, place *p, const call *c) {
@@ -38,7 +38,7 @@ static mspring_result read_contact(game *it, place *p, const call *c) {
 
 static mspring_result reserve_contact_events(game *it, place *p, const call *c) {
     (void)it;
-    return mspring_network_reserve_contact_events(p->network, c->pick % 4 ? c->pick / 4 % 256 : 0);
+    return support_reserve_contact_events(p->network, c->pick % 4 ? c->pick / 4 % 256 : 0);
 }
 
 static mspring_result read_contact_events(game *it, place *p, const call *c) {
@@ -65,7 +65,7 @@ static mspring_result read_contact_events(game *it, place *p, const call *c) {
 static mspring_result add_collider(game *it, place *p, const call *c) {
     const double points[4][2] = {{-12, -3}, {4, -4 + c->d[0]}, {20, -3}, {40, 1}};
     mspring_collider_def def;
-    JUDGE(it, mspring_collider_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def) == MSPRING_OK);
     def.kind = (mspring_collider_kind)(c->pick % 3);
     def.x = 20 * (c->d[1] - 0.2), def.y = -4 - c->d[2];
     def.angle = c->pick & 8 ? c->d[3] : 0;
@@ -111,9 +111,9 @@ static mspring_result read_collider(game *it, place *p, const call *c) {
 static mspring_grip_def draw_grip(game *it, const place *p, const call *c) {
     mspring_grip_def def;
     double x = 0, y = 0;
-    JUDGE(it, mspring_grip_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_GRIP_DEF, &def, sizeof def) == MSPRING_OK);
     def.particle = c->particle;
-    if (mspring_network_get_positions(p->network, c->particle, 1, &x, &y, 1) == MSPRING_OK)
+    if (mspring_network_get_positions(p->network, NULL, c->particle, 1, &x, &y, 1) == MSPRING_OK)
         def.x = x + 2 * (c->d[0] - 0.5), def.y = y + c->d[1];
     def.stiffness = 200 * c->f[0], def.damping = 10 * c->f[1];
     def.max_force = c->pick & 1 ? 50 * c->f[2] : MSPRING_NEVER;
@@ -135,7 +135,7 @@ static mspring_result change_grip(game *it, place *p, const call *c) {
     const mspring_result result = mspring_network_get_grip(p->network, id, &def);
     if (result != MSPRING_OK)
         return result;
-    JUDGE(it, mspring_network_has_particle(p->network, def.particle));
+    JUDGE(it, support_has_particle(p->network, def.particle));
     if (c->pick / 16 % 4 == 0)
         def = draw_grip(it, p, c);
     return c->pick / 16 % 4 < 2

@@ -28,8 +28,8 @@ static mspring_result apply_forces(game *it, place *p, const call *c) {
     (void)it;
     spread(c->f, -30, 30, force);
     return c->pick & 1
-               ? mspring_network_apply_forces_at(p->network, c->particles, c->count / 2, force, force + 1, 2)
-               : mspring_network_apply_forces(p->network, c->particle, c->count, force, force, c->pick / 2 % 2);
+               ? mspring_network_apply_forces(p->network, MSPRING_PUSH_STEP, c->particles, 0, c->count / 2, force, force + 1, 2)
+               : mspring_network_apply_forces(p->network, c->pick / 4 % 4 ? MSPRING_PUSH_STEP : MSPRING_PUSH_SUBSTEP, NULL, c->particle, c->count, force, force, c->pick / 2 % 2);
 }
 
 static mspring_result apply_impulses(game *it, place *p, const call *c) {
@@ -37,8 +37,8 @@ static mspring_result apply_impulses(game *it, place *p, const call *c) {
     (void)it;
     spread(c->f, -3, 3, impulse);
     return c->pick & 1
-               ? mspring_network_apply_impulses_at(p->network, c->particles, c->count, impulse, impulse, 1)
-               : mspring_network_apply_impulses(p->network, c->particle, c->count / 2, impulse, impulse + 1, 2);
+               ? mspring_network_apply_forces(p->network, MSPRING_PUSH_IMPULSE, c->particles, 0, c->count, impulse, impulse, 1)
+               : mspring_network_apply_forces(p->network, MSPRING_PUSH_IMPULSE, NULL, c->particle, c->count / 2, impulse, impulse + 1, 2);
 }
 
 // All particles around one fly away from it.
@@ -48,54 +48,44 @@ static mspring_result explode(game *it, place *p, const call *c) {
     float impulse[2][64];
     uint32_t count = 0;
     const float strength = c->pick % 8 == 0 ? 300 : 12;
-    const mspring_result result = mspring_network_get_positions_at(p->network, &c->particle, 1, &at[0], &at[1], 1);
+    const mspring_result result = mspring_network_get_positions(p->network, &c->particle, 0, 1, &at[0], &at[1], 1);
     if (result != MSPRING_OK)
         return result;
     if (mspring_network_particles_in_circle(p->network, at[0], at[1], 3, ids, 64, &count) != MSPRING_OK)
         return MSPRING_OK; // a place out of bounds
     count = count < 64 ? count : 64;
-    JUDGE(it, mspring_network_get_positions_at(p->network, ids, count, x, y, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_positions(p->network, ids, 0, count, x, y, 1) == MSPRING_OK);
     for (uint32_t i = 0; i < count; i++) {
         const double dx = x[i] - at[0], dy = y[i] - at[1], r = sqrt(dx * dx + dy * dy) + 0.1;
         impulse[0][i] = (float)(dx / r / r) * strength, impulse[1][i] = (float)(dy / r / r) * strength;
     }
-    return mspring_network_apply_impulses_at(p->network, ids, count, impulse[0], impulse[1], 1);
+    return mspring_network_apply_forces(p->network, MSPRING_PUSH_IMPULSE, ids, 0, count, impulse[0], impulse[1], 1);
 }
 
 static mspring_result set_velocities(game *it, place *p, const call *c) {
     float v[MANY];
     (void)it;
     spread(c->f, -4, 4, v);
-    return c->pick & 1 ? mspring_network_set_velocities_at(p->network, c->particles, c->count, v, v, 1)
-                       : mspring_network_set_velocities(p->network, c->particle, c->count, v, v, c->pick / 2 % 2);
+    return c->pick & 1 ? mspring_network_set_velocities(p->network, c->particles, 0, c->count, v, v, 1)
+                       : mspring_network_set_velocities(p->network, NULL, c->particle, c->count, v, v, c->pick / 2 % 2);
 }
 
 // A little away from where they are: all forms of the call.
 static mspring_result shift(game *it, place *p, const call *c) {
     double x[MANY], y[MANY];
-    float rounded[2][MANY];
     const uint32_t count = c->pick & 1 ? 1 : c->count;
     const bool is_list = c->pick & 2;
     const mspring_result result = is_list
-                                      ? mspring_network_get_positions_at(p->network, c->particles, count, x, y, 1)
-                                      : mspring_network_get_positions(p->network, c->particle, count, x, y, 1);
+                                      ? mspring_network_get_positions(p->network, c->particles, 0, count, x, y, 1)
+                                      : mspring_network_get_positions(p->network, NULL, c->particle, count, x, y, 1);
     if (result != MSPRING_OK)
         return result;
     for (uint32_t i = 0; i < count; i++) {
         x[i] += (c->d[i] - 0.5) * 0.2, y[i] += (c->d[MANY - 1 - i] - 0.5) * 0.2;
-        rounded[0][i] = (float)x[i], rounded[1][i] = (float)y[i];
     }
     (void)it;
-    switch (c->pick / 4 % 2 * 2 + is_list) {
-    case 0:
-        return mspring_network_set_positions(p->network, c->particle, count, x, y, 1);
-    case 1:
-        return mspring_network_set_positions_at(p->network, c->particles, count, x, y, 1);
-    case 2:
-        return mspring_network_set_positions_float(p->network, c->particle, count, rounded[0], rounded[1], 1);
-    default:
-        return mspring_network_set_positions_float_at(p->network, c->particles, count, rounded[0], rounded[1], 1);
-    }
+    return is_list ? mspring_network_set_positions(p->network, c->particles, 0, count, x, y, 1)
+                   : mspring_network_set_positions(p->network, NULL, c->particle, count, x, y, 1);
 }
 
 // All of it, to somewhere else: near or far.
@@ -103,23 +93,18 @@ static mspring_result teleport(game *it, place *p, const call *c) {
     static double x[MOST_PARTICLES], y[MOST_PARTICLES];
     static const double far[] = {1, 40, 1e4, 1e6};
     const double by = (c->d[0] - 0.5) * far[c->pick % 4];
-    JUDGE(it, mspring_network_get_positions(p->network, 0, p->plain->particles, x, y, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_positions(p->network, NULL, 0, p->plain->particles, x, y, 1) == MSPRING_OK);
     for (uint32_t i = 0; i < p->plain->particles; i++)
         x[i] += by, y[i] += by / 4;
-    return mspring_network_set_positions(p->network, 0, p->plain->particles, x, y, 1);
+    return mspring_network_set_positions(p->network, NULL, 0, p->plain->particles, x, y, 1);
 }
 
-static mspring_result write_view(game *it, place *p, const call *c) {
-    mspring_mutable_view view = {.struct_size = sizeof view};
-    const mspring_result result = mspring_network_view_mutable(p->network, &view);
-    JUDGE(it, result != MSPRING_OK || view.particle_count == p->plain->particles);
-    if (result == MSPRING_OK && c->particle < view.particle_count && p->plain->has_particle[c->particle]) {
-        const uint32_t slot = view.slot_of_particle[c->particle];
-        JUDGE(it, slot < view.slot_count && view.particle_of_slot[slot] == c->particle);
-        view.x[slot] += 0.01f * (float)(c->pick % 16);
-        view.vy[slot] = (float)(c->pick % 8) - 4;
-    }
-    return result;
+static mspring_result kick_one(game *it, place *p, const call *c) {
+    (void)it;
+    const float vx = 0.01f * (float)(c->pick % 16), vy = (float)(c->pick % 8) - 4;
+    if (c->particle >= p->plain->particles || !p->plain->has_particle[c->particle])
+        return MSPRING_OK;
+    return mspring_network_set_velocities(p->network, &c->particle, 0, 1, &vx, &vy, 1);
 }
 
 static mspring_result wake(game *it, place *p, const call *c) {
@@ -159,10 +144,10 @@ static mspring_result set_settings(game *it, place *p, const call *c) {
 }
 
 static mspring_result set_solver(game *it, place *p, const call *c) {
-    mspring_solver_def def = {.struct_size = sizeof def};
-    JUDGE(it, mspring_network_get_solver(p->network, &def) == MSPRING_OK);
+    mspring_settings def = {.struct_size = sizeof def};
+    JUDGE(it, mspring_network_get_settings(p->network, &def) == MSPRING_OK);
     if (c->pick & 1) {
-        JUDGE(it, mspring_solver_def_init(&def, sizeof def) == MSPRING_OK);
+        JUDGE(it, mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def) == MSPRING_OK);
         def.solver = c->pick / 2 % 4 < 2 ? MSPRING_SOLVER_EXPLICIT : (mspring_solver)(c->pick / 2 % 4 - 1);
         def.integrator = (mspring_integrator)(c->pick / 8 % 3);
         def.iterations = c->pick / 32 % 2 ? c->count : 0;
@@ -174,7 +159,7 @@ static mspring_result set_solver(game *it, place *p, const call *c) {
                                     : 1 + c->pick / 16384;
     def.max_substeps = 40;
     def.most_work = c->pick / 256 % 16 ? 4 : c->count;
-    return mspring_network_set_solver(p->network, &def);
+    return support_set_solver(p->network, &def);
 }
 
 static mspring_result set_mass(game *it, place *p, const call *c) {
@@ -183,8 +168,8 @@ static mspring_result set_mass(game *it, place *p, const call *c) {
     spread(c->f, 0.2f, 3, mass);
     const bool is_list = c->pick & 1;
     const mspring_result result =
-        is_list ? mspring_network_set_at(p->network, MSPRING_MASS, c->particles, c->count, mass, 1)
-                : mspring_network_set(p->network, MSPRING_MASS, c->particle, c->count, mass, 0);
+        is_list ? mspring_network_set(p->network, MSPRING_MASS, c->particles, 0, c->count, mass, 1)
+                : mspring_network_set(p->network, MSPRING_MASS, NULL, c->particle, c->count, mass, 0);
     for (uint32_t i = 0; i < c->count && result == MSPRING_OK; i++) {
         const mspring_id id = is_list ? c->particles[i] : c->particle + i;
         if (p->plain->has_particle[id])
@@ -196,14 +181,14 @@ static mspring_result set_mass(game *it, place *p, const call *c) {
 static mspring_result set_scale(game *it, place *p, const call *c) {
     static const float scales[] = {1, 1, 1, 0, 0.5f, 1e-6f, 2, -1};
     (void)it;
-    return mspring_network_set(p->network, MSPRING_INVERSE_MASS_SCALE, c->particle, 1, &scales[c->pick % 8], 0);
+    return mspring_network_set(p->network, MSPRING_INVERSE_MASS_SCALE, NULL, c->particle, 1, &scales[c->pick % 8], 0);
 }
 
 static mspring_result set_floor(game *it, place *p, const call *c) {
     static const float heights[] = {0, 1, 0.5f, -1, 0, 2, 0, 0}, frictions[] = {0, 1, 0.5f, 0, 0.2f, 1, 1, 1};
     const double planes[3][4] = {{0, -2, 0.01 * c->count, 1}, {-20, 0, 1, 0}, {60, 0, -1, 0}};
     mspring_floor_def def;
-    JUDGE(it, mspring_floor_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def) == MSPRING_OK);
     def.planes = &planes[0][0];
     def.plane_count = c->pick % 4;
     def.heights = heights;
@@ -214,6 +199,7 @@ static mspring_result set_floor(game *it, place *p, const call *c) {
     def.height_frictions = c->pick / 64 % 2 ? frictions : NULL;
     def.plane_restitutions = c->pick / 128 % 2 ? frictions : NULL;
     def.silt_depth = c->pick / 256 % 4 ? 0 : 2 * c->f[2], def.silt_rate = 8 * c->f[3];
+    def.silt_depths = c->pick / 256 % 4 == 1 ? frictions : NULL;
     return mspring_network_set_floor(p->network, c->pick % 32 == 31 ? NULL : &def);
 }
 
@@ -225,7 +211,7 @@ const act acts_state[] = {
     {"set_velocities", set_velocities, ACT_CALM | ACT_WHOLE},
     {"set_positions", shift, ACT_CALM | ACT_WHOLE},
     {"teleport", teleport, ACT_CALM | ACT_WHOLE},
-    {"view_mutable", write_view, ACT_CALM | ACT_WHOLE},
+    {"kick one", kick_one, ACT_CALM | ACT_WHOLE},
     {"wake", wake, ACT_CALM | ACT_WHOLE | ACT_INSIDE},
     {"set_settings", set_settings, ACT_CALM | ACT_WHOLE},
     {"set mass", set_mass, ACT_CALM | ACT_WHOLE},

@@ -29,7 +29,7 @@ static mspring_result add_hook(game *it, place *p, const call *c) {
     mspring_id id = MSPRING_NONE;
     if (p->has_hook[at])
         return MSPRING_OK;
-    JUDGE(it, mspring_hook_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def) == MSPRING_OK);
     def.phase = (mspring_phase)(c->pick / 8 % 3);
     def.fn = blow;
     def.period = def.phase == MSPRING_PHASE_BEFORE_STEP ? 1 : 1 + c->pick / 32 % 3;
@@ -56,7 +56,7 @@ static mspring_result remove_hook(game *it, place *p, const call *c) {
 
 static mspring_result compact(game *it, place *p, const call *c) {
     (void)it;
-    return c->pick % 4 ? mspring_network_compact(p->network) : mspring_network_expand(p->network);
+    return c->pick % 4 ? mspring_network_compact(p->network) : support_expand(p->network);
 }
 
 // A job that goes on for frames, and is left now and then.
@@ -90,7 +90,7 @@ static mspring_result go_on_with_job(game *it, place *p, const call *c) {
 static mspring_result settle(game *it, place *p, const call *c) {
     mspring_settle_def def;
     mspring_settle_result found = {.struct_size = sizeof found};
-    JUDGE(it, mspring_settle_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_SETTLE_DEF, &def, sizeof def) == MSPRING_OK);
     def.flags = c->pick & 1 ? MSPRING_SETTLE_LEAVE_FLOATING : 0;
     def.max_iterations = 25;
     return mspring_network_settle(p->network, &def, &found);
@@ -101,7 +101,7 @@ static mspring_result stable_dt(game *it, place *p, const call *c) {
     uint32_t substeps = 0;
     if (c->pick & 1)
         return mspring_network_suggest_substeps(p->network, 1.0 / 60, 0.5 + c->d[0] / 2, &substeps);
-    const mspring_result result = mspring_network_stable_dt(p->network, &now, &any_shape);
+    const mspring_result result = mspring_network_get_stable_dt(p->network, &now, &any_shape);
     JUDGE(it, result != MSPRING_OK || (now >= 0 && any_shape >= 0));
     return result;
 }
@@ -114,33 +114,33 @@ static double MSPRING_CALL count_time(void *user) {
 static mspring_result tune(game *it, place *p, const call *c) {
     mspring_tune_def def;
     mspring_tune_row rows[2];
-    mspring_solver_def settings[2];
+    mspring_settings settings[2];
     mspring_tune_scene scene;
     uint64_t ticks = 0;
     uint32_t count = 0;
     if (p->plain->particles > 150)
         return MSPRING_OK;
-    JUDGE(it, mspring_tune_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_TUNE_DEF, &def, sizeof def) == MSPRING_OK);
     for (int i = 0; i < 2; i++) {
-        JUDGE(it, mspring_solver_def_init(&settings[i], sizeof settings[i]) == MSPRING_OK);
+        JUDGE(it, mspring_init(MSPRING_STRUCT_SETTINGS, &settings[i], sizeof settings[i]) == MSPRING_OK);
         settings[i].substeps = 2 + c->pick % 4;
         settings[i].solver = i ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
         rows[i] = (mspring_tune_row){.struct_size = sizeof rows[i]};
     }
     def.settings = settings, def.setting_count = 2;
-    JUDGE(it, mspring_tune_scene_init(&scene, sizeof scene) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_TUNE_SCENE, &scene, sizeof scene) == MSPRING_OK);
     scene.start_count = 4, scene.duration = 0.05;
     def.scene = c->pick / 8 % 2 ? &scene : NULL;
     def.budget = 0.2, def.duration = 0.1, def.clock = count_time, def.user = &ticks;
     const mspring_result result = mspring_network_tune(p->network, &def, rows, 2, &count);
     JUDGE(it, count == (result == MSPRING_OK ? 2u : 0u));
     if (result == MSPRING_OK)
-        JUDGE(it, mspring_tune_row_solver(&rows[1], &settings[0]) == MSPRING_OK);
+        settings[0] = rows[1].settings;
     return result;
 }
 
 static mspring_result tune_settings(game *it, place *p, const call *c) {
-    mspring_solver_def settings[64];
+    mspring_settings settings[64];
     uint32_t count = 0;
     for (int i = 0; i < 64; i++)
         settings[i].struct_size = sizeof settings[i];
@@ -196,9 +196,9 @@ static mspring_result load_damaged(game *it, place *p, const call *c) {
     const mspring_result result = mspring_network_load(other, of.bytes, of.size);
     if (result == MSPRING_OK) {
         JUDGE(it, mspringi_is_finite(other));
-        mspring_solver_def solver = {.struct_size = sizeof solver}; // a million substeps would be allowed
-        JUDGE(it, mspring_network_get_solver(p->network, &solver) == MSPRING_OK);
-        JUDGE(it, mspring_network_set_solver(other, &solver) == MSPRING_OK);
+        mspring_settings solver = {.struct_size = sizeof solver}; // a million substeps would be allowed
+        JUDGE(it, mspring_network_get_settings(p->network, &solver) == MSPRING_OK);
+        JUDGE(it, support_set_solver(other, &solver) == MSPRING_OK);
         const mspring_result stepped = mspring_network_step(other, 0.01);
         JUDGE(it, stepped == MSPRING_OK || stepped == MSPRING_ERROR_UNSTABLE || stepped == MSPRING_ERROR_LIMIT);
         JUDGE(it, mspringi_is_finite(other));

@@ -22,7 +22,7 @@ typedef struct past {
 
 image keep(const mspring_network *network, mspring_snapshot_contents contents) {
     image made = {NULL, 0};
-    if (mspring_network_snapshot_size(network, contents, &made.size) != MSPRING_OK)
+    if (mspring_network_get_snapshot_size(network, contents, &made.size) != MSPRING_OK)
         abort();
     made.bytes = malloc(made.size);
     if (!made.bytes || mspring_network_save(network, contents, made.bytes, made.size, NULL) != MSPRING_OK)
@@ -58,7 +58,7 @@ bool is_same_as(const mspring_network *network, const image *before) {
 
 static uint64_t generation_of(const game *it, const place *p) {
     mspring_view view = {.struct_size = sizeof view};
-    JUDGE(it, mspring_network_view(p->network, &view) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_view(p->network, &view) == MSPRING_OK);
     return view.layout_generation;
 }
 
@@ -75,8 +75,8 @@ static mspring_network *clone_of(game *it, const place *p, memory *of) {
     mspring_clone_def def;
     mspring_network *made = NULL;
     const mspring_allocator allocator = memory_interface(of);
-    JUDGE(it, mspring_clone_def_init(&def, sizeof def) == MSPRING_OK);
-    def.flags = MSPRING_CLONE_HOOKS;
+    JUDGE(it, mspring_init(MSPRING_STRUCT_CLONE_DEF, &def, sizeof def) == MSPRING_OK);
+    def.copy_hooks = 1;
     def.allocator = &allocator;
     def.worker_count = it->setup.workers;
     mspring_result result = mspring_network_clone(p->network, &def, &made);

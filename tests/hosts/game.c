@@ -186,7 +186,7 @@ static void recover(game *it, place *p) {
     const float none = 0;
     if (p->failed_steps % 2 == 0)
         JUDGE(it,
-              mspring_network_set_velocities(p->network, 0, p->plain->particles, &none, &none, 0) == MSPRING_OK);
+              mspring_network_set_velocities(p->network, NULL, 0, p->plain->particles, &none, &none, 0) == MSPRING_OK);
     if (p->failed_steps > 3)
         place_leave(it, p);
 }
@@ -201,7 +201,7 @@ void game_step(game *it, place *p) {
     free(state.bytes);
     place_learn_breaks(it, p);
     if (p->stepped == MSPRING_OK) {
-        const bool has_grown = mspring_network_step_flags(p->network) & MSPRING_STEP_GREW;
+        const bool has_grown = support_step_flags(p->network) & MSPRING_STEP_GREW;
         JUDGE(it, has_grown || p->memory->watched.calls == allocations);
         it->counts.time += dt;
         p->dt = dt;
@@ -238,7 +238,7 @@ static void begin_chapter(game *it) {
 static void log_place(game *it, const place *p) {
     uint64_t hash = 0;
     mspring_step_info info = {.struct_size = sizeof info};
-    JUDGE(it, mspring_network_state_hash(p->network, &hash) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_state_hash(p->network, &hash) == MSPRING_OK);
     JUDGE(it, mspring_network_get_step_info(p->network, &info) == MSPRING_OK);
     game_log(&it->log, &hash, sizeof hash);
     game_log(&it->log, &info.time, sizeof info.time);

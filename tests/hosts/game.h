@@ -9,13 +9,11 @@
 #ifndef HOSTS_GAME_H
 #define HOSTS_GAME_H
 
-#include <massspring/massspring_batch.h>
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "allocator.h"
 #include "draws.h"
+#include "readings.h"
 
 enum { PLACES = 3, MOST_PARTICLES = 2048, MOST_SPRINGS = 8192, MANY = 24, MOST_HOOKS = 4 };
 

@@ -16,21 +16,20 @@ static void judge_contents(game *it, const place *p) {
     static uint32_t ends[MOST_SPRINGS][2];
     static float values[MOST_SPRINGS];
     const plain *list = p->plain;
-    JUDGE(it, mspring_network_particle_count(p->network) == list->particles);
-    JUDGE(it, mspring_network_spring_count(p->network) == list->springs);
+    JUDGE(it, mspring_network_count(p->network, MSPRING_PARTICLES) == list->particles);
+    JUDGE(it, mspring_network_count(p->network, MSPRING_SPRINGS) == list->springs);
     for (mspring_id i = 0; i < list->particles; i++)
-        JUDGE(it, mspring_network_has_particle(p->network, i) == list->has_particle[i]);
+        JUDGE(it, support_has_particle(p->network, i) == list->has_particle[i]);
     for (mspring_id i = 0; i < list->springs; i++)
-        JUDGE(it, mspring_network_has_spring(p->network, i) == list->has_spring[i]);
-    JUDGE(it, !mspring_network_has_particle(p->network, list->particles));
-    JUDGE(it, !mspring_network_has_spring(p->network, MSPRING_NONE));
-    JUDGE(it, mspring_network_get_ends(p->network, 0, list->springs, MSPRING_ENDS_IDS, &ends[0][0], &ends[0][1],
-                                       2) == MSPRING_OK);
+        JUDGE(it, support_has_spring(p->network, i) == list->has_spring[i]);
+    JUDGE(it, !support_has_particle(p->network, list->particles));
+    JUDGE(it, !support_has_spring(p->network, MSPRING_NONE));
+    JUDGE(it, mspring_network_get_columns(p->network, NULL, 0, list->springs, (const mspring_column[]){{MSPRING_END_A, 2, &ends[0][0]}, {MSPRING_END_B, 2, &ends[0][1]}}, 2) == MSPRING_OK);
     JUDGE(it, memcmp(ends, list->ends, list->springs * sizeof *ends) == 0);
-    JUDGE(it, mspring_network_get(p->network, MSPRING_MASS, 0, list->particles, values, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get(p->network, MSPRING_MASS, NULL, 0, list->particles, values, 1) == MSPRING_OK);
     for (mspring_id i = 0; i < list->particles; i++)
         JUDGE(it, values[i] == list->mass[i]);
-    JUDGE(it, mspring_network_get(p->network, MSPRING_STIFFNESS, 0, list->springs, values, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get(p->network, MSPRING_STIFFNESS, NULL, 0, list->springs, values, 1) == MSPRING_OK);
     for (mspring_id i = 0; i < list->springs; i++)
         JUDGE(it, values[i] == list->stiffness[i]);
 }
@@ -38,7 +37,7 @@ static void judge_contents(game *it, const place *p) {
 static void judge_view(game *it, const place *p) {
     mspring_view view = {.struct_size = sizeof view};
     double x = 0, y = 0;
-    JUDGE(it, mspring_network_view(p->network, &view) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_view(p->network, &view) == MSPRING_OK);
     JUDGE(it, view.particle_count == p->plain->particles);
     for (mspring_id i = 0; i < view.particle_count; i++) {
         if (!p->plain->has_particle[i])
@@ -51,14 +50,14 @@ static void judge_view(game *it, const place *p) {
         JUDGE(it, view.particle_of_slot[slot] == MSPRING_NONE || view.particle_of_slot[slot] < view.particle_count);
     if (view.particle_count == 0)
         return;
-    JUDGE(it, mspring_network_get_positions(p->network, view.particle_count - 1, 1, &x, &y, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_positions(p->network, NULL, view.particle_count - 1, 1, &x, &y, 1) == MSPRING_OK);
     JUDGE(it, isfinite(x) && isfinite(y));
 }
 
 // Compare broken springs. Edits mark theirs immediately; breaks in steps are read after them.
 static void judge_flags(game *it, const place *p) {
     static uint32_t flags[MOST_SPRINGS];
-    JUDGE(it, mspring_network_get_spring_flags(p->network, 0, p->plain->springs, flags, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_integers(p->network, MSPRING_SPRING_FLAGS, NULL, 0, p->plain->springs, flags, 1) == MSPRING_OK);
     for (mspring_id i = 0; i < p->plain->springs; i++)
         JUDGE(it, ((flags[i] & MSPRING_SPRING_BROKEN) != 0) == p->plain->is_broken[i]);
 }
@@ -67,7 +66,7 @@ void judge_place(game *it, place *p) {
     const uint32_t fails = p->memory->fails;
     p->memory->fails = 0;
     JUDGE(it, mspringi_is_finite(p->network));
-    JUDGE(it, p->job || mspring_network_memory_used(p->network) == p->memory->watched.live_bytes);
+    JUDGE(it, p->job || support_memory_used(p->network) == p->memory->watched.live_bytes);
     const bool is_small = p->plain->particles < 200;
     if (is_small || it->frame % 16 == 0) {
         judge_contents(it, p);
@@ -90,7 +89,7 @@ static bool is_closed(const place *p) {
     mspring_grip_def grip = {.struct_size = sizeof grip};
     mspring_collider_def collider = {.struct_size = sizeof collider};
     static float scales[MOST_PARTICLES];
-    if (!p->is_closed || mspring_network_group_count(p->network) > 0 ||
+    if (!p->is_closed || mspring_network_count(p->network, MSPRING_GROUPS) > 0 ||
         mspring_network_get_settings(p->network, &settings) || mspring_network_get_floor(p->network, &ground))
         return false;
     if (settings.gravity_x != 0 || settings.gravity_y != 0 || settings.global_damping > 0 ||
@@ -103,7 +102,7 @@ static bool is_closed(const place *p) {
         if (mspring_network_get_grip(p->network, i, &grip) == MSPRING_OK ||
             mspring_network_get_collider(p->network, i, &collider) == MSPRING_OK)
             return false;
-    if (mspring_network_get(p->network, MSPRING_INVERSE_MASS_SCALE, 0, p->plain->particles, scales, 1))
+    if (mspring_network_get(p->network, MSPRING_INVERSE_MASS_SCALE, NULL, 0, p->plain->particles, scales, 1))
         return false;
     for (mspring_id i = 0; i < p->plain->particles; i++)
         if (p->plain->has_particle[i] && scales[i] != 1)
@@ -113,7 +112,7 @@ static bool is_closed(const place *p) {
 
 static void sum_momenta(const place *p, momenta *sum) {
     static float vx[MOST_PARTICLES], vy[MOST_PARTICLES];
-    if (mspring_network_get_velocities(p->network, 0, p->plain->particles, vx, vy, 1))
+    if (mspring_network_get_velocities(p->network, NULL, 0, p->plain->particles, vx, vy, 1))
         return;
     for (mspring_id i = 0; i < p->plain->particles; i++) {
         const double mass = p->plain->has_particle[i] ? (double)p->plain->mass[i] : 0;
@@ -134,7 +133,7 @@ momenta judge_momenta(const place *p) {
 static double impulse_scale(const place *p) {
     static float forces[MOST_SPRINGS];
     double sum = 0;
-    if (mspring_network_get(p->network, MSPRING_FORCE, 0, p->plain->springs, forces, 1))
+    if (mspring_network_get(p->network, MSPRING_TENSION, NULL, 0, p->plain->springs, forces, 1))
         return 0;
     for (mspring_id i = 0; i < p->plain->springs; i++)
         sum += fabs((double)forces[i]) * p->dt;
@@ -143,14 +142,14 @@ static double impulse_scale(const place *p) {
 
 void judge_step(game *it, place *p, const momenta *before) {
     mspring_step_info info = {.struct_size = sizeof info};
-    mspring_solver_def solver = {.struct_size = sizeof solver};
+    mspring_settings solver = {.struct_size = sizeof solver};
     JUDGE(it, mspring_network_get_step_info(p->network, &info) == MSPRING_OK);
-    JUDGE(it, mspring_network_get_solver(p->network, &solver) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_settings(p->network, &solver) == MSPRING_OK);
     JUDGE(it,
-          info.result == MSPRING_OK && info.step_count > 0 && info.flags == mspring_network_step_flags(p->network));
+          info.result == MSPRING_OK && info.step_count > 0 && info.flags == support_step_flags(p->network));
     // The bound on repeated work: 32 times most_work, one solution and the fallback on top; two steps for each
     // group.
-    const double most = 36 * (1.0 + solver.most_work) * (1 + 2.0 * mspring_network_group_count(p->network)) *
+    const double most = 36 * (1.0 + solver.most_work) * (1 + 2.0 * mspring_network_count(p->network, MSPRING_GROUPS)) *
                         (info.flags & MSPRING_STEP_FALLBACK ? 8 : 1);
     JUDGE(it, info.work >= 0 && (solver.most_work == 0 || info.work <= most));
     if (!before->count || info.flags & (MSPRING_STEP_PUT_BACK | MSPRING_STEP_FALLBACK))

@@ -23,16 +23,17 @@ typedef struct yard {
 /// Make a call of the builder, once more if it fails for want of memory: nothing may have been added then.
 #define BUILD(y, call)                                                                                             \
     do {                                                                                                           \
-        const uint32_t particles_ = mspring_builder_particle_count((y)->builder),                                  \
-                       springs_ = mspring_builder_spring_count((y)->builder);                                      \
+        const uint32_t particles_ = mspring_builder_count((y)->builder, MSPRING_PARTICLES),                                  \
+                       springs_ = mspring_builder_count((y)->builder, MSPRING_SPRINGS);                                      \
         mspring_result result_ = (call);                                                                           \
         if (result_ == MSPRING_ERROR_MEMORY) {                                                                     \
             const uint32_t fails_ = (y)->memory->fails;                                                            \
             JUDGE((y)->it, (y)->memory->has_failed);                                                               \
-            JUDGE((y)->it, mspring_builder_particle_count((y)->builder) == particles_);                            \
-            JUDGE((y)->it, mspring_builder_spring_count((y)->builder) == springs_);                                \
+            JUDGE((y)->it, mspring_builder_count((y)->builder, MSPRING_PARTICLES) == particles_);                            \
+            JUDGE((y)->it, mspring_builder_count((y)->builder, MSPRING_SPRINGS) == springs_);                                \
             (y)->it->counts.failed_allocations++;                                                                  \
             (y)->memory->fails = 0;                                                                                \
+            mspring_builder_forget_error((y)->builder); /* copies of it would be refused */                        \
             result_ = (call);                                                                                      \
             (y)->memory->fails = fails_;                                                                           \
         }                                                                                                          \
@@ -49,7 +50,7 @@ static void add_lattice(yard *y, uint32_t width, uint32_t height) {
     for (uint32_t i = 0; i < width * height; i++)
         cells[i] = draw_chance(y->from, holes) && i > 0 ? MSPRING_CELL_EMPTY : (uint16_t)(i % 7 == 3);
     for (int i = 0; i < 2; i++) {
-        JUDGE(y->it, mspring_material_init(&materials[i], sizeof materials[i]) == MSPRING_OK);
+        JUDGE(y->it, mspring_init(MSPRING_STRUCT_MATERIAL, &materials[i], sizeof materials[i]) == MSPRING_OK);
         materials[i].stiffness = y->stiffness * (float)(1 + i);
         materials[i].damping = y->damping;
         materials[i].mass = y->mass;
@@ -57,11 +58,10 @@ static void add_lattice(yard *y, uint32_t width, uint32_t height) {
     }
     if (draw_chance(y->from, 20)) // relative springs, both of them
         for (int i = 0; i < 2; i++)
-            JUDGE(y->it, mspring_material_preset(&materials[i], sizeof materials[i],
-                                                 (mspring_preset)draw(y->from, 4), 1, 1.0 / 240) == MSPRING_OK);
+            JUDGE(y->it, mspring_material_preset(&materials[i], (mspring_preset)draw(y->from, 4), 1, 1.0 / 240) == MSPRING_OK);
     if (draw_chance(y->from, 20))
         materials[1].break_strain = 0.3f, materials[0].yield_strain = 0.05f;
-    JUDGE(y->it, mspring_lattice_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(y->it, mspring_init(MSPRING_STRUCT_LATTICE_DEF, &def, sizeof def) == MSPRING_OK);
     def.width = width, def.height = height, def.x = y->x, def.y = draw_between(y->from, 0, 4);
     def.cells = cells, def.materials = materials, def.material_count = 2;
     def.bend_share = draw_chance(y->from, 10) ? 0.2f : 0;
@@ -70,12 +70,15 @@ static void add_lattice(yard *y, uint32_t width, uint32_t height) {
 }
 
 static void add_disc(yard *y) {
+    mspring_material def_material = mspring_material_default();
     mspring_disc_def def;
-    JUDGE(y->it, mspring_disc_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(y->it, mspring_init(MSPRING_STRUCT_DISC_DEF, &def, sizeof def) == MSPRING_OK);
+    def.material = &def_material;
+    def.area_density = 1;
     def.ring_count = 1 + draw(y->from, 4);
     def.radius = def.ring_count;
     def.x = y->x + def.radius, def.y = 6;
-    def.stiffness = y->stiffness, def.damping = y->damping, def.spring_flags = y->flags;
+    def_material.stiffness = y->stiffness, def_material.damping = y->damping, def_material.spring_flags = y->flags;
     def.centre_flags = draw_chance(y->from, 10) ? MSPRING_PARTICLE_PINNED : 0;
     BUILD(y, mspring_builder_add_disc(y->builder, &def, NULL, NULL));
     y->x += 2 * def.radius + 1;
@@ -86,6 +89,7 @@ static void add_mesh(yard *y) {
     enum { MOST = 12 };
     double places[2][2 * MOST];
     uint32_t triangles[6 * MOST];
+    mspring_material def_material = mspring_material_default();
     mspring_mesh_def def;
     const uint32_t length = 2 + draw(y->from, MOST - 2);
     for (uint32_t i = 0; i < 2 * length; i++) {
@@ -95,12 +99,14 @@ static void add_mesh(yard *y) {
     for (uint32_t i = 0; i + 2 < 2 * length; i++)
         for (uint32_t corner = 0; corner < 3; corner++)
             triangles[3 * i + corner] = i + corner;
-    JUDGE(y->it, mspring_mesh_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(y->it, mspring_init(MSPRING_STRUCT_MESH_DEF, &def, sizeof def) == MSPRING_OK);
+    def.material = &def_material;
+    def.area_density = 1;
     def.vertex_count = 2 * length, def.triangle_count = 2 * length - 2;
     def.x = places[0], def.y = places[1], def.triangles = triangles;
     def.young_modulus = y->flags & MSPRING_SPRING_RELATIVE ? 0 : y->stiffness;
-    def.stiffness = y->flags & MSPRING_SPRING_RELATIVE ? y->stiffness : 0;
-    def.spring_flags = y->flags, def.damping = y->damping;
+    def_material.stiffness = y->flags & MSPRING_SPRING_RELATIVE ? y->stiffness : 0;
+    def_material.spring_flags = y->flags, def_material.damping = y->damping;
     BUILD(y, mspring_builder_add_mesh(y->builder, &def, NULL, NULL));
     y->x += length + 2;
 }
@@ -108,21 +114,23 @@ static void add_mesh(yard *y) {
 static mspring_id add_particle(yard *y, double x, double height, uint32_t flags) {
     mspring_particle_def def;
     mspring_id id = MSPRING_NONE;
-    JUDGE(y->it, mspring_particle_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(y->it, mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def) == MSPRING_OK);
     def.x = x, def.y = height, def.mass = y->mass, def.flags = flags;
-    BUILD(y, mspring_builder_add_particle(y->builder, &def, &id));
+    BUILD(y, mspring_builder_add_particles(y->builder, &def, 1, &id));
     return id;
 }
 
 static void add_rope(yard *y) {
+    mspring_material def_material = mspring_material_default();
     mspring_rope_def def;
-    JUDGE(y->it, mspring_rope_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(y->it, mspring_init(MSPRING_STRUCT_ROPE_DEF, &def, sizeof def) == MSPRING_OK);
+    def.material = &def_material;
     def.from = add_particle(y, y->x, 8, draw_chance(y->from, 70) ? MSPRING_PARTICLE_PINNED : 0);
     def.to = add_particle(y, y->x + 12, 8, draw_chance(y->from, 30) ? MSPRING_PARTICLE_PINNED : 0);
     def.segment_count = 1 + draw(y->from, 30);
-    def.stiffness = y->stiffness, def.damping = y->damping, def.mass = y->mass;
-    def.spring_flags = y->flags | (draw_chance(y->from, 20) ? MSPRING_SPRING_PULL_ONLY : 0);
-    BUILD(y, mspring_builder_add_rope(y->builder, &def, NULL, 0, NULL));
+    def_material.stiffness = y->stiffness, def_material.damping = y->damping, def_material.mass = y->mass;
+    def_material.spring_flags = y->flags | (draw_chance(y->from, 20) ? MSPRING_SPRING_PULL_ONLY : 0);
+    BUILD(y, mspring_builder_add_rope(y->builder, &def, NULL, NULL));
     y->x += 13;
 }
 
@@ -134,18 +142,18 @@ static void add_graph(yard *y) {
     mspring_id first = 0;
     const uint32_t count = 2 + draw(y->from, MOST - 2);
     for (uint32_t i = 0; i < count; i++) {
-        JUDGE(y->it, mspring_particle_def_init(&particles[i], sizeof particles[i]) == MSPRING_OK);
+        JUDGE(y->it, mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particles[i], sizeof particles[i]) == MSPRING_OK);
         particles[i].x = y->x + draw_between(y->from, 0, 8);
         particles[i].y = draw_between(y->from, 1, 9) + i * 1e-3;
         particles[i].mass = y->mass;
     }
     BUILD(y, mspring_builder_add_particles(y->builder, particles, count, &first));
-    JUDGE(y->it, mspring_spring_def_init(&spring, sizeof spring) == MSPRING_OK);
+    JUDGE(y->it, mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring) == MSPRING_OK);
     spring.stiffness = y->stiffness, spring.damping = y->damping, spring.flags = y->flags;
     for (uint32_t i = 1; i < count; i++) {
         spring.a = first + i, spring.b = first + draw(y->from, i);
         if (draw_chance(y->from, 80))
-            BUILD(y, mspring_builder_add_spring(y->builder, &spring, NULL));
+            BUILD(y, mspring_builder_add_springs(y->builder, &spring, 1, NULL));
     }
     y->x += 9;
 }
@@ -169,11 +177,20 @@ static void add_herd(yard *y) {
     y->memory->fails = fails;
     one.x = 0;
     add_lattice(&one, 2 + draw(y->from, 3), 2 + draw(y->from, 2));
+    mspring_builder_forget_error(one.builder); // of what lacked memory at first: copies return it, too
     for (uint32_t i = 0; i < count; i++)
         x[i] = y->x + i * 7.0, height[i] = i % 2;
     BUILD(y, mspring_builder_add_copies(y->builder, one.builder, count, x, height, 1, &first[0], &first[1]));
     mspring_builder_destroy(one.builder);
     y->x += count * 7.0;
+}
+
+// True if no step has taken a particle beyond what a builder accepts.
+static bool is_within_bounds(const mspring_network *network) {
+    mspring_body body = mspring_body_default();
+    return mspring_network_get_body(network, NULL, 0, MSPRING_ALL, &body) == MSPRING_OK &&
+           body.min_x >= -MSPRING_MAX_COORDINATE && body.min_y >= -MSPRING_MAX_COORDINATE &&
+           body.max_x <= MSPRING_MAX_COORDINATE && body.max_y <= MSPRING_MAX_COORDINATE;
 }
 
 // Add the present network of another place.
@@ -182,9 +199,9 @@ static void add_other(yard *y) {
         const place *other = &y->it->places[i];
         // Its extent is not known: it may lie across what is there.
         if (other->network && other->plain->particles < 200 && other->plain->springs < 900 &&
-            mspring_builder_particle_count(y->builder) == 0) {
+            mspring_builder_count(y->builder, MSPRING_PARTICLES) == 0 && is_within_bounds(other->network)) {
             mspring_id ids[MOST_PARTICLES], *springs = NULL;
-            BUILD(y, mspring_builder_add_network(y->builder, other->network, NULL, 0, ids, springs));
+            BUILD(y, mspring_builder_add_network(y->builder, other->network, NULL, 0, MSPRING_ALL, ids, springs));
             return;
         }
     }
@@ -217,11 +234,11 @@ static void add_piece(yard *y) {
 }
 
 static void add_limits(yard *y) {
-    const uint32_t springs = mspring_builder_spring_count(y->builder);
+    const uint32_t springs = mspring_builder_count(y->builder, MSPRING_SPRINGS);
     const uint32_t count = springs < 40 ? springs : 40;
-    const mspring_result result = mspring_builder_add_strain_limits(y->builder, 0, count, 0.1f, 4, NULL);
+    const mspring_result result = mspring_builder_add_strain_limits(y->builder, NULL, 0, count, 0.1f, 4, NULL);
     if (result != MSPRING_OK) // one that breaks before, or memory: then none is added
-        JUDGE(y->it, mspring_builder_spring_count(y->builder) == springs);
+        JUDGE(y->it, mspring_builder_count(y->builder, MSPRING_SPRINGS) == springs);
 }
 
 /* ---------------------------------------------------------------------------------------------- networks */
@@ -236,20 +253,20 @@ static mspring_network_def draw_def(game *it, draws *from) {
     static const uint32_t substeps[] = {
         MSPRING_SUBSTEPS_AUTO, MSPRING_SUBSTEPS_AUTO, MSPRING_SUBSTEPS_EVEN, 1, 2, 4, 7};
     mspring_network_def def;
-    JUDGE(it, mspring_network_def_init(&def, sizeof def) == MSPRING_OK);
+    JUDGE(it, mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def) == MSPRING_OK);
     const uint32_t solver = draw(from, 8);
-    def.solver = solver < 5   ? MSPRING_SOLVER_EXPLICIT
+    def.settings.solver = solver < 5   ? MSPRING_SOLVER_EXPLICIT
                  : solver < 7 ? MSPRING_SOLVER_IMPLICIT
                               : MSPRING_SOLVER_DIRECT;
-    def.substeps = substeps[draw(from, 7)];
-    def.max_substeps = 32;
-    def.guard = draw(from, 2) ? MSPRING_GUARD_CLAMP : (mspring_guard)draw(from, 6);
-    def.integrator = (mspring_integrator)draw(from, 3);
-    def.gravity_y = draw(from, 3) ? -9.8f : 0;
-    def.global_damping = draw(from, 4) ? 0 : 0.3f;
-    def.sleep_speed = draw(from, 2) ? 0.05f : 0;
-    def.sleep_time = 0.1f;
-    def.max_speed = draw(from, 4) ? 1e6f : 200;
+    def.settings.substeps = substeps[draw(from, 7)];
+    def.settings.max_substeps = 32;
+    def.settings.guard = draw(from, 2) ? MSPRING_GUARD_CLAMP : (mspring_guard)draw(from, 6);
+    def.settings.integrator = (mspring_integrator)draw(from, 3);
+    def.settings.gravity_y = draw(from, 3) ? -9.8f : 0;
+    def.settings.global_damping = draw(from, 4) ? 0 : 0.3f;
+    def.settings.sleep_speed = draw(from, 2) ? 0.05f : 0;
+    def.settings.sleep_time = 0.1f;
+    def.settings.max_speed = draw(from, 4) ? 1e6f : 200;
     def.flags = draw(from, 4) ? 0 : draw(from, 8);
     def.spare_particles = draw(from, 3) ? 20 : 0;
     def.spare_springs = draw(from, 3) ? 60 : 0;
@@ -264,11 +281,12 @@ static void create(game *it, place *p, yard *y) {
     mspring_network_def def = draw_def(it, &it->from);
     def.allocator = &allocator;
     if (it->setup.has_tasks) {
-        JUDGE(it, mspring_tasks_init(&tasks, sizeof tasks) == MSPRING_OK);
+        JUDGE(it, mspring_init(MSPRING_STRUCT_TASKS, &tasks, sizeof tasks) == MSPRING_OK);
         tasks.worker_count = 2;
         tasks.run = run_tasks;
         def.tasks = &tasks;
     }
+    mspring_builder_forget_error(y->builder); // some shapes were refused, or lacked memory
     mspring_result result = mspring_network_create(y->builder, &def, &p->network);
     if (result == MSPRING_ERROR_MEMORY && p->memory->has_failed) {
         JUDGE(it, !p->network);

@@ -10,25 +10,24 @@
 static uint32_t flags[MOST_SPRINGS];
 
 static void read_flags(const game *it, const place *p) {
-    JUDGE(it, mspring_network_get_spring_flags(p->network, 0, p->plain->springs, flags, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_integers(p->network, MSPRING_SPRING_FLAGS, NULL, 0, p->plain->springs, flags, 1) == MSPRING_OK);
 }
 
 void place_learn(game *it, place *p) {
     plain *list = p->plain;
     memset(list, 0, sizeof *list);
-    list->particles = mspring_network_particle_count(p->network);
-    list->springs = mspring_network_spring_count(p->network);
+    list->particles = mspring_network_count(p->network, MSPRING_PARTICLES);
+    list->springs = mspring_network_count(p->network, MSPRING_SPRINGS);
     JUDGE(it, list->particles + 64 <= MOST_PARTICLES && list->springs + 64 <= MOST_SPRINGS);
     read_flags(it, p);
-    JUDGE(it, mspring_network_get(p->network, MSPRING_MASS, 0, list->particles, list->mass, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get(p->network, MSPRING_MASS, NULL, 0, list->particles, list->mass, 1) == MSPRING_OK);
     JUDGE(it,
-          mspring_network_get(p->network, MSPRING_STIFFNESS, 0, list->springs, list->stiffness, 1) == MSPRING_OK);
-    JUDGE(it, mspring_network_get_ends(p->network, 0, list->springs, MSPRING_ENDS_IDS, &list->ends[0][0],
-                                       &list->ends[0][1], 2) == MSPRING_OK);
+          mspring_network_get(p->network, MSPRING_STIFFNESS, NULL, 0, list->springs, list->stiffness, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_columns(p->network, NULL, 0, list->springs, (const mspring_column[]){{MSPRING_END_A, 2, &list->ends[0][0]}, {MSPRING_END_B, 2, &list->ends[0][1]}}, 2) == MSPRING_OK);
     for (mspring_id i = 0; i < list->particles; i++)
-        list->has_particle[i] = mspring_network_has_particle(p->network, i);
+        list->has_particle[i] = support_has_particle(p->network, i);
     for (mspring_id i = 0; i < list->springs; i++) {
-        list->has_spring[i] = mspring_network_has_spring(p->network, i);
+        list->has_spring[i] = support_has_spring(p->network, i);
         list->is_broken[i] = flags[i] & MSPRING_SPRING_BROKEN;
     }
 }

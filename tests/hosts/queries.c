@@ -14,7 +14,7 @@ static mspring_id found[MOST_SPRINGS];
 static void judge_bounds(game *it, const place *p, double box[4]) {
     double expected[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     bool is_any = false;
-    JUDGE(it, mspring_network_bounds(p->network, &box[0], &box[1], &box[2], &box[3]) == MSPRING_OK);
+    JUDGE(it, support_get_bounds(p->network, &box[0], &box[1], &box[2], &box[3]) == MSPRING_OK);
     for (mspring_id i = 0; i < p->plain->particles; i++) {
         if (!p->plain->has_particle[i])
             continue;
@@ -141,7 +141,7 @@ static void judge_springs_near(game *it, const place *p, const double at[2], dou
 
 static double far_from_origin(const place *p, mspring_id particle) {
     mspring_view view = {.struct_size = sizeof view};
-    if (mspring_network_view(p->network, &view) != MSPRING_OK)
+    if (mspring_network_get_view(p->network, &view) != MSPRING_OK)
         return 0;
     return fabs(x[particle] - view.origin_x) + fabs(y[particle] - view.origin_y);
 }
@@ -151,9 +151,9 @@ static void judge_strains(game *it, const place *p) {
     float largest = -1, expected = 0;
     mspring_id spring = 0, first = MSPRING_NONE;
     const uint32_t count = p->plain->springs;
-    JUDGE(it, mspring_network_get(p->network, MSPRING_STRAIN, 0, count, strains, 1) == MSPRING_OK);
-    JUDGE(it, mspring_network_get(p->network, MSPRING_LENGTH, 0, count, lengths[0], 1) == MSPRING_OK);
-    JUDGE(it, mspring_network_max_strain(p->network, &largest, &spring) == MSPRING_OK);
+    JUDGE(it, mspring_network_get(p->network, MSPRING_STRAIN, NULL, 0, count, strains, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get(p->network, MSPRING_LENGTH, NULL, 0, count, lengths[0], 1) == MSPRING_OK);
+    JUDGE(it, support_get_max_strain(p->network, &largest, &spring) == MSPRING_OK);
     for (mspring_id i = 0; i < count; i++) {
         if (p->plain->has_spring[i] && (first == MSPRING_NONE || fabsf(strains[i]) > expected))
             expected = fabsf(strains[i]), first = i;
@@ -164,7 +164,7 @@ static void judge_strains(game *it, const place *p) {
         JUDGE(it, fabs(d - (double)lengths[0][i]) <= 1e-5 * d + 1e-9 * (fabs(x[ends[0]]) + fabs(y[ends[0]])));
     }
     JUDGE(it, largest == expected && (spring == first || largest == 0));
-    JUDGE(it, mspring_network_get_extents(p->network, lengths[1], NULL, NULL, NULL) == MSPRING_OK);
+    JUDGE(it, support_get_extents(p->network, lengths[1], NULL, NULL, NULL) == MSPRING_OK);
     for (mspring_id i = 0; i < count; i++) {
         // Of first words, which are rounded to 2^-23 of a coordinate and more.
         const mspring_id *ends = p->plain->ends[i];
@@ -190,10 +190,16 @@ static void judge_components(game *it, const place *p) {
     static uint32_t parents[MOST_PARTICLES], numbers[MOST_PARTICLES], expected[MOST_PARTICLES];
     const plain *list = p->plain;
     uint32_t count = 0, next = 0;
-    if (mspring_network_get_component_numbers(p->network, 0, 1, numbers, 1) != MSPRING_OK)
+    if (list->particles == 0 ||
+        mspring_network_get_integers(p->network, MSPRING_COMPONENT, NULL, 0, list->particles, numbers, 1) != MSPRING_OK)
         return;
+    while (next < list->particles && (!list->has_particle[next] || numbers[next] == MSPRING_NONE))
+        next++;
+    if (next == list->particles)
+        return;
+    next = 0;
     JUDGE(it, mspring_network_update_components(p->network, &count, NULL) == MSPRING_OK);
-    JUDGE(it, mspring_network_get_component_numbers(p->network, 0, list->particles, numbers, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_integers(p->network, MSPRING_COMPONENT, NULL, 0, list->particles, numbers, 1) == MSPRING_OK);
     for (uint32_t i = 0; i < list->particles; i++)
         parents[i] = i;
     for (mspring_id i = 0; i < list->springs; i++)
@@ -211,7 +217,7 @@ static void judge_components(game *it, const place *p) {
 
 void judge_queries(game *it, place *p, draws *from) {
     double box[4], a[2], b[2];
-    JUDGE(it, mspring_network_get_positions(p->network, 0, p->plain->particles, x, y, 1) == MSPRING_OK);
+    JUDGE(it, mspring_network_get_positions(p->network, NULL, 0, p->plain->particles, x, y, 1) == MSPRING_OK);
     judge_bounds(it, p, box);
     for (int i = 0; i < 2; i++) {
         const double low = box[i] - 1, high = box[i + 2] + 1;

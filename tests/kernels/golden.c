@@ -41,7 +41,7 @@ static mspring_network *bar_standing_damped(mspring_network_def *def) {
     scene_options options = scene_options_default();
     options.damping = 5000;
     options.spacing = 0.7;
-    def->gravity_x = 3;
+    def->settings.gravity_x = 3;
     return network_of(scene_bar(6, 90, &options, &made, &error), &made, &error, def);
 }
 
@@ -68,7 +68,7 @@ static mspring_network *rope(mspring_network_def *def) {
     scene made;
     scene_error error;
     scene_options options = scene_options_default();
-    def->global_damping = 0.3f;
+    def->settings.global_damping = 0.3f;
     return network_of(scene_rope(201, &options, &made, &error), &made, &error, def);
 }
 
@@ -118,8 +118,8 @@ static recipe everything(void) {
 
 static mspring_network *everything_damped(mspring_network_def *def) {
     recipe made = everything();
-    def->gravity_x = -1.5f;
-    def->global_damping = 0.1f;
+    def->settings.gravity_x = -1.5f;
+    def->settings.global_damping = 0.1f;
     mspring_network *network = recipe_network(&made, def);
     recipe_free(&made);
     return network;
@@ -144,7 +144,7 @@ static mspring_network *precise_everything(mspring_network_def *def) {
 }
 
 static void push_some(mspring_network *network, uint32_t step) {
-    for (mspring_id id = step % 7; id < mspring_network_particle_count(network); id += 50) {
+    for (mspring_id id = step % 7; id < mspring_network_count(network, MSPRING_PARTICLES); id += 50) {
         check_ok(mspring_network_apply_force(network, id, 25, 300));
     }
 }
@@ -157,34 +157,34 @@ static mspring_network *everything_flying(mspring_network_def *def) {
         made.particles[i].vx += 500;
         made.particles[i].vy -= 321;
     }
-    def->gravity_y = 0;
+    def->settings.gravity_y = 0;
     mspring_network *network = recipe_network(&made, def);
     recipe_free(&made);
     return network;
 }
 
 static mspring_network *implicit_bar(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_IMPLICIT;
+    def->settings.solver = MSPRING_SOLVER_IMPLICIT;
     return bar_80x5(def);
 }
 
 static mspring_network *implicit_ropes(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_IMPLICIT;
+    def->settings.solver = MSPRING_SOLVER_IMPLICIT;
     return bar_with_ropes(def);
 }
 
 static mspring_network *implicit_graph(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_IMPLICIT;
+    def->settings.solver = MSPRING_SOLVER_IMPLICIT;
     return graph(def);
 }
 
 static mspring_network *direct_bar(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_DIRECT;
+    def->settings.solver = MSPRING_SOLVER_DIRECT;
     return bar_80x5(def);
 }
 
 static mspring_network *direct_ropes(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_DIRECT;
+    def->settings.solver = MSPRING_SOLVER_DIRECT;
     return bar_with_ropes(def);
 }
 
@@ -194,12 +194,12 @@ static void push_and_use(mspring_network *network, uint32_t step, mspring_solver
     if (step % 10 != 0) {
         return;
     }
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = step / 10 % 4 == 3 ? MSPRING_SOLVER_EXPLICIT : kind;
     solver.substeps = step / 10 % 4 == 3 ? 4 : 1;
     solver.integrator = (mspring_integrator)(step / 10 % 4 % 3);
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
 }
 
 static void push_and_change_solver(mspring_network *network, uint32_t step) {
@@ -210,7 +210,7 @@ static void push_and_change_solver(mspring_network *network, uint32_t step) {
 static void push_and_solve_directly(mspring_network *network, uint32_t step) {
     push_and_use(network, step, MSPRING_SOLVER_DIRECT);
     const float stiffness = step / 10 % 4 != 3 && step % 2 == 1 ? 1e9f : 1e3f;
-    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 7, 1, &stiffness, 1));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 7, 1, &stiffness, 1));
 }
 
 /// Blocks, a rope and a loose particle that fall onto pinned ground, and onto each other.
@@ -228,7 +228,7 @@ static mspring_network *contact(mspring_network_def *def) {
     mspring_network *network = recipe_network(&made, def);
     recipe_free(&made);
     mspring_contact_def touching;
-    check_ok(mspring_contact_def_init(&touching, sizeof touching));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &touching, sizeof touching));
     touching.thickness = 0.4;
     touching.friction = 0.5f;
     touching.restitution = 0.3f;
@@ -242,7 +242,7 @@ static mspring_network *colliders(mspring_network_def *def) {
     mspring_network *network = contact(def);
     mspring_collider_def def_of[3];
     for (int i = 0; i < 3; i++) {
-        check_ok(mspring_collider_def_init(&def_of[i], sizeof def_of[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def_of[i], sizeof def_of[i]));
         def_of[i].kind = (mspring_collider_kind)i;
         def_of[i].friction = 0.4f;
         def_of[i].restitution = 0.25f;
@@ -256,12 +256,12 @@ static mspring_network *colliders(mspring_network_def *def) {
 }
 
 static mspring_network *implicit_contact(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_IMPLICIT;
+    def->settings.solver = MSPRING_SOLVER_IMPLICIT;
     return colliders(def);
 }
 
 static mspring_network *direct_contact(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_DIRECT;
+    def->settings.solver = MSPRING_SOLVER_DIRECT;
     return colliders(def);
 }
 
@@ -275,12 +275,12 @@ static void move_colliders(mspring_network *network, uint32_t step) {
 static mspring_network *yielding(mspring_network_def *def) {
     static const float yield_strains[2] = {0.01f, 0.04f}, hardenings[3] = {0, 0.1f, 1}, limit = 0.1f;
     mspring_network *network = everything_damped(def);
-    const uint32_t count = mspring_network_spring_count(network);
+    const uint32_t count = mspring_network_count(network, MSPRING_SPRINGS);
     for (mspring_id s = 0; s < count; s++) {
-        check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, s, 1, &yield_strains[s % 2], 1));
-        check_ok(mspring_network_set(network, MSPRING_HARDENING, s, 1, &hardenings[s % 3], 1));
+        check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, NULL, s, 1, &yield_strains[s % 2], 1));
+        check_ok(mspring_network_set(network, MSPRING_HARDENING, NULL, s, 1, &hardenings[s % 3], 1));
     }
-    check_ok(mspring_network_set(network, MSPRING_PLASTIC_LIMIT, 0, count, &limit, 0));
+    check_ok(mspring_network_set(network, MSPRING_PLASTIC_LIMIT, NULL, 0, count, &limit, 0));
     return network;
 }
 
@@ -295,8 +295,7 @@ static mspring_network *yielding_rows(mspring_network_def *def) {
     recipe_disturb(&made, 0.02, 3, &seed);
     mspring_network *network = recipe_network(&made, def);
     recipe_free(&made);
-    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, mspring_network_spring_count(network),
-                                 &yield_strain, 0));
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, NULL, 0, mspring_network_count(network, MSPRING_SPRINGS), &yield_strain, 0));
     return network;
 }
 
@@ -323,7 +322,7 @@ static mspring_network *one_way(mspring_network_def *def) {
 static mspring_network *areas(mspring_network_def *def) {
     mspring_network *network = everything_damped(def);
     mspring_area_def area;
-    check_ok(mspring_area_def_init(&area, sizeof area));
+    check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &area, sizeof area));
     area.stiffness = 20;
     check_ok(mspring_network_add_cell_areas(network, &area, NULL, NULL));
     return network;
@@ -339,7 +338,7 @@ static mspring_network *all_areas(mspring_network_def *def) {
     static const mspring_id corners[5] = {0, 3, 40, 41, 90};
     mspring_network *network = areas(def);
     mspring_area_def area;
-    check_ok(mspring_area_def_init(&area, sizeof area));
+    check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &area, sizeof area));
     area.kind = MSPRING_AREA_GAS;
     area.pressure = 3;
     check_ok(mspring_network_add_area(network, &area, corners, 5, NULL));
@@ -350,12 +349,12 @@ static mspring_network *all_areas(mspring_network_def *def) {
 static mspring_network *angles(mspring_network_def *def) {
     mspring_network *network = areas(def);
     mspring_angle_def hinge;
-    check_ok(mspring_angle_def_init(&hinge, sizeof hinge));
+    check_ok(mspring_init(MSPRING_STRUCT_ANGLE_DEF, &hinge, sizeof hinge));
     hinge.stiffness = 3;
     hinge.damping = 0.01f;
     for (mspring_id p = 702; p < 730; p++) {
         const mspring_id three[3] = {p, p + 1, p + 2};
-        check_ok(mspring_network_add_angles(network, &hinge, three, 1, NULL));
+        check_ok(mspring_network_add_angles(network, &hinge, three, 1, 3, NULL));
     }
     return network;
 }
@@ -363,11 +362,11 @@ static mspring_network *angles(mspring_network_def *def) {
 static void push_and_bend(mspring_network *network, uint32_t step) {
     static const double bends[] = {0.3, -0.2, 1.7};
     push_some(network, step);
-    mspring_angle_info info = {.struct_size = sizeof info};
+    support_angle_info info;
     mspring_id first = 0;
-    while (mspring_network_get_angle_info(network, first, &info) != MSPRING_OK)
+    while (support_get_angle_info(network, first, &info) != MSPRING_OK)
         first++;
-    check_ok(mspring_network_set_rest_angles(network, first, 28, &bends[step % 3], 0));
+    check_ok(support_set_rest_angles(network, first, 28, &bends[step % 3], 0));
 }
 
 /// Blocks, a rope and a loose particle that fall into a valley of heights with a wall, silt above one part of it.
@@ -378,7 +377,7 @@ static mspring_network *on_floor(mspring_network_def *def) {
     mspring_network *network = contact(def);
     mspring_floor_def ground;
     check_ok(mspring_network_set_contact(network, NULL));
-    check_ok(mspring_floor_def_init(&ground, sizeof ground));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &ground, sizeof ground));
     ground.heights_x = -12;
     ground.heights_y = -1.5;
     ground.spacing = 4;
@@ -396,12 +395,12 @@ static mspring_network *on_floor(mspring_network_def *def) {
 }
 
 static mspring_network *implicit_floor(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_IMPLICIT;
+    def->settings.solver = MSPRING_SOLVER_IMPLICIT;
     return on_floor(def);
 }
 
 static mspring_network *direct_floor(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_DIRECT;
+    def->settings.solver = MSPRING_SOLVER_DIRECT;
     return on_floor(def);
 }
 
@@ -413,8 +412,8 @@ static mspring_network *grips(mspring_network_def *def) {
     for (int i = 0; i < 4; i++) {
         mspring_grip_def grip;
         double x, y;
-        check_ok(mspring_grip_def_init(&grip, sizeof grip));
-        check_ok(mspring_network_get_positions(network, particles[i], 1, &x, &y, 1));
+        check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &grip, sizeof grip));
+        check_ok(mspring_network_get_positions(network, NULL, particles[i], 1, &x, &y, 1));
         grip.particle = particles[i];
         grip.x = x + 0.5;
         grip.y = y + 2.0 - i;
@@ -432,22 +431,22 @@ static void push_and_drag(mspring_network *network, uint32_t step) {
 }
 
 static mspring_network *implicit_grips(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_IMPLICIT;
+    def->settings.solver = MSPRING_SOLVER_IMPLICIT;
     return grips(def);
 }
 
 static mspring_network *direct_grips(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_DIRECT;
+    def->settings.solver = MSPRING_SOLVER_DIRECT;
     return grips(def);
 }
 
 static mspring_network *implicit_angles(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_IMPLICIT;
+    def->settings.solver = MSPRING_SOLVER_IMPLICIT;
     return angles(def);
 }
 
 static mspring_network *direct_angles(mspring_network_def *def) {
-    def->solver = MSPRING_SOLVER_DIRECT;
+    def->settings.solver = MSPRING_SOLVER_DIRECT;
     return angles(def);
 }
 

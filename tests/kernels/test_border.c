@@ -38,7 +38,7 @@ static mspring_network *make(uint64_t seed, bool damped, mspring_simd at) {
     def.simd_level = at;
     mspring_network *network = recipe_network(&made, &def);
     for (mspring_id s = 0; s < made.spring_count; s += 7) {
-        check_ok(mspring_network_break_springs(network, &s, 1));
+        check_ok(mspring_network_break_springs(network, &s, 0, 1));
     }
     recipe_free(&made);
     return network;

@@ -181,12 +181,22 @@ static void put(const mspringi_floor_args *g, block *b, uint32_t i, double x, do
     mspringi_set_velocity(&to, i, (float)vx, (float)vy);
 }
 
+/// Some lanes have friction, restitution or both of their own.
+static const mspringi_contact_material *make_own(mspringi_contact_material own[W]) {
+    for (uint32_t i = 0; i < W; i++) {
+        own[i].friction = support_random(&seed) % 3 ? (float)between(0, 2) : -1.0f;
+        own[i].restitution = support_random(&seed) % 3 ? (float)between(0, 1) : -1.0f;
+    }
+    return own;
+}
+
 /// One particle after the other.
 static void bounce(const mspringi_floor *floor, const mspringi_floor_args *g, block *b, uint32_t i) {
     const double from_vx = (double)b->from_vx[i], from_vy = (double)b->from_vy[i];
     mspringi_bouncing_particle p =
         mspringi_bouncing_particle_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
                                         from_vx, from_vy, g->damping, g->h, g->per_length);
+    p.own = g->own ? &g->own[i] : NULL;
     if (mspringi_floor_bounce(floor, g->h, from_vx, from_vy, &p)) {
         put(g, b, i, p.x + g->h * p.vx, p.y + g->h * p.vy, p.vx, p.vy);
     }
@@ -198,6 +208,7 @@ static void fly(const mspringi_floor *floor, const mspringi_floor_args *g, block
         mspringi_free_particle_from((double)b->x[i], (double)b->y[i], (double)b->vx[i], (double)b->vy[i],
                                     (double)b->from_vx[i], (double)b->from_vy[i], g->damping, g->h);
     double vx, vy;
+    p.own = g->own ? &g->own[i] : NULL;
     if (mspringi_floor_move_free_particle(floor, &how, &p, &vx, &vy)) {
         put(g, b, i, p.x, p.y, vx, vy);
     }
@@ -232,6 +243,8 @@ static void check_kernel(uint32_t planes, bool has_heights, bool is_loose) {
         const block before = make_block(&floor, h);
         block found = before;
         mspringi_floor_args ground = ground_of(&floor, &found, h, dampings[n % 4], clear);
+        mspringi_contact_material own[W];
+        ground.own = n % 2 ? make_own(own) : NULL;
         if (n % 5 == 0) {
             be_precise(&ground, &found);
         }
@@ -301,6 +314,11 @@ static void silt(void **state) {
         mspringi_floor floor = make_floor(1, true);
         floor.heights.silt_depth = between(0.01, 2);
         floor.heights.silt_rate = pow(10, between(-3, 6));
+        float depths[HEIGHTS];
+        for (uint32_t i = 0; i < HEIGHTS; i++) {
+            depths[i] = support_random(&seed) % 4 ? (float)between(0.01, 2) : 0.0f;
+        }
+        floor.heights.silt_depths = n % 4 < 2 ? depths : NULL;
         const double h = pow(10, between(-3, -1.5));
         const mspringi_bounds clear = {-20, 20, n % 3 == 0 ? 0.2f : 20.0f, 20};
         block before = make_block(&floor, h);
@@ -317,6 +335,7 @@ static void silt(void **state) {
         ground.before_vy = is_seen ? found.from_vy : NULL;
         ground.silt_depth = floor.heights.silt_depth;
         ground.silt_rate = floor.heights.silt_rate;
+        ground.silt_depths = floor.heights.silt_depths;
         ground.grid = n % 5 == 0 ? 0x1p-20f : 0.0f;
         kernels->brake(&ground, 0);
         for (uint32_t i = 0; i < W; i++) {

@@ -7,6 +7,7 @@
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #if defined(__SSE__)
@@ -32,8 +33,8 @@ static snapshot run(const recipe *made, mspring_simd at, uint32_t steps) {
     mspring_allocator allocator = watched_interface(&watched);
     mspring_network_def def = support_def(-9.8f, 3);
     def.simd_level = at;
-    def.global_damping = 0.25f;
-    def.max_speed = 1e15f;
+    def.settings.global_damping = 0.25f;
+    def.settings.max_speed = 1e15f;
     def.allocator = &allocator;
     mspring_network *network = recipe_network(made, &def);
     level_check(network, at);
@@ -48,7 +49,7 @@ static snapshot run(const recipe *made, mspring_simd at, uint32_t steps) {
     taken.values = malloc(taken.size);
     assert_non_null(taken.values);
     mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_get_view(network, &view));
     for (mspring_id id = 0; id < made->particle_count; id++) {
         uint32_t slot = view.slot_of_particle[id];
         const float values[4] = {view.x[slot], view.y[slot], view.vx[slot], view.vy[slot]};
@@ -191,15 +192,15 @@ static double pulled(bool in_lattice, double length, double rest_length, double 
     made.springs[spring].damping = (float)damping;
     mspring_network_def def = support_def(0, 1);
     def.simd_level = level;
-    def.max_speed = 1e15f;
-    def.guard = MSPRING_GUARD_BOUNDS; // a spring of no length is not stable
+    def.settings.max_speed = 1e15f;
+    def.settings.guard = MSPRING_GUARD_BOUNDS; // a spring of no length is not stable
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     level_check(network, level);
     const double x[] = {0, length}, y[] = {0, 0};
     const float vx[] = {0, speed}, vy[] = {0, 0};
-    check_ok(mspring_network_set_positions(network, 0, 2, x, y, 1));
-    check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy, 1));
+    check_ok(mspring_network_set_positions(network, NULL, 0, 2, x, y, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 2, vx, vy, 1));
     check_ok(mspring_network_step(network, 1)); // of which the first half changes velocities
     const support_point got = support_velocity(network, 0);
     assert_true(got.y == 0.0);
@@ -236,7 +237,7 @@ static void springs_of_any_length_obey_the_law(void **state) {
 static uint64_t hash_in_rounding_mode(const recipe *made, int mode) {
     mspring_network_def def = support_def(-9.8f, 3);
     def.simd_level = level;
-    def.global_damping = 0.25f;
+    def.settings.global_damping = 0.25f;
     assert_int_equal(fesetround(mode), 0);
     mspring_network *network = recipe_network(made, &def);
     support_steps(network, 10, 1.0 / 64);
@@ -307,7 +308,7 @@ static void flushing_denormals_does_not_matter(void **state) {
 }
 #endif
 
-/// A speed that is none, written to a view, where damping would bring it back within the step: refused at all
+/// A speed that is none, that a hook writes, where damping would bring it back within the step: refused at all
 /// levels, whatever overflows on the way.
 static void speeds_out_of_bounds(void **state) {
     (void)state;
@@ -321,20 +322,53 @@ static void speeds_out_of_bounds(void **state) {
             recipe_lattice(&made, width / 2 + 1, 3, 0, 1e11, 1e9, &stuff, &seed);
             mspring_network_def def = support_def(0, 1);
             def.simd_level = levels[i];
-            def.guard = MSPRING_GUARD_BOUNDS;
-            def.global_damping = 1e6f;
+            def.settings.guard = MSPRING_GUARD_BOUNDS;
+            def.settings.global_damping = 1e6f;
             mspring_network *network = recipe_network(&made, &def);
-            mspring_mutable_view view = {.struct_size = sizeof view};
-            check_ok(mspring_network_view_mutable(network, &view));
-            const uint32_t slot = view.slot_of_particle[width - 1];
-            view.vx[slot] = -3e38f;
+            support_writing writing = {.array = 2, .particle = width - 1, .value = -3e38f};
+            (void)support_write_in_step(network, &writing);
             const uint64_t before = support_hash(network);
             check_error(mspring_network_step(network, 1), MSPRING_ERROR_UNSTABLE);
             assert_int_equal(support_hash(network), before);
-            view.vx[slot] = -1e11f; // the damper leaves 1e5 m/s of it
+            char culprit[32];
+            (void)snprintf(culprit, sizeof culprit, "particle %u ", (unsigned)(width - 1));
+            check_contains(mspring_network_error(network), culprit);
+            writing = (support_writing){.array = 2, .particle = width - 1, .value = -1e11f}; // 1e5 m/s are left of it
             check_ok(mspring_network_step(network, 1));
             mspring_network_destroy(network);
             recipe_free(&made);
+        }
+    }
+}
+
+// The same where no step fails, and where a rejected one is repeated, by a hook that does it once.
+static void speeds_out_of_bounds_are_put_back(void **state) {
+    (void)state;
+    const recipe_stuff stuff = {.mass = {1, 1}, .stiffness = {1, 1}, .damping = {1, 1}};
+    const mspring_simd levels[] = {level, level_lowest()};
+    const float speeds[] = {-3e38f, 2e15f, INFINITY, NAN}; // the guard sees what is not finite
+    for (uint32_t width = 1; width <= 20; width++) {
+        for (size_t s = 0; s < 2 * COUNT_OF(speeds); s++) {
+            uint64_t hashes[2];
+            for (size_t i = 0; i < COUNT_OF(levels); i++) {
+                uint64_t seed = 1;
+                recipe made = {0};
+                recipe_lattice(&made, width, 3, 0, 0, 1e9, &stuff, &seed);
+                mspring_network_def def = support_def(0, 2);
+                def.simd_level = levels[i];
+                def.settings.guard = s % 2 ? MSPRING_GUARD_CLAMP : MSPRING_GUARD_CLAMP_BOUNDS;
+                def.settings.global_damping = 1e6f;
+                mspring_network *network = recipe_network(&made, &def);
+                support_writing writing = {.array = 2, .particle = width / 2, .value = speeds[s / 2]};
+                (void)support_write_in_step(network, &writing);
+                check_ok(mspring_network_step(network, 1));
+                const uint32_t flags = support_step_flags(network);
+                assert_true(flags & (s % 2 ? MSPRING_STEP_CLAMPED : MSPRING_STEP_PUT_BACK));
+                hashes[i] = support_hash(network);
+                mspring_network_destroy(network);
+                recipe_free(&made);
+            }
+            assert_int_equal(hashes[0], hashes[1]);
         }
     }
 }
@@ -349,6 +383,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(extreme_values),
         cmocka_unit_test(springs_of_any_length_obey_the_law),
         cmocka_unit_test(speeds_out_of_bounds),
+        cmocka_unit_test(speeds_out_of_bounds_are_put_back),
         cmocka_unit_test(rounding_mode_of_the_host_does_not_matter),
 #if defined(__SSE__)
         cmocka_unit_test(flushing_denormals_does_not_matter),

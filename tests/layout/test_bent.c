@@ -76,12 +76,12 @@ static recipe make(const shape *kind, uint32_t width, uint32_t height) {
     return made;
 }
 
-static mspring_plan shuffled_plan_of(recipe *made) {
+static support_plan shuffled_plan_of(recipe *made) {
     uint64_t seed = 99;
     recipe_shuffle(made, &seed, NULL);
     mspring_network *network = recipe_network(made, NULL);
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     mspring_network_destroy(network);
     return plan;
 }
@@ -90,7 +90,7 @@ static void lattices_of_any_shape_are_found(void **state) {
     (void)state;
     for (size_t i = 0; i < COUNT_OF(shapes); i++) {
         recipe made = make(&shapes[i], 60, 12);
-        const mspring_plan plan = shuffled_plan_of(&made);
+        const support_plan plan = shuffled_plan_of(&made);
         if (plan.lattice_count != 1 || plan.lattice_springs != made.spring_count) {
             fail_msg("%s: %u lattices with %u of %u springs", shapes[i].name, plan.lattice_count,
                      plan.lattice_springs, made.spring_count);
@@ -123,7 +123,7 @@ static void triangles_are_a_lattice(void **state) {
                 recipe_spring(&made, p, p + width - 1, 100, 0, 0);
             }
         }
-        const mspring_plan plan = shuffled_plan_of(&made);
+        const support_plan plan = shuffled_plan_of(&made);
         assert_int_equal(plan.lattice_count, 1);
         assert_int_equal(plan.lattice_springs, made.spring_count);
         recipe_free(&made);
@@ -153,7 +153,7 @@ static void rings_are_lattices_that_are_closed_once(void **state) {
                 }
             }
         }
-        const mspring_plan plan = shuffled_plan_of(&made);
+        const support_plan plan = shuffled_plan_of(&made);
         assert_int_equal(plan.lattice_count, 1);
         assert_in_range(plan.irregular_springs, 1, 3 * height);
         recipe_free(&made);
@@ -170,7 +170,7 @@ static void they_move_as_the_reference(void **state) {
         recipe_disturb(&made, 0.02, 0.5, &seed);
         reference exact = reference_of(&made, 0, -9.8, 0.2);
         mspring_network_def def = support_def(-9.8f, 4);
-        def.global_damping = 0.2f;
+        def.settings.global_damping = 0.2f;
         mspring_network *network = recipe_network(&made, &def);
         for (int substep = 0; substep < 100; substep++) {
             reference_substep(&exact, 1.0 / 256);
@@ -195,14 +195,14 @@ static mspring_network *hanging(double degrees, mspring_solver which) {
     }
     const support_point down = turned(0, -9.8, degrees);
     mspring_network_def def = support_def((float)down.y, 20);
-    def.gravity_x = (float)down.x;
+    def.settings.gravity_x = (float)down.x;
     mspring_network *network = recipe_network(&made, &def);
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = which;
     solver.substeps = which == MSPRING_SOLVER_EXPLICIT ? 20 : 1;
     solver.iterations = which == MSPRING_SOLVER_IMPLICIT ? 40 : 0;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     support_steps(network, 32, 1.0 / 64);
     recipe_free(&made);
     return network;

@@ -117,7 +117,7 @@ static mspring_network *compact_network(const recipe *made, const mspring_networ
     const mspring_id a = support_particle(builder, -100, 0, 1), b = support_particle(builder, -100, 1, 1);
     const mspring_id spring = support_spring(builder, a, b, 1, 0);
     mspring_network *network = support_network(builder, def);
-    check_ok(mspring_network_break_springs(network, &spring, 1));
+    check_ok(mspring_network_break_springs(network, &spring, 0, 1));
     check_ok(mspring_network_compact(network));
     return network;
 }
@@ -207,7 +207,7 @@ static void copies_stand_in_herds_at_once(void **state) {
     mspring_network *network = support_network(recipe_builder(&made, NULL), &def);
     assert_int_equal(groups_of(network), 2 * (RING + WHEEL));
     mspring_network_destroy(network);
-    def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.settings.solver = MSPRING_SOLVER_IMPLICIT;
     network = support_network(recipe_builder(&made, NULL), &def);
     assert_int_equal(groups_of(network), 0);
     mspring_network_destroy(network);
@@ -258,7 +258,7 @@ static void without_memory_they_stand_as_before(void **state) {
         const mspring_allocator allocator = watched_interface(&watched);
         const mspring_id spring = 0;
         mspring_network *network = support_network(recipe_builder(&made, &allocator), &def);
-        check_ok(mspring_network_break_springs(network, &spring, 1));
+        check_ok(mspring_network_break_springs(network, &spring, 0, 1));
         const uint64_t before = support_hash(network);
         watched.fail_at = watched.calls + fail;
         result = mspring_network_compact(network);
@@ -290,7 +290,7 @@ static void they_move_as_the_reference(void **state) {
     recipe made = make_trees(40, 4);
     reference exact = reference_of(&made, 0, -9.8, 0.3);
     mspring_network_def def = support_def(-9.8f, 4);
-    def.global_damping = 0.3f;
+    def.settings.global_damping = 0.3f;
     mspring_network *network = compact_network(&made, &def);
     assert_true(groups_of(network) > 0);
     for (int substep = 0; substep < 100; substep++) {
@@ -317,7 +317,7 @@ typedef struct way {
 static void add_floor(mspring_network *network) {
     const double plane[4] = {0, 50, 0, 1};
     mspring_floor_def ground;
-    check_ok(mspring_floor_def_init(&ground, sizeof ground));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &ground, sizeof ground));
     ground.planes = plane;
     ground.plane_count = 1;
     ground.friction = 0.5f;
@@ -388,8 +388,8 @@ static void what_is_awake_moves_the_same_beside_sleepers(void **state) {
     }
     mspring_network_def def = support_def(0, 4);
     mspring_network *restless = compact_network(&made, &def);
-    def.sleep_speed = 0.01f;
-    def.sleep_time = 0.1f;
+    def.settings.sleep_speed = 0.01f;
+    def.settings.sleep_time = 0.1f;
     mspring_network *network = compact_network(&made, &def);
     assert_true(groups_of(network) > 0);
     support_steps(restless, 40, 1.0 / 64);
@@ -397,7 +397,7 @@ static void what_is_awake_moves_the_same_beside_sleepers(void **state) {
     uint32_t asleep = 0;
     uint8_t *sleeps = malloc(made.particle_count);
     assert_non_null(sleeps);
-    check_ok(mspring_network_get_sleepers(network, 0, made.particle_count, sleeps, 1));
+    check_ok(support_get_sleepers(network, 0, made.particle_count, sleeps, 1));
     for (mspring_id id = 0; id < made.particle_count; id++) {
         const support_point p = support_position(network, id), q = support_position(restless, id);
         assert_true(sleeps[id] || (p.x == q.x && p.y == q.y));
@@ -442,10 +442,10 @@ static void edit(mspring_network *network, uint32_t spring_count, uint64_t *seed
     case 0:
     case 1:
     case 2:
-        check_ok(mspring_network_break_springs(network, &s, 1));
+        check_ok(mspring_network_break_springs(network, &s, 0, 1));
         break;
     case 3: // one that broke before the network was compacted brings all back
-        check_ok(mspring_network_restore_springs(network, &s, 1, 0));
+        check_ok(mspring_network_restore_springs(network, &s, 0, 1, 0));
         break;
     case 4:
     case 5:
@@ -453,24 +453,24 @@ static void edit(mspring_network *network, uint32_t spring_count, uint64_t *seed
         support_kick(network, p, some);
         break;
     case 7:
-        check_ok(mspring_network_set_at(network, MSPRING_MASS, &p, 1, &some, 1));
+        check_ok(mspring_network_set(network, MSPRING_MASS, &p, 0, 1, &some, 1));
         break;
     case 8:
-        check_ok(mspring_network_set_at(network, MSPRING_INVERSE_MASS_SCALE, &p, 1, &none, 1));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, &p, 0, 1, &none, 1));
         break;
     case 9:
-        check_ok(mspring_network_set_at(network, MSPRING_STIFFNESS, &s, 1, &(float){100.0f * some}, 1));
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, &s, 0, 1, &(float){100.0f * some}, 1));
         break;
     case 10:
         check_ok(mspring_network_apply_force(network, p, 30.0f * some, 20));
         break;
     case 11:
-        check_ok(mspring_spring_def_init(&def, sizeof def));
+        check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
         def.a = p;
         def.b = p + 11;
         def.stiffness = 50.0f * some;
         if (mspring_network_add_springs(network, &def, 1, &id) == MSPRING_OK && dice >> 32 & 1) {
-            check_ok(mspring_network_remove_springs(network, &id, 1));
+            check_ok(mspring_network_remove_springs(network, &id, 0, 1));
         }
         break;
     case 12:
@@ -498,8 +498,8 @@ static void live_as(recipe *made, way with, uint64_t seed, uint64_t *hashes) {
     def.worker_count = with.workers;
     def.spare_springs = 64;
     if (kind >> 1 & 1) {
-        def.sleep_speed = 0.3f;
-        def.sleep_time = 0.05f;
+        def.settings.sleep_speed = 0.3f;
+        def.settings.sleep_time = 0.05f;
     }
     mspring_network *network = compact_network(made, &def);
     assert_true(groups_of(network) > 0);
@@ -508,7 +508,7 @@ static void live_as(recipe *made, way with, uint64_t seed, uint64_t *hashes) {
     }
     const float brittle = 0.5f;
     for (mspring_id s = 0; s < made->spring_count; s += 7) {
-        check_ok(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, &s, 1, &brittle, 1));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, &s, 0, 1, &brittle, 1));
     }
     for (int step = 0; step < LIFE_STEPS; step++) {
         for (uint64_t i = support_random(&seed) % LIFE_EDITS; i > 0; i--) {

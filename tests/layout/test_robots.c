@@ -19,7 +19,7 @@ typedef struct robot {
 } robot;
 
 static robot add_robot(mspring_builder *b, double x) {
-    const mspring_id first = mspring_builder_particle_count(b);
+    const mspring_id first = mspring_builder_count(b, MSPRING_PARTICLES);
     robot made;
     for (uint32_t i = 0; i < RING; i++) {
         const double angle = 6.2831853 * i / RING;
@@ -63,14 +63,14 @@ static mspring_network *network_of(way with) {
     uint32_t firsts[ROBOTS + 1] = {0};
     for (uint32_t i = 0; i < with.robots; i++) {
         const robot made = add_robot(builder, 8.0 * i);
-        firsts[i + 1] = mspring_builder_particle_count(builder);
+        firsts[i + 1] = mspring_builder_count(builder, MSPRING_PARTICLES);
         for (uint32_t k = 0; k < ACTUATORS; k++) {
             springs[i * ACTUATORS + k] = made.springs[k];
         }
     }
     mspring_network_def def = support_def(-9.8f, 32);
-    def.guard = MSPRING_GUARD_BOUNDS;
-    def.max_speed = 1000;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.max_speed = 1000;
     def.simd_level = with.level;
     def.worker_count = with.workers;
     mspring_network *network = support_network(builder, &def);
@@ -80,7 +80,7 @@ static mspring_network *network_of(way with) {
     }
     mspring_floor_def floor;
     const double plane[4] = {0, 0, 0, 1};
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = plane;
     floor.plane_count = 1;
     floor.friction = 0.5f;
@@ -89,7 +89,7 @@ static mspring_network *network_of(way with) {
     check_ok(mspring_network_set_actuators(network, springs, with.robots * ACTUATORS, with.changes));
     if (with.has_contact) {
         mspring_contact_def contact;
-        check_ok(mspring_contact_def_init(&contact, sizeof contact));
+        check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
         contact.thickness = 0.1;
         contact.friction = 0.3f;
         check_ok(mspring_network_set_contact(network, &contact));
@@ -105,7 +105,7 @@ static void drive(mspring_network *network, uint32_t robots, uint32_t step, bool
         const double phase = sin(0.12 * step + 0.1 * which + 0.05 * k);
         signals[i] = (float)(k < 2 * ARM ? 1 - 0.1 * phase : 0.55 - 0.45 * phase);
     }
-    check_ok(mspring_network_set_signals(network, 0, robots * ACTUATORS, signals, 1));
+    check_ok(mspring_network_set(network, MSPRING_SIGNAL, NULL, 0, robots * ACTUATORS, signals, 1));
 }
 
 /// Steps, and how many pairs touched in all.

@@ -99,9 +99,9 @@ static mspring_network *make(const recipe *made, const fate *f) {
     mspring_network_def def = support_def(0, 20);
     def.simd_level = f->level;
     def.worker_count = f->workers;
-    def.global_damping = f->sleep_speed > 0 ? 6 : 0;
-    def.sleep_speed = f->sleep_speed;
-    def.sleep_time = 0.25f;
+    def.settings.global_damping = f->sleep_speed > 0 ? 6 : 0;
+    def.settings.sleep_speed = f->sleep_speed;
+    def.settings.sleep_time = 0.25f;
     return recipe_network(made, &def);
 }
 
@@ -112,7 +112,7 @@ static void live(mspring_network *network, const rigging *r, uint32_t first, uin
         for (uint32_t i = first; i < first + count; i++) {
             if (step == 2 && i % 4 == 0) {
                 const mspring_id spring = r->spring[i] + i % INNER - springs_before;
-                check_ok(mspring_network_break_springs(network, &spring, 1));
+                check_ok(mspring_network_break_springs(network, &spring, 0, 1));
             }
             if (f->sleep_speed > 0 && step % 4 == 0 && i % 2 == 0) {
                 support_kick(network, r->particle[i] + 9 - particles_before, 5);

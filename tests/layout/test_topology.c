@@ -12,10 +12,10 @@ static const recipe_stuff solid = {.mass = {1, 1}, .stiffness = {100, 100}};
 static const recipe_stuff holed = {.mass = {1, 1}, .stiffness = {100, 100}, .holes = 0.3};
 
 /// The plan of a recipe, whose parts add up.
-static mspring_plan plan_of(const recipe *made) {
+static support_plan plan_of(const recipe *made) {
     mspring_network *network = recipe_network(made, NULL);
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     assert_int_equal(plan.particle_count, made->particle_count);
     assert_int_equal(plan.spring_count, made->spring_count);
     assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.irregular_particles + plan.loose_particles,
@@ -27,7 +27,7 @@ static mspring_plan plan_of(const recipe *made) {
     return plan;
 }
 
-static mspring_plan shuffled_plan_of(recipe *made) {
+static support_plan shuffled_plan_of(recipe *made) {
     uint64_t seed = 99;
     recipe_shuffle(made, &seed, NULL);
     return plan_of(made);
@@ -42,7 +42,7 @@ static void a_lattice_is_found_in_any_order(void **state) {
         recipe made = {0};
         recipe_lattice(&made, sizes[i][0], sizes[i][1], 100, -50, 0.5, &solid, &seed);
         for (int shuffled = 0; shuffled < 2; shuffled++) {
-            mspring_plan plan = shuffled ? shuffled_plan_of(&made) : plan_of(&made);
+            support_plan plan = shuffled ? shuffled_plan_of(&made) : plan_of(&made);
             assert_int_equal(plan.lattice_count, 1);
             assert_int_equal(plan.lattice_particles, made.particle_count);
             assert_int_equal(plan.lattice_springs, made.spring_count);
@@ -57,7 +57,7 @@ static void holes_do_not_break_a_lattice_up(void **state) {
     uint64_t seed = 12;
     recipe made = {0};
     recipe_lattice(&made, 70, 40, -20, 3, 1, &holed, &seed);
-    mspring_plan plan = shuffled_plan_of(&made);
+    support_plan plan = shuffled_plan_of(&made);
     // Particles that holes cut off are strands or loose, but hardly any spring is.
     assert_true(plan.lattice_springs >= 0.99 * made.spring_count);
     assert_true(plan.lattice_particles >= 0.99 * made.particle_count);
@@ -72,7 +72,7 @@ static void a_lattice_need_not_lie_on_whole_numbers(void **state) {
         uint64_t seed = i;
         recipe made = {0};
         recipe_lattice(&made, 30, 20, 0.123 + 1000 * spacings[i], -0.7, spacings[i], &holed, &seed);
-        mspring_plan plan = shuffled_plan_of(&made);
+        support_plan plan = shuffled_plan_of(&made);
         assert_true(plan.lattice_springs >= 0.99 * made.spring_count);
         recipe_free(&made);
     }
@@ -86,7 +86,7 @@ static void several_lattices_are_found_side_by_side(void **state) {
     recipe_lattice(&made, 20, 10, 0.4, 20.3, 1, &solid, &seed); // between the first one's grid points
     recipe_lattice(&made, 15, 30, 50, 0, 0.25, &solid, &seed);  // of another spacing
     recipe_lattice(&made, 10, 10, 5.3, 5.1, 1, &solid, &seed);  // on top of the first
-    mspring_plan plan = shuffled_plan_of(&made);
+    support_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.lattice_count, 4);
     assert_int_equal(plan.lattice_springs, made.spring_count);
     recipe_free(&made);
@@ -123,11 +123,11 @@ static void small_lattices_share_blocks(void **state) {
     (void)state;
     recipe made = {0};
     add_trough(&made, 48, 10, 2, 4, 0);
-    const mspring_plan trough = plan_of(&made);
+    const support_plan trough = plan_of(&made);
     assert_int_equal(trough.lattice_blocks, 2 * 3 + 8 * 2);
     add_trough(&made, 12, 7, 7, 0, 100);
     add_trough(&made, 12, 7, 7, 0, 200);
-    const mspring_plan plan = plan_of(&made);
+    const support_plan plan = plan_of(&made);
     assert_int_equal(plan.lattice_count, 3);
     assert_int_equal(plan.lattice_springs, made.spring_count);
     assert_int_equal(plan.lattice_blocks, trough.lattice_blocks);
@@ -158,7 +158,7 @@ static void small_lattices_share_rows(void **state) {
         }
         recipe_free(&one);
     }
-    const mspring_plan plan = plan_of(&made);
+    const support_plan plan = plan_of(&made);
     assert_int_equal(plan.lattice_count, LATTICES);
     assert_int_equal(plan.lattice_particles, LATTICES * EACH);
     assert_int_equal(plan.lattice_springs, made.spring_count);
@@ -194,7 +194,7 @@ static void ropes_on_a_lattice_are_swept_with_it(void **state) {
             recipe_rope(&made, a, b, 10 + (uint32_t)i, &solid, &seed);
         }
     }
-    mspring_plan plan = shuffled_plan_of(&made);
+    support_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.lattice_springs, lattice_springs);
     assert_int_equal(plan.chain_count, 0);
     assert_int_equal(plan.irregular_springs, made.spring_count - lattice_springs);
@@ -210,7 +210,7 @@ static void more_rope_than_lattice_is_chains(void **state) {
     mspring_id first = recipe_lattice(&made, 20, 10, 0, 0, 1, &solid, &seed);
     mspring_id weight = recipe_particle(&made, 10.3, -45.7, 5, 0);
     recipe_rope(&made, first + 10, weight, 500, &solid, &seed);
-    mspring_plan plan = shuffled_plan_of(&made);
+    support_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.lattice_springs, made.spring_count - 500);
     assert_int_equal(plan.chain_count, 1);
     assert_int_equal(plan.chain_springs, 499);
@@ -227,7 +227,7 @@ static void a_strand_of_its_own_is_a_chain(void **state) {
     mspring_id a = recipe_particle(&made, 0, 0, 1, MSPRING_PARTICLE_PINNED);
     mspring_id b = recipe_particle(&made, 70, 71, 1, 0);
     recipe_rope(&made, a, b, 100, &solid, &seed);
-    mspring_plan plan = shuffled_plan_of(&made);
+    support_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.chain_springs, 100);
     assert_int_equal(plan.chain_particles, 101);
     assert_int_equal(plan.irregular_springs, 0);
@@ -244,7 +244,7 @@ static void a_ring_is_a_chain_but_for_one_spring(void **state) {
     for (uint32_t i = 0; i < 50; i++) {
         recipe_spring(&made, i, (i + 1) % 50, 100, 0, 0);
     }
-    mspring_plan plan = shuffled_plan_of(&made);
+    support_plan plan = shuffled_plan_of(&made);
     assert_int_equal(plan.chain_springs + plan.irregular_springs, 50);
     assert_true(plan.irregular_springs <= 1);
     recipe_free(&made);
@@ -256,7 +256,7 @@ static void a_standing_bar_is_as_cheap_as_a_lying_one(void **state) {
     recipe lying = {0}, standing = {0};
     recipe_lattice(&lying, 1800, 5, 0, 0, 1, &solid, &seed);
     recipe_lattice(&standing, 5, 1800, 0, 0, 1, &solid, &seed);
-    mspring_plan a = plan_of(&lying), b = shuffled_plan_of(&standing);
+    support_plan a = plan_of(&lying), b = shuffled_plan_of(&standing);
     assert_int_equal(a.lattice_springs, lying.spring_count);
     assert_int_equal(b.lattice_springs, standing.spring_count);
     assert_int_equal(a.lattice_blocks, b.lattice_blocks);
@@ -273,7 +273,7 @@ static void a_random_graph_is_no_lattice(void **state) {
         recipe_particle(&made, support_random_between(&seed, 0, 20), support_random_between(&seed, 0, 20), 1, 0);
     }
     recipe_random_springs(&made, 1500, &solid, &seed);
-    mspring_plan plan = plan_of(&made);
+    support_plan plan = plan_of(&made);
     assert_int_equal(plan.lattice_springs, 0);
     // 7.5 springs to a particle: strands of them are short and few.
     assert_true(plan.irregular_springs > 1000);
@@ -310,7 +310,7 @@ static void sheets_far_off_a_grid_are_webs(void **state) {
     uint64_t seed = 4;
     recipe made = {0};
     add_sheet(&made, 45, 0.2);
-    mspring_plan plan = plan_of(&made);
+    support_plan plan = plan_of(&made);
     assert_int_equal(plan.lattice_count, 1);
     assert_true(plan.lattice_springs > plan.irregular_springs * 4);
     recipe_free(&made);
@@ -342,7 +342,7 @@ static void what_a_network_has_not_it_does_not_hold(void **state) {
         uint64_t seed = 1;
         recipe made = {0};
         recipe_lattice(&made, 10, 10, 0, 0, 1, cases[i].stuff, &seed);
-        mspring_plan plan = plan_of(&made);
+        support_plan plan = plan_of(&made);
         assert_int_equal(plan.has_damping, cases[i].has_damping);
         assert_int_equal(plan.has_relative, cases[i].has_relative);
         recipe_free(&made);

@@ -13,9 +13,9 @@
 
 enum { MOST = 400 };
 
-static mspring_solver_def solver_def(mspring_solver solver, mspring_integrator integrator, uint32_t coarse_period) {
-    mspring_solver_def def;
-    check_ok(mspring_solver_def_init(&def, sizeof def));
+static mspring_settings solver_def(mspring_solver solver, mspring_integrator integrator, uint32_t coarse_period) {
+    mspring_settings def;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
     def.solver = solver;
     def.integrator = integrator;
     def.coarse_period = coarse_period;
@@ -23,12 +23,12 @@ static mspring_solver_def solver_def(mspring_solver solver, mspring_integrator i
     return def;
 }
 
-static mspring_solver_def solvers[5];
+static mspring_settings solvers[5];
 
 static int list_solvers(void **state) {
     (void)state;
     solvers[0] = solver_def(MSPRING_SOLVER_EXPLICIT, 0, 0);
-    solvers[1] = solver_def(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, 3);
+    solvers[1] = solver_def(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_ALPHA, 3);
     solvers[2] = solver_def(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1);
     solvers[3] = solver_def(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 2);
     solvers[4] = solver_def(MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, 0);
@@ -50,7 +50,7 @@ static void push(const mspring_hook_args *args, void *user) {
 
 static void add_hook(mspring_network *network, mspring_phase phase, uint32_t period, float *strength) {
     mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
     def.phase = phase;
     def.period = period;
     def.fn = push;
@@ -60,24 +60,24 @@ static void add_hook(mspring_network *network, mspring_phase phase, uint32_t per
 
 /// Have a network hold all that it can.
 static void use_everything(mspring_network *network) {
-    const uint32_t springs = mspring_network_spring_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
     float values[MOST * 2];
     assert_true(springs <= COUNT_OF(values));
     for (uint32_t i = 0; i < springs; i++) {
         values[i] = i % 7 == 0 ? INFINITY : 0.05f + 0.01f * (float)(i % 5);
     }
-    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, springs, values, 1));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, 0, springs, values, 1));
     for (uint32_t i = 0; i < springs; i++) {
         values[i] = 0.01f;
     }
-    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, springs, values, 1));
+    check_ok(mspring_network_set(network, MSPRING_WARN_STRAIN, NULL, 0, springs, values, 1));
     check_ok(mspring_network_reserve_events(network, 64));
     check_ok(mspring_network_update_components(network, NULL, NULL));
-    check_ok(mspring_network_get_extents(network, values, NULL, NULL, NULL));
+    check_ok(support_get_extents(network, values, NULL, NULL, NULL));
     mspring_floor_def floor;
     const double plane[4] = {0, -3, 0.1, 1};
     const float heights[] = {0, 1, 0, 2, 0};
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = plane;
     floor.plane_count = 1;
     floor.heights = heights;
@@ -90,28 +90,28 @@ static void use_everything(mspring_network *network) {
 
 /// A frame of a game, which does a bit of everything, as a function of the frame's number alone.
 static void run_frame(mspring_network *network, uint32_t frame) {
-    const uint32_t springs = mspring_network_spring_count(network);
-    const uint32_t particles = mspring_network_particle_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
+    const uint32_t particles = mspring_network_count(network, MSPRING_PARTICLES);
     const mspring_id broken[] = {frame * 7 % springs, frame * 13 % springs};
-    check_ok(mspring_network_break_springs(network, broken, 2));
+    check_ok(mspring_network_break_springs(network, broken, 0, 2));
     if (frame % 3 == 1) {
         const mspring_id whole[] = {(frame - 1) * 7 % springs};
-        check_ok(mspring_network_restore_springs(network, whole, 1, 0.5));
+        check_ok(mspring_network_restore_springs(network, whole, 0, 1, 0.5));
     }
     const float mass = 1 + 0.1f * (float)(frame % 10), scale = frame % 2 == 0 ? 0.5f : 1;
-    check_ok(mspring_network_set(network, MSPRING_MASS, frame % particles, 1, &mass, 1));
-    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, frame * 3 % particles, 1, &scale, 1));
+    check_ok(mspring_network_set(network, MSPRING_MASS, NULL, frame % particles, 1, &mass, 1));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, frame * 3 % particles, 1, &scale, 1));
     check_ok(mspring_network_apply_force(network, frame * 11 % particles, 30, 5));
     check_ok(mspring_network_step(network, frame % 6 == 5 ? 0.013 : 0.01));
 }
 
-static mspring_network *make(const recipe *made, const mspring_solver_def *solver,
+static mspring_network *make(const recipe *made, const mspring_settings *solver,
                              const mspring_allocator *allocator, uint32_t worker_count) {
     mspring_network_def def = support_def(-9.8f, 4);
     def.worker_count = worker_count;
     def.allocator = allocator;
     mspring_network *network = recipe_network(made, &def);
-    check_ok(mspring_network_set_solver(network, solver));
+    check_ok(support_set_solver(network, solver));
     return network;
 }
 
@@ -124,7 +124,7 @@ static mspring_network *clone_of(const mspring_network *network) {
 
 static mspring_clone_def clone_def(void) {
     mspring_clone_def def;
-    check_ok(mspring_clone_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_CLONE_DEF, &def, sizeof def));
     return def;
 }
 
@@ -154,7 +154,7 @@ static void clones_go_on_as_their_original(void **state) {
         }
         check_ok(mspring_network_apply_force(network, 3, 200, 0)); // still to act
         mspring_network *clone = clone_of(network);
-        assert_int_equal(mspring_network_memory_used(clone), mspring_network_memory_used(network));
+        assert_int_equal(support_memory_used(clone), support_memory_used(network));
         const uint64_t at_first = support_hash(network);
         assert_int_equal(support_hash(clone), at_first);
 
@@ -191,7 +191,7 @@ static void workers_are_the_clones_own(void **state) {
     const recipe_stuff stuff = {.mass = {1, 2}, .stiffness = {900, 1000}};
     recipe_lattice(&made, 160, 120, 0, 0, 1, &stuff, &seed);
     recipe_disturb(&made, 0.05, 0.5, &seed);
-    mspring_solver_def solver = solver_def(MSPRING_SOLVER_EXPLICIT, 0, 0);
+    mspring_settings solver = solver_def(MSPRING_SOLVER_EXPLICIT, 0, 0);
     solver.substeps = 12;
     for (uint32_t original = 1; original <= 3; original += 2) {
         mspring_network *network = make(&made, &solver, NULL, original);
@@ -201,7 +201,7 @@ static void workers_are_the_clones_own(void **state) {
             mspring_clone_def def = clone_def();
             def.worker_count = i + 1;
             check_ok(mspring_network_clone(network, &def, &clones[i]));
-            assert_in_range(mspring_network_worker_count(clones[i]), 1, i + 1); // 1 where there are no threads
+            assert_in_range(support_worker_count(clones[i]), 1, i + 1); // 1 where there are no threads
         }
         support_steps(network, 3, 0.01);
         for (uint32_t i = 0; i < 3; i++) {
@@ -209,7 +209,7 @@ static void workers_are_the_clones_own(void **state) {
             assert_int_equal(support_hash(clones[i]), support_hash(network));
             // The implicit solver, made by the clone itself.
             solver.solver = MSPRING_SOLVER_IMPLICIT;
-            check_ok(mspring_network_set_solver(clones[i], &solver));
+            check_ok(support_set_solver(clones[i], &solver));
             support_steps(clones[i], 1, 0.01);
             assert_int_equal(support_hash(clones[i]), support_hash(clones[0]));
             solver.solver = MSPRING_SOLVER_EXPLICIT;
@@ -301,7 +301,7 @@ static void no_pointer_leads_into_the_original(void **state) {
             run_frame(network, frame);
         }
         mspring_clone_def def = clone_def();
-        def.flags = MSPRING_CLONE_HOOKS;
+        def.copy_hooks = 1;
         def.allocator = &their_allocator;
         mspring_network *clone = NULL;
         check_ok(mspring_network_clone(network, &def, &clone));
@@ -325,7 +325,7 @@ static void clones_that_fail_leave_nothing(void **state) {
         use_everything(network);
         run_frame(network, 0);
         const uint64_t hash = support_hash(network);
-        const size_t used = mspring_network_memory_used(network);
+        const size_t used = support_memory_used(network);
         mspring_result result = MSPRING_ERROR_MEMORY;
         size_t fail_at = 0;
         while (result != MSPRING_OK) {
@@ -348,7 +348,7 @@ static void clones_that_fail_leave_nothing(void **state) {
             }
             check_watched_clean(&watched);
             assert_int_equal(support_hash(network), hash);
-            assert_int_equal(mspring_network_memory_used(network), used);
+            assert_int_equal(support_memory_used(network), used);
         }
         assert_true(fail_at > 20);
         run_frame(network, 1);
@@ -377,7 +377,7 @@ static void hooks_stay_behind_unless_asked_for(void **state) {
     add_hook(network, MSPRING_PHASE_BEFORE_SUBSTEP, 2, &strength);
     mspring_network *without = clone_of(network), *never_had = make(&made, &solvers[0], NULL, 1);
     mspring_clone_def def = clone_def();
-    def.flags = MSPRING_CLONE_HOOKS;
+    def.copy_hooks = 1;
     check_ok(mspring_network_clone(network, &def, &with_hooks));
     support_steps(network, 3, 0.01);
     support_steps(without, 3, 0.01);
@@ -393,7 +393,7 @@ static void hooks_stay_behind_unless_asked_for(void **state) {
     // Storage has as many places as the original has workers.
     uint32_t calls[16] = {0};
     mspring_hook_def hook;
-    check_ok(mspring_hook_def_init(&hook, sizeof hook));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &hook, sizeof hook));
     hook.fn = push;
     hook.user = &strength;
     hook.storage = calls;
@@ -415,6 +415,102 @@ static void hooks_stay_behind_unless_asked_for(void **state) {
     recipe_free(&made);
 }
 
+/// What a hook or a pool of threads belongs to: how often it was retained and released.
+typedef struct owner {
+    uint32_t retained, released;
+} owner;
+
+static void *retain(void *user) {
+    ((owner *)user)->retained++;
+    return user;
+}
+
+static void release(void *user) {
+    ((owner *)user)->released++;
+}
+
+static void idle(const mspring_hook_args *args, void *user) {
+    (void)args;
+    (void)user;
+}
+
+/// Each network releases the hooks that it has once, when they are removed or it is destroyed; compaction does not.
+static void hooks_are_retained_and_released(void **state) {
+    (void)state;
+    owner shared = {0, 0}, lone = {0, 0};
+    recipe made = recipe_mixed(11);
+    mspring_network *network = make(&made, &solvers[0], NULL, 1), *clone, *without;
+    mspring_hook_def hook = mspring_hook_def_default();
+    mspring_id ids[2];
+    hook.fn = idle;
+    hook.release = release;
+    hook.user = &lone; // no clone may take it
+    check_ok(mspring_network_add_hook(network, &hook, &ids[0]));
+    hook.retain = retain;
+    hook.user = &shared;
+    check_ok(mspring_network_add_hook(network, &hook, &ids[1]));
+    hook.period = 0;
+    check_error(mspring_network_add_hook(network, &hook, NULL), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_network_clone(network, NULL, &without));
+    mspring_network_destroy(without);
+    assert_true(shared.retained == 0 && shared.released == 0 && lone.released == 0);
+    mspring_clone_def def = clone_def();
+    def.copy_hooks = 1;
+    check_ok(mspring_network_clone(network, &def, &clone));
+    assert_true(shared.retained == 1 && lone.retained == 0);
+    check_error(mspring_network_remove_hook(clone, ids[0]), MSPRING_ERROR_ID);
+    const mspring_id broken = 3;
+    check_ok(mspring_network_break_springs(clone, &broken, 0, 1));
+    check_ok(mspring_network_compact(clone));
+    support_steps(clone, 1, 0.01);
+    assert_true(shared.released == 0);
+    mspring_network_destroy(clone);
+    assert_true(shared.released == 1 && lone.released == 0);
+    check_ok(mspring_network_remove_hook(network, ids[1]));
+    assert_int_equal(shared.released, 2);
+    mspring_network_destroy(network);
+    assert_true(shared.released == 2 && lone.released == 1);
+    recipe_free(&made);
+}
+
+static void run_all(uint32_t count, mspring_task_fn fn, void *argument, void *user) {
+    (void)user;
+    for (uint32_t i = 0; i < count; i++)
+        fn(argument, i, 0);
+}
+
+/// A pool is released once by each network that was made with it, and by none that was not made.
+static void tasks_are_released(void **state) {
+    (void)state;
+    owner pool = {0, 0};
+    recipe made = recipe_mixed(11);
+    mspring_tasks tasks = mspring_tasks_default();
+    tasks.run = run_all;
+    tasks.user = &pool;
+    tasks.release = release;
+    mspring_network_def def = support_def(-9.8f, 1);
+    def.tasks = &tasks;
+    mspring_builder *empty = support_builder();
+    mspring_network *network = NULL, *clone, *without;
+    check_error(mspring_network_create(empty, &def, &network), MSPRING_ERROR_ARGUMENT);
+    mspring_builder_destroy(empty);
+    assert_int_equal(pool.released, 0);
+    network = recipe_network(&made, &def);
+    mspring_clone_def own = clone_def();
+    own.tasks = &tasks;
+    check_ok(mspring_network_clone(network, &own, &clone));
+    check_ok(mspring_network_clone(network, NULL, &without));
+    mspring_network_destroy(without);
+    assert_int_equal(pool.released, 0);
+    mspring_network_destroy(clone);
+    assert_int_equal(pool.released, 1);
+    check_ok(mspring_network_compact(network));
+    assert_int_equal(pool.released, 1);
+    mspring_network_destroy(network);
+    assert_int_equal(pool.released, 2);
+    recipe_free(&made);
+}
+
 static void bad_calls_are_refused(void **state) {
     (void)state;
     recipe made = recipe_mixed(11);
@@ -422,14 +518,14 @@ static void bad_calls_are_refused(void **state) {
     mspring_network *const untouched = (mspring_network *)(uintptr_t)16;
     mspring_network *clone = untouched;
     mspring_clone_def def = clone_def();
-    check_error(mspring_clone_def_init(NULL, sizeof def), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_clone_def_init(&def, sizeof def - 1), MSPRING_ERROR_STRUCT);
+    check_error(mspring_init(MSPRING_STRUCT_CLONE_DEF, NULL, sizeof def), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_init(MSPRING_STRUCT_CLONE_DEF, &def, sizeof def - 1), MSPRING_ERROR_STRUCT);
     check_error(mspring_network_clone(NULL, NULL, &clone), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_clone(network, NULL, NULL), MSPRING_ERROR_ARGUMENT);
     def.struct_size--;
     check_error(mspring_network_clone(network, &def, &clone), MSPRING_ERROR_STRUCT);
     def = clone_def();
-    def.flags = 2;
+    def.copy_hooks = 2;
     check_error(mspring_network_clone(network, &def, &clone), MSPRING_ERROR_ARGUMENT);
     def = clone_def();
     def.worker_count = 0;
@@ -454,6 +550,7 @@ int main(void) {
         cmocka_unit_test(clones_go_on_as_their_original),     cmocka_unit_test(workers_are_the_clones_own),
         cmocka_unit_test(no_pointer_leads_into_the_original), cmocka_unit_test(clones_that_fail_leave_nothing),
         cmocka_unit_test(hooks_stay_behind_unless_asked_for), cmocka_unit_test(bad_calls_are_refused),
+        cmocka_unit_test(hooks_are_retained_and_released),    cmocka_unit_test(tasks_are_released),
     };
     return cmocka_run_group_tests(tests, list_solvers, NULL);
 }

@@ -59,7 +59,7 @@ static recipe large_recipe(void) {
 
 /// Change some springs in one way or another, in both networks alike.
 static void change_something(mspring_network *const both[2], uint64_t *seed, saved *kept) {
-    const uint32_t springs = mspring_network_spring_count(both[0]);
+    const uint32_t springs = mspring_network_count(both[0], MSPRING_SPRINGS);
     const uint32_t what = (uint32_t)(support_random(seed) % 10);
     mspring_id list[20];
     float values[20];
@@ -71,32 +71,32 @@ static void change_something(mspring_network *const both[2], uint64_t *seed, sav
         mspring_network *n = both[i];
         switch (what) {
         case 0:
-            check_ok(mspring_network_set_at(n, MSPRING_STIFFNESS, list, 20, values, 1));
+            check_ok(mspring_network_set(n, MSPRING_STIFFNESS, list, 0, 20, values, 1));
             break;
         case 1:
-            check_ok(mspring_network_set_at(n, MSPRING_DAMPING, list, 20, values, 1));
+            check_ok(mspring_network_set(n, MSPRING_DAMPING, list, 0, 20, values, 1));
             break;
         case 2: // from the first on, rest lengths are not shared any more
             for (int j = 0; j < 20 && i == 0; j++) {
                 values[j] += 0.9f;
             }
-            check_ok(mspring_network_set_at(n, MSPRING_REST_LENGTH, list, 20, values, 1));
+            check_ok(mspring_network_set(n, MSPRING_REST_LENGTH, list, 0, 20, values, 1));
             break;
         case 3: // likewise thresholds
             for (int j = 0; j < 20 && i == 0; j++) {
                 values[j] += 5;
             }
-            check_ok(mspring_network_set_at(n, MSPRING_BREAK_STRAIN, list, 20, values, 1));
+            check_ok(mspring_network_set(n, MSPRING_BREAK_STRAIN, list, 0, 20, values, 1));
             break;
         case 4:
-            check_ok(mspring_network_set_at(n, MSPRING_STRESS_STRAIN, list, 20, values, 1));
+            check_ok(mspring_network_set(n, MSPRING_WARN_STRAIN, list, 0, 20, values, 1));
             break;
         case 5: // at once, so that none of them is one that was broken before
-            check_ok(mspring_network_break_springs(n, list, 20));
-            check_ok(mspring_network_restore_springs(n, list + 10, 1, 0.05));
+            check_ok(mspring_network_break_springs(n, list, 0, 20));
+            check_ok(mspring_network_restore_springs(n, list + 10, 0, 1, 0.05));
             break;
         case 6:
-            check_ok(mspring_network_break_springs(n, list, 20));
+            check_ok(mspring_network_break_springs(n, list, 0, 20));
             break;
         case 7: // another substep: all relative springs are derived anew
             support_steps(n, 1, 1.0 / (64 + values[0]));
@@ -284,7 +284,7 @@ static void bits_depend_on_begin_and_finish_alone(void **state) {
                     }
                 }
                 if (way < 0) {
-                    check_ok(aim == 0 ? mspring_network_compact(network) : mspring_network_expand(network));
+                    check_ok(aim == 0 ? mspring_network_compact(network) : support_expand(network));
                 } else {
                     check_ok(mspring_job_run(job, 0, &left));
                     check_ok(mspring_job_finish(network, job));
@@ -320,15 +320,15 @@ static void jobs_become_outdated(void **state) {
         check_ok(mspring_job_begin(network, MSPRING_LAYOUT_COMPACT, &job));
         check_ok(mspring_job_run(job, 50, NULL));
         mspring_spring_def added;
-        check_ok(mspring_spring_def_init(&added, sizeof added));
+        check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &added, sizeof added));
         added.a = made.particle_count - 1;
         added.b = 0;
         if (what == 0) {
-            check_ok(mspring_network_restore_springs(network, &spring, 1, 0));
+            check_ok(mspring_network_restore_springs(network, &spring, 0, 1, 0));
         } else if (what == 1) {
             check_ok(mspring_network_add_springs(network, &added, 1, ids));
         } else if (what == 2) {
-            check_ok(mspring_network_remove_springs(network, &spring, 1));
+            check_ok(mspring_network_remove_springs(network, &spring, 0, 1));
         }
         support_steps(network, 1, 1.0 / 64);
         check_ok(mspring_job_run(job, 0, NULL));

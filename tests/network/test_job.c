@@ -36,15 +36,15 @@ static mspring_network *make(const recipe *made, int solver, uint32_t workers) {
     mspring_network_def def = support_def(-9.8f, 4);
     def.worker_count = workers;
     def.spare_springs = 4;
-    def.guard = MSPRING_GUARD_IMPLICIT;
+    def.settings.guard = MSPRING_GUARD_IMPLICIT;
     mspring_network *network = recipe_network(made, &def);
-    mspring_solver_def asked;
-    check_ok(mspring_solver_def_init(&asked, sizeof asked));
+    mspring_settings asked;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &asked, sizeof asked));
     asked.solver = (mspring_solver)solver;
     asked.substeps = solver == MSPRING_SOLVER_EXPLICIT ? 4 : 1;
-    check_ok(mspring_network_set_solver(network, &asked));
+    check_ok(support_set_solver(network, &asked));
     for (mspring_id s = 0; s < made->spring_count; s += 3) {
-        check_ok(mspring_network_break_springs(network, &s, 1));
+        check_ok(mspring_network_break_springs(network, &s, 0, 1));
     }
     return network;
 }
@@ -54,12 +54,12 @@ static void live(mspring_network *network, uint32_t frame) {
     const mspring_id list[] = {frame * 31 + 1, frame * 57 + 2};
     const float stiffness[] = {0.15f, 0.12f}, lengths[] = {1.05f, 0.95f};
     mspring_network *clone = NULL;
-    check_ok(mspring_network_set_at(network, MSPRING_STIFFNESS, list, 2, stiffness, 1));
-    check_ok(mspring_network_break_springs(network, list, 1));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, list, 0, 2, stiffness, 1));
+    check_ok(mspring_network_break_springs(network, list, 0, 1));
     if (frame == 2) { // rest lengths are not shared any more
-        check_ok(mspring_network_set_at(network, MSPRING_REST_LENGTH, list + 1, 1, lengths, 1));
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, list + 1, 0, 1, lengths, 1));
     }
-    check_ok(mspring_network_set_at(network, MSPRING_BREAK_STRAIN, list, 2, (const float[]){9, 8}, 1));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, list, 0, 2, (const float[]){9, 8}, 1));
     support_steps(network, 1, 1.0 / 64);
     check_ok(mspring_network_clone(network, NULL, &clone));
     mspring_network_destroy(clone);
@@ -129,7 +129,7 @@ static void growth_outdates_a_running_job(void **state) {
     pthread_t thread;
     mspring_spring_def added;
     mspring_id id, broken = 3;
-    check_ok(mspring_spring_def_init(&added, sizeof added));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &added, sizeof added));
     added.a = 1;
     added.b = 900;
     check_ok(mspring_network_compact(network));
@@ -139,9 +139,9 @@ static void growth_outdates_a_running_job(void **state) {
         if (what == 0) {
             check_ok(mspring_network_add_springs(network, &added, 1, &id));
         } else if (what == 1) {
-            check_ok(mspring_network_remove_springs(network, &id, 1));
+            check_ok(mspring_network_remove_springs(network, &id, 0, 1));
         } else { // which takes all springs in
-            check_ok(mspring_network_restore_springs(network, &broken, 1, 0.5));
+            check_ok(mspring_network_restore_springs(network, &broken, 0, 1, 0.5));
         }
         support_steps(network, 2, 1.0 / 64);
         assert_int_equal(pthread_join(thread, NULL), 0);

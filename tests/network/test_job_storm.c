@@ -22,19 +22,19 @@ typedef struct twin {
 static mspring_network *make(const recipe *made, uint64_t seed) {
     mspring_network_def def = support_def(-9.8f, 3);
     def.spare_particles = def.spare_springs = SPARE;
-    def.sleep_speed = seed % 3 == 0 ? 0.01f : 0;
-    def.guard = seed % 2 == 0 ? MSPRING_GUARD_IMPLICIT : MSPRING_GUARD_GROWTH;
+    def.settings.sleep_speed = seed % 3 == 0 ? 0.01f : 0;
+    def.settings.guard = seed % 2 == 0 ? MSPRING_GUARD_IMPLICIT : MSPRING_GUARD_GROWTH;
     def.worker_count = seed % 4 == 1 ? 2 : 1;
     return recipe_network(made, &def);
 }
 
 static mspring_result use_solver(mspring_network *network, uint64_t choice) {
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = (mspring_solver)(choice % 3);
     solver.substeps = solver.solver == MSPRING_SOLVER_EXPLICIT ? 3 : 1 + (uint32_t)(choice / 3 % 2);
     solver.integrator = (mspring_integrator)(choice / 6 % 3);
-    return mspring_network_set_solver(network, &solver);
+    return support_set_solver(network, &solver);
 }
 
 static uint32_t finished, outdated;
@@ -79,30 +79,30 @@ static mspring_result add(mspring_network *network, mspring_id a, uint64_t what)
     mspring_id id;
     if (what % 3 == 0) {
         mspring_particle_def particle;
-        check_ok(mspring_particle_def_init(&particle, sizeof particle));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
         particle.x = (double)(what % 40);
         particle.y = (double)(what % 30);
         return mspring_network_add_particles(network, &particle, 1, &id);
     }
     mspring_spring_def spring;
-    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
     spring.a = a;
-    spring.b = (mspring_id)(what % mspring_network_particle_count(network));
+    spring.b = (mspring_id)(what % mspring_network_count(network, MSPRING_PARTICLES));
     spring.stiffness = 40;
     spring.rest_length = 2;
     return mspring_network_add_springs(network, &spring, 1, &id);
 }
 
 static mspring_result take_away(mspring_network *network, mspring_id particle, mspring_id spring, uint64_t what) {
-    return what % 8 == 0   ? mspring_network_remove_particles(network, &particle, 1)
-           : what % 8 == 1 ? mspring_network_recycle(network)
-                           : mspring_network_remove_springs(network, &spring, 1);
+    return what % 8 == 0   ? mspring_network_remove_particles(network, &particle, 0, 1)
+           : what % 8 == 1 ? mspring_network_reuse_ids(network)
+                           : mspring_network_remove_springs(network, &spring, 0, 1);
 }
 
 static mspring_result happen(twin *t, uint64_t what) {
     mspring_network *network = t->network;
-    const mspring_id particle = (mspring_id)(what / 64 % mspring_network_particle_count(network));
-    const mspring_id spring = (mspring_id)(what / 256 % mspring_network_spring_count(network));
+    const mspring_id particle = (mspring_id)(what / 64 % mspring_network_count(network, MSPRING_PARTICLES));
+    const mspring_id spring = (mspring_id)(what / 256 % mspring_network_count(network, MSPRING_SPRINGS));
     const change *chosen = &changes[what / 128 % CHANGE_COUNT];
     switch (what % 16) {
     case 0:
@@ -127,17 +127,17 @@ static mspring_result happen(twin *t, uint64_t what) {
     case 6:
         return what / 16 % 4 == 0 ? mspring_network_compact(network) : MSPRING_OK;
     case 7:
-        return what / 16 % 4 == 0 ? mspring_network_expand(network) : MSPRING_OK;
+        return what / 16 % 4 == 0 ? support_expand(network) : MSPRING_OK;
     case 8:
     case 9:
-        if (mspring_network_has_particle(network, particle) && mspring_network_has_spring(network, spring)) {
+        if (support_has_particle(network, particle) && support_has_spring(network, spring)) {
             chosen->make(network, particle, spring);
         }
         return MSPRING_OK;
     case 10:
-        return mspring_network_break_springs(network, &spring, 1);
+        return mspring_network_break_springs(network, &spring, 0, 1);
     case 11:
-        return mspring_network_restore_springs(network, &spring, 1, (double)(what / 16 % 3) * 0.03);
+        return mspring_network_restore_springs(network, &spring, 0, 1, (double)(what / 16 % 3) * 0.03);
     case 12:
         return add(network, particle, what / 16);
     case 13:

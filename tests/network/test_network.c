@@ -27,7 +27,7 @@ static mspring_network *const untouched = (mspring_network *)(uintptr_t)16;
     do {                                                                                                           \
         mspring_network *network = untouched;                                                                      \
         check_error(mspring_network_create((builder), (def), &network), (code));                                   \
-        check_contains(mspring_builder_error(builder), (part));                                                    \
+        check_contains(support_builder_error(builder), (part));                                                    \
         assert_ptr_equal(network, untouched);                                                                      \
     } while (0)
 
@@ -36,10 +36,10 @@ static mspring_network *const untouched = (mspring_network *)(uintptr_t)16;
 static void defaults_make_a_network(void **state) {
     (void)state;
     mspring_network *network = support_network(triangle(), NULL);
-    assert_int_equal(mspring_network_particle_count(network), 3);
-    assert_int_equal(mspring_network_spring_count(network), 2);
+    assert_int_equal(mspring_network_count(network, MSPRING_PARTICLES), 3);
+    assert_int_equal(mspring_network_count(network, MSPRING_SPRINGS), 2);
     assert_string_equal(mspring_network_error(network), "");
-    assert_true(mspring_network_memory_used(network) > 0);
+    assert_true(support_memory_used(network) > 0);
     check_ok(mspring_network_step(network, 0.01));
     // The default gravity, until half a substep ago; an ulp or two of 0.1 and of 0.01.
     const double h = 0.01 / support_step_info(network).substeps;
@@ -53,8 +53,8 @@ static void empty_builder_is_refused(void **state) {
     check_no_network(builder, NULL, MSPRING_ERROR_ARGUMENT, "no particle");
     support_particle(builder, 0, 0, 1);
     mspring_network *network = support_network(builder, NULL);
-    assert_int_equal(mspring_network_particle_count(network), 1);
-    assert_int_equal(mspring_network_spring_count(network), 0);
+    assert_int_equal(mspring_network_count(network, MSPRING_PARTICLES), 1);
+    assert_int_equal(mspring_network_count(network, MSPRING_SPRINGS), 0);
     mspring_network_destroy(network);
 }
 
@@ -72,8 +72,8 @@ static void duplicate_springs_are_refused_and_named(void **state) {
         assert_int_equal(support_spring(builder, turned ? 42 : 41, turned ? 41 : 42, 1, 0), 55);
         support_spring(builder, 57, 58, 1, 0);
         check_no_network(builder, NULL, MSPRING_ERROR_DUPLICATE, "41");
-        check_contains(mspring_builder_error(builder), "55");
-        assert_int_equal(mspring_builder_spring_count(builder), 57);
+        check_no_network(builder, NULL, MSPRING_ERROR_DUPLICATE, "55");
+        assert_int_equal(mspring_builder_count(builder, MSPRING_SPRINGS), 57);
         mspring_builder_destroy(builder);
     }
 }
@@ -83,8 +83,8 @@ static void duplicates_inside_lattices_are_found(void **state) {
     const uint16_t cells[4] = {0, 0, 0, 0};
     mspring_material material;
     mspring_lattice_def lattice;
-    check_ok(mspring_material_init(&material, sizeof material));
-    check_ok(mspring_lattice_def_init(&lattice, sizeof lattice));
+    check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &material, sizeof material));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &lattice, sizeof lattice));
     lattice.width = lattice.height = 2;
     lattice.cells = cells;
     lattice.materials = &material;
@@ -93,8 +93,53 @@ static void duplicates_inside_lattices_are_found(void **state) {
     check_ok(mspring_builder_add_lattice(builder, &lattice, NULL));
     support_spring(builder, 3, 0, 5, 0); // the diagonal, which is there as spring 2
     check_no_network(builder, NULL, MSPRING_ERROR_DUPLICATE, "2");
-    check_contains(mspring_builder_error(builder), "6");
+    check_no_network(builder, NULL, MSPRING_ERROR_DUPLICATE, "6");
     mspring_builder_destroy(builder);
+}
+
+/// A chain of calls needs one check: the first failure stays, whatever follows, and is the result of creation.
+static void a_builder_keeps_its_first_failure(void **state) {
+    (void)state;
+    mspring_builder *builder = triangle(), *other = support_builder();
+    mspring_particle_def particle = mspring_particle_def_default();
+    mspring_spring_def spring = mspring_spring_def_default();
+    mspring_network *network = untouched;
+    const uint32_t count = mspring_builder_count(builder, MSPRING_PARTICLES);
+    particle.mass = -7;
+    check_error(mspring_builder_add_particles(builder, &particle, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_builder_error(builder), "-7");
+    spring.a = 0, spring.b = 99;
+    check_error(mspring_builder_add_springs(builder, &spring, 1, NULL), MSPRING_ERROR_ID);
+    particle.mass = 1;
+    check_ok(mspring_builder_add_particles(builder, &particle, 1, NULL)); // goes on
+    assert_int_equal(mspring_builder_count(builder, MSPRING_PARTICLES), count + 1);
+    check_contains(mspring_builder_error(builder), "-7");
+    check_error(mspring_network_create(builder, NULL, &network), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_builder_error(builder), "-7");
+    assert_ptr_equal(network, untouched);
+
+    // Another that would copy it has the failure then, and says whose it is.
+    check_error(mspring_builder_add_copies(other, builder, 1, NULL, NULL, 0, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_builder_error(other), "-7");
+    check_error(mspring_network_create(other, NULL, &network), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_builder_error(other), "-7");
+    mspring_builder_destroy(other);
+    // So has one that was to read what is no archive.
+    other = support_builder();
+    check_error(mspring_builder_read(other, "no archive", 10, NULL), MSPRING_ERROR_SNAPSHOT);
+    check_ok(mspring_builder_add_particles(other, &particle, 1, NULL));
+    check_error(mspring_network_create(other, NULL, &network), MSPRING_ERROR_SNAPSHOT);
+
+    mspring_builder_forget_error(NULL);
+    mspring_builder_forget_error(builder);
+    mspring_builder_forget_error(other);
+    assert_string_equal(mspring_builder_error(builder), "");
+    check_ok(mspring_network_create(builder, NULL, &network));
+    mspring_network_destroy(network);
+    check_ok(mspring_network_create(other, NULL, &network));
+    mspring_network_destroy(network);
+    mspring_builder_destroy(builder);
+    mspring_builder_destroy(other);
 }
 
 static void bad_settings_are_refused(void **state) {
@@ -108,24 +153,24 @@ static void bad_settings_are_refused(void **state) {
         check_no_network(builder, &def, (code), (part));                                                           \
     } while (0)
     for (size_t i = 0; i < COUNT_OF(not_finite); i++) {
-        REFUSED(gravity_x, not_finite[i], MSPRING_ERROR_ARGUMENT, "gravity");
-        REFUSED(gravity_y, not_finite[i], MSPRING_ERROR_ARGUMENT, "gravity");
-        REFUSED(global_damping, not_finite[i], MSPRING_ERROR_ARGUMENT, "damping");
-        REFUSED(max_speed, not_finite[i], MSPRING_ERROR_ARGUMENT, "max_speed");
+        REFUSED(settings.gravity_x, not_finite[i], MSPRING_ERROR_ARGUMENT, "gravity");
+        REFUSED(settings.gravity_y, not_finite[i], MSPRING_ERROR_ARGUMENT, "gravity");
+        REFUSED(settings.global_damping, not_finite[i], MSPRING_ERROR_ARGUMENT, "damping");
+        REFUSED(settings.max_speed, not_finite[i], MSPRING_ERROR_ARGUMENT, "max_speed");
     }
-    REFUSED(global_damping, -1, MSPRING_ERROR_ARGUMENT, "damping");
-    REFUSED(global_damping, 1.1e6f, MSPRING_ERROR_ARGUMENT, "damping");
-    REFUSED(max_speed, 0, MSPRING_ERROR_ARGUMENT, "max_speed");
-    REFUSED(max_speed, -1, MSPRING_ERROR_ARGUMENT, "max_speed");
-    REFUSED(max_speed, 1.1e15f, MSPRING_ERROR_ARGUMENT, "max_speed");
-    REFUSED(solver, 3, MSPRING_ERROR_ARGUMENT, "solver");
-    REFUSED(solver, -1, MSPRING_ERROR_ARGUMENT, "solver");
-    REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
-    REFUSED(substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
-    REFUSED(max_substeps, 0, MSPRING_ERROR_ARGUMENT, "max_substeps");
-    REFUSED(guard, -1, MSPRING_ERROR_ARGUMENT, "guard");
-    REFUSED(guard, MSPRING_GUARD_CLAMP_BOUNDS + 1, MSPRING_ERROR_ARGUMENT, "guard");
-    REFUSED(max_substeps, 1000001, MSPRING_ERROR_ARGUMENT, "max_substeps");
+    REFUSED(settings.global_damping, -1, MSPRING_ERROR_ARGUMENT, "damping");
+    REFUSED(settings.global_damping, 1.1e6f, MSPRING_ERROR_ARGUMENT, "damping");
+    REFUSED(settings.max_speed, 0, MSPRING_ERROR_ARGUMENT, "max_speed");
+    REFUSED(settings.max_speed, -1, MSPRING_ERROR_ARGUMENT, "max_speed");
+    REFUSED(settings.max_speed, 1.1e15f, MSPRING_ERROR_ARGUMENT, "max_speed");
+    REFUSED(settings.solver, 3, MSPRING_ERROR_ARGUMENT, "solver");
+    REFUSED(settings.solver, -1, MSPRING_ERROR_ARGUMENT, "solver");
+    REFUSED(settings.substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
+    REFUSED(settings.substeps, 1000001, MSPRING_ERROR_ARGUMENT, "substeps");
+    REFUSED(settings.max_substeps, 0, MSPRING_ERROR_ARGUMENT, "max_substeps");
+    REFUSED(settings.guard, -1, MSPRING_ERROR_ARGUMENT, "guard");
+    REFUSED(settings.guard, MSPRING_GUARD_CLAMP_BOUNDS + 1, MSPRING_ERROR_ARGUMENT, "guard");
+    REFUSED(settings.max_substeps, 1000001, MSPRING_ERROR_ARGUMENT, "max_substeps");
     REFUSED(simd_level, -1, MSPRING_ERROR_ARGUMENT, "simd_level");
     REFUSED(simd_level, MSPRING_SIMD_WASM + 1, MSPRING_ERROR_ARGUMENT, "simd_level");
     REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_network_def");
@@ -155,13 +200,13 @@ static void bad_solver_is_refused(void **state) {
     (void)state;
     mspring_network_def def = support_def(-9.8f, 2);
     mspring_network *network = support_network(triangle(), &def), *twin = support_network(triangle(), &def);
-    mspring_solver_def good;
-    check_ok(mspring_solver_def_init(&good, sizeof good));
+    mspring_settings good;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &good, sizeof good));
 #define REFUSED(field, value, code, part)                                                                          \
     do {                                                                                                           \
-        mspring_solver_def solver = good;                                                                          \
+        mspring_settings solver = good;                                                                            \
         solver.field = (value);                                                                                    \
-        check_error(mspring_network_set_solver(network, &solver), (code));                                         \
+        check_error(support_set_solver(network, &solver), (code));                                                 \
         check_contains(mspring_network_error(network), (part));                                                    \
     } while (0)
     REFUSED(substeps, 0, MSPRING_ERROR_ARGUMENT, "substeps");
@@ -170,8 +215,8 @@ static void bad_solver_is_refused(void **state) {
     REFUSED(max_substeps, 1000001, MSPRING_ERROR_ARGUMENT, "max_substeps");
     REFUSED(solver, 3, MSPRING_ERROR_ARGUMENT, "solver");
     REFUSED(solver, -7, MSPRING_ERROR_ARGUMENT, "solver");
-    REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_solver_def");
-    REFUSED(struct_size, sizeof good + 2, MSPRING_ERROR_STRUCT, "mspring_solver_def");
+    REFUSED(struct_size, 0, MSPRING_ERROR_STRUCT, "mspring_settings");
+    REFUSED(struct_size, sizeof good + 2, MSPRING_ERROR_STRUCT, "mspring_settings");
     good.solver = MSPRING_SOLVER_IMPLICIT;
     REFUSED(integrator, -1, MSPRING_ERROR_ARGUMENT, "integrator");
     REFUSED(integrator, MSPRING_INTEGRATOR_EULER + 1, MSPRING_ERROR_ARGUMENT, "integrator");
@@ -188,9 +233,9 @@ static void bad_solver_is_refused(void **state) {
     good.solver = MSPRING_SOLVER_DIRECT;
     REFUSED(integrator, MSPRING_INTEGRATOR_EULER + 1, MSPRING_ERROR_ARGUMENT, "integrator");
 #undef REFUSED
-    check_error(mspring_network_set_solver(network, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(support_set_solver(network, NULL), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "NULL");
-    check_error(mspring_network_set_solver(NULL, &good), MSPRING_ERROR_ARGUMENT);
+    check_error(support_set_solver(NULL, &good), MSPRING_ERROR_ARGUMENT);
 
     // Still two substeps.
     support_steps(network, 5, 0.02);
@@ -206,10 +251,10 @@ static void substeps_are_shorter_steps(void **state) {
     mspring_network *network = support_network(triangle(), &def), *twin = support_network(triangle(), &def);
     support_kick(network, 2, 3);
     support_kick(twin, 2, 3);
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.substeps = 8;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     support_steps(network, 10, 0.125); // a power of two: dt / 8 is exact
     support_steps(twin, 80, 0.125 / 8);
     assert_int_equal(support_hash(network), support_hash(twin));
@@ -244,10 +289,10 @@ static void bad_gravity_and_damping_are_refused(void **state) {
 
 static void null_network_has_nothing(void **state) {
     (void)state;
-    assert_int_equal(mspring_network_particle_count(NULL), 0);
-    assert_int_equal(mspring_network_spring_count(NULL), 0);
-    assert_int_equal(mspring_network_memory_used(NULL), 0);
-    assert_int_equal(mspring_network_simd_level(NULL), MSPRING_SIMD_AUTO);
+    assert_int_equal(mspring_network_count(NULL, MSPRING_PARTICLES), 0);
+    assert_int_equal(mspring_network_count(NULL, MSPRING_SPRINGS), 0);
+    assert_int_equal(support_memory_used(NULL), 0);
+    assert_int_equal(support_simd_level(NULL), MSPRING_SIMD_AUTO);
     assert_string_equal(mspring_network_error(NULL), "");
     mspring_network_destroy(NULL);
 }
@@ -255,26 +300,19 @@ static void null_network_has_nothing(void **state) {
 static void plan_counts_what_is_there(void **state) {
     (void)state;
     mspring_network *network = support_network(triangle(), NULL);
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
-    assert_int_equal(plan.struct_size, sizeof plan);
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     assert_int_equal(plan.particle_count, 3);
     assert_int_equal(plan.spring_count, 2);
     assert_int_equal(plan.lattice_particles + plan.chain_particles + plan.loose_particles, 3);
     assert_int_equal(plan.lattice_springs + plan.chain_springs + plan.irregular_springs, 2);
     assert_int_equal(plan.has_damping, 0);
     assert_int_equal(plan.has_relative, 0);
-    assert_int_equal(plan.simd_level, mspring_network_simd_level(network));
+    assert_int_equal(plan.simd_level, support_simd_level(network));
     assert_true(plan.slot_count >= 3);
 
-    mspring_plan before = plan;
-    check_error(mspring_network_get_plan(NULL, &plan), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_plan(network, NULL), MSPRING_ERROR_ARGUMENT);
-    plan.struct_size = 0;
-    check_error(mspring_network_get_plan(network, &plan), MSPRING_ERROR_STRUCT);
-    plan.struct_size = sizeof plan + 2;
-    check_error(mspring_network_get_plan(network, &plan), MSPRING_ERROR_STRUCT);
-    plan.struct_size = sizeof plan;
+    support_plan before = plan;
+    check_error(support_get_plan(NULL, &plan), MSPRING_ERROR_ARGUMENT);
     assert_memory_equal(&plan, &before, sizeof plan);
     mspring_network_destroy(network);
 }
@@ -289,7 +327,7 @@ static void precise_places_begin_on_the_grid(void **state) {
     def.flags = MSPRING_NETWORK_PRECISE;
     mspring_network *network = support_network(builder, &def);
     mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_get_view(network, &view));
     for (mspring_id p = a; p <= b; p++) {
         const double x = ldexp((double)view.x[view.slot_of_particle[p]], 22);
         assert_true(x == floor(x));
@@ -304,6 +342,7 @@ int main(void) {
         cmocka_unit_test(empty_builder_is_refused),
         cmocka_unit_test(duplicate_springs_are_refused_and_named),
         cmocka_unit_test(duplicates_inside_lattices_are_found),
+        cmocka_unit_test(a_builder_keeps_its_first_failure),
         cmocka_unit_test(bad_settings_are_refused),
         cmocka_unit_test(bad_solver_is_refused),
         cmocka_unit_test(substeps_are_shorter_steps),

@@ -24,25 +24,31 @@ static mspring_builder *rope(void) {
 
 static mspring_network_def resting_def(void) {
     mspring_network_def def = support_def(-9.8f, 8);
-    def.global_damping = 4;
+    def.settings.global_damping = 4;
     return def;
 }
 
 static mspring_network *make(float sleep_speed) {
     mspring_network_def def = resting_def();
-    def.sleep_speed = sleep_speed;
+    def.settings.sleep_speed = sleep_speed;
     return support_network(rope(), &def);
 }
 
-static const mspring_settings others = {.struct_size = sizeof others,
-                                        .guard = MSPRING_GUARD_CLAMP,
-                                        .gravity_x = 1,
-                                        .gravity_y = -2,
-                                        .global_damping = 3,
-                                        .max_speed = 1e5f,
-                                        .sleep_speed = 0.25f,
-                                        .sleep_time = 2,
-                                        .relax_fraction = 0.5f};
+static mspring_settings others(void) {
+    mspring_settings made = mspring_settings_default();
+    made.guard = MSPRING_GUARD_CLAMP;
+    made.substeps = 5;
+    made.max_substeps = 50;
+    made.most_work = 7;
+    made.gravity_x = 1;
+    made.gravity_y = -2;
+    made.global_damping = 3;
+    made.max_speed = 1e5f;
+    made.sleep_speed = 0.25f;
+    made.sleep_time = 2;
+    made.relax_fraction = 0.5f;
+    return made;
+}
 
 static void check_same(const mspring_settings *a, const mspring_settings *b) {
     assert_memory_equal(a, b, sizeof *a);
@@ -51,30 +57,23 @@ static void check_same(const mspring_settings *a, const mspring_settings *b) {
 static void what_was_set_is_read(void **state) {
     (void)state;
     mspring_network_def def = resting_def();
-    def.gravity_x = 2;
-    def.sleep_time = 7;
-    def.guard = MSPRING_GUARD_RETRY;
+    def.settings.gravity_x = 2;
+    def.settings.sleep_time = 7;
+    def.settings.guard = MSPRING_GUARD_RETRY;
     mspring_network *network = support_network(rope(), &def);
-    const mspring_settings first = {.struct_size = sizeof first,
-                                    .guard = MSPRING_GUARD_RETRY,
-                                    .gravity_x = 2,
-                                    .gravity_y = -9.8f,
-                                    .global_damping = 4,
-                                    .max_speed = 1e6f,
-                                    .sleep_time = 7,
-                                    .relax_fraction = 0.8f};
     mspring_settings now = support_settings(network);
-    check_same(&now, &first);
-    check_ok(mspring_network_set_settings(network, &others));
+    check_same(&now, &def.settings);
+    const mspring_settings given = others();
+    check_ok(mspring_network_set_settings(network, &given));
     now = support_settings(network);
-    check_same(&now, &others);
+    check_same(&now, &given);
     mspring_network_destroy(network);
 }
 
 static void snapshots_and_clones_have_them(void **state) {
     (void)state;
     mspring_network *network = make(0), *other = make(0.01f), *clone;
-    mspring_settings settings = others;
+    mspring_settings settings = others();
     for (int i = 0; i < 2; i++) {
         check_ok(mspring_network_set_settings(network, &settings));
         support_bring(network, other, i ? MSPRING_SNAPSHOT_ALL : MSPRING_SNAPSHOT_FRAME);
@@ -112,28 +111,50 @@ static void one_bad_value_refuses_all(void **state) {
     mspring_network *network = make(0);
     const mspring_settings before = support_settings(network);
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
-        mspring_settings settings = others;
+        mspring_settings settings = others();
         memcpy((char *)&settings + bad[i].at, &bad[i].value, sizeof bad[i].value);
         check_error(mspring_network_set_settings(network, &settings), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), bad[i].part);
         const mspring_settings now = support_settings(network);
         check_same(&now, &before);
     }
-    mspring_settings settings = others;
+    mspring_settings settings = others();
     settings.guard = 77;
     check_error(mspring_network_set_settings(network, &settings), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "guard is 77");
-    settings = others;
+    settings = others();
     settings.struct_size = 8;
     check_error(mspring_network_set_settings(network, &settings), MSPRING_ERROR_STRUCT);
     check_error(mspring_network_get_settings(network, &settings), MSPRING_ERROR_STRUCT);
     check_error(mspring_network_set_settings(network, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_settings(NULL, &others), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set_settings(NULL, &settings), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_settings(NULL, &settings), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_settings(network, NULL), MSPRING_ERROR_ARGUMENT);
     const mspring_settings now = support_settings(network);
     check_same(&now, &before);
     mspring_network_destroy(network);
+}
+
+/// Settings stand at the end of a network's definition, with a size of their own that has to fit.
+static void nested_settings_have_their_size(void **state) {
+    (void)state;
+    const uint32_t whole = sizeof(mspring_settings);
+    const uint32_t sizes[] = {0, 8, whole - 4, whole + 4};
+    mspring_builder *builder = rope();
+    mspring_network *network = NULL;
+    mspring_network_def def = resting_def();
+    assert_int_equal(def.settings.struct_size, whole);
+    for (size_t i = 0; i < COUNT_OF(sizes); i++) {
+        def.settings.struct_size = sizes[i];
+        check_error(mspring_network_create(builder, &def, &network), MSPRING_ERROR_STRUCT);
+        check_contains(support_builder_error(builder), "settings.struct_size");
+    }
+    def.settings = others();
+    check_ok(mspring_network_create(builder, &def, &network));
+    const mspring_settings now = support_settings(network);
+    check_same(&now, &def.settings);
+    mspring_network_destroy(network);
+    mspring_builder_destroy(builder);
 }
 
 static void no_memory_changes_nothing(void **state) {
@@ -143,11 +164,11 @@ static void no_memory_changes_nothing(void **state) {
         watched_allocator watched = {0};
         const mspring_allocator allocator = watched_interface(&watched);
         mspring_network_def def = resting_def();
-        def.guard = MSPRING_GUARD_BOUNDS;
+        def.settings.guard = MSPRING_GUARD_BOUNDS;
         def.allocator = &allocator;
         mspring_network *network = support_network(rope(), &def);
         const mspring_settings before = support_settings(network);
-        mspring_settings settings = others;
+        mspring_settings settings = others();
         settings.guard = MSPRING_GUARD_IMPLICIT;
         watched.fail_at = watched.calls + failing;
         result = mspring_network_set_settings(network, &settings);
@@ -172,14 +193,14 @@ static void the_same_settings_wake_nobody(void **state) {
     settings.max_speed = 1e5f;
     settings.guard = MSPRING_GUARD_BOUNDS;
     check_ok(mspring_network_set_settings(network, &settings));
-    assert_int_equal(mspring_network_is_asleep(network), 1);
+    assert_int_equal(support_is_asleep(network), 1);
     float *const waking[] = {&settings.gravity_x, &settings.gravity_y, &settings.sleep_speed, &settings.sleep_time,
                              &settings.relax_fraction};
     for (size_t i = 0; i < COUNT_OF(waking); i++) {
         support_fall_asleep(network, DT);
         *waking[i] += 0.125f;
         check_ok(mspring_network_set_settings(network, &settings));
-        assert_int_equal(mspring_network_is_asleep(network), 0);
+        assert_int_equal(support_is_asleep(network), 0);
     }
     mspring_network_destroy(network);
 }
@@ -196,22 +217,22 @@ static void sleep_can_be_switched(void **state) {
     check_ok(mspring_network_set_settings(switched, &settings));
     check_ok(mspring_network_wake(made));
     int steps = 10;
-    for (; !mspring_network_is_asleep(made) && steps < 100 * 64; steps++) {
+    for (; !support_is_asleep(made) && steps < 100 * 64; steps++) {
         support_steps(switched, 1, DT);
         support_steps(made, 1, DT);
         support_steps(never, 1, DT);
         assert_int_equal(support_hash(switched), support_hash(made));
     }
-    assert_int_equal(mspring_network_is_asleep(made), 1);
-    assert_int_equal(mspring_network_is_asleep(switched), 1);
+    assert_int_equal(support_is_asleep(made), 1);
+    assert_int_equal(support_is_asleep(switched), 1);
 
     settings.sleep_speed = 0;
     check_ok(mspring_network_set_settings(switched, &settings));
     for (int i = 0; i < 200; i++) {
         support_steps(switched, 1, DT);
-        assert_int_equal(mspring_network_is_asleep(switched), 0);
+        assert_int_equal(support_is_asleep(switched), 0);
     }
-    assert_int_equal(mspring_network_is_asleep(never), 0);
+    assert_int_equal(support_is_asleep(never), 0);
     mspring_network_destroy(switched);
     mspring_network_destroy(made);
     mspring_network_destroy(never);
@@ -239,7 +260,7 @@ static void hooks_may_only_read_them(void **state) {
 /// What was set is read. Setting that again changes no bit, and wakes nobody.
 static void the_solver_is_read_and_set_again(void **state) {
     (void)state;
-    const mspring_solver_def solvers[] = {
+    const mspring_settings solvers[] = {
         {.solver = MSPRING_SOLVER_EXPLICIT, .substeps = 8, .max_substeps = 77},
         {.solver = MSPRING_SOLVER_EXPLICIT, .substeps = MSPRING_SUBSTEPS_AUTO, .max_substeps = 500},
         {.solver = MSPRING_SOLVER_IMPLICIT,
@@ -258,13 +279,13 @@ static void the_solver_is_read_and_set_again(void **state) {
     };
     for (size_t i = 0; i < COUNT_OF(solvers); i++) {
         mspring_network *network = make(0.01f), *twin = make(0.01f);
-        mspring_solver_def def = solvers[i];
+        mspring_settings def = solvers[i];
         def.struct_size = sizeof def;
         const bool is_implicit = def.solver == MSPRING_SOLVER_IMPLICIT;
-        check_ok(mspring_network_set_solver(network, &def));
-        check_ok(mspring_network_set_solver(twin, &def));
+        check_ok(support_set_solver(network, &def));
+        check_ok(support_set_solver(twin, &def));
         for (int step = 0; step < 100; step++) {
-            const mspring_solver_def now = support_solver(network);
+            const mspring_settings now = support_solver(network);
             assert_int_equal(now.solver, def.solver);
             assert_int_equal(now.substeps, def.substeps);
             assert_int_equal(now.max_substeps, def.max_substeps);
@@ -276,14 +297,14 @@ static void the_solver_is_read_and_set_again(void **state) {
             assert_true(!is_implicit || now.residual == def.residual);
             assert_int_equal(now.tile_size, def.tile_size);
             assert_true(now.coarse_period == def.coarse_period || def.coarse_period == 0);
-            check_ok(mspring_network_set_solver(network, step % 2 ? &now : &def));
+            check_ok(support_set_solver(network, step % 2 ? &now : &def));
             support_steps(network, 1, DT);
             support_steps(twin, 1, DT);
             assert_int_equal(support_hash(network), support_hash(twin));
         }
         support_fall_asleep(network, DT);
-        check_ok(mspring_network_set_solver(network, &def));
-        assert_int_equal(mspring_network_is_asleep(network), 1);
+        check_ok(support_set_solver(network, &def));
+        assert_int_equal(support_is_asleep(network), 1);
         mspring_network_destroy(network);
         mspring_network_destroy(twin);
     }
@@ -297,7 +318,7 @@ static void the_floor_is_read_and_set_again(void **state) {
     mspring_floor_def now = {.struct_size = sizeof now}, def;
     check_ok(mspring_network_get_floor(network, &now));
     assert_int_equal(now.plane_count + now.height_count, 0);
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.planes = planes[0];
     def.plane_count = 2;
     def.heights = heights;
@@ -321,11 +342,11 @@ static void the_floor_is_read_and_set_again(void **state) {
     }
     support_fall_asleep(network, DT);
     check_ok(mspring_network_set_floor(network, &def));
-    assert_int_equal(mspring_network_is_asleep(network), 1);
+    assert_int_equal(support_is_asleep(network), 1);
     check_ok(mspring_network_get_floor(network, &now));
     now.friction = 0.5f; // with the network's own heights
     check_ok(mspring_network_set_floor(network, &now));
-    assert_int_equal(mspring_network_is_asleep(network), 0);
+    assert_int_equal(support_is_asleep(network), 0);
     check_ok(mspring_network_clone(network, NULL, &clone));
     mspring_network_destroy(network);
     check_ok(mspring_network_get_floor(clone, &now));
@@ -343,6 +364,7 @@ int main(void) {
         cmocka_unit_test(what_was_set_is_read),
         cmocka_unit_test(snapshots_and_clones_have_them),
         cmocka_unit_test(one_bad_value_refuses_all),
+        cmocka_unit_test(nested_settings_have_their_size),
         cmocka_unit_test(no_memory_changes_nothing),
         cmocka_unit_test(the_same_settings_wake_nobody),
         cmocka_unit_test(sleep_can_be_switched),

@@ -3,10 +3,7 @@
 /// fields of other parts by the name of the part.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_batch.h>
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,27 +23,23 @@ static void check_refused(mspring_result result, const char *what, const char *m
 // Two particles and a spring.
 static mspring_result create(uint32_t flags, float yield_strain, float hardening, mspring_builder **builder,
                              mspring_network **network) {
-    mspring_particle_def particle;
-    mspring_spring_def spring;
-    mspring_network_def def;
-    mspring_particle_def_init(&particle, sizeof particle);
-    mspring_spring_def_init(&spring, sizeof spring);
+    mspring_particle_def particles[2] = {mspring_particle_def_default(), mspring_particle_def_default()};
+    mspring_spring_def spring = mspring_spring_def_default();
+    mspring_network_def def = mspring_network_def_default();
+    particles[1].x = 1;
     spring.a = 0;
     spring.b = 1;
     spring.stiffness = 1000.0f;
     spring.flags = flags;
     spring.yield_strain = yield_strain;
     spring.hardening = hardening;
-    mspring_network_def_init(&def, sizeof def);
     def.spare_springs = 1;
-    mspring_result result = mspring_builder_create(NULL, builder);
-    for (int i = 0; i < 2 && result == MSPRING_OK; ++i) {
-        particle.x = i;
-        result = mspring_builder_add_particle(*builder, &particle, NULL);
-    }
-    if (result == MSPRING_OK)
-        result = mspring_builder_add_spring(*builder, &spring, NULL);
-    return result == MSPRING_OK ? mspring_network_create(*builder, &def, network) : result;
+    const mspring_result result = mspring_builder_create(NULL, builder);
+    if (result != MSPRING_OK)
+        return result;
+    mspring_builder_add_particles(*builder, particles, 2, NULL);
+    mspring_builder_add_springs(*builder, &spring, 1, NULL);
+    return mspring_network_create(*builder, &def, network);
 }
 
 static void check_spring(uint32_t flags, float yield_strain, float hardening, const char *what) {
@@ -65,8 +58,7 @@ int main(void) {
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
     mspring_id added = 0;
-    mspring_spring_def spring;
-    const mspring_id first = 0;
+    mspring_spring_def spring = mspring_spring_def_default();
     float value = 0.1f;
     check((mspring_features() & (left_out | is_there)) == is_there, "features", "");
 
@@ -79,11 +71,10 @@ int main(void) {
           builder ? mspring_builder_error(builder) : "");
     if (!network)
         return 1;
-    check_refused(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, 1, &value, 1), "property",
+    check_refused(mspring_network_set(network, MSPRING_YIELD_STRAIN, NULL, 0, 1, &value, 1), "property",
                   mspring_network_error(network));
-    check(mspring_network_remove_springs(network, &first, 1) == MSPRING_OK, "remove",
+    check(mspring_network_remove_springs(network, NULL, 0, 1) == MSPRING_OK, "remove",
           mspring_network_error(network));
-    mspring_spring_def_init(&spring, sizeof spring);
     spring.a = 0;
     spring.b = 1;
     spring.yield_strain = 0.1f;

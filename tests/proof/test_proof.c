@@ -36,11 +36,11 @@ static mspring_network *strip(mspring_solver solver, mspring_simd level, uint32_
         }
     }
     mspring_network_def def = support_def(0, substeps);
-    def.solver = solver;
+    def.settings.solver = solver;
     def.simd_level = level;
     def.worker_count = workers;
-    def.global_damping = damping;
-    def.iterations = 200; // of conjugate gradients: exact, but for rounding
+    def.settings.global_damping = damping;
+    def.settings.iterations = 200; // of conjugate gradients: exact, but for rounding
     mspring_network *network = support_network(builder, &def);
     for (mspring_id i = 0; i < PARTICLES; i++) {
         if (i % WIDTH + 1 < WIDTH && i + WIDTH < PARTICLES) {
@@ -62,14 +62,14 @@ static void stretch(mspring_network *network) {
         const support_point p = support_position(network, i);
         const double x = 1.1 * p.x;
         const float vx = 3 - 0.5f * (float)p.y, vy = 1 + 0.5f * (float)p.x;
-        check_ok(mspring_network_set_positions(network, i, 1, &x, &p.y, 1));
-        check_ok(mspring_network_set_velocities(network, i, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_positions(network, NULL, i, 1, &x, &p.y, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, i, 1, &vx, &vy, 1));
     }
 }
 
 static double energy_of(const mspring_network *network) {
     double kinetic, elastic;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
+    check_ok(support_get_energy(network, &kinetic, &elastic, NULL));
     return kinetic + elastic;
 }
 
@@ -108,10 +108,10 @@ static void motion_is_that_of_short_substeps(void **state) {
             strip(solver < 0 ? MSPRING_SOLVER_EXPLICIT : (mspring_solver)solver, MSPRING_SIMD_AUTO, substeps, 1, 0);
         double px, py, angular, now_x, now_y, now_angular, worst = 0;
         stretch(network);
-        check_ok(mspring_network_momentum(network, &px, &py, &angular));
+        check_ok(support_get_momentum(network, &px, &py, &angular));
         const double before = energy_of(network);
         support_steps(network, 24, DT); // two and a half oscillations along the strip
-        check_ok(mspring_network_momentum(network, &now_x, &now_y, &now_angular));
+        check_ok(support_get_momentum(network, &now_x, &now_y, &now_angular));
         // Each substep rounds 15 velocities of 3 m/s and 2 kg to floats: 1e-6 N s at random, 1,536 times.
         check_near(now_x, px, 2e-4);
         check_near(now_y, py, 2e-4);
@@ -138,13 +138,13 @@ static void long_substeps_are_stable(void **state) {
         mspring_network *network = strip((mspring_solver)solver, MSPRING_SIMD_AUTO, 1, 1, 0);
         double px, py, now_x, now_y;
         stretch(network);
-        check_ok(mspring_network_momentum(network, &px, &py, NULL));
+        check_ok(support_get_momentum(network, &px, &py, NULL));
         const double before = energy_of(network);
         for (int step = 0; step < 200; step++) {
             support_steps(network, 1, 1.0 / 8);
             assert_true(energy_of(network) < before * (1 + 1e-3));
         }
-        check_ok(mspring_network_momentum(network, &now_x, &now_y, NULL));
+        check_ok(support_get_momentum(network, &now_x, &now_y, NULL));
         check_near(now_x, px, 2e-4);
         check_near(now_y, py, 2e-4);
         destroy(network);
@@ -162,11 +162,11 @@ static void wind_and_triangles_go_together(void **state) {
             double px, now_x;
             check_ok(mspringi_field_reserve(network, &network->forces.base));
             stretch(network);
-            check_ok(mspring_network_momentum(network, &px, NULL, NULL));
+            check_ok(support_get_momentum(network, &px, NULL, NULL));
             house_wind_force = 3;
             support_steps(network, 16, DT);
             house_wind_force = 0;
-            check_ok(mspring_network_momentum(network, &now_x, NULL, NULL));
+            check_ok(support_get_momentum(network, &now_x, NULL, NULL));
             // p' = F - b p over a quarter of a second; velocities of explicit steps are half a substep old.
             const double decay = exp(-0.5 * 0.25), all = 3.0 * PARTICLES;
             check_near(now_x, px * decay + all * (1 - decay) / 0.5, all * DT / 8);
@@ -183,7 +183,7 @@ static void their_border_is_found(void **state) {
     for (int above = 0; above < 2; above++) {
         mspring_network *network = strip(MSPRING_SOLVER_EXPLICIT, MSPRING_SIMD_AUTO, 1, 1, 0);
         double now, any_shape, worst = 0;
-        check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+        check_ok(mspring_network_get_stable_dt(network, &now, &any_shape));
         print_message("stable up to %.5f s, in any shape to %.5f\n", now, any_shape);
         assert_true(any_shape <= now && any_shape > 0.5 * now);
         support_kick(network, PARTICLES / 2, 1e-4f);
@@ -205,12 +205,12 @@ static void it_settles(void **state) {
     const mspring_id corners[] = {PARTICLES - WIDTH, PARTICLES - 1};
     const float pinned = 0;
     mspring_settings settings;
-    check_ok(mspring_settings_init(&settings, sizeof settings));
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &settings, sizeof settings));
     check_ok(mspring_network_get_settings(network, &settings));
     settings.gravity_y = -9.8f;
     check_ok(mspring_network_set_settings(network, &settings));
     for (int i = 0; i < 2; i++) {
-        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, corners[i], 1, &pinned, 1));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, corners[i], 1, &pinned, 1));
     }
     check_ok(mspring_network_settle(network, NULL, &settled));
     print_message("%u iterations, moved by %.3f m\n", settled.iterations, settled.displacement);

@@ -36,7 +36,7 @@ static void two_masses_have_their_closed_form(void **state) {
         support_particle(builder, ways[i] + 4, 1, 3);
         mspring_network *network = loose(builder, MSPRING_NETWORK_POSES);
         const float vx[] = {0.5f, 0.5f}, vy[] = {-6, 2};
-        check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, 0, 2, vx, vy, 1));
         const mspring_body body = body_of(network, 0, 2);
         assert_int_equal(body.particle_count, 2);
         assert_int_equal(body.head, 0);
@@ -63,7 +63,7 @@ static void nothing_is_a_body_too(void **state) {
     body = body_of(network, 1, 1);
     assert_true(body.x == 9 && body.inertia == 0 && body.spin == 0 && body.angle == 0 && body.mass == 2);
     const mspring_id one = 1, both[] = {1, 0, 1};
-    check_ok(mspring_network_remove_particles(network, &one, 1));
+    check_ok(mspring_network_remove_particles(network, &one, 0, 1));
     body = body_of(network, 0, 2); // ranges leave out what is removed
     assert_int_equal(body.particle_count, 1);
     assert_true(body.x == 7);
@@ -124,7 +124,7 @@ static void any_list_has_its_sums(void **state) {
             ids[i] = (mspring_id)(support_random(&draws) % made.particle_count);
         }
         mspring_body body = {.struct_size = sizeof body};
-        check_ok(mspring_network_get_body(network, ids, 77, COUNT_OF(ids), &body));
+        check_ok(mspring_network_get_body(network, ids, 0, COUNT_OF(ids), &body));
         const sums s = sums_of(network, &made, ids, COUNT_OF(ids));
         // 1e-9: velocities have second words that are not read, of 3e-8 of speeds of some m/s over 60 particles.
         const double slack = 1e-6 * (double)s.mass;
@@ -163,7 +163,7 @@ static void turn(mspring_network *network, double angle, double away) {
         const double x = at.x - away, y = at.y;
         const double turned_x = away + 5 + x * cos(angle) - y * sin(angle),
                      turned_y = x * sin(angle) + y * cos(angle);
-        check_ok(mspring_network_set_positions(network, p, 1, &turned_x, &turned_y, 1));
+        check_ok(mspring_network_set_positions(network, NULL, p, 1, &turned_x, &turned_y, 1));
     }
 }
 
@@ -194,7 +194,7 @@ static void a_bent_body_has_the_best_turn(void **state) {
     for (mspring_id p = 0; p < SOME; p++) {
         support_point at = support_position(network, p);
         at.x += support_random_between(&seed, -0.5, 0.5), at.y += support_random_between(&seed, -0.5, 0.5);
-        check_ok(mspring_network_set_positions(network, p, 1, &at.x, &at.y, 1));
+        check_ok(mspring_network_set_positions(network, NULL, p, 1, &at.x, &at.y, 1));
     }
     const mspring_body now = body_of(network, 0, SOME), before = body_of(posed, 0, SOME);
     double least[3] = {0};
@@ -203,7 +203,7 @@ static void a_bent_body_has_the_best_turn(void **state) {
         for (mspring_id p = 0; p < SOME; p++) {
             const support_point at = support_position(network, p), from = support_position(posed, p);
             float mass;
-            check_ok(mspring_network_get(network, MSPRING_MASS, p, 1, &mass, 1));
+            check_ok(mspring_network_get(network, MSPRING_MASS, NULL, p, 1, &mass, 1));
             const double qx = from.x - before.x, qy = from.y - before.y;
             const double dx = at.x - now.x - (qx * cos(angle) - qy * sin(angle));
             const double dy = at.y - now.y - (qx * sin(angle) + qy * cos(angle));
@@ -223,28 +223,28 @@ static void places_come_along(void **state) {
                     *same = cloud(0, MSPRING_NETWORK_POSES, 4);
     mspring_particle_def def;
     mspring_id id, other;
-    check_ok(mspring_particle_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def));
     turn(network, 0.5, 0);
     def.x = 9;
     check_ok(mspring_network_add_particles(network, &def, 1, &id));
     assert_int_equal(id, SOME);
     const double x = 9 + 2, y = 1; // no turn of its own
-    check_ok(mspring_network_set_positions(network, id, 1, &x, &y, 1));
+    check_ok(mspring_network_set_positions(network, NULL, id, 1, &x, &y, 1));
     const double angle = body_of(network, 0, SOME + 1).angle;
     assert_true(fabs(angle - 0.5) > 1e-3 && fabs(angle - 0.5) < 0.5);
     check_ok(mspring_network_clone(network, NULL, &clone));
     assert_true(body_of(clone, 0, SOME + 1).angle == angle);
     support_bring(network, same, MSPRING_SNAPSHOT_ALL);
     assert_true(body_of(same, 0, SOME + 1).angle == angle);
-    check_ok(mspring_network_remove_particles(clone, &id, 1));
-    check_ok(mspring_network_recycle(clone));
+    check_ok(mspring_network_remove_particles(clone, &id, 0, 1));
+    check_ok(mspring_network_reuse_ids(clone));
     def.x = 20;
     check_ok(mspring_network_add_particles(clone, &def, 1, &other));
     assert_int_equal(other, id);
     assert_true(body_of(clone, 0, SOME + 1).angle != angle);
     mspring_network *without = cloud(0, 0, 3); // no place for places
     size_t size;
-    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+    check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
     void *bytes = malloc(size);
     assert_non_null(bytes);
     check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, bytes, size, &size));
@@ -326,11 +326,12 @@ static void bad_torques_change_nothing(void **state) {
     check_error(mspring_network_apply_torque(network, NULL, 0, 4, (float)NAN), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_apply_torque(network, NULL, 0, 4, (float)INFINITY), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_apply_torque(network, bad, 0, 2, 1), MSPRING_ERROR_ID);
-    check_error(mspring_network_apply_torque(network, NULL, 1, UINT32_MAX, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_apply_torque(network, NULL, 1, UINT32_MAX - 1, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_apply_torque(network, bad, 0, MSPRING_ALL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_apply_torque(NULL, NULL, 0, 1, 1), MSPRING_ERROR_ARGUMENT);
     const double near = 1 + 0x1p-40;
-    check_ok(mspring_network_set_positions(network, 1, 1, &near, &near, 1));
-    check_ok(mspring_network_set_positions(same, 1, 1, &near, &near, 1));
+    check_ok(mspring_network_set_positions(network, NULL, 1, 1, &near, &near, 1));
+    check_ok(mspring_network_set_positions(same, NULL, 1, 1, &near, &near, 1));
     check_error(mspring_network_apply_torque(network, NULL, 0, 2, 1e30f), MSPRING_ERROR_ARGUMENT); // over 1e38 N
     check_contains(mspring_network_error(network), "particle 0");
     support_steps(network, 2, 0.01);

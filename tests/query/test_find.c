@@ -24,15 +24,15 @@ static mspring_network *eventful(double away) {
     mspring_id springs[40];
     for (uint32_t i = 0; i < 40; i++)
         springs[i] = i * (made.spring_count / 40);
-    check_ok(mspring_network_break_springs(network, springs, 40));
-    check_ok(mspring_network_remove_particles(network, removed, COUNT_OF(removed)));
+    check_ok(mspring_network_break_springs(network, springs, 0, 40));
+    check_ok(mspring_network_remove_particles(network, removed, 0, COUNT_OF(removed)));
     recipe_free(&made);
     return network;
 }
 
 static uint32_t particle_count(const mspring_network *network) {
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     return plan.particle_count;
 }
 
@@ -110,7 +110,7 @@ static void particles_are_found(void **state) {
         mspring_network *network = eventful(ways[i]);
         double box[4];
         uint64_t seed = 5;
-        check_ok(mspring_network_bounds(network, &box[0], &box[1], &box[2], &box[3]));
+        check_ok(support_get_bounds(network, &box[0], &box[1], &box[2], &box[3]));
         for (int n = 0; n < 40; n++) {
             const double x = support_random_between(&seed, box[0] - 1, box[2] + 1);
             const double y = support_random_between(&seed, box[1] - 1, box[3] + 1);
@@ -138,14 +138,14 @@ static bool meets(const double way[4], support_point c, support_point d, long do
 static uint32_t check_across(const mspring_network *network, const double way[4]) {
     static mspring_id found[MOST];
     static double fractions[MOST];
-    mspring_plan plan = {.struct_size = sizeof plan};
+    support_plan plan;
     uint32_t count = 0, at = 0;
-    check_ok(mspring_network_get_plan(network, &plan));
+    check_ok(support_get_plan(network, &plan));
     check_ok(mspring_network_springs_across(network, way[0], way[1], way[2], way[3], MSPRING_FIND_WHOLE, found,
                                             fractions, MOST, &count));
     for (mspring_id i = 0; i < plan.spring_count; i++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (mspring_network_get_spring(network, i, &info) != MSPRING_OK || (info.flags & MSPRING_SPRING_BROKEN))
+        support_spring_info info;
+        if (support_get_spring(network, i, &info) != MSPRING_OK || (info.flags & MSPRING_SPRING_BROKEN))
             continue;
         long double fraction;
         if (meets(way, support_position(network, info.a), support_position(network, info.b), &fraction)) {
@@ -170,7 +170,7 @@ static void springs_are_found(void **state) {
         double box[4];
         uint64_t seed = 8;
         uint32_t met = 0;
-        check_ok(mspring_network_bounds(network, &box[0], &box[1], &box[2], &box[3]));
+        check_ok(support_get_bounds(network, &box[0], &box[1], &box[2], &box[3]));
         for (int n = 0; n < 60; n++) {
             double way[4];
             for (int k = 0; k < 4; k++)
@@ -221,9 +221,8 @@ static long double distance_to_spring(support_point a, support_point b, double x
 }
 
 static bool is_wanted(const mspring_network *network, mspring_id spring, uint32_t flags,
-                      mspring_spring_info *info) {
-    *info = (mspring_spring_info){.struct_size = sizeof *info};
-    return mspring_network_get_spring(network, spring, info) == MSPRING_OK &&
+                      support_spring_info *info) {
+    return support_get_spring(network, spring, info) == MSPRING_OK &&
            (flags & (info->flags & MSPRING_SPRING_BROKEN ? MSPRING_FIND_BROKEN : MSPRING_FIND_WHOLE));
 }
 
@@ -236,8 +235,8 @@ static uint32_t check_springs_at(const mspring_network *network, double x, doubl
     mspring_id expected = MSPRING_NONE, nearest = 7, few[2] = {77, 77};
     double distance = -1, fraction = -1;
     check_ok(mspring_network_springs_in_circle(network, x, y, radius, flags, found, MOST, &count));
-    for (mspring_id i = 0; i < mspring_network_spring_count(network); i++) {
-        mspring_spring_info info;
+    for (mspring_id i = 0; i < mspring_network_count(network, MSPRING_SPRINGS); i++) {
+        support_spring_info info;
         if (!is_wanted(network, i, flags, &info))
             continue;
         const long double d =
@@ -275,7 +274,7 @@ static void springs_near_a_point_are_found(void **state) {
         double box[4];
         uint64_t seed = 21;
         uint32_t met[4] = {0};
-        check_ok(mspring_network_bounds(network, &box[0], &box[1], &box[2], &box[3]));
+        check_ok(support_get_bounds(network, &box[0], &box[1], &box[2], &box[3]));
         for (int round = 0; round < 2; round++) {
             for (int n = 0; n < 30; n++) {
                 const double x = support_random_between(&seed, box[0] - 1, box[2] + 1);
@@ -299,21 +298,21 @@ static void broken_springs_are_found_as_whole_ones(void **state) {
     static mspring_id whole[MOST], broken[MOST];
     uint32_t count = 0, before = 0, again = 0;
     double box[4];
-    check_ok(mspring_network_bounds(network, &box[0], &box[1], &box[2], &box[3]));
+    check_ok(support_get_bounds(network, &box[0], &box[1], &box[2], &box[3]));
     const double y = support_position(network, 10).y + 0.01, far = box[2] + 1, near = box[0] - 1;
     check_ok(
         mspring_network_springs_across(network, near, y, far, y, MSPRING_FIND_BROKEN, broken, NULL, MOST, &before));
     check_ok(
         mspring_network_springs_across(network, near, y, far, y, MSPRING_FIND_WHOLE, whole, NULL, MOST, &count));
     assert_true(count > 3);
-    check_ok(mspring_network_break_springs(network, whole, count));
+    check_ok(mspring_network_break_springs(network, whole, 0, count));
     check_ok(
         mspring_network_springs_across(network, near, y, far, y, MSPRING_FIND_BROKEN, broken, NULL, MOST, &again));
     assert_int_equal(again, before + count);
     check_ok(
         mspring_network_springs_across(network, near, y, far, y, MSPRING_FIND_WHOLE, whole, NULL, MOST, &again));
     assert_int_equal(again, 0);
-    check_ok(mspring_network_restore_springs(network, broken, before + count, 0)); // repair
+    check_ok(mspring_network_restore_springs(network, broken, 0, before + count, 0)); // repair
     check_ok(mspring_network_springs_across(network, near, y, far, y, 3, whole, NULL, MOST, &again));
     assert_int_equal(again, before + count);
     assert_memory_equal(whole, broken, again * sizeof *whole);

@@ -35,7 +35,7 @@ static void values_have_their_ranges(void **state) {
     mspring_network *network = snapshots_small_network(&made);
     saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_get_view(network, &view));
     uint32_t spring_of_ramp = 0;
     uint64_t size;
     mspringi_get(snapshots_section_of(&good, "ramp", &size), &spring_of_ramp, 1, sizeof spring_of_ramp);
@@ -188,10 +188,10 @@ static mspring_network *grown(mspring_solver solver) {
     mspring_spring_def spring[3];
     mspring_id ids[3], joined[3];
     for (int i = 0; i < 3; i++) {
-        check_ok(mspring_spring_def_init(&spring[i], sizeof spring[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring[i], sizeof spring[i]));
         spring[i].stiffness = 20;
         if (i < 2) {
-            check_ok(mspring_particle_def_init(&particle[i], sizeof particle[i]));
+            check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle[i], sizeof particle[i]));
             particle[i].x = 2 * i;
             particle[i].y = 5;
         }
@@ -201,12 +201,12 @@ static mspring_network *grown(mspring_solver solver) {
     spring[1].a = ids[0], spring[1].b = 5;
     spring[2].a = ids[1], spring[2].b = 7;
     check_ok(mspring_network_add_springs(network, spring, 3, joined));
-    check_ok(mspring_network_remove_particles(network, &ids[1], 1)); // with its spring
+    check_ok(mspring_network_remove_particles(network, &ids[1], 0, 1)); // with its spring
     if (solver != MSPRING_SOLVER_EXPLICIT) {
-        mspring_solver_def chosen;
-        check_ok(mspring_solver_def_init(&chosen, sizeof chosen));
+        mspring_settings chosen;
+        check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &chosen, sizeof chosen));
         chosen.solver = solver;
-        check_ok(mspring_network_set_solver(network, &chosen));
+        check_ok(support_set_solver(network, &chosen));
     }
     check_ok(mspring_network_step(network, 0.01));
     recipe_free(&made);
@@ -351,7 +351,7 @@ static void tiles_are_made_as_they_were(void **state) {
             assert_int_equal(again.size, other.size);
             assert_memory_equal(again.bytes, other.bytes, other.size);
             // What an earlier one took is given back.
-            const size_t uses = mspring_network_memory_used(network);
+            const size_t uses = support_memory_used(network);
             assert_true(round == 0 || uses == used[power]);
             used[power] = uses;
             check_ok(mspring_network_step(network, 0.01));
@@ -382,17 +382,17 @@ static mspring_network *half_asleep(void) {
     recipe_lattice(&made, 4, 3, 0, 0, 1, &stuff, &seed);
     recipe_lattice(&made, 4, 3, 9, 0, 1, &stuff, &seed);
     mspring_network_def def = support_def(0, 4);
-    def.global_damping = 20;
-    def.sleep_speed = 0.01f;
-    def.sleep_time = 0.5f;
+    def.settings.global_damping = 20;
+    def.settings.sleep_speed = 0.01f;
+    def.settings.sleep_time = 0.5f;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, push_always, NULL, NULL));
-    for (int i = 0; i < 1000 && !mspring_network_is_asleep(network); i++) {
+    for (int i = 0; i < 1000 && !support_is_asleep(network); i++) {
         support_steps(network, 1, 0.01);
     }
     const float kick = 0.1f;
-    check_ok(mspring_network_set_velocities(network, 20, 1, &kick, &kick, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 20, 1, &kick, &kick, 1));
     uint8_t asleep = 1;
     uint64_t size = 0, first = 0;
     for (int i = 0; i < 200; i++) { // until it is slow, which makes the snapshot longer
@@ -406,9 +406,9 @@ static mspring_network *half_asleep(void) {
         }
     }
     assert_true(size > first);
-    check_ok(mspring_network_get_sleepers(network, 20, 1, &asleep, 1));
+    check_ok(support_get_sleepers(network, 20, 1, &asleep, 1));
     assert_int_equal(asleep, 0);
-    check_ok(mspring_network_get_sleepers(network, 0, 1, &asleep, 1));
+    check_ok(support_get_sleepers(network, 0, 1, &asleep, 1));
     assert_int_equal(asleep, 1);
     return network;
 }
@@ -434,7 +434,7 @@ static void forged_sleep_is_refused(void **state) {
         free(bad.bytes);
     }
     mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_get_view(network, &view));
     const uint32_t slots[] = {view.slot_count, UINT32_MAX};
     for (size_t i = 0; i < COUNT_OF(slots); i++) {
         saved bad = snapshots_copy(&good);
@@ -455,7 +455,7 @@ static void forged_sleep_is_refused(void **state) {
     snapshots_load(network, &good);
     support_steps(network, 3, 0.01);
     uint8_t asleep = 0;
-    check_ok(mspring_network_get_sleepers(network, 0, 1, &asleep, 1));
+    check_ok(support_get_sleepers(network, 0, 1, &asleep, 1));
     assert_int_equal(asleep, 1);
     free(good.bytes);
     mspring_network_destroy(network);
@@ -471,13 +471,13 @@ static void what_nobody_has_does_nothing(void **state) {
     mspring_network_def def = support_def(-9.8f, 4);
     def.spare_particles = def.spare_springs = 40;
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
-        def.solver = solver;
-        def.sleep_speed = solver == MSPRING_SOLVER_EXPLICIT ? 1e-6f : 0;
+        def.settings.solver = solver;
+        def.settings.sleep_speed = solver == MSPRING_SOLVER_EXPLICIT ? 1e-6f : 0;
         mspring_network *network = recipe_network(&made, &def), *twin = recipe_network(&made, &def);
         mspring_view view = {.struct_size = sizeof view};
         support_steps(network, 2, 0.01);
         check_ok(mspring_network_apply_force(network, 3, 1, 2));
-        check_ok(mspring_network_view(network, &view));
+        check_ok(mspring_network_get_view(network, &view));
         saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL), forged = snapshots_copy(&good);
         uint64_t size;
         uint8_t *forces = snapshots_section_of(&forged, "forc", &size);
@@ -507,7 +507,7 @@ static void what_nobody_has_does_nothing(void **state) {
                 if (step % 2 == 0) { // while the forces are there, and after
                     mspring_particle_def particle;
                     mspring_id id;
-                    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+                    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
                     particle.x = 20 + step;
                     check_ok(mspring_network_add_particles(both[i], &particle, 1, &id));
                 }

@@ -76,7 +76,7 @@ static void forge(mspring_solver kind, mspring_guard guard) {
             if (stepped != MSPRING_OK) {
                 check_error(stepped, MSPRING_ERROR_UNSTABLE);
             }
-            for (mspring_id p = 0; p < mspring_network_particle_count(network); p++) {
+            for (mspring_id p = 0; p < mspring_network_count(network, MSPRING_PARTICLES); p++) {
                 const support_point is = support_position(network, p), moves = support_velocity(network, p);
                 assert_true(isfinite(is.x) && isfinite(is.y) && isfinite(moves.x) && isfinite(moves.y));
             }
@@ -114,16 +114,16 @@ static mspring_network *make_compact(uint32_t spare, bool add) {
     if (add) {
         mspring_particle_def particle;
         mspring_id id;
-        check_ok(mspring_particle_def_init(&particle, sizeof particle));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
         particle.y = 20;
         check_ok(mspring_network_add_particles(network, &particle, 1, &id));
         mspring_spring_def spring;
-        check_ok(mspring_spring_def_init(&spring, sizeof spring));
+        check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
         spring.a = loose, spring.b = id, spring.stiffness = 1;
         check_ok(mspring_network_add_springs(network, &spring, 1, &id));
     } else {
         const mspring_id corner = 0;
-        check_ok(mspring_network_remove_particles(network, &corner, 1));
+        check_ok(mspring_network_remove_particles(network, &corner, 0, 1));
     }
     check_ok(mspring_network_compact(network));
     recipe_free(&made);
@@ -137,16 +137,16 @@ static void what_hides_in_other_slots_is_refused(void **state) {
     const float bad[] = {NAN, INFINITY, 1e30f};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         mspring_network *network = make_compact(1, true);
-        const mspring_id joint = mspring_network_spring_count(network) - 1;
-        check_ok(mspring_network_remove_springs(network, &joint, 1));
+        const mspring_id joint = mspring_network_count(network, MSPRING_SPRINGS) - 1;
+        check_ok(mspring_network_remove_springs(network, &joint, 0, 1));
         mspring_view view = {.struct_size = sizeof view};
-        check_ok(mspring_network_view(network, &view));
+        check_ok(mspring_network_get_view(network, &view));
         saved forged = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
         uint64_t size;
         uint8_t *growth = snapshots_section_of(&forged, "grow", &size),
                 *motion = snapshots_section_of(&forged, "moti", &size);
-        const uint32_t particles = mspring_network_particle_count(network);
-        uint8_t *slots = growth + 8 + particles + mspring_network_spring_count(network);
+        const uint32_t particles = mspring_network_count(network, MSPRING_PARTICLES);
+        uint8_t *slots = growth + 8 + particles + mspring_network_count(network, MSPRING_SPRINGS);
         assert_int_equal(*slots, 2); // laid out
         *slots = 0;
         for (uint32_t slot = 0; slot < 4 * view.slot_count; slot++) {
@@ -168,7 +168,7 @@ static void what_hides_in_other_slots_is_refused(void **state) {
 static void a_spring_that_is_laid_out_keeps_its_ends(void **state) {
     (void)state;
     mspring_network *network = make_compact(1, true);
-    const uint32_t particles = mspring_network_particle_count(network);
+    const uint32_t particles = mspring_network_count(network, MSPRING_PARTICLES);
     const mspring_id ends[] = {particles - 2, particles - 1};
     saved good = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     uint64_t size;
@@ -247,7 +247,7 @@ static void foreign_snapshots_are_refused(void **state) {
     saved frame = snapshots_save(network, MSPRING_SNAPSHOT_FRAME),
           all = snapshots_save(network, MSPRING_SNAPSHOT_ALL);
     const float stiffness = 60;
-    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 1, 1, &stiffness, 1));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 1, 1, &stiffness, 1));
     const uint64_t edited = snapshots_look_at(network);
     check_error(mspring_network_load(network, frame.bytes, frame.size), MSPRING_ERROR_SNAPSHOT);
     assert_int_equal(snapshots_look_at(network), edited);

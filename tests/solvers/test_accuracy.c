@@ -88,8 +88,8 @@ typedef struct setting {
 
 static const setting settings[] = {
     {"explicit", MSPRING_SOLVER_EXPLICIT, 0, 0.9},
-    {"GA0, implicit", MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, 1.8},
-    {"GA0, direct", MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, 1.8},
+    {"GA0, implicit", MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_ALPHA, 1.8},
+    {"GA0, direct", MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_ALPHA, 1.8},
     {"BDF2, implicit", MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1.8},
     {"BDF2, direct", MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, 1.8},
     {"Euler, direct", MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_EULER, 0.75}, // comes near to 1 from below
@@ -104,13 +104,13 @@ static errors errors_of(const motion *m, const setting *s, uint32_t steps, uint3
     recipe made = bar_of(m);
     mspring_network_def def = support_def(m->gravity, substeps);
     mspring_network *network = recipe_network(&made, &def);
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = s->solver;
     solver.integrator = s->integrator;
     solver.substeps = substeps;
     solver.residual = 0; // what iterations leave goes down by steps only as far as they are many
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     support_steps(network, steps, m->seconds / steps);
     errors sum = {0, 0};
     for (mspring_id i = 0; i < end->count; i++) {

@@ -9,9 +9,9 @@
 /// A small lattice and a particle on it, added later and laid out by a compaction, so that all of it is irregular.
 static mspring_network *grown(mspring_guard guard, mspring_solver solver) {
     mspring_network_def def = support_def(-9.8f, 2);
-    def.solver =
+    def.settings.solver =
         solver == MSPRING_SOLVER_DIRECT ? MSPRING_SOLVER_IMPLICIT : solver; // the direct one takes no springs
-    def.guard = guard;
+    def.settings.guard = guard;
     def.spare_particles = 4;
     def.spare_springs = 8;
     mspring_builder *builder = NULL;
@@ -31,21 +31,21 @@ static mspring_network *grown(mspring_guard guard, mspring_solver solver) {
     mspring_particle_def particle;
     mspring_spring_def spring;
     mspring_id id, ignored;
-    check_ok(mspring_particle_def_init(&particle, sizeof particle));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
     particle.x = -3;
     check_ok(mspring_network_add_particles(network, &particle, 1, &id));
-    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
     spring.a = id, spring.b = 0, spring.stiffness = 100;
     check_ok(mspring_network_add_springs(network, &spring, 1, &ignored));
     support_steps(network, 10, 1.0 / 60);
     check_ok(mspring_network_compact(network));
-    mspring_solver_def most = support_solver(network);
+    mspring_settings most = support_solver(network);
     if (solver == MSPRING_SOLVER_DIRECT) {
         most.solver = solver;
         most.substeps = 2;
     }
     most.most_work = 0; // else MSPRING_GUARD_RETRY may keep more substeps after a step that fails
-    check_ok(mspring_network_set_solver(network, &most));
+    check_ok(support_set_solver(network, &most));
     return network;
 }
 
@@ -99,12 +99,12 @@ static size_t save(const mspring_network *network, unsigned char *bytes, size_t 
 
 static void move_away(mspring_network *network) {
     double x[32], y[32];
-    const uint32_t count = mspring_network_particle_count(network);
+    const uint32_t count = mspring_network_count(network, MSPRING_PARTICLES);
     assert_true(count <= COUNT_OF(x));
-    check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
+    check_ok(mspring_network_get_positions(network, NULL, 0, count, x, y, 1));
     for (uint32_t i = 0; i < count; i++)
         x[i] += 100;
-    check_ok(mspring_network_set_positions(network, 0, count, x, y, 1));
+    check_ok(mspring_network_set_positions(network, NULL, 0, count, x, y, 1));
 }
 
 // Ends of broken springs and added particles begin a history, also with an integrator that keeps none. So does all, if
@@ -119,14 +119,14 @@ static void a_refused_step_leaves_no_trace_in_snapshots(void **state) {
         const mspring_solver solver = solvers[i / 3 % COUNT_OF(solvers)];
         for (int refused = 0; refused < 2; refused++) {
             mspring_network *network = grown(MSPRING_GUARD_GROWTH, solver);
-            mspring_solver_def def;
-            check_ok(mspring_solver_def_init(&def, sizeof def));
+            mspring_settings def;
+            check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
             def.solver = solver;
             def.integrator = (mspring_integrator)(i % 3);
             def.substeps = 1;
-            check_ok(mspring_network_set_solver(network, &def));
+            check_ok(support_set_solver(network, &def));
             support_steps(network, 3, 1.0 / 60);
-            check_ok(mspring_network_break_springs(network, (mspring_id[]){0, 3}, 2));
+            check_ok(mspring_network_break_springs(network, (mspring_id[]){0, 3}, 0, 2));
             support_steps(network, 1 + i / 3 % 2, 1.0 / 60);
             if (is_moved)
                 move_away(network);
@@ -149,7 +149,7 @@ static mspring_network *towers(mspring_guard guard) {
     mspring_contact_def contact;
     mspring_builder *builder = NULL;
     check_ok(mspring_builder_create(NULL, &builder));
-    def.guard = guard;
+    def.settings.guard = guard;
     for (mspring_id i = 0; i < 8; i++)
         support_particle(builder, 0.3 * (i / 4) + i % 2, 1.3 * (i / 4) + i % 4 / 2, 1);
     for (mspring_id i = 0; i < 8; i++)
@@ -157,7 +157,7 @@ static mspring_network *towers(mspring_guard guard) {
             support_spring(builder, i, j, 300, 1);
     support_pinned(builder, 0.5, -1, 1);
     mspring_network *network = support_network(builder, &def);
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = 0.1;
     check_ok(mspring_network_set_contact(network, &contact));
     support_steps(network, 20, 1.0 / 60);

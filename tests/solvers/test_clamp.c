@@ -26,17 +26,17 @@ static const recipe_shape shapes[] = {
 
 static mspring_network *make(const recipe *made, mspring_guard guard, float gravity, uint32_t substeps) {
     mspring_network_def def = support_def(gravity, substeps);
-    def.guard = guard;
+    def.settings.guard = guard;
     return recipe_network(made, &def);
 }
 
 /// Kinetic energy and that of the springs, with the stiffness that they have in substeps of h, J.
 static double softened_energy(const mspring_network *network, const recipe *made, double h) {
     double sum = 0, kinetic = 0;
-    check_ok(mspring_network_energy(network, &kinetic, NULL, NULL));
+    check_ok(support_get_energy(network, &kinetic, NULL, NULL));
     for (mspring_id s = 0; s < made->spring_count; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        check_ok(mspring_network_get_spring(network, s, &info));
+        support_spring_info info;
+        check_ok(support_get_spring(network, s, &info));
         const double extension = (double)info.length - (double)info.rest_length;
         const mspring_particle_def *a = &made->particles[info.a], *b = &made->particles[info.b];
         const double by_a = a->flags & MSPRING_PARTICLE_PINNED ? 0 : 1 / (double)a->mass;
@@ -76,7 +76,7 @@ static void what_would_explode_goes_on(void **state) {
         for (uint32_t step = 1; step <= 320; step++) {
             check_ok(mspring_network_step(network, DT));
             double kinetic = 0;
-            check_ok(mspring_network_energy(network, &kinetic, NULL, NULL));
+            check_ok(support_get_energy(network, &kinetic, NULL, NULL));
             const double root = sqrt(first) + 9.8 * step * DT * sqrt(mass / 2);
             worst = fmax(worst, kinetic / (root * root));
         }
@@ -153,10 +153,10 @@ static void particles_in_one_place_have_no_direction(void **state) {
     support_spring(builder, b, pinned, 1e10f, 1e6f);
     support_spring(builder, pinned, other, 1e10f, 1e6f);
     mspring_network_def def = support_def(0, 1);
-    def.guard = MSPRING_GUARD_CLAMP;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
     mspring_network *network = support_network(builder, &def);
     const double x[4] = {2, 2, 2, 2}, y[4] = {0, 0, 0, 0};
-    check_ok(mspring_network_set_positions(network, 0, 4, x, y, 1));
+    check_ok(mspring_network_set_positions(network, NULL, 0, 4, x, y, 1));
     support_steps(network, 100, DT);
     for (mspring_id p = 0; p < 4; p++) {
         check_near(support_position(network, p).x, 2, 0);
@@ -164,7 +164,7 @@ static void particles_in_one_place_have_no_direction(void **state) {
     }
     // A nudge, and they find their distances.
     const float nudge = 1e-3f;
-    check_ok(mspring_network_set_velocities(network, a, 1, &nudge, &nudge, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, a, 1, &nudge, &nudge, 1));
     support_steps(network, 2000, DT);
     const support_point at_a = support_position(network, a), at_b = support_position(network, b);
     check_near(hypot(at_b.x - 2, at_b.y), 1, 1e-3);
@@ -186,9 +186,9 @@ static void momentum_is_kept(void **state) {
         }
         mspring_network *network = make(&made, MSPRING_GUARD_CLAMP, 0, 1);
         double px = 0, py = 0, turn = 0, px_then = 0, py_then = 0, turn_then = 0;
-        check_ok(mspring_network_momentum(network, &px, &py, &turn));
+        check_ok(support_get_momentum(network, &px, &py, &turn));
         support_steps(network, 200, DT);
-        check_ok(mspring_network_momentum(network, &px_then, &py_then, &turn_then));
+        check_ok(support_get_momentum(network, &px_then, &py_then, &turn_then));
         assert_int_equal(support_fallback_count(network), 200);
         // Each impulse is rounded to 6e-8 of a velocity at either end, at random; some ten of them a particle and
         // step.
@@ -234,15 +234,15 @@ typedef struct playing {
 
 static uint64_t play(const recipe *made, playing how, uint64_t *clamped) {
     mspring_network_def def = support_def(-9.8f, how.substeps);
-    def.guard = MSPRING_GUARD_CLAMP;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
     def.simd_level = how.level;
     def.worker_count = how.workers;
-    def.sleep_speed = 0.01f;
-    def.max_substeps = 1; // too few for MSPRING_SUBSTEPS_AUTO
+    def.settings.sleep_speed = 0.01f;
+    def.settings.max_substeps = 1; // too few for MSPRING_SUBSTEPS_AUTO
     mspring_network *network = recipe_network(made, &def);
     const double plane[4] = {0, -30, 0.1, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = plane;
     floor.plane_count = 1;
     floor.friction = 0.3f;
@@ -252,13 +252,13 @@ static uint64_t play(const recipe *made, playing how, uint64_t *clamped) {
     }
     const float strain = 0.3f;
     for (mspring_id s = 0; s < made->spring_count; s++) {
-        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &strain, 1));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, s, 1, &strain, 1));
     }
     for (uint32_t step = 0; step < 300; step++) {
         check_ok(mspring_network_step(network, DT));
         if (how.pauses && (step == 50 || step == 151 || step == 250)) {
             size_t size;
-            check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+            check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
             void *snapshot = malloc(size);
             assert_non_null(snapshot);
             check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, snapshot, size, NULL));
@@ -313,7 +313,7 @@ static void plans_make_no_difference(void **state) {
     for (size_t i = 0; i < 2; i++) {
         networks[i] = make(&made, MSPRING_GUARD_CLAMP, -9.8f, 1);
         for (mspring_id s = 0; s < made.spring_count; s += 3) {
-            check_ok(mspring_network_break_springs(networks[i], &s, 1));
+            check_ok(mspring_network_break_springs(networks[i], &s, 0, 1));
         }
         if (i == 1) {
             check_ok(mspring_network_compact(networks[i]));
@@ -379,10 +379,10 @@ static void steps_allocate_nothing(void **state) {
     watched_allocator watched = {0};
     const mspring_allocator allocator = watched_interface(&watched);
     mspring_network_def def = support_def(-9.8f, 1);
-    def.guard = MSPRING_GUARD_CLAMP;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
     def.allocator = &allocator;
     mspring_network *network = recipe_network(&made, &def);
-    const size_t calls = watched.calls, memory = mspring_network_memory_used(network);
+    const size_t calls = watched.calls, memory = support_memory_used(network);
     support_steps(network, 200, DT);
     assert_true(support_fallback_count(network) > 0);
     assert_int_equal(watched.calls, calls);
@@ -390,7 +390,7 @@ static void steps_allocate_nothing(void **state) {
     check_watched_clean(&watched);
     // And a network that may is as large as one that may not.
     network = make(&made, MSPRING_GUARD_GROWTH, -9.8f, 1);
-    assert_int_equal(mspring_network_memory_used(network), memory);
+    assert_int_equal(support_memory_used(network), memory);
     mspring_network_destroy(network);
     recipe_free(&made);
 }

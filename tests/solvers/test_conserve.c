@@ -82,8 +82,8 @@ typedef struct totals {
 static totals totals_of(const mspring_network *network, const recipe *made) {
     totals t = {0};
     double kinetic, elastic, angular, furthest = 0;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
-    check_ok(mspring_network_momentum(network, &t.px, &t.py, &angular));
+    check_ok(support_get_energy(network, &kinetic, &elastic, NULL));
+    check_ok(support_get_momentum(network, &t.px, &t.py, &angular));
     for (uint32_t i = 0; i < made->particle_count; i++) {
         const double m = (double)made->particles[i].mass;
         const support_point at = support_position(network, i);
@@ -129,14 +129,14 @@ static void run(const trial *c) {
     set_off(&made, c->what, &seed);
     const float gravity = support_random(&seed) % 2 ? -9.8f : 0;
     mspring_network_def def = support_def(gravity, 1);
-    def.solver = c->solver;
-    def.global_damping = c->what == DAMPED ? 0.5f : 0;
+    def.settings.solver = c->solver;
+    def.settings.global_damping = c->what == DAMPED ? 0.5f : 0;
     mspring_network *network = recipe_network(&made, &def);
-    mspring_solver_def settings;
-    check_ok(mspring_solver_def_init(&settings, sizeof settings));
+    mspring_settings settings;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &settings, sizeof settings));
     settings.solver = c->solver;
     settings.integrator = c->integrator;
-    check_ok(mspring_network_set_solver(network, &settings));
+    check_ok(support_set_solver(network, &settings));
     const totals first = totals_of(network, &made);
     const mspring_id pushed = (mspring_id)(support_random(&seed) % made.particle_count);
     const double force = c->what == PUSH ? support_random_between(&seed, 1, 300) : 0;
@@ -169,7 +169,7 @@ static void run_all(scene what) {
     uint32_t count = 0;
     for (uint64_t seed = 1; seed <= 12; seed++) {
         for (mspring_solver s = MSPRING_SOLVER_IMPLICIT; s <= MSPRING_SOLVER_DIRECT; s++) {
-            for (mspring_integrator n = MSPRING_INTEGRATOR_GA0; n <= MSPRING_INTEGRATOR_EULER; n++) {
+            for (mspring_integrator n = MSPRING_INTEGRATOR_ALPHA; n <= MSPRING_INTEGRATOR_EULER; n++) {
                 for (size_t h = 0; h < COUNT_OF(substeps); h++) {
                     run(&(trial){what, s, n, substeps[h], seed});
                     count++;
@@ -219,7 +219,7 @@ static void add_turning(recipe *made, uint32_t width, uint32_t height, double x,
 
 static mspring_network *network_of(const recipe *made, mspring_solver solver, mspring_integrator integrator) {
     mspring_network_def def = support_def(0, 1);
-    def.solver = solver;
+    def.settings.solver = solver;
     return recipe_solved(made, &def, solver, integrator);
 }
 
@@ -249,7 +249,7 @@ static void fragments_spin_for_long(void **state) {
     for (uint32_t width = 2; width <= (support_is_quick() ? 2 : 3); width++) {
         for (size_t k = 0; k < COUNT_OF(stiffnesses); k++) {
             for (size_t w = 0; w < COUNT_OF(turns); w++) {
-                for (mspring_integrator n = MSPRING_INTEGRATOR_GA0; n <= MSPRING_INTEGRATOR_EULER; n++) {
+                for (mspring_integrator n = MSPRING_INTEGRATOR_ALPHA; n <= MSPRING_INTEGRATOR_EULER; n++) {
                     spin_for_long(width, stiffnesses[k], turns[w], MSPRING_SOLVER_IMPLICIT, n);
                     spin_for_long(width, stiffnesses[k], turns[w], MSPRING_SOLVER_DIRECT, n);
                 }
@@ -275,7 +275,7 @@ static double energy_of_bar(mspring_integrator integrator, double turn) {
         check_ok(mspring_network_step(network, 1.0 / 64));
     }
     double kinetic, elastic;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
+    check_ok(support_get_energy(network, &kinetic, &elastic, NULL));
     mspring_network_destroy(network);
     recipe_free(&made);
     return kinetic + elastic - 2 * 0.5 * 73.4 * 0.25 * turn * turn;
@@ -283,7 +283,7 @@ static double energy_of_bar(mspring_integrator integrator, double turn) {
 
 static void fragments_leave_others_alone(void **state) {
     (void)state;
-    for (mspring_integrator n = MSPRING_INTEGRATOR_GA0; n <= MSPRING_INTEGRATOR_EULER; n++) {
+    for (mspring_integrator n = MSPRING_INTEGRATOR_ALPHA; n <= MSPRING_INTEGRATOR_EULER; n++) {
         const double alone = energy_of_bar(n, 0);
         check_near(energy_of_bar(n, 3), alone, 0.01 * alone);
     }

@@ -18,14 +18,14 @@ static mspring_network *expander(void) {
     mspring_spring_def *springs = calloc((size_t)HALF * EACH, sizeof *springs);
     assert_true(particles && springs);
     for (uint32_t i = 0; i < 2 * HALF; i++) {
-        check_ok(mspring_particle_def_init(&particles[i], sizeof particles[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particles[i], sizeof particles[i]));
         particles[i].x = i % WIDTH;
         particles[i].y = i / WIDTH;
     }
     for (uint32_t i = 0; i < HALF * EACH; i++) {
         mspring_spring_def *spring = &springs[i];
         const uint32_t a = i / EACH, share = HALF / EACH;
-        check_ok(mspring_spring_def_init(spring, sizeof *spring));
+        check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, spring, sizeof *spring));
         spring->a = a;
         spring->b = HALF + (a + i % EACH * share + (uint32_t)(support_random(&seed) % share)) % HALF;
         spring->stiffness = 10;
@@ -41,22 +41,22 @@ static mspring_network *expander(void) {
 static void a_factor_too_large_is_refused(void **state) {
     (void)state;
     mspring_network *network = expander(), *twin = NULL;
-    mspring_solver_def settings;
-    check_ok(mspring_solver_def_init(&settings, sizeof settings));
+    mspring_settings settings;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &settings, sizeof settings));
     settings.substeps = 3;
-    check_ok(mspring_network_set_solver(network, &settings));
+    check_ok(support_set_solver(network, &settings));
     support_steps(network, 2, 1.0 / 64);
     check_ok(mspring_network_clone(network, NULL, &twin));
-    const uint64_t memory = mspring_network_memory_used(network);
+    const uint64_t memory = support_memory_used(network);
     settings.solver = MSPRING_SOLVER_DIRECT;
     settings.substeps = 1;
-    check_error(mspring_network_set_solver(network, &settings), MSPRING_ERROR_LIMIT);
+    check_error(support_set_solver(network, &settings), MSPRING_ERROR_LIMIT);
     check_contains(mspring_network_error(network), "70000 particles");
     check_contains(mspring_network_error(network), "280000 springs");
     check_contains(mspring_network_error(network), "would take at least 3.");
     check_contains(mspring_network_error(network), "e+09 numbers (4");
     check_contains(mspring_network_error(network), "more than 1.34e+08");
-    assert_int_equal(mspring_network_memory_used(network), memory);
+    assert_int_equal(support_memory_used(network), memory);
     assert_int_equal(support_solver(network).substeps, 3);
     assert_int_equal(support_hash(network), support_hash(twin));
     support_steps(network, 2, 1.0 / 64);
@@ -69,14 +69,14 @@ static void a_factor_too_large_is_refused(void **state) {
 static void tiles_of_a_random_graph_are_few(void **state) {
     (void)state;
     mspring_network *network = expander(), *twin = NULL;
-    mspring_solver_def settings;
-    mspring_plan plan = {.struct_size = sizeof plan};
+    mspring_settings settings;
+    support_plan plan;
     check_ok(mspring_network_clone(network, NULL, &twin));
-    check_ok(mspring_solver_def_init(&settings, sizeof settings));
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &settings, sizeof settings));
     settings.solver = MSPRING_SOLVER_IMPLICIT;
     // Each of 2 * HALF / 32 cells, and of as many crumbs, has springs to nearly all others.
     settings.tile_size = 8;
-    check_error(mspring_network_set_solver(network, &settings), MSPRING_ERROR_LIMIT);
+    check_error(support_set_solver(network, &settings), MSPRING_ERROR_LIMIT);
     check_contains(mspring_network_error(network), "tiles of size 8");
     check_contains(mspring_network_error(network), "more than 1.7e+10");
     assert_int_equal(support_hash(network), support_hash(twin));
@@ -84,11 +84,11 @@ static void tiles_of_a_random_graph_are_few(void **state) {
     support_steps(twin, 1, 1.0 / 64);
     assert_int_equal(support_hash(network), support_hash(twin));
     settings.tile_size = 0;
-    check_ok(mspring_network_set_solver(network, &settings));
-    check_ok(mspring_network_get_plan(network, &plan));
+    check_ok(support_set_solver(network, &settings));
+    check_ok(support_get_plan(network, &plan));
     assert_int_equal(plan.tile_size, 256);
     assert_int_equal(plan.tile_count, (2 * HALF + 32767) / 32768);
-    assert_true(mspring_network_memory_used(network) < (uint64_t)100 << 20);
+    assert_true(support_memory_used(network) < (uint64_t)100 << 20);
     support_steps(network, 2, 1.0 / 64);
     mspring_network_destroy(network);
     mspring_network_destroy(twin);

@@ -38,12 +38,12 @@ static recipe hanging_bar(uint32_t width, uint32_t height) {
 
 static mspring_network *make(const recipe *made, mspring_guard guard, float gravity) {
     mspring_network_def def = support_def(gravity, 1);
-    def.guard = guard;
+    def.settings.guard = guard;
     return recipe_network(made, &def);
 }
 
 static void *save(const mspring_network *network, size_t *size) {
-    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, size));
+    check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_ALL, size));
     void *snapshot = malloc(*size);
     assert_non_null(snapshot);
     check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, snapshot, *size, NULL));
@@ -51,15 +51,15 @@ static void *save(const mspring_network *network, size_t *size) {
 }
 
 static void set_all_rest_lengths(mspring_network *network, float rest_length) {
-    for (mspring_id s = 0; s < mspring_network_spring_count(network); s++) {
-        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, s, 1, &rest_length, 1));
+    for (mspring_id s = 0; s < mspring_network_count(network, MSPRING_SPRINGS); s++) {
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, s, 1, &rest_length, 1));
     }
 }
 
 static void set_floor(mspring_network *network, double y) {
     const double plane[1][4] = {{0, y, 0, 1}};
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.planes = plane[0];
     def.plane_count = 1;
     def.friction = 0.5f;
@@ -68,7 +68,7 @@ static void set_floor(mspring_network *network, double y) {
 
 static double lowest_of(const mspring_network *network) {
     double lowest = INFINITY;
-    for (mspring_id p = 0; p < mspring_network_particle_count(network); p++) {
+    for (mspring_id p = 0; p < mspring_network_count(network, MSPRING_PARTICLES); p++) {
         lowest = fmin(lowest, support_position(network, p).y);
     }
     return lowest;
@@ -122,20 +122,20 @@ static void it_lies_on_a_floor_and_sleeps(void **state) {
     (void)state;
     recipe made = stiff_block(24, 8);
     mspring_network_def def = support_def(-9.8f, 1);
-    def.guard = MSPRING_GUARD_IMPLICIT;
-    def.sleep_speed = 0.05f;
+    def.settings.guard = MSPRING_GUARD_IMPLICIT;
+    def.settings.sleep_speed = 0.05f;
     mspring_network *network = recipe_network(&made, &def);
     set_floor(network, -1);
     uint32_t step = 0;
     double most = 0;
-    for (; step < 2000 && !mspring_network_is_asleep(network); step++) {
+    for (; step < 2000 && !support_is_asleep(network); step++) {
         check_ok(mspring_network_step(network, DT));
         double kinetic = 0, elastic = 0;
-        check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
+        check_ok(support_get_energy(network, &kinetic, &elastic, NULL));
         most = fmax(most, kinetic + elastic);
         assert_true(lowest_of(network) > -1 - 1e-4); // some last places of 24 m
     }
-    assert_true(mspring_network_is_asleep(network));
+    assert_true(support_is_asleep(network));
     assert_int_equal(support_fallback_count(network), step);
     // What it fell through is all the energy that there can be.
     assert_true(most < 1.001 * made.particle_count * 9.8);
@@ -144,16 +144,16 @@ static void it_lies_on_a_floor_and_sleeps(void **state) {
     assert_int_equal(made.particle_count, COUNT_OF(y));
     check_ok(mspring_network_wake(network));
     support_steps(network, 1, DT);
-    check_ok(mspring_network_get_floor_impulses(network, 0, COUNT_OF(y), x, y, 1));
+    check_ok(mspring_network_get_columns(network, NULL, 0, COUNT_OF(y), (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, x}, {MSPRING_FLOOR_IMPULSE_Y, 1, y}}, 2));
     for (size_t i = 0; i < COUNT_OF(y); i++) {
         sum += (double)y[i];
     }
     check_near(sum, made.particle_count * 9.8 * DT, 0.2 * made.particle_count * 9.8 * DT); // it still swings a bit
     // A step that nobody can take leaves it as it is.
-    for (step = 0; step < 2000 && !mspring_network_is_asleep(network); step++) {
+    for (step = 0; step < 2000 && !support_is_asleep(network); step++) {
         check_ok(mspring_network_step(network, DT));
     }
-    assert_true(mspring_network_is_asleep(network));
+    assert_true(support_is_asleep(network));
     const uint64_t count = support_fallback_count(network), hash = support_hash(network);
     check_error(mspring_network_step(network, -1), MSPRING_ERROR_ARGUMENT);
     support_steps(network, 40, DT);
@@ -185,10 +185,10 @@ static void forces_act_once(void **state) {
     const mspring_phase phases[] = {MSPRING_PHASE_BEFORE_STEP, MSPRING_PHASE_BEFORE_SUBSTEP};
     for (size_t i = 0; i < COUNT_OF(phases); i++) {
         mspring_network *network = make(&made, MSPRING_GUARD_IMPLICIT, 0);
-        mspring_solver_def solver;
-        check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        mspring_settings solver;
+        check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
         solver.substeps = 3; // explicit ones
-        check_ok(mspring_network_set_solver(network, &solver));
+        check_ok(support_set_solver(network, &solver));
         pusher one = {.force = 0.5f};
         check_ok(support_add_hook(network, phases[i], push, &one, NULL));
         const uint32_t steps = 40;
@@ -201,7 +201,7 @@ static void forces_act_once(void **state) {
         assert_int_equal(support_fallback_count(network), steps);
         assert_int_equal(one.calls, steps); // what is refused beforehand calls none
         double px = 0, py = 0;
-        check_ok(mspring_network_momentum(network, &px, &py, NULL));
+        check_ok(support_get_momentum(network, &px, &py, NULL));
         const double expected = 0.75 * made.particle_count * steps * DT;
         check_near(px, expected, 1e-4 * expected); // of single precision, in steps of one
         check_near(py, 0, 1e-4 * expected);
@@ -218,7 +218,7 @@ static void events_are_told_once(void **state) {
     check_ok(mspring_network_reserve_events(network, 4096));
     const float strain = 0.3f;
     for (mspring_id s = 0; s < made.spring_count; s++) {
-        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &strain, 1));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, s, 1, &strain, 1));
     }
     uint8_t *told = calloc(made.spring_count, 1);
     assert_non_null(told);
@@ -241,8 +241,8 @@ static void events_are_told_once(void **state) {
     assert_true(fallen_back > 0);
     assert_true(fallen_back < 300);
     for (mspring_id s = 0; s < made.spring_count; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        check_ok(mspring_network_get_spring(network, s, &info));
+        support_spring_info info;
+        check_ok(support_get_spring(network, s, &info));
         assert_int_equal((info.flags & MSPRING_SPRING_BROKEN) != 0, told[s]);
     }
     free(told);
@@ -266,18 +266,18 @@ static void nudge(const mspring_hook_args *args, void *user) {
 static uint64_t play(mspring_simd level, uint32_t workers, uint64_t *fallen_back, bool pauses) {
     recipe made = hanging_bar(80, 5);
     mspring_network_def def = support_def(-9.8f, 1);
-    def.guard = MSPRING_GUARD_IMPLICIT;
+    def.settings.guard = MSPRING_GUARD_IMPLICIT;
     def.simd_level = level;
     def.worker_count = workers;
-    def.sleep_speed = 0.05f;
-    def.global_damping = 0.05f;
+    def.settings.sleep_speed = 0.05f;
+    def.settings.global_damping = 0.05f;
     mspring_network *network = recipe_network(&made, &def);
     set_floor(network, -30);
     check_ok(mspring_network_reserve_events(network, 4096));
     check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, nudge, NULL, NULL));
     const float strain = 0.3f;
     for (mspring_id s = 0; s < made.spring_count; s++) {
-        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, s, 1, &strain, 1));
+        check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, s, 1, &strain, 1));
     }
     uint64_t hash = 0;
     for (uint32_t step = 0; step < 400; step++) {
@@ -293,7 +293,7 @@ static uint64_t play(mspring_simd level, uint32_t workers, uint64_t *fallen_back
             check_ok(mspring_network_compact(network));
         }
         if (step == 250) {
-            check_ok(mspring_network_expand(network));
+            check_ok(support_expand(network));
         }
         if (pauses && (step == 50 || step == 151 || step == 300)) {
             size_t size;

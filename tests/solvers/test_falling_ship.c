@@ -70,7 +70,7 @@ static double rounding_of(const recipe *made) {
 static mspring_network *start(const recipe *made, mspring_solver solver, mspring_integrator integrator,
                               mspring_guard guard) {
     mspring_network_def def = support_def(-9.8f, 1);
-    def.guard = guard;
+    def.settings.guard = guard;
     return recipe_solved(made, &def, solver, integrator);
 }
 
@@ -99,7 +99,7 @@ static void fall(mspring_solver solver, mspring_integrator integrator) {
 
 static void implicit_ga0(void **state) {
     (void)state;
-    fall(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0);
+    fall(MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_ALPHA);
 }
 
 static void implicit_bdf2(void **state) {
@@ -114,7 +114,7 @@ static void implicit_euler(void **state) {
 
 static void direct(void **state) {
     (void)state;
-    fall(MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0);
+    fall(MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_ALPHA);
 }
 
 /// This ship is one that needs the guard, so that the others say something.
@@ -123,7 +123,7 @@ static void bounds_alone_would_not_do(void **state) {
     const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};
     recipe made = ship();
     for (size_t i = 0; i < COUNT_OF(solvers); i++) {
-        mspring_network *network = start(&made, solvers[i], MSPRING_INTEGRATOR_GA0, MSPRING_GUARD_BOUNDS);
+        mspring_network *network = start(&made, solvers[i], MSPRING_INTEGRATOR_ALPHA, MSPRING_GUARD_BOUNDS);
         const double first = support_energy(network);
         double most = 0;
         for (int step = 0; step < STEPS && mspring_network_step(network, 1.0 / 64) == MSPRING_OK; step++) {

@@ -23,7 +23,7 @@ static recipe lattice(double height, double stiffness) {
 
 static mspring_network *network_of(const recipe *made, mspring_solver which, mspring_integrator integrator) {
     mspring_network_def def = support_def((float)-g, 1);
-    def.guard = support_guard_of(which);
+    def.settings.guard = support_guard_of(which);
     return recipe_solved(made, &def, which, integrator);
 }
 
@@ -85,7 +85,7 @@ static void the_floor_gives_what_momentum_lacks(void **state) {
         mspring_network *network = network_of(&made, i % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT,
                                               (mspring_integrator)(i / 2 % 3));
         mspring_floor_def def;
-        check_ok(mspring_floor_def_init(&def, sizeof def));
+        check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
         def.planes = slope;
         def.plane_count = 1;
         def.friction = 0.3f;
@@ -95,7 +95,7 @@ static void the_floor_gives_what_momentum_lacks(void **state) {
             float fx[COLUMNS * ROWS], fy[COLUMNS * ROWS];
             double to_x = 0, to_y = 0, scale = MASS * COLUMNS * ROWS * g * dt;
             support_steps(network, 1, dt);
-            check_ok(mspring_network_get_floor_impulses(network, 0, COLUMNS * ROWS, fx, fy, 1));
+            check_ok(mspring_network_get_columns(network, NULL, 0, COLUMNS * ROWS, (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, fx}, {MSPRING_FLOOR_IMPULSE_Y, 1, fy}}, 2));
             py -= MASS * COLUMNS * ROWS * g * dt;
             for (mspring_id p = 0; p < made.particle_count; p++) {
                 const support_point v = support_velocity(network, p);

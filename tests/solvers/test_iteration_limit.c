@@ -6,8 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
+#include <massspring/massspring.h>
 
 #include "recipe.h"
 #include "support.h"
@@ -95,17 +94,17 @@ static mspring_network *network_of(scene kind, mspring_solver solver, uint32_t s
     recipe made = {0};
     draw(&made, kind, &seed);
     mspring_network_def def = support_def(kind == PRESS ? 0 : -9.8f, substeps);
-    def.solver = solver;
-    def.guard = MSPRING_GUARD_CLAMP;
+    def.settings.solver = solver;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
     def.worker_count = workers;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
-    mspring_solver_def settings = support_solver(network);
+    mspring_settings settings = support_solver(network);
     settings.most_work = most_work;
-    check_ok(mspring_network_set_solver(network, &settings));
+    check_ok(support_set_solver(network, &settings));
     const double box[] = {0, 0, 0, 1, -14, 0, 1, 0, 14, 0, -1, 0};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = box;
     floor.plane_count = 3;
     floor.friction = 0.5f;
@@ -113,7 +112,7 @@ static mspring_network *network_of(scene kind, mspring_solver solver, uint32_t s
         check_ok(mspring_network_set_floor(network, &floor));
     }
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.flags = kind == TANGLE || kind == CLIQUE ? MSPRING_CONTACT_SELF : 0;
     contact.thickness = contact.flags ? 0.02 : 0.3;
     contact.friction = 0.5f;
@@ -122,9 +121,9 @@ static mspring_network *network_of(scene kind, mspring_solver solver, uint32_t s
     }
     for (mspring_id i = 1; kind == TANGLE && i < 58; i += 2) {
         mspring_angle_def angle;
-        check_ok(mspring_angle_def_init(&angle, sizeof angle));
+        check_ok(mspring_init(MSPRING_STRUCT_ANGLE_DEF, &angle, sizeof angle));
         angle.stiffness = 1e4f;
-        check_ok(mspring_network_add_angles(network, &angle, (const mspring_id[]){i - 1, i, i + 1}, 1, NULL));
+        check_ok(mspring_network_add_angles(network, &angle, (const mspring_id[]){i - 1, i, i + 1}, 1, 3, NULL));
     }
     return network;
 }
@@ -137,7 +136,7 @@ typedef struct seen {
 
 static double energy_of(const mspring_network *network) {
     double kinetic, elastic, potential;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, &potential));
+    check_ok(support_get_energy(network, &kinetic, &elastic, &potential));
     return kinetic + elastic + potential;
 }
 
@@ -154,7 +153,7 @@ static seen play(mspring_network *network, uint32_t steps) {
         s.overlap = fmax(s.overlap, contact.deepest);
         s.spent += (info.flags & MSPRING_STEP_FEWER) != 0;
     }
-    check_ok(mspring_network_state_hash(network, &s.hash));
+    check_ok(mspring_network_get_state_hash(network, &s.hash));
     mspring_network_destroy(network);
     return s;
 }
@@ -217,27 +216,27 @@ static mspring_network *pressed_beams(mspring_solver solver, bool has_grip, mspr
              support_random_between(&seed, -0.2, 0.2), 0, -5, 1e8, &seed);
     }
     mspring_network_def def = support_def(-9.8f, 1);
-    def.solver = solver;
-    def.guard = MSPRING_GUARD_CLAMP;
+    def.settings.solver = solver;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
-    mspring_solver_def settings = support_solver(network);
+    mspring_settings settings = support_solver(network);
     settings.most_work = 1;
-    check_ok(mspring_network_set_solver(network, &settings));
+    check_ok(support_set_solver(network, &settings));
     const double planes[] = {0, 0, 0, 1, -14, 0, 1, 0, 30, 0, -1, 0};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = planes;
     floor.plane_count = 3;
     floor.friction = 0.5f;
     check_ok(mspring_network_set_floor(network, &floor));
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = 0.3;
     contact.friction = 0.5f;
     check_ok(mspring_network_set_contact(network, &contact));
     mspring_grip_def grip;
-    check_ok(mspring_grip_def_init(&grip, sizeof grip));
+    check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &grip, sizeof grip));
     grip.particle = *first + 17;
     grip.x = 16;
     grip.y = -1000;
@@ -252,7 +251,7 @@ static mspring_network *pressed_beams(mspring_solver solver, bool has_grip, mspr
 static double lifted(const mspring_network *network) {
     float x[8 * 36], y[8 * 36];
     double sum = 0;
-    check_ok(mspring_network_get_floor_impulses(network, 0, 8 * 36, x, y, 1));
+    check_ok(mspring_network_get_columns(network, NULL, 0, 8 * 36, (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, x}, {MSPRING_FLOOR_IMPULSE_Y, 1, y}}, 2));
     for (int i = 0; i < 8 * 36; i++)
         sum += (double)y[i];
     return sum;
@@ -273,12 +272,12 @@ static void forces_press_no_body_through_another(void **state) {
         double deepest = 0, lift = 0;
         uint32_t spent = 0;
         for (int step = 0; step < 240; step++) {
-            check_ok(mspring_network_apply_forces(network, first, 36, none, down, 1));
+            check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, first, 36, none, down, 1));
             check_ok(mspring_network_step(network, DT));
             mspring_contact_info contact = {.struct_size = sizeof contact};
             check_ok(mspring_network_get_contact_info(network, &contact));
             deepest = fmax(deepest, contact.deepest);
-            spent += (mspring_network_step_flags(network) & MSPRING_STEP_FEWER) != 0;
+            spent += (support_step_flags(network) & MSPRING_STEP_FEWER) != 0;
             lift += step < 180 ? 0 : lifted(network) / (60 * DT);
         }
         const double weight = 8 * 36 * 9.8 + 36 * 50;
@@ -365,11 +364,11 @@ static void a_push_is_no_gain(void **state) {
         beam(&made, 0, 0, 0, 0, 0, 1e6, &seed);
         beam(&made, 0, 2.2, 0, 0, 0, 1e6, &seed);
         mspring_network_def def = support_def(0, 1);
-        def.solver = solver;
+        def.settings.solver = solver;
         mspring_network *network = recipe_network(&made, &def);
         recipe_free(&made);
         mspring_contact_def contact;
-        check_ok(mspring_contact_def_init(&contact, sizeof contact));
+        check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
         contact.thickness = 0.3;
         check_ok(mspring_network_set_contact(network, &contact));
         double work = 0;

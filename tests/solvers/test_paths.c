@@ -5,7 +5,7 @@
 /// SPDX-License-Identifier: MIT
 #include <math.h>
 
-#include <massspring/massspring_contact.h>
+#include <massspring/massspring.h>
 
 #include "recipe.h"
 #include "support.h"
@@ -26,11 +26,11 @@ static mspring_network *network_with(const recipe *made, uint32_t iterations, ui
     mspring_network_def def = support_def(-9.8f, 1);
     def.worker_count = workers;
     mspring_network *network = recipe_network(made, &def);
-    mspring_solver_def solver = support_solver(network);
+    mspring_settings solver = support_solver(network);
     solver.solver = iterations > 0 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_DIRECT;
     solver.iterations = iterations;
     solver.residual = 0;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     return network;
 }
 
@@ -169,14 +169,14 @@ static void rings_close(void **state) {
 static void change_much(mspring_network *network, int step) {
     const mspring_id springs[] = {20, 60, 61, 90};
     if (step % 6 == 5) {
-        check_ok(mspring_network_break_springs(network, &springs[step / 6 % 4], 1));
+        check_ok(mspring_network_break_springs(network, &springs[step / 6 % 4], 0, 1));
     }
     if (step % 6 == 2 && step > 8) {
-        check_ok(mspring_network_restore_springs(network, &springs[step / 6 % 4], 1, 0));
+        check_ok(mspring_network_restore_springs(network, &springs[step / 6 % 4], 0, 1, 0));
     }
     if (step == 10 || step == 20) {
         const float scale = step == 10 ? 0 : 1;
-        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 40, 1, &scale, 1));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, 40, 1, &scale, 1));
     }
 }
 
@@ -192,7 +192,7 @@ static void breaks_and_pins_cut_it(void **state) {
 static void add_floor(mspring_network *network, int step) {
     const double plane[] = {0, -2, 0.05, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = plane;
     floor.plane_count = 1;
     floor.friction = 0.3f;
@@ -213,7 +213,7 @@ static void it_lies_on_a_floor(void **state) {
 
 static void add_grips(mspring_network *network, int step) {
     mspring_grip_def grip;
-    check_ok(mspring_grip_def_init(&grip, sizeof grip));
+    check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &grip, sizeof grip));
     grip.stiffness = 1e5f;
     grip.max_force = 1e4f;
     for (mspring_id p = 10; step == 0 && p < 60; p += 17) {
@@ -236,7 +236,7 @@ static void grips_hold_it(void **state) {
 
 static void add_contact(mspring_network *network, int step) {
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.flags = 0;
     contact.thickness = 0.2;
     if (step == 0) {
@@ -272,13 +272,13 @@ static void added_springs_join_it(void **state) {
     mspring_network_def def = support_def(-9.8f, 1);
     def.spare_springs = 4;
     mspring_network *network = recipe_network(&made, &def), *exact = network_with(&whole, 0, 1);
-    mspring_solver_def solver = support_solver(network);
+    mspring_settings solver = support_solver(network);
     solver.solver = MSPRING_SOLVER_IMPLICIT;
     solver.iterations = 12;
     solver.residual = 0;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     mspring_spring_def added;
-    check_ok(mspring_spring_def_init(&added, sizeof added));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &added, sizeof added));
     added.a = 20;
     added.b = 24;
     added.stiffness = 1e6f;

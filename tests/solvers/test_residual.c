@@ -6,8 +6,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "recipe.h"
 #include "support.h"
@@ -27,13 +26,13 @@ static recipe bar(uint32_t width, uint32_t height, double stiffness) {
 }
 
 static void use(mspring_network *network, uint32_t iterations, float residual) {
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = MSPRING_SOLVER_IMPLICIT;
     solver.substeps = 1;
     solver.iterations = iterations;
     solver.residual = residual;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
 }
 
 static double work_of(const mspring_network *network) {
@@ -55,7 +54,7 @@ typedef struct seen {
 
 static seen play(const recipe *made, float residual, int steps) {
     mspring_network_def def = support_def(-9.8f, 1);
-    def.solver = MSPRING_SOLVER_DIRECT;
+    def.settings.solver = MSPRING_SOLVER_DIRECT;
     mspring_network *network = recipe_network(made, NULL), *exact = recipe_network(made, &def);
     seen s = {0};
     use(network, 1000, residual);
@@ -106,7 +105,7 @@ static void none_counts_the_iterations(void **state) {
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         mspring_network *network = recipe_network(&made, NULL);
         use(network, cases[i].given, cases[i].residual);
-        mspring_solver_def now = support_solver(network);
+        mspring_settings now = support_solver(network);
         assert_int_equal(now.iterations, cases[i].iterations);
         assert_true(now.residual == cases[i].residual);
         support_steps(network, 3, DT);
@@ -126,21 +125,10 @@ static void the_default_is_a_hundredth(void **state) {
     (void)state;
     recipe made = bar(6, 3, 1e7);
     mspring_network_def def = support_def(-9.8f, 1);
-    def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.settings.solver = MSPRING_SOLVER_IMPLICIT;
     mspring_network *network = recipe_network(&made, &def);
     assert_true(support_solver(network).residual == 0.01f && support_solver(network).iterations == 30);
     use(network, 9, 0.5f);
-    mspring_solver_def older = support_solver(network);
-    older.struct_size = offsetof(mspring_solver_def, residual);
-    check_ok(mspring_network_set_solver(network, &older));
-    assert_true(support_solver(network).residual == 0.01f);
-    mspring_tune_row row = {.struct_size = offsetof(mspring_tune_row, residual), .residual = 0.5f};
-    older.struct_size = sizeof older;
-    check_ok(mspring_tune_row_solver(&row, &older));
-    assert_true(older.residual == 0.01f);
-    row.struct_size = sizeof row;
-    check_ok(mspring_tune_row_solver(&row, &older));
-    assert_true(older.residual == 0.5f);
     mspring_network_destroy(network);
     recipe_free(&made);
 }
@@ -189,13 +177,13 @@ static void a_stack_lies_still(void **state) {
         use(network, 0, residuals[r]);
         const double plane[] = {0, 0, 0, 1};
         mspring_floor_def floor;
-        check_ok(mspring_floor_def_init(&floor, sizeof floor));
+        check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
         floor.planes = plane;
         floor.plane_count = 1;
         floor.friction = 0.5f;
         check_ok(mspring_network_set_floor(network, &floor));
         mspring_contact_def contact;
-        check_ok(mspring_contact_def_init(&contact, sizeof contact));
+        check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
         contact.flags = 0;
         contact.thickness = 0.3;
         contact.friction = 0.5f;
@@ -204,9 +192,7 @@ static void a_stack_lies_still(void **state) {
         double fastest = 0;
         for (int step = 0; step < 60; step++) {
             support_steps(network, 1, DT);
-            mspring_step_info info = {.struct_size = sizeof info};
-            check_ok(mspring_network_get_step_info(network, &info));
-            fastest = fmax(fastest, info.largest_speed);
+            fastest = fmax(fastest, support_largest_speed(network));
         }
         print_message("residual %g: up to %.3g m/s\n", (double)residuals[r], fastest);
         assert_true(fastest < 0.01); // a bar on the floor trembled so where contact had no tolerance of its own

@@ -80,11 +80,11 @@ static recipe scene(int number) {
 static mspring_network *play(const recipe *made, uint32_t iterations, float residual, int steps) {
     mspring_network_def def = support_def(-9.8f, 1);
     mspring_network *network = recipe_network(made, &def);
-    mspring_solver_def solver = support_solver(network);
+    mspring_settings solver = support_solver(network);
     solver.solver = iterations > 0 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_DIRECT;
     solver.iterations = iterations;
     solver.residual = residual;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     support_steps(network, (uint32_t)steps, DT);
     return network;
 }

@@ -25,12 +25,12 @@ static mspring_network *bent_rope(const trial *t) {
     }
     for (uint32_t i = 0; i < 2; i++)
         support_spring(builder, ids[i], ids[i + 1], (float)t->stiffness, 0);
-    def.solver = t->solver;
+    def.settings.solver = t->solver;
     mspring_network *network = support_network(builder, &def);
     mspring_angle_def angle;
-    check_ok(mspring_angle_def_init(&angle, sizeof angle));
+    check_ok(mspring_init(MSPRING_STRUCT_ANGLE_DEF, &angle, sizeof angle));
     angle.stiffness = (float)(0.1 * t->stiffness);
-    check_ok(mspring_network_add_angles(network, &angle, ids, 1, NULL));
+    check_ok(mspring_network_add_angles(network, &angle, ids, 1, 3, NULL));
     support_kick(network, 2, 0.2f);
     return network;
 }
@@ -38,11 +38,11 @@ static mspring_network *bent_rope(const trial *t) {
 static void add_others(mspring_network *network, const trial *t) {
     mspring_contact_def contact;
     mspring_grip_def grip;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = 0.12;
     if (t->has_contact)
         check_ok(mspring_network_set_contact(network, &contact));
-    check_ok(mspring_grip_def_init(&grip, sizeof grip));
+    check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &grip, sizeof grip));
     grip.particle = 2;
     grip.x = 2;
     grip.stiffness = (float)t->stiffness;

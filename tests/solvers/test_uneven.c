@@ -51,13 +51,13 @@ static mspring_network *lying(bool is_lattice, double angle, double friction, ms
         made.particles[p].y = sin(angle) * x + cos(angle) * y;
     }
     mspring_network_def def = support_def(-9.8f, MSPRING_SUBSTEPS_AUTO);
-    def.guard = MSPRING_GUARD_CLAMP;
-    def.solver = solver;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
+    def.settings.solver = solver;
     def.flags = flags;
     mspring_network *network = recipe_network(&made, &def);
     const double slope[] = {0, 0, -sin(angle), cos(angle)};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = slope;
     floor.plane_count = 1;
     floor.friction = (float)friction;
@@ -67,7 +67,7 @@ static mspring_network *lying(bool is_lattice, double angle, double friction, ms
 }
 
 static void get_places(const mspring_network *network, double angle, double *along) {
-    const uint32_t count = mspring_network_particle_count(network);
+    const uint32_t count = mspring_network_count(network, MSPRING_PARTICLES);
     for (uint32_t p = 0; p < count; p++)
         along[p] = support_position(network, p).x * cos(angle) + support_position(network, p).y * sin(angle);
 }
@@ -81,7 +81,7 @@ static double creep(bool is_lattice, double angle, mspring_solver solver, uint32
     get_places(network, angle, before);
     step_for(network, 30, of, &seed);
     get_places(network, angle, after);
-    for (uint32_t p = 0; p < mspring_network_particle_count(network); p++)
+    for (uint32_t p = 0; p < mspring_network_count(network, MSPRING_PARTICLES); p++)
         most = fmax(most, fabs(after[p] - before[p]));
     mspring_network_destroy(network);
     return most;
@@ -148,7 +148,7 @@ static mspring_network *relative_lattice(double stiffness, double damping) {
     (void)recipe_lattice(&made, 12, 4, 0, 0, 1, &stuff, &seed);
     recipe_disturb(&made, 0, 0.3, &seed);
     mspring_network_def def = support_def(0, 4);
-    def.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     return network;
@@ -220,11 +220,11 @@ static double energy_in_grip(mspring_solver solver, bool is_lattice, double max_
         (void)recipe_particle(&made, 0.2, 0, 1, 0);
     made.particles[0].vy = 1;
     mspring_network_def def = support_def(0, MSPRING_SUBSTEPS_AUTO);
-    def.guard = MSPRING_GUARD_CLAMP;
-    def.solver = solver;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
+    def.settings.solver = solver;
     mspring_network *network = recipe_network(&made, &def);
     mspring_grip_def grip;
-    check_ok(mspring_grip_def_init(&grip, sizeof grip));
+    check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &grip, sizeof grip));
     grip.particle = 0;
     grip.stiffness = (float)GRIP_STIFFNESS;
     grip.max_force = max_force < 1e30 ? (float)max_force : MSPRING_NEVER;

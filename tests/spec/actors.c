@@ -59,7 +59,7 @@ static bool draw_corners(scene *s, spec_element *e, uint32_t count) {
 
 static bool add_area(const scene *s, mspring_network *library, spec_network *n, spec_element *e) {
     mspring_area_def def;
-    check_ok(mspring_area_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &def, sizeof def));
     def.kind = e->kind == SPEC_GAS ? MSPRING_AREA_GAS : MSPRING_AREA_ELASTIC;
     def.stiffness = e->stiffness;
     def.pressure = e->pressure;
@@ -76,7 +76,12 @@ static bool add_area(const scene *s, mspring_network *library, spec_network *n, 
         return false; // too flat
     }
     mspring_area_def made = {.struct_size = sizeof made};
-    check_ok(mspring_network_get_area(library, id, &made));
+    check_ok(support_get_area(library, id, &made));
+    const float rest_area = made.rest_area;
+    made.rest_area *= 2;
+    check_ok(support_set_area(library, id, &made));
+    made.rest_area = rest_area; // a float from now on, which it need not be as it is made
+    check_ok(support_set_area(library, id, &made));
     e->rest_area = made.rest_area;
     for (uint32_t i = 0; twice < 0 && i < e->count / 2; i++) {
         const uint32_t kept = e->corners[i];
@@ -89,14 +94,14 @@ static bool add_area(const scene *s, mspring_network *library, spec_network *n, 
 
 static bool add_angle(mspring_network *library, spec_network *n, spec_element *e) {
     mspring_angle_def def;
-    check_ok(mspring_angle_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_ANGLE_DEF, &def, sizeof def));
     def.stiffness = e->stiffness;
     def.damping = e->damping;
-    def.flags = MSPRING_ANGLE_REST_GIVEN; // straight
+    def.rest_angle = 0; // straight
     e->fill = 1;
     e->rest_area = e->cosine = 1;
     e->pressure = 0;
-    if (mspring_network_add_angles(library, &def, e->corners, 1, NULL) != MSPRING_OK) {
+    if (mspring_network_add_angles(library, &def, e->corners, 1, 3, NULL) != MSPRING_OK) {
         return false;
     }
     spec_begin_element(n, e);
@@ -148,7 +153,7 @@ static void blow_specified(const spec_network *n, spec_vector *forces) {
 
 static void add_hook(scene *s, mspring_network *library, spec_network *n) {
     mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
     def.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
     def.fn = blow;
     def.period = n->hook_period = scene_chance(s, 0.5) ? 1 : 1 + scene_below(s, 6);
@@ -161,7 +166,7 @@ static void add_grips(scene *s, mspring_network *library, specification *to) {
     const uint32_t spread = scene_chance(s, 0.5) ? SCENE_GRIPS : 1 + scene_below(s, 2); // particles with grips
     for (uint32_t i = 0, first = scene_below(s, n->particle_count); i < SCENE_GRIPS && i < n->particle_count; i++) {
         mspring_grip_def def;
-        check_ok(mspring_grip_def_init(&def, sizeof def));
+        check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &def, sizeof def));
         def.particle = (first + i % spread) % n->particle_count;
         def.stiffness = s->stiffness * (float)scene_between(s, 0, 10);
         def.damping = scene_chance(s, 0.5) ? 0 : (float)scene_between(s, 0, 100);
@@ -207,7 +212,7 @@ void actors_act(scene *s, mspring_network *library, specification *to) {
     const float signal = (float)scene_between(s, 0.4, 1.4);
     n->actuator_count = 0;
     for (uint32_t i = 0; i < to->actuated_count; i++) {
-        check_ok(mspring_network_set_signals(library, i, 1, &signal, 1));
+        check_ok(mspring_network_set(library, MSPRING_SIGNAL, NULL, i, 1, &signal, 1));
         n->actuators[n->actuator_count++] =
             (spec_actuator){to->actuated[i], s->springs[to->actuated[i]].rest_length, to->nominal[i] * signal};
     }

@@ -12,7 +12,7 @@
 /// Slots in a block of a row.
 #define SPEC_BLOCK 16
 
-/// What mspring_plan tells of the same network.
+/// What support_plan tells of the same network.
 typedef struct spec_plan {
     uint32_t lattice_particles, lattice_springs, chain_particles, chain_springs, irregular_particles,
         irregular_springs;

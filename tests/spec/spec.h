@@ -141,7 +141,7 @@ struct spec_network {
     spec_vector *forces;         ///< [particle_count] of the host in the next step, N
     spec_vector *fields;         ///< [particle_count] scratch: forces from outside in the substep, N
     const float *inverse_masses; ///< [particle_count] 1/kg, 0 if pinned
-    const float *masses;         ///< [particle_count] kg, when relative springs were made
+    const float *masses;         ///< [particle_count] kg
     bool has_relative;           ///< springs
     const spec_sums *sums;       ///< [particle_count]
     const uint32_t *others;

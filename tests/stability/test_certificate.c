@@ -13,7 +13,7 @@
 #include "recipe.h"
 #include "support.h"
 
-/// What mspring_network_stable_dt() may be below the border itself: its residuals (see lanczos.c and LIMIT_TOLERANCE
+/// What mspring_network_get_stable_dt() may be below the border itself: its residuals (see lanczos.c and LIMIT_TOLERANCE
 /// there).
 #define SHARPNESS 3e-3
 
@@ -25,7 +25,7 @@ static bool is_below(mspring_network *network, double h) {
 /// The longest substep that the bound allows, as a part of the border.
 static double reach(mspring_network *network) {
     double border, low = 0.0, high = 2.0;
-    check_ok(mspring_network_stable_dt(network, &border, NULL));
+    check_ok(mspring_network_get_stable_dt(network, &border, NULL));
     for (int i = 0; i < 20; i++) {
         const double middle = 0.5 * (low + high);
         if (is_below(network, middle * border)) {
@@ -112,10 +112,9 @@ static void a_search_finds_no_more_than_there_is(void **state) {
         recipe_random_springs(&made, 20, &stuff, &random);
         mspring_network *network = recipe_network(&made, NULL);
         double any_shape;
-        check_ok(mspring_network_stable_dt(network, NULL, &any_shape));
+        check_ok(mspring_network_get_stable_dt(network, NULL, &any_shape));
         for (float length = 1e3f; length <= 1e12f; length *= 1e3f) {
-            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, (mspring_id)seed % made.spring_count, 1,
-                                         &length, 1));
+            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, (mspring_id)seed % made.spring_count, 1, &length, 1));
             most = fmax(most, mspringi_stability_limit_search(network, any_shape, 0, 4.0, 100));
         }
         mspring_network_destroy(network);

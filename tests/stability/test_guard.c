@@ -42,7 +42,7 @@ static void what_explodes_is_refused_in_time(void **state) {
         mspring_network_def def = support_def(-9.8f, count);
         mspring_network *network = recipe_network(&made, &def);
         double now = 0, mass = 0;
-        check_ok(mspring_network_stable_dt(network, &now, NULL));
+        check_ok(mspring_network_get_stable_dt(network, &now, NULL));
         for (uint32_t p = 0; p < made.particle_count; p++) {
             mass += (double)made.particles[p].mass;
         }
@@ -84,8 +84,8 @@ static void the_refusal_names_the_spring(void **state) {
             mspring_network *network = recipe_network(&made, &def);
             double now = 0;
             const float stiff = 1e7f;
-            check_ok(mspring_network_set(network, MSPRING_STIFFNESS, s, 1, &stiff, 1));
-            check_ok(mspring_network_stable_dt(network, &now, NULL));
+            check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, s, 1, &stiff, 1));
+            check_ok(mspring_network_get_stable_dt(network, &now, NULL));
             const uint64_t before = support_hash(network);
             check_error(mspring_network_step(network, 1.1 * now), MSPRING_ERROR_UNSTABLE);
             const bool b_moves =
@@ -113,8 +113,8 @@ static void a_spring_that_was_none_is_named(void **state) {
     mspring_network *network = recipe_network(&made, &def);
     support_steps(network, 1, 0.01);
     const float stiff = 1e5f, vx = 0.01f, vy = 0;
-    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, 1, &stiff, 1));
-    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 0, 1, &stiff, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &vx, &vy, 1));
     mspring_result result = MSPRING_OK;
     for (int step = 0; step < 100 && result == MSPRING_OK; step++) {
         result = mspring_network_step(network, 0.01);
@@ -131,7 +131,7 @@ static void the_refusal_names_the_particle(void **state) {
     for (size_t i = 0; i < COUNT_OF(shapes); i++) {
         recipe made = recipe_of_shape(&shapes[i], 10, 10);
         mspring_network_def def = support_def(-9.8f, 3);
-        def.max_speed = 100;
+        def.settings.max_speed = 100;
         mspring_network *network = recipe_network(&made, &def);
         for (mspring_id p = 0; p < made.particle_count; p += made.particle_count / 40 + 1) {
             if (made.particles[p].flags & MSPRING_PARTICLE_PINNED) {
@@ -159,17 +159,17 @@ static void the_refusal_tells_where_to(void **state) {
     mspring_builder *builder = support_builder();
     support_particle(builder, 1000, 500, 1);
     mspring_network_def def = support_def(0, 1);
-    def.max_speed = 100;
+    def.settings.max_speed = 100;
     mspring_network *network = support_network(builder, &def);
     const float vx = 120, vy = -20;
-    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &vx, &vy, 1));
     check_error(mspring_network_step(network, 0.5), MSPRING_ERROR_UNSTABLE);
     check_contains(mspring_network_error(network), "to (1060, 490) m at (120, -20) m/s");
     mspring_network_destroy(network);
 }
 
 /// A lattice turned and stretched, more along than across, so that springs hold across themselves, too, and in
-/// every direction: the border is that of mspring_network_stable_dt(), which is found in another way.
+/// every direction: the border is that of mspring_network_get_stable_dt(), which is found in another way.
 static void a_stretched_shape_has_its_own_border(void **state) {
     (void)state;
     uint64_t seed = 8;
@@ -190,7 +190,7 @@ static void a_stretched_shape_has_its_own_border(void **state) {
         const mspring_network_def def = support_def(0, 1);
         mspring_network *network = recipe_network(&made, &def);
         double now, any_shape;
-        check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+        check_ok(mspring_network_get_stable_dt(network, &now, &any_shape));
         assert_true(any_shape < 0.9 * now);
         // That is told to 0.3 %, and a hundred iterations find the eigenvalue to 0.2 %.
         check_error(mspring_network_step(network, (way == 0 ? 1.02 : 0.98) * now),
@@ -240,8 +240,8 @@ static void reckoning_lets_nothing_out(void **state) {
         recipe_lattice(&made, 5, 5, -0.4 * far, -0.4 * far, 0.2 * far, &stuff, &seed);
         made.particles[0].flags = made.particles[24].flags = MSPRING_PARTICLE_PINNED;
         mspring_network_def def = support_def(0, i % 4 < 3 ? 1 : 2);
-        def.guard = guards[i % 2];
-        def.max_speed = i % 5 == 0 ? 2e10f : (float)MSPRING_MAX_SPEED;
+        def.settings.guard = guards[i % 2];
+        def.settings.max_speed = i % 5 == 0 ? 2e10f : (float)MSPRING_MAX_SPEED;
         mspring_network *const both[] = {recipe_network(&made, &def), recipe_network(&made, &def)};
         check_ok(support_add_hook(both[1], MSPRING_PHASE_BEFORE_STEP, look_on, NULL, NULL));
         recipe_free(&made);
@@ -254,9 +254,9 @@ static void reckoning_lets_nothing_out(void **state) {
                 const float vy = (float)support_random_between(&seed, -2e10, 2e10);
                 for (size_t one = 0; one < 2; one++) {
                     if (step % 2 == 0) {
-                        check_ok(mspring_network_set_positions(both[one], p, 1, &x, &y, 1));
+                        check_ok(mspring_network_set_positions(both[one], NULL, p, 1, &x, &y, 1));
                     }
-                    check_ok(mspring_network_set_velocities(both[one], p, 1, &vx, &vy, 1));
+                    check_ok(mspring_network_set_velocities(both[one], NULL, p, 1, &vx, &vy, 1));
                 }
             }
             const mspring_result expected = mspring_network_step(both[1], 1);
@@ -286,16 +286,16 @@ static void what_wakes_far_out_is_seen(void **state) {
     recipe_lattice(&made, 40, 6, 0.9 * far, 0, 0.001 * far, &stuff, &seed);
     recipe_lattice(&made, 40, 6, -0.9 * far, 0, 0.001 * far, &stuff, &seed); // so that the origin stays
     mspring_network_def def = support_def(0, 1);
-    def.max_speed = (float)MSPRING_MAX_SPEED;
-    def.sleep_speed = 1e3f;
-    def.sleep_time = 2;
+    def.settings.max_speed = (float)MSPRING_MAX_SPEED;
+    def.settings.sleep_speed = 1e3f;
+    def.settings.sleep_time = 2;
     mspring_network *network = recipe_network(&made, &def);
-    for (int step = 0; step < 10 && !mspring_network_is_asleep(network); step++) {
+    for (int step = 0; step < 10 && !support_is_asleep(network); step++) {
         support_steps(network, 1, 1);
     }
-    assert_int_equal(mspring_network_is_asleep(network), 1);
+    assert_int_equal(support_is_asleep(network), 1);
     const float fast = 2e3f;
-    check_ok(mspring_network_set_velocities(network, 7, 1, &fast, &fast, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 7, 1, &fast, &fast, 1));
     support_steps(network, 3, 1);
     const mspring_id end = 25 + 39;
     const uint64_t before = support_hash(network);
@@ -322,7 +322,7 @@ static mspring_network *falling_bar(double stiffness, mspring_guard guard, doubl
     }
     *mass = 73.3975 * 395;
     mspring_network_def def = support_def(-9.8f, 1);
-    def.guard = guard;
+    def.settings.guard = guard;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     return network;
@@ -344,7 +344,7 @@ static void a_shape_that_crosses_its_border_is_refused(void **state) {
     assert_int_equal(support_hash(network), before);
     const double energy = support_energy_of_motion(network), allowed = energy_allowed(0, mass, step * dt);
     double now = 0;
-    check_ok(mspring_network_stable_dt(network, &now, NULL));
+    check_ok(mspring_network_get_stable_dt(network, &now, NULL));
     print_message("refused after %.3f s: energy %.3g J of at most %.3g, border %.4f of the step\n", step * dt,
                   energy, allowed, now / dt);
     assert_true(energy < allowed);
@@ -377,7 +377,7 @@ static void what_was_seen_is_saved(void **state) {
     mspring_network *network = falling_bar(139000, MSPRING_GUARD_GROWTH, &mass);
     void *kept[KEPT] = {NULL};
     size_t size = 0;
-    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));
+    check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));
     for (size_t i = 0; i < KEPT; i++) {
         kept[i] = test_malloc(size);
     }
@@ -424,12 +424,12 @@ static void edit_pair(mspring_network *network, int edit) {
     const float stiffness = 1e5f, mass = 1e-3f;
     mspring_spring_def spring;
     mspring_id id;
-    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
     spring.a = 1, spring.b = 2, spring.stiffness = stiffness, spring.rest_length = 1;
     if (edit == STIFFER) {
-        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, 1, &stiffness, 1));
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 0, 1, &stiffness, 1));
     } else if (edit == LIGHTER) {
-        check_ok(mspring_network_set(network, MSPRING_MASS, 0, 1, &mass, 1));
+        check_ok(mspring_network_set(network, MSPRING_MASS, NULL, 0, 1, &mass, 1));
     } else {
         check_ok(mspring_network_add_springs(network, &spring, 1, &id));
     }
@@ -478,18 +478,18 @@ static void more_substeps_are_tried_where_that_is_wanted(void **state) {
 
     // 17 times the border: 32 substeps, if they are allowed.
     network = falling_bar(290 * 150e3, MSPRING_GUARD_RETRY, &mass);
-    check_ok(mspring_network_stable_dt(network, &now, NULL));
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    check_ok(mspring_network_get_stable_dt(network, &now, NULL));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.substeps = 1;
     solver.max_substeps = 15;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     const uint64_t before = support_hash(network);
     check_error(mspring_network_step(network, dt), MSPRING_ERROR_UNSTABLE);
     assert_int_equal(support_solver(network).substeps, 1);
     assert_int_equal(support_hash(network), before);
     solver.max_substeps = 100;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     check_ok(mspring_network_step(network, dt));
     assert_int_equal(support_substeps(network), 32);
     support_steps(network, 10, dt);
@@ -511,7 +511,7 @@ static void the_implicit_solver_steps_in_where_that_is_wanted(void **state) {
             assert_true(support_energy_of_motion(network) < 2 * energy_allowed(0, mass, step * dt));
             assert_int_equal(support_substeps(network), 1);
             if (step == 700) { // among steps of either kind
-                check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));
+                check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &size));
                 snapshot = test_malloc(size);
                 check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_FRAME, snapshot, size, NULL));
             }
@@ -549,10 +549,10 @@ static void what_is_stable_is_never_refused(void **state) {
         const recipe_shape *s = &shapes[i % COUNT_OF(shapes)];
         recipe made = recipe_of_shape(s, 1e4, i < COUNT_OF(shapes) ? 1 : 100);
         mspring_network_def def = support_def(0, 1 + (uint32_t)i % 3);
-        def.global_damping = 0.5f;
+        def.settings.global_damping = 0.5f;
         mspring_network *network = recipe_network(&made, &def);
         double now = 0, mass = 0;
-        check_ok(mspring_network_stable_dt(network, &now, NULL));
+        check_ok(mspring_network_get_stable_dt(network, &now, NULL));
         for (uint32_t p = 0; p < made.particle_count; p++) {
             mass += (double)made.particles[p].mass;
         }
@@ -562,9 +562,9 @@ static void what_is_stable_is_never_refused(void **state) {
             if (step % 100 == 0) {
                 const uint32_t one = (uint32_t)(support_random(&seed) % made.particle_count);
                 const float v = (float)support_random_between(&seed, -speed, speed);
-                check_ok(mspring_network_set_velocities(network, one, 1, &v, &v, 1));
+                check_ok(mspring_network_set_velocities(network, NULL, one, 1, &v, &v, 1));
             }
-            mspring_result result = mspring_network_step(network, 0.9 * now * def.substeps);
+            mspring_result result = mspring_network_step(network, 0.9 * now * def.settings.substeps);
             if (result != MSPRING_OK) {
                 print_error("%s, step %u: %s\n", s->name, step, mspring_network_error(network));
             }

@@ -17,10 +17,10 @@ static const recipe_shape shapes[] = {
 static mspring_network *make(size_t shape, mspring_solver solver, mspring_guard guard, uint32_t substeps) {
     recipe made = recipe_of_shape(&shapes[shape], 1e4, 10);
     mspring_network_def def = support_def(-9.8f, substeps);
-    def.solver = solver;
-    def.guard = guard;
-    def.max_speed = 1e4f;
-    def.max_substeps = 5;
+    def.settings.solver = solver;
+    def.settings.guard = guard;
+    def.settings.max_speed = 1e4f;
+    def.settings.max_substeps = 5;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     return network;
@@ -28,12 +28,12 @@ static mspring_network *make(size_t shape, mspring_solver solver, mspring_guard 
 
 static double border_of(mspring_network *network) {
     double now = 0;
-    check_ok(mspring_network_stable_dt(network, &now, NULL));
+    check_ok(mspring_network_get_stable_dt(network, &now, NULL));
     return now;
 }
 
 static void check_bounds(const mspring_network *network) {
-    for (mspring_id p = 0; p < mspring_network_particle_count(network); p++) {
+    for (mspring_id p = 0; p < mspring_network_count(network, MSPRING_PARTICLES); p++) {
         const support_point at = support_position(network, p), speed = support_velocity(network, p);
         assert_true(isfinite(at.x) && isfinite(at.y)); // bounds are those of local coordinates
         assert_true(fabs(speed.x) <= 1e4 && fabs(speed.y) <= 1e4);
@@ -64,18 +64,16 @@ static void what_explodes_stays_in_bounds(void **state) {
     assert_true(at_bounds > 100); // else nothing exploded
 }
 
-/// What a host writes through a view is put back, too, whatever it is.
+/// What a hook writes is put back, too, whatever it is.
 static void what_is_written_is_put_back(void **state) {
     (void)state;
     const float values[] = {NAN, INFINITY, 1e30f};
     const float rates[] = {0, 1e5f}; // of which the second would hide speeds by the end of the step
     for (size_t i = 0; i < 4 * COUNT_OF(values) * COUNT_OF(rates); i++) {
         mspring_network *network = make(1, MSPRING_SOLVER_EXPLICIT, MSPRING_GUARD_CLAMP_BOUNDS, 2);
-        mspring_mutable_view view = {.struct_size = sizeof view};
         check_ok(support_set_global_damping(network, rates[i / 4 / COUNT_OF(values)]));
-        check_ok(mspring_network_view_mutable(network, &view));
-        float *const arrays[] = {view.x, view.y, view.vx, view.vy};
-        arrays[i % 4][view.slot_of_particle[7]] = values[i / 4 % COUNT_OF(values)];
+        support_writing writing = {.array = (int)(i % 4), .particle = 7, .value = values[i / 4 % COUNT_OF(values)]};
+        (void)support_write_in_step(network, &writing);
         for (int step = 0; step < 5; step++) {
             check_ok(mspring_network_step(network, 1e-3));
             check_bounds(network);

@@ -38,8 +38,8 @@ static void write(const mspring_hook_args *args, void *user) {
 
 static mspring_network *make(const recipe *made, mspring_solver solver, uint32_t substeps, mspring_guard guard) {
     mspring_network_def def = support_def(-9.8f, substeps);
-    def.solver = solver;
-    def.guard = guard;
+    def.settings.solver = solver;
+    def.settings.guard = guard;
     mspring_network *network = recipe_network(made, &def);
     support_steps(network, 3, DT); // so that the guard knows what was
     return network;

@@ -1,6 +1,6 @@
 /// @file test_lanczos.c
 /// Largest eigenvalues of networks, against those of dense matrices: of the pencil, of the guard's search, and the
-/// substep that mspring_network_stable_dt() makes of them.
+/// substep that mspring_network_get_stable_dt() makes of them.
 ///
 /// SPDX-License-Identifier: MIT
 #include "stability/lanczos.h"
@@ -84,7 +84,7 @@ static double dense_border(const recipe *made, double h) {
 enum { CASES = 12 };
 
 /// Lattices with holes, ropes and springs at random, of masses 1 to 1e4, all springs longer than at rest: there the
-/// guard's matrix and that of mspring_network_stable_dt() are one.
+/// guard's matrix and that of mspring_network_get_stable_dt() are one.
 static recipe stretched(uint64_t which) {
     uint64_t seed = which + 1;
     const recipe_stuff stuff = {.mass = {1, which % 3 == 0   ? 1
@@ -146,7 +146,7 @@ static void iterations_find_the_largest_eigenvalue(void **state) {
         mspring_network_def def = support_def(0, 1);
         mspring_network *network = recipe_network(&made, &def);
         double now = 0, length = 0;
-        check_ok(mspring_network_stable_dt(network, &now, NULL));
+        check_ok(mspring_network_get_stable_dt(network, &now, NULL));
         const double exact = dense_border(&made, now);
         const mspringi_ritz ritz = find(network, now, &length);
         const double searched = mspringi_stability_limit_search(network, now, 0, 2 * exact, 100);

@@ -24,9 +24,9 @@ static mspring_network *make(const uint64_t number, mspring_solver solver, float
     recipe_particle(&made, 0, 12, 1, 0);
     recipe_disturb(&made, 0.1, 1, &seed);
     mspring_network_def def = support_def(gravity, 8);
-    def.guard = MSPRING_GUARD_CLAMP_BOUNDS;
+    def.settings.guard = MSPRING_GUARD_CLAMP_BOUNDS;
     def.spare_particles = def.spare_springs = number % 3 ? 20 : 0;
-    def.sleep_speed = number % 5 == 0 ? 0.1f : 0;
+    def.settings.sleep_speed = number % 5 == 0 ? 0.1f : 0;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     snapshots_use_solver(network, solver, MSPRING_INTEGRATOR_BDF2, 7);
@@ -39,16 +39,16 @@ static void hold(mspring_network *network) {
     mspring_contact_def contact;
     mspring_collider_def collider;
     const float yield = 0.01f;
-    check_ok(mspring_grip_def_init(&grip, sizeof grip));
+    check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &grip, sizeof grip));
     grip.particle = 1, grip.x = 4, grip.y = 4, grip.stiffness = 1e6f;
     check_ok(mspring_network_add_grip(network, &grip, NULL));
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     check_ok(mspring_network_set_contact(network, &contact));
-    check_ok(mspring_network_reserve_contact_events(network, 16));
-    check_ok(mspring_collider_def_init(&collider, sizeof collider));
+    check_ok(support_reserve_contact_events(network, 16));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &collider, sizeof collider));
     collider.kind = MSPRING_COLLIDER_CIRCLE, collider.y = -2, collider.radius = 1;
     check_ok(mspring_network_add_collider(network, &collider, NULL));
-    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, 10, &yield, 0));
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, NULL, 0, 10, &yield, 0));
 }
 
 static void check_repeats(mspring_network *network) {
@@ -82,7 +82,7 @@ static void what_explodes_leaves_numbers(void **state) {
             const float fast = 1e14f;
             if (seed % 2)
                 hold(network);
-            check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast, 1));
+            check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &fast, &fast, 1));
             for (int step = 0; step < STEPS; step++) {
                 check_repeats(network);
                 put_back += (support_step_info(network).flags & MSPRING_STEP_PUT_BACK) != 0;
@@ -124,7 +124,7 @@ static mspring_network *make_absurd(uint64_t number, mspring_simd level) {
         spring->stiffness = 1e15f;
     }
     mspring_network_def def = support_def(number % 7 ? -9.8f : 1e30f, 4 + (uint32_t)number % 9);
-    def.guard = MSPRING_GUARD_CLAMP_BOUNDS;
+    def.settings.guard = MSPRING_GUARD_CLAMP_BOUNDS;
     def.simd_level = level;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
@@ -159,16 +159,16 @@ static void levels_put_back_the_same(void **state) {
 static void a_calmed_network_moves_again(void **state) {
     (void)state;
     mspring_network *network = make(4, MSPRING_SOLVER_EXPLICIT, -9.8f);
-    const uint32_t count = mspring_network_particle_count(network);
+    const uint32_t count = mspring_network_count(network, MSPRING_PARTICLES);
     const float soft = 10, rest = 0, fast = 1e14f;
     double x[100], y[100];
     assert_true(count < COUNT_OF(x));
-    check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
-    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast, 1));
+    check_ok(mspring_network_get_positions(network, NULL, 0, count, x, y, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &fast, &fast, 1));
     support_steps(network, STEPS, 1.0 / 64);
-    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, mspring_network_spring_count(network), &soft, 0));
-    check_ok(mspring_network_set_positions(network, 0, count, x, y, 1));
-    check_ok(mspring_network_set_velocities(network, 0, count, &rest, &rest, 0));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 0, mspring_network_count(network, MSPRING_SPRINGS), &soft, 0));
+    check_ok(mspring_network_set_positions(network, NULL, 0, count, x, y, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, count, &rest, &rest, 0));
     support_steps(network, 16, 1.0 / 64);
     assert_true(support_position(network, 0).y < y[0] - 0.1);
     assert_true(support_position(network, count - 1).y < y[count - 1] - 0.25); // 0.33 m of free fall

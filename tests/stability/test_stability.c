@@ -32,7 +32,7 @@ static double speed_after(mspring_network *network, uint32_t steps, double dt) {
         check_ok(result);
     }
     double fastest = 0;
-    for (mspring_id id = 0; id < mspring_network_particle_count(network); id++) {
+    for (mspring_id id = 0; id < mspring_network_count(network, MSPRING_PARTICLES); id++) {
         support_point v = support_velocity(network, id);
         fastest = fmax(fastest, hypot(v.x, v.y));
     }
@@ -153,10 +153,10 @@ static void relative_springs_equal_the_formula(void **state) {
     recipe relative = relative_recipe(MSPRING_SPRING_RELATIVE, 0);
     mspring_network_def def = support_def(-9.8f, 2);
     mspring_network *network = recipe_network(&relative, &def);
-    mspring_spring_info info = {.struct_size = sizeof info};
+    support_spring_info info;
     double elastic;
-    check_ok(mspring_network_get_spring(network, 3, &info));
-    check_ok(mspring_network_energy(network, NULL, &elastic, NULL));
+    check_ok(support_get_spring(network, 3, &info));
+    check_ok(support_get_energy(network, NULL, &elastic, NULL));
     assert_true(info.flags == MSPRING_SPRING_RELATIVE && info.stiffness == 0 && info.damping == 0);
     assert_true(elastic == 0); // no substep yet, no stiffness
 
@@ -169,16 +169,16 @@ static void relative_springs_equal_the_formula(void **state) {
         assert_true(count <= COUNT_OF(x));
         support_steps(network, i, 2 * h[i]); // velocities are then half a substep old in both, or in none
         support_steps(twin, i, 2 * h[i]);
-        check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
-        check_ok(mspring_network_get_velocities(network, 0, count, vx, vy, 1));
-        check_ok(mspring_network_set_positions(twin, 0, count, x, y, 1));
-        check_ok(mspring_network_set_velocities(twin, 0, count, vx, vy, 1));
+        check_ok(mspring_network_get_positions(network, NULL, 0, count, x, y, 1));
+        check_ok(mspring_network_get_velocities(network, NULL, 0, count, vx, vy, 1));
+        check_ok(mspring_network_set_positions(twin, NULL, 0, count, x, y, 1));
+        check_ok(mspring_network_set_velocities(twin, NULL, 0, count, vx, vy, 1));
         support_steps(network, 50, 2 * h[i]);
         support_steps(twin, 50, 2 * h[i]);
         for (uint32_t spring = 0; spring < relative.spring_count; spring++) {
-            mspring_spring_info expected = {.struct_size = sizeof expected};
-            check_ok(mspring_network_get_spring(network, spring, &info));
-            check_ok(mspring_network_get_spring(twin, spring, &expected));
+            support_spring_info expected;
+            check_ok(support_get_spring(network, spring, &info));
+            check_ok(support_get_spring(twin, spring, &expected));
             assert_int_equal(info.flags, MSPRING_SPRING_RELATIVE);
             assert_int_equal(expected.flags, 0);
             // The same formula, rounded to float once: half an ulp each way.
@@ -205,25 +205,25 @@ static void relative_and_absolute_springs_live_together(void **state) {
     support_particle(builder, 1, 0, 3);
     support_particle(builder, 2, 0, 6);
     mspring_spring_def spring;
-    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
     spring.a = 1;
     spring.b = 2;
     spring.stiffness = 0.25f;
     spring.damping = 0.125f;
     spring.flags = MSPRING_SPRING_RELATIVE;
-    check_ok(mspring_builder_add_spring(builder, &spring, NULL));
+    check_ok(mspring_builder_add_springs(builder, &spring, 1, NULL));
     support_spring(builder, 0, 1, 77, 3);
     mspring_network_def def = support_def(0, 1);
     mspring_network *network = support_network(builder, &def);
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     assert_int_equal(plan.has_relative, 1);
     assert_int_equal(plan.has_damping, 1);
     check_ok(mspring_network_step(network, 0.125));
-    mspring_spring_info info = {.struct_size = sizeof info};
-    check_ok(mspring_network_get_spring(network, 0, &info));
+    support_spring_info info;
+    check_ok(support_get_spring(network, 0, &info));
     assert_true(info.stiffness == 0.25f * 2 * 64 && info.damping == 0.125f * 2 * 8); // mu = 2 kg
-    check_ok(mspring_network_get_spring(network, 1, &info));
+    check_ok(support_get_spring(network, 1, &info));
     assert_true(info.stiffness == 77 && info.damping == 3 && info.flags == 0);
     mspring_network_destroy(network);
 }

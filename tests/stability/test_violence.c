@@ -19,23 +19,23 @@ static mspring_network *blown_up(uint32_t width, uint32_t height, double way, ui
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     double any = 0;
-    check_ok(mspring_network_stable_dt(network, NULL, &any));
+    check_ok(mspring_network_get_stable_dt(network, NULL, &any));
     for (mspring_id p = 0; p < width * height; p++) {
         const double angle = support_random_between(&seed, 0, 6.2831853),
                      speed = way / any * sqrt(support_random_between(&seed, 0, 1));
         const float vx = (float)(speed * cos(angle) + 30), vy = (float)(speed * sin(angle));
-        check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
     }
     *dt = calm_substeps * any * (1 - 1e-6); // the number is that of calm motion, whatever rounds
     return network;
 }
 
 static void set_pace(mspring_network *network, uint32_t substeps, uint32_t most_work) {
-    mspring_solver_def def;
-    check_ok(mspring_solver_def_init(&def, sizeof def));
+    mspring_settings def;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
     def.substeps = substeps;
     def.most_work = most_work;
-    check_ok(mspring_network_set_solver(network, &def));
+    check_ok(support_set_solver(network, &def));
 }
 
 static mspring_step_info report_of(const mspring_network *network) {
@@ -125,12 +125,12 @@ static void welds_alone_are_never_violent(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     mspring_spring_def weld;
-    check_ok(mspring_spring_def_init(&weld, sizeof weld));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &weld, sizeof weld));
     weld.a = support_particle(builder, 0, 0, 1);
     weld.b = support_particle(builder, 0.5, 0, 1);
     weld.stiffness = 100;
     weld.rest_length = 0;
-    check_ok(mspring_builder_add_spring(builder, &weld, NULL));
+    check_ok(mspring_builder_add_springs(builder, &weld, 1, NULL));
     const mspring_network_def def = support_def(0, MSPRING_SUBSTEPS_AUTO);
     mspring_network *network = support_network(builder, &def);
     const double first = support_energy(network);
@@ -161,8 +161,8 @@ static void a_loaded_snapshot_takes_the_same_substeps(void **state) {
         assert_int_equal(report_of(network).substeps, report_of(other).substeps);
         assert_int_equal(support_hash(network), support_hash(other));
     }
-    mspring_solver_def def = {.struct_size = sizeof def};
-    check_ok(mspring_network_get_solver(other, &def));
+    mspring_settings def = {.struct_size = sizeof def};
+    check_ok(mspring_network_get_settings(other, &def));
     assert_int_equal(def.most_work, 3);
     mspring_network_destroy(network);
     mspring_network_destroy(other);
@@ -185,7 +185,7 @@ static mspring_network *ship(double speed) {
     recipe_free(&made);
     for (mspring_id p = SHIP; speed > 0 && p < SHIP + 2; p++) {
         const float vx = 0, vy = (float)(p == SHIP ? -speed : speed);
-        check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
     }
     return network;
 }
@@ -217,12 +217,12 @@ static void short_springs_count_as_short(void **state) {
     for (int is_shrunk = 0; is_shrunk < 2; is_shrunk++) {
         const double size = is_shrunk ? 0.05 : 1;
         mspring_network *network = blown_up(SIDE, SIDE, 0, 3, &dt);
-        const uint32_t springs = mspring_network_spring_count(network);
+        const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
         for (mspring_id s = 0; s < springs; s++) {
             float length;
-            check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, s, 1, &length, 1));
+            check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, NULL, s, 1, &length, 1));
             length *= (float)size;
-            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, s, 1, &length, 1));
+            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, s, 1, &length, 1));
         }
         uint64_t seed = 11;
         for (mspring_id p = 0; p < PARTICLES; p++) {
@@ -231,8 +231,8 @@ static void short_springs_count_as_short(void **state) {
             const double speed = 0.4 * size / (dt / calm_substeps);
             const float vx = (float)support_random_between(&seed, -speed, speed),
                         vy = (float)support_random_between(&seed, -speed, speed);
-            check_ok(mspring_network_set_positions(network, p, 1, &x, &y, 1));
-            check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+            check_ok(mspring_network_set_positions(network, NULL, p, 1, &x, &y, 1));
+            check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
         }
         const outcome all = run(network, PARTICLES, dt);
         growth[is_shrunk] = all.growth;

@@ -20,7 +20,7 @@ static mspring_network *kicked(uint32_t height, float stiffness, uint32_t subste
     recipe_lattice(&made, WIDTH, height, 0, 0, 1, &stuff, &seed);
     recipe_disturb(&made, 0, 0.5, &seed);
     mspring_network_def def = support_def(0, 1);
-    def.substeps = substeps;
+    def.settings.substeps = substeps;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     return network;
@@ -86,8 +86,8 @@ static void even_dt_gives_the_bits_of_auto(void **state) {
     support_steps(usual, 100, even_dt);
     assert_int_equal(support_hash(even), support_hash(usual));
     assert_true(info_of(even).time_left == 0);
-    mspring_solver_def def = {.struct_size = sizeof def};
-    check_ok(mspring_network_get_solver(even, &def));
+    mspring_settings def = {.struct_size = sizeof def};
+    check_ok(mspring_network_get_settings(even, &def));
     assert_true(def.substeps == MSPRING_SUBSTEPS_EVEN);
     mspring_network_destroy(even);
     mspring_network_destroy(usual);
@@ -194,8 +194,8 @@ static void time_left_follows_shorter_substeps(void **state) {
     const mspring_step_info before = info_of(network);
     assert_true(before.substeps == 1 && fabs(before.time_left) > 0.05 * even_dt);
     const float stiffness = 1.6e7f;
-    for (mspring_id spring = 0; spring < mspring_network_spring_count(network); spring++) {
-        check_ok(mspring_network_set_at(network, MSPRING_STIFFNESS, &spring, 1, &stiffness, 1));
+    for (mspring_id spring = 0; spring < mspring_network_count(network, MSPRING_SPRINGS); spring++) {
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, &spring, 0, 1, &stiffness, 1));
     }
     support_steps(network, 3, even_dt);
     const mspring_step_info after = info_of(network);
@@ -207,13 +207,13 @@ static void time_left_follows_shorter_substeps(void **state) {
 static void what_glides_is_drawn_evenly(void **state) {
     (void)state;
     mspring_network *network = kicked(1, 3e3f, MSPRING_SUBSTEPS_EVEN);
-    const uint32_t count = mspring_network_particle_count(network);
+    const uint32_t count = mspring_network_count(network, MSPRING_PARTICLES);
     float *vx = calloc(2 * count, sizeof *vx), *vy = vx + count;
     assert_non_null(vx);
     for (uint32_t p = 0; p < count; p++) {
         vx[p] = 1;
     }
-    check_ok(mspring_network_set_velocities(network, 0, count, vx, vy, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, count, vx, vy, 1));
     const double x = support_position(network, 0).x;
     uint64_t seed = 2;
     double asked = 0;

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include <massspring/massspring_batch.h>
+#include <massspring/massspring.h>
 
 #include "recipe.h"
 #include "support.h"
@@ -80,13 +80,13 @@ static mspring_network *lattice_with(mspring_guard guard, uint32_t substeps, uin
     recipe made = {0};
     recipe_lattice(&made, 12, 5, 0, 0, 1, &stuff, &seed);
     mspring_network_def def = support_def(-9.8f, substeps);
-    def.guard = guard;
+    def.settings.guard = guard;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
-    mspring_solver_def solver = support_solver(network);
+    mspring_settings solver = support_solver(network);
     solver.most_work = most_work;
     solver.max_substeps = max_substeps;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     return network;
 }
 
@@ -125,10 +125,10 @@ static void calm_steps_are_the_unit(void **state) {
     for (mspring_solver kind = MSPRING_SOLVER_EXPLICIT; kind <= MSPRING_SOLVER_DIRECT; kind++) {
         for (uint32_t substeps = 20; substeps <= 40; substeps += 20) {
             mspring_network *network = lattice_with(MSPRING_GUARD_CLAMP, substeps, 4, 100);
-            mspring_solver_def solver = support_solver(network);
+            mspring_settings solver = support_solver(network);
             solver.solver = kind;
             solver.residual = 0; // all iterations
-            check_ok(mspring_network_set_solver(network, &solver));
+            check_ok(support_set_solver(network, &solver));
             check_ok(mspring_network_step(network, DT));
             check_near(ladder_report(network).work, 1, 1e-12); // a quotient of two equal sums
             check_error(mspring_network_step(network, -1), MSPRING_ERROR_ARGUMENT);
@@ -178,7 +178,7 @@ static mspring_network *yielding_lattice(uint32_t workers) {
         made.springs[i].yield_strain = 0.01f;
     }
     mspring_network_def def = support_def(0, 20);
-    def.guard = MSPRING_GUARD_RETRY;
+    def.settings.guard = MSPRING_GUARD_RETRY;
     def.worker_count = workers;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
@@ -193,12 +193,12 @@ static void workers_do_not_change_the_work(void **state) {
     uint64_t hashes[2];
     for (uint32_t workers = 1; workers <= 2; workers++) {
         mspring_network *network = yielding_lattice(workers);
-        mspring_solver_def solver = support_solver(network);
+        mspring_settings solver = support_solver(network);
         solver.most_work = 3;
-        check_ok(mspring_network_set_solver(network, &solver));
+        check_ok(support_set_solver(network, &solver));
         for (mspring_id p = 0; p < 60; p += 3) {
             const float vx = p % 2 ? 8.0f : -8.0f, vy = 0;
-            check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+            check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
         }
         uint32_t hook;
         check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, throw_out, NULL, &hook));
@@ -207,7 +207,7 @@ static void workers_do_not_change_the_work(void **state) {
         check_ok(mspring_network_remove_hook(network, hook));
         check_ok(mspring_network_step(network, DT));
         seen[workers - 1] = ladder_report(network);
-        check_ok(mspring_network_state_hash(network, &hashes[workers - 1]));
+        check_ok(mspring_network_get_state_hash(network, &hashes[workers - 1]));
         mspring_network_destroy(network);
     }
     assert_true(seen[0].work == seen[1].work && seen[0].flags == seen[1].flags);
@@ -227,7 +227,7 @@ static worst play(mspring_guard guard, uint32_t substeps, uint32_t most_work, ui
     mspring_network *network = lattice_with(guard, substeps, most_work, 64);
     const double plane[4] = {0, -2, 0.1, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = plane;
     floor.plane_count = 1;
     check_ok(mspring_network_set_floor(network, &floor));
@@ -236,7 +236,7 @@ static worst play(mspring_guard guard, uint32_t substeps, uint32_t most_work, ui
         for (mspring_id p = 0; step % 40 == 5 && p < 60; p += 3) {
             const float vx = (float)support_random_between(&seed, -900, 900),
                         vy = (float)support_random_between(&seed, -900, 900);
-            check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+            check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
         }
         const mspring_result result = mspring_network_step(network, DT);
         const mspring_step_info info = ladder_report(network);
@@ -292,7 +292,7 @@ static void good_groups_are_not_held_for_others(void **state) {
         }
         first[GROUPS] = GROUPS * OF_GROUP;
         mspring_network_def def = support_def(0, 4);
-        def.guard = MSPRING_GUARD_BOUNDS;
+        def.settings.guard = MSPRING_GUARD_BOUNDS;
         mspring_network *network = support_network(builder, &def);
         check_ok(mspring_network_set_groups(network, first, GROUPS));
         for (int g = 0; g < bad; g++) {
@@ -303,7 +303,7 @@ static void good_groups_are_not_held_for_others(void **state) {
         for (int g = 0; g < GROUPS; g++) {
             const uint32_t group = (uint32_t)(g * 7 % GROUPS);
             uint32_t flags = 0;
-            check_ok(mspring_network_get_group_flags(network, group, 1, &flags, 1));
+            check_ok(mspring_network_get_integers(network, MSPRING_GROUP_FLAGS, NULL, group, 1, &flags, 1));
             assert_int_equal((flags & MSPRING_GROUP_HELD) != 0, g < bad);
         }
         print_message("%d of %d groups go wrong: %.0f calm steps\n", bad, GROUPS, info.work);

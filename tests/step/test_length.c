@@ -1,5 +1,5 @@
 /// @file test_length.c
-/// mspring_solver_def.substep_length: substeps of one length, whatever dt does.
+/// mspring_settings.substep_length: substeps of one length, whatever dt does.
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
@@ -16,12 +16,12 @@ enum { WIDTH = 20 };
 static const double length = 1.0 / 1024;
 
 static void set_length(mspring_network *network, mspring_solver solver, double value) {
-    mspring_solver_def def;
-    check_ok(mspring_solver_def_init(&def, sizeof def));
+    mspring_settings def;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
     def.solver = solver;
     def.substeps = 3; // ignored, if there is a length
     def.substep_length = value;
-    check_ok(mspring_network_set_solver(network, &def));
+    check_ok(support_set_solver(network, &def));
 }
 
 /// A free rope or lattice, kicked at random, that nothing damps; half of what is stable.
@@ -56,7 +56,7 @@ static double dt_of(int pattern, uint32_t n, uint64_t *seed) {
 enum { PATTERNS = 5 };
 
 static void check_same_motion(const mspring_network *a, const mspring_network *b) {
-    for (mspring_id p = 0; p < mspring_network_particle_count(a); p++) {
+    for (mspring_id p = 0; p < mspring_network_count(a, MSPRING_PARTICLES); p++) {
         const support_point at_a = support_position(a, p), at_b = support_position(b, p);
         const support_point v_a = support_velocity(a, p), v_b = support_velocity(b, p);
         assert_true(at_a.x == at_b.x && at_a.y == at_b.y && v_a.x == v_b.x && v_a.y == v_b.y);
@@ -168,7 +168,7 @@ static void failed_steps_leave_the_rest(void **state) {
     check_near(support_step_info(network).time_left, 0.25 * length, 1e-15);
     const uint64_t before = support_hash(network);
     const float fast = 1e7f;
-    check_ok(mspring_network_set_velocities(network, 0, 1, &fast, &fast, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &fast, &fast, 1));
     check_error(mspring_network_step(network, 4.4 * length), MSPRING_ERROR_UNSTABLE);
     check_near(support_step_info(network).time_left, 0.25 * length, 1e-15);
     check_error(mspring_network_step(network, 1e7 * length), MSPRING_ERROR_ARGUMENT); // 10^7 substeps
@@ -202,18 +202,18 @@ static void all_solvers_keep_it(void **state) {
 static void it_reads_back_and_is_checked(void **state) {
     (void)state;
     mspring_network *network = kicked(1, MSPRING_SOLVER_EXPLICIT);
-    mspring_solver_def def = support_solver(network);
+    mspring_settings def = support_solver(network);
     assert_true(def.substep_length == length && def.substeps == MSPRING_SUBSTEPS_AUTO);
-    check_ok(mspring_network_set_solver(network, &def));
+    check_ok(support_set_solver(network, &def));
     static const double bad[] = {-1, NAN, INFINITY, -INFINITY, 1e-45, 2e30};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         def.substep_length = bad[i];
-        check_error(mspring_network_set_solver(network, &def), MSPRING_ERROR_ARGUMENT);
+        check_error(support_set_solver(network, &def), MSPRING_ERROR_ARGUMENT);
         check_contains(mspring_network_error(network), "substep_length");
     }
     assert_true(support_solver(network).substep_length == length);
     def.substep_length = 0.1; // no float
-    check_ok(mspring_network_set_solver(network, &def));
+    check_ok(support_set_solver(network, &def));
     assert_true(support_solver(network).substep_length == (double)0.1f);
     set_length(network, MSPRING_SOLVER_EXPLICIT, 0);
     assert_int_equal(support_solver(network).substeps, 3);
@@ -227,10 +227,10 @@ static void others_have_no_section(void **state) {
     (void)state;
     mspring_network *network = kicked(1, MSPRING_SOLVER_EXPLICIT);
     size_t with, without;
-    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &with));
+    check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &with));
     const saved at = snapshots_save(network, MSPRING_SNAPSHOT_FRAME);
     set_length(network, MSPRING_SOLVER_EXPLICIT, 0);
-    check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &without));
+    check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &without));
     assert_true(with >= without + sizeof(double));
     const saved plain = snapshots_save(network, MSPRING_SNAPSHOT_FRAME);
     snapshots_load(network, &at);

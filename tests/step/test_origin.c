@@ -102,7 +102,7 @@ static void a_flying_ship_keeps_its_shape(void **state) {
     mspring_network_def def = support_def(0, 2);
     mspring_network *network = recipe_network(&made, &def);
     double px, py, px_now, py_now;
-    check_ok(mspring_network_momentum(network, &px, &py, NULL));
+    check_ok(support_get_momentum(network, &px, &py, NULL));
     const uint32_t steps = 300 * 64;
     support_steps(network, steps, 1.0 / 64);
 
@@ -110,23 +110,23 @@ static void a_flying_ship_keeps_its_shape(void **state) {
     // within 128 m of the origin and off by up to half an ulp, 4e-6 m, at each end; the 333 m/s are off by 1.5e-5
     // m/s, which the dampers, of the same size as the springs within a substep, turn into as much.
     float strain;
-    check_ok(mspring_network_max_strain(network, &strain, NULL));
+    check_ok(support_get_max_strain(network, &strain, NULL));
     assert_true(strain < 1e-4f);
 
     double min_x, min_y, max_x, max_y;
-    check_ok(mspring_network_bounds(network, &min_x, &min_y, &max_x, &max_y));
+    check_ok(support_get_bounds(network, &min_x, &min_y, &max_x, &max_y));
     assert_true(hypot(min_x, min_y) > 1e5);
     // Each of 38,400 substeps rounds a position by up to 4e-6 m, and a velocity by up to 1.5e-5 m/s for the rest of
     // the time: at random that adds to 1 m at most, always the same way it would be 100 m.
     check_near((min_x + max_x) / 2, 15 + speed_x * 300, 2);
     check_near((min_y + max_y) / 2, 4.75 + speed_y * 300, 2);
-    check_ok(mspring_network_momentum(network, &px_now, &py_now, NULL));
+    check_ok(support_get_momentum(network, &px_now, &py_now, NULL));
     // The same velocity errors at random are 1.5e-5 / 333 sqrt(38400 / 250) = 5.6e-7 of vx, 1.3e-6 of vy.
     check_near(px_now / px, 1, 2e-6);
     check_near(py_now / py, 1, 4e-6);
 
     mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_get_view(network, &view));
     check_near(view.origin_x, (min_x + max_x) / 2, 200); // the origin has come along
     check_near(view.origin_y, (min_y + max_y) / 2, 200);
     mspring_network_destroy(network);
@@ -140,12 +140,12 @@ static void moving_the_origin_moves_no_particle(void **state) {
     mspring_builder *builder = support_builder();
     for (int i = 0; i < 40; i++) {
         mspring_particle_def particle;
-        check_ok(mspring_particle_def_init(&particle, sizeof particle));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
         particle.x = 0.125 * i;
         particle.y = -0.0625 * i;
         particle.vx = 256;
         particle.vy = 128;
-        check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+        check_ok(mspring_builder_add_particles(builder, &particle, 1, NULL));
     }
     mspring_network_def def = support_def(0, 1);
     mspring_network *network = support_network(builder, &def);
@@ -158,7 +158,7 @@ static void moving_the_origin_moves_no_particle(void **state) {
             support_point p = support_position(network, id);
             assert_true(p.x == 0.125 * id + 2.0 * step && p.y == -0.0625 * id + 1.0 * step);
         }
-        check_ok(mspring_network_view(network, &view));
+        check_ok(mspring_network_get_view(network, &view));
         moves += view.origin_x != last;
         last = view.origin_x;
     }
@@ -171,10 +171,10 @@ static mspring_network *two_in_flight(void) {
     mspring_builder *builder = support_builder();
     for (int i = 0; i < 2; i++) {
         mspring_particle_def particle;
-        check_ok(mspring_particle_def_init(&particle, sizeof particle));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle));
         particle.x = particle.y = i == 0 ? 40 : -40;
         particle.vx = particle.vy = i == 0 ? 64 : 96;
-        check_ok(mspring_builder_add_particle(builder, &particle, NULL));
+        check_ok(mspring_builder_add_particles(builder, &particle, 1, NULL));
     }
     mspring_network_def def = support_def(0, 1);
     return support_network(builder, &def);
@@ -191,8 +191,8 @@ static void a_snapshot_brings_its_origin(void **state) {
         support_bring(network, loaded, MSPRING_SNAPSHOT_FRAME);
         mspring_view here = {.struct_size = sizeof here}, there = {.struct_size = sizeof there};
         for (int step = 0; step < 100; step++) {
-            check_ok(mspring_network_view(network, &here));
-            check_ok(mspring_network_view(loaded, &there));
+            check_ok(mspring_network_get_view(network, &here));
+            check_ok(mspring_network_get_view(loaded, &there));
             assert_true(here.origin_x == there.origin_x && here.origin_y == there.origin_y);
             assert_int_equal(here.origin_x > 0 && here.origin_y > 0, saved_after[i] + step >= 176);
             assert_int_equal(support_hash(network), support_hash(loaded));

@@ -28,8 +28,8 @@ typedef struct setting {
 static void check_against_reference(const char *name, recipe *made, setting with, double spacing) {
     reference exact = reference_of(made, with.gravity_x, with.gravity_y, with.global_damping);
     mspring_network_def def = support_def((float)with.gravity_y, 4);
-    def.gravity_x = (float)with.gravity_x;
-    def.global_damping = (float)with.global_damping;
+    def.settings.gravity_x = (float)with.gravity_x;
+    def.settings.global_damping = (float)with.global_damping;
     mspring_network *network = recipe_network(made, &def);
     for (int substep = 0; substep < SUBSTEPS; substep++) {
         reference_substep(&exact, h);

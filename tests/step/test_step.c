@@ -16,7 +16,7 @@ static mspring_network *particles(uint32_t count, uint32_t substeps, float max_s
         support_particle(builder, i, 0, 2);
     }
     mspring_network_def def = support_def(0, substeps);
-    def.max_speed = max_speed;
+    def.settings.max_speed = max_speed;
     return support_network(builder, &def);
 }
 
@@ -24,7 +24,7 @@ static void bad_dt_is_refused(void **state) {
     (void)state;
     mspring_network *network = particles(3, 4, 1e6f);
     const float vx[] = {1, 2, 3}, vy[] = {0, 0, 0};
-    check_ok(mspring_network_set_velocities(network, 0, 3, vx, vy, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 3, vx, vy, 1));
     const uint64_t hash = support_hash(network);
     // The last ones: a substep that is a denormal number, that is nothing, and that is infinite as a float.
     const double bad[] = {0.0, -0.0, -0.01, NAN, INFINITY, -INFINITY, (double)FLT_MIN, 1e-40, 1e-300, 1e40, 1e300};
@@ -76,8 +76,8 @@ static void forces_add_up(void **state) {
         x[i] = 8.0f * (float)i;
         y[i] = 16;
     }
-    check_ok(mspring_network_apply_forces(network, 5, 10, x, y, 1));
-    check_ok(mspring_network_apply_forces(network, 10, 10, x, y, 1));
+    check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 5, 10, x, y, 1));
+    check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 10, 10, x, y, 1));
     check_ok(mspring_network_apply_force(network, 10, 80, 0));
     check_ok(mspring_network_step(network, 0.25));
     for (mspring_id id = 0; id < 20; id++) {
@@ -146,7 +146,7 @@ static void a_step_out_of_bounds_is_taken_back(void **state) {
         vx[i] = 1;
         vy[i] = 0.25f * (float)(i % 8);
     }
-    check_ok(mspring_network_set_velocities(network, 0, 50, vx, vy, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 50, vx, vy, 1));
     check_ok(mspring_network_step(network, 0.125));
     const uint64_t hash = support_hash(network);
     const support_point before = support_position(network, 37);
@@ -196,10 +196,10 @@ static void an_explosion_is_taken_back(void **state) {
         assert_int_equal(support_hash(network), support_hash(twin));
         // ... and goes on as that one does, in steps that are short enough: nothing of the failed step is left in
         // any corner.
-        mspring_solver_def solver;
-        check_ok(mspring_solver_def_init(&solver, sizeof solver));
-        check_ok(mspring_network_set_solver(network, &solver));
-        check_ok(mspring_network_set_solver(twin, &solver));
+        mspring_settings solver;
+        check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
+        check_ok(support_set_solver(network, &solver));
+        check_ok(support_set_solver(twin, &solver));
         support_steps(network, 10, 1e-6);
         support_steps(twin, 10, 1e-6);
         assert_int_equal(support_hash(network), support_hash(twin));
@@ -209,19 +209,16 @@ static void an_explosion_is_taken_back(void **state) {
     }
 }
 
-static void what_is_not_finite_in_a_view_is_noticed(void **state) {
+static void what_a_hook_writes_is_checked(void **state) {
     (void)state;
     const float bad[] = {NAN, INFINITY, -INFINITY, 1.1e12f};
     for (size_t i = 0; i < COUNT_OF(bad); i++) {
         for (int array = 0; array < 4; array++) {
             mspring_network *network = particles(40, 1, 1e6f);
-            mspring_mutable_view view = {.struct_size = sizeof view};
-            check_ok(mspring_network_view_mutable(network, &view));
-            float *const arrays[] = {view.x, view.y, view.vx, view.vy};
-            arrays[array][view.slot_of_particle[33]] = bad[i];
+            support_writing writing = {.array = array, .particle = 33, .value = bad[i]};
+            (void)support_write_in_step(network, &writing);
             check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_UNSTABLE);
             check_contains(mspring_network_error(network), "33");
-            arrays[array][view.slot_of_particle[33]] = 0;
             check_ok(mspring_network_step(network, 0.01));
             mspring_network_destroy(network);
         }
@@ -232,9 +229,9 @@ static void the_speed_limit_is_one(void **state) {
     (void)state;
     mspring_network *network = particles(1, 1, 10);
     const float limit = 10, zero = 0, above = nextafterf(10, 11);
-    check_ok(mspring_network_set_velocities(network, 0, 1, &limit, &zero, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &limit, &zero, 1));
     check_ok(mspring_network_step(network, 0.1));
-    check_ok(mspring_network_set_velocities(network, 0, 1, &zero, &above, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &zero, &above, 1));
     check_error(mspring_network_step(network, 0.1), MSPRING_ERROR_UNSTABLE);
     mspring_network_destroy(network);
 }
@@ -245,12 +242,12 @@ static void forces_whose_sum_is_not_finite_are_refused(void **state) {
     (void)state;
     mspring_network *network = particles(3, 1, 1e15f);
     const float x[] = {1, 3e38f, 1}, y[] = {0, 0, 0};
-    check_ok(mspring_network_apply_forces(network, 0, 3, x, y, 1));
-    check_error(mspring_network_apply_forces(network, 0, 3, x, y, 1), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, 3, x, y, 1));
+    check_error(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, 3, x, y, 1), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "particle 1");
     // None of the second forces acts, and what acts can be taken back.
     const float back[] = {0, -3e38f, 0};
-    check_ok(mspring_network_apply_forces(network, 0, 3, back, y, 1));
+    check_ok(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, 3, back, y, 1));
     check_ok(mspring_network_step(network, 1));
     // 1 N, 2 kg, until half of the one substep of 1 s ago.
     assert_true(support_velocity(network, 0).x == 0.25 && support_velocity(network, 1).x == 0);
@@ -261,28 +258,28 @@ static void a_failed_step_leaves_relative_springs(void **state) {
     (void)state;
     mspring_builder *builder = support_builder();
     mspring_spring_def spring;
-    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
     spring.flags = MSPRING_SPRING_RELATIVE;
     spring.a = support_particle(builder, 0, 0, 1);
     spring.b = support_particle(builder, 1, 0, 1);
     spring.stiffness = 0.5f;
     spring.damping = 0.01f;
     spring.rest_length = 0.9f;
-    check_ok(mspring_builder_add_spring(builder, &spring, NULL));
+    check_ok(mspring_builder_add_springs(builder, &spring, 1, NULL));
     mspring_network_def def = support_def(0, 1);
     mspring_network *network = support_network(builder, &def);
 
     // At first a relative spring has no stiffness, and a step that fails does not give it any.
     double elastic = -1;
     check_error(mspring_network_step(network, 1e-12), MSPRING_ERROR_UNSTABLE);
-    check_ok(mspring_network_energy(network, NULL, &elastic, NULL));
+    check_ok(support_get_energy(network, NULL, &elastic, NULL));
     assert_true(elastic == 0);
     check_ok(mspring_network_step(network, 1e-3));
-    check_ok(mspring_network_energy(network, NULL, &elastic, NULL));
+    check_ok(support_get_energy(network, NULL, &elastic, NULL));
     assert_true(elastic > 0);
     double after = -1;
     check_error(mspring_network_step(network, 1e-12), MSPRING_ERROR_UNSTABLE);
-    check_ok(mspring_network_energy(network, NULL, &after, NULL));
+    check_ok(support_get_energy(network, NULL, &after, NULL));
     assert_true(after == elastic);
     mspring_network_destroy(network);
 }
@@ -297,7 +294,7 @@ static void the_error_names_who_flew_first(void **state) {
     mspring_network_def def = support_def(0, 1);
     mspring_network *network = support_network(builder, &def);
     const float x[] = {0, 0, 0, 0.5f}, zero[] = {0, 0, 0, 0};
-    check_ok(mspring_network_set_velocities(network, 0, 4, x, zero, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 4, x, zero, 1));
     mspring_result result = MSPRING_OK;
     for (int step = 0; step < 100 && result == MSPRING_OK; step++) {
         result = mspring_network_step(network, 0.1);
@@ -316,7 +313,7 @@ int main(void) {
         cmocka_unit_test(pinned_particles_feel_no_force),
         cmocka_unit_test(a_step_out_of_bounds_is_taken_back),
         cmocka_unit_test(an_explosion_is_taken_back),
-        cmocka_unit_test(what_is_not_finite_in_a_view_is_noticed),
+        cmocka_unit_test(what_a_hook_writes_is_checked),
         cmocka_unit_test(the_speed_limit_is_one),
         cmocka_unit_test(forces_whose_sum_is_not_finite_are_refused),
         cmocka_unit_test(a_failed_step_leaves_relative_springs),

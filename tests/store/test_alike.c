@@ -2,7 +2,7 @@
 /// Lattice blocks whose springs are alike are read from one record: what is edited afterwards is not.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_laws.h>
+#include <massspring/massspring.h>
 
 #include "recipe.h"
 #include "store/network.h"
@@ -22,13 +22,13 @@ typedef struct edits {
 } edits;
 
 static void edit(mspring_network *network, const edits *which) {
-    const uint32_t count = mspring_network_spring_count(network);
+    const uint32_t count = mspring_network_count(network, MSPRING_SPRINGS);
     for (mspring_id s = which->first; s < count; s += which->step) {
         if (which->breaks) {
-            check_ok(mspring_network_break_springs(network, &s, 1));
+            check_ok(mspring_network_break_springs(network, &s, 0, 1));
         } else {
-            check_ok(mspring_network_set(network, MSPRING_STIFFNESS, s, 1, &which->stiffness, 1));
-            check_ok(mspring_network_set(network, MSPRING_DAMPING, s, 1, &which->damping, 1));
+            check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, s, 1, &which->stiffness, 1));
+            check_ok(mspring_network_set(network, MSPRING_DAMPING, NULL, s, 1, &which->damping, 1));
         }
     }
 }
@@ -56,8 +56,8 @@ static uint64_t run(const recipe *made, const edits *which, bool afterwards) {
     mspring_network *network = recipe_network(made, &def);
     static double x[WIDTH * HEIGHT], y[WIDTH * HEIGHT];
     static float vx[WIDTH * HEIGHT], vy[WIDTH * HEIGHT];
-    check_ok(mspring_network_get_positions(network, 0, made->particle_count, x, y, 1));
-    check_ok(mspring_network_get_velocities(network, 0, made->particle_count, vx, vy, 1));
+    check_ok(mspring_network_get_positions(network, NULL, 0, made->particle_count, x, y, 1));
+    check_ok(mspring_network_get_velocities(network, NULL, 0, made->particle_count, vx, vy, 1));
     if (!afterwards) {
         edit(network, which);
     }
@@ -70,13 +70,13 @@ static uint64_t run(const recipe *made, const edits *which, bool afterwards) {
         // A single spring's block leaves the others, even if it is theirs that they read.
         assert_true(shared_blocks(network) + 1 >= shared || which->first + which->step < made->spring_count);
     }
-    check_ok(mspring_network_set_positions(network, 0, made->particle_count, x, y, 1));
-    check_ok(mspring_network_set_velocities(network, 0, made->particle_count, vx, vy, 1));
+    check_ok(mspring_network_set_positions(network, NULL, 0, made->particle_count, x, y, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, made->particle_count, vx, vy, 1));
     for (int i = 0; i < 4; i++) {
         check_ok(mspring_network_step(network, 1.0 / 64));
     }
     uint64_t hash = 0;
-    check_ok(mspring_network_state_hash(network, &hash));
+    check_ok(mspring_network_get_state_hash(network, &hash));
     mspring_network_destroy(network);
     return hash;
 }
@@ -155,7 +155,7 @@ static void a_copy_shares_too(void **state) {
     edit(networks[0], &some);
     for (int i = 0; i < 2; i++) {
         check_ok(mspring_network_step(networks[i], 1.0 / 64));
-        check_ok(mspring_network_state_hash(networks[i], &hashes[i]));
+        check_ok(mspring_network_get_state_hash(networks[i], &hashes[i]));
         mspring_network_destroy(networks[i]);
     }
     assert_true(hashes[0] == hashes[1]);
@@ -179,10 +179,10 @@ static uint32_t yielding_blocks_that_share(const mspring_network *network) {
 /// Strike a particle so hard that its springs flow. Returns how many were bent.
 static uint32_t strike(mspring_network *network, mspring_id particle) {
     const float vx = 40, vy = 30;
-    mspring_plasticity report = {.struct_size = sizeof report};
-    check_ok(mspring_network_set_velocities(network, particle, 1, &vx, &vy, 1));
+    mspring_energy report = {.struct_size = sizeof report};
+    check_ok(mspring_network_set_velocities(network, NULL, particle, 1, &vx, &vy, 1));
     check_ok(mspring_network_step(network, 1.0 / 64));
-    check_ok(mspring_network_get_plasticity(network, &report));
+    check_ok(mspring_network_get_energy(network, &report));
     return report.bent_springs;
 }
 
@@ -195,7 +195,7 @@ static void what_flows_has_a_record_of_its_own(void **state) {
     mspring_network_def def = support_def(0, 8);
     mspring_network *network = recipe_network(&made, &def), *clone = NULL;
     const float yield_strain = 0.02f, straight = 0;
-    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, made.spring_count, &yield_strain, 0));
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, NULL, 0, made.spring_count, &yield_strain, 0));
     check_ok(mspring_network_step(network, 1.0 / 64));
     const uint32_t shared = yielding_blocks_that_share(network);
     assert_true(shared >= network->topology.lattice_blocks / 2);
@@ -211,8 +211,8 @@ static void what_flows_has_a_record_of_its_own(void **state) {
     assert_int_equal(yielding_blocks_that_share(clone), left);
     assert_true(strike(clone, WIDTH) > 0 && yielding_blocks_that_share(clone) <= left);
     mspring_network_destroy(clone);
-    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, 0, made.spring_count, &(float){10}, 0));
-    check_ok(mspring_network_set(network, MSPRING_PLASTIC_STRAIN, 0, made.spring_count, &straight, 0));
+    check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, NULL, 0, made.spring_count, &(float){10}, 0));
+    check_ok(mspring_network_set(network, MSPRING_PLASTIC_STRAIN, NULL, 0, made.spring_count, &straight, 0));
     check_ok(mspring_network_step(network, 1.0 / 64));
     assert_int_equal(yielding_blocks_that_share(network), shared);
     mspring_network_destroy(network);

@@ -61,12 +61,12 @@ static void find_heads(const recipe *made, const bool *broken, mspring_id *head)
 static void check_components(const mspring_network *network, const recipe *made, const mspring_id *head,
                              uint32_t count) {
     uint32_t *number = malloc(made->particle_count * sizeof *number);
-    mspring_component *components = calloc(count, sizeof *components);
+    mspring_body *components = calloc(count, sizeof *components);
     assert_true(number && components);
     for (uint32_t i = 0; i < count; i++) {
         components[i].struct_size = sizeof *components;
     }
-    check_ok(mspring_network_get_component_numbers(network, 0, made->particle_count, number, 1));
+    check_ok(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, 0, made->particle_count, number, 1));
     check_ok(mspring_network_get_components(network, 0, count, components));
     uint32_t heads = 0, particles = 0;
     for (mspring_id p = 0; p < made->particle_count; p++) {
@@ -136,8 +136,8 @@ static void components_are_those_of_a_plain_search(void **state) {
             for (uint32_t i = 0; i < some; i++) {
                 const mspring_id s = (mspring_id)(support_random(&random) % made.spring_count);
                 broken[s] = support_random(&random) % 3 != 0;
-                check_ok(broken[s] ? mspring_network_break_springs(network, &s, 1)
-                                   : mspring_network_restore_springs(network, &s, 1, 0));
+                check_ok(broken[s] ? mspring_network_break_springs(network, &s, 0, 1)
+                                   : mspring_network_restore_springs(network, &s, 0, 1, 0));
             }
             find_heads(&made, broken, head);
             bool same = true;
@@ -189,12 +189,12 @@ static void a_bar_cut_in_two_is_two_and_joined_again_one(void **state) {
     }
     assert_int_equal(cut_count, 5 + 2 * 4);
     uint32_t count;
-    mspring_component parts[2] = {{.struct_size = sizeof parts[0]}, {.struct_size = sizeof parts[0]}};
+    mspring_body parts[2] = {{.struct_size = sizeof parts[0]}, {.struct_size = sizeof parts[0]}};
     check_ok(mspring_network_update_components(network, &count, NULL));
     assert_int_equal(count, 1);
     check_ok(mspring_network_get_components(network, 0, 1, parts));
     assert_true(parts[0].mass == 40 + 180 && parts[0].particle_count == 100 && parts[0].reserved == 0);
-    check_ok(mspring_network_break_springs(network, cut, cut_count));
+    check_ok(mspring_network_break_springs(network, cut, 0, cut_count));
     check_ok(mspring_network_update_components(network, &count, NULL));
     assert_int_equal(count, 2);
     check_ok(mspring_network_get_components(network, 0, 2, parts));
@@ -209,8 +209,8 @@ static void a_bar_cut_in_two_is_two_and_joined_again_one(void **state) {
     // One of the first's 40 particles goes 10 m up and 20 m to the left, held and with the velocity that it had.
     const double x = 10000 - 20, y = -3000 + 10;
     const float held = 0;
-    check_ok(mspring_network_set_positions(network, 0, 1, &x, &y, 1));
-    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, 1, &held, 1));
+    check_ok(mspring_network_set_positions(network, NULL, 0, 1, &x, &y, 1));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, 0, 1, &held, 1));
     check_ok(mspring_network_get_components(network, 0, 1, parts)); // the first alone
     assert_true(parts[0].head == 0 && parts[0].mass == 40 && parts[1].mass == 180);
     check_near(parts[0].x, 10003.5 - 20.0 / 40, 1e-9);
@@ -224,7 +224,7 @@ static void a_bar_cut_in_two_is_two_and_joined_again_one(void **state) {
     assert_int_equal(events[cut_count].id, 8);
     assert_int_equal(events[cut_count].other, 0);
 
-    check_ok(mspring_network_restore_springs(network, cut + 6, 1, 1));
+    check_ok(mspring_network_restore_springs(network, cut + 6, 0, 1, 1));
     check_ok(mspring_network_update_components(network, &count, NULL));
     assert_int_equal(count, 1);
     check_ok(mspring_network_read_events(network, events, 50, &event_count, NULL));
@@ -246,7 +246,7 @@ static void more_changes_than_the_log_holds_are_no_harm(void **state) {
     uint32_t count;
     check_ok(mspring_network_update_components(network, &count, NULL));
     for (mspring_id s = 0; s < made.spring_count; s++) {
-        check_ok(mspring_network_break_springs(network, &s, 1));
+        check_ok(mspring_network_break_springs(network, &s, 0, 1));
     }
     check_ok(mspring_network_update_components(network, &count, NULL));
     assert_int_equal(count, made.particle_count);
@@ -259,16 +259,24 @@ static void bad_requests_are_refused(void **state) {
     recipe made = mixed_recipe(3);
     mspring_network *network = network_of(&made);
     uint32_t number = 77, count;
-    mspring_component part = {.struct_size = sizeof part};
+    mspring_body part = {.struct_size = sizeof part};
     check_error(mspring_network_update_components(NULL, &count, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_component_numbers(network, 0, 1, &number, 1),
-                MSPRING_ERROR_ARGUMENT); // no update yet
+    check_ok(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, 0, 1, &number, 1));
+    assert_int_equal(number, MSPRING_NONE); // no update yet
+    number = 77;
     check_error(mspring_network_get_components(network, 0, 1, &part), MSPRING_ERROR_ARGUMENT);
     check_ok(mspring_network_update_components(network, &count, NULL));
-    check_error(mspring_network_get_component_numbers(NULL, 0, 1, &number, 1), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_component_numbers(network, 0, 1, NULL, 1), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_get_component_numbers(network, made.particle_count, 1, &number, 1), MSPRING_ERROR_ID);
-    check_error(mspring_network_get_component_numbers(network, 1, MSPRING_NONE, &number, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_get_integers(NULL, MSPRING_COMPONENT, NULL, 0, 1, &number, 1),
+                MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, 0, 1, NULL, 1),
+                MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, made.particle_count, 1, &number, 1),
+                MSPRING_ERROR_ID);
+    check_error(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, 1, MSPRING_ALL - 1, &number, 1),
+                MSPRING_ERROR_ID);
+    check_error(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, 1, MSPRING_ALL, &number, 1),
+                MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_components(network, 0, MSPRING_ALL - 1, &part), MSPRING_ERROR_ID);
     check_error(mspring_network_get_components(NULL, 0, 1, &part), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_components(network, 0, 1, NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_get_components(network, count, 1, &part), MSPRING_ERROR_ID);
@@ -277,10 +285,11 @@ static void bad_requests_are_refused(void **state) {
     check_error(mspring_network_get_components(network, 0, 1, &part), MSPRING_ERROR_STRUCT);
     assert_true(number == 77 && part.mass == 0);
     check_ok(mspring_network_get_components(network, count, 0, NULL));
-    check_ok(mspring_network_get_component_numbers(network, made.particle_count, 0, NULL, 1));
-    check_error(mspring_network_get_component_numbers(network, made.particle_count + 1, 0, &number, 1),
-                MSPRING_ERROR_ID);
-    check_ok(mspring_network_get_component_numbers(network, 0, 1, &number, 1));
+    check_ok(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, made.particle_count, 0, NULL, 1));
+    check_error(
+        mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, made.particle_count + 1, 0, &number, 1),
+        MSPRING_ERROR_ID);
+    check_ok(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, 0, 1, &number, 1));
     assert_int_equal(number, 0); // that of the lowest particle
     mspring_network_destroy(network);
     recipe_free(&made);
@@ -298,7 +307,7 @@ static void the_first_update_survives_every_failure(void **state) {
         def.allocator = &allocator;
         mspring_network *network = recipe_network(&made, &def);
         watched.fail_at = watched.calls + fail_at;
-        const size_t used = mspring_network_memory_used(network);
+        const size_t used = support_memory_used(network);
         uint32_t count = 77;
         mspring_result result = mspring_network_update_components(network, &count, NULL);
         failed = result != MSPRING_OK;
@@ -306,7 +315,7 @@ static void the_first_update_survives_every_failure(void **state) {
             check_error(result, MSPRING_ERROR_MEMORY);
             check_contains(mspring_network_error(network), "memory");
             assert_int_equal(count, 77);
-            assert_true(mspring_network_memory_used(network) == used);
+            assert_true(support_memory_used(network) == used);
             check_ok(mspring_network_update_components(network, &count, NULL));
         }
         expected = fail_at == 1 ? count : expected;
@@ -329,13 +338,15 @@ static void where_all_particles_are_removed_there_is_no_component(void **state) 
     mspring_network_def def = support_def(0, 1);
     mspring_network *network = support_network(builder, &def);
     uint32_t count = 7, changed = 7, number = 7;
-    check_error(mspring_network_get_component_numbers(network, 0, 1, &number, 1), MSPRING_ERROR_ARGUMENT);
-    check_ok(mspring_network_remove_particles(network, &only, 1));
+    check_ok(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, 0, 1, &number, 1));
+    assert_int_equal(number, MSPRING_NONE);
+    number = 7;
+    check_ok(mspring_network_remove_particles(network, &only, 0, 1));
     for (int i = 0; i < 2; i++) {
         check_ok(mspring_network_update_components(network, &count, &changed));
         assert_int_equal(count, 0);
         assert_int_equal(changed, i == 0);
-        check_ok(mspring_network_get_component_numbers(network, 0, 1, &number, 1));
+        check_ok(mspring_network_get_integers(network, MSPRING_COMPONENT, NULL, 0, 1, &number, 1));
         assert_int_equal(number, MSPRING_NONE);
         check_ok(mspring_network_get_components(network, 0, 0, NULL));
     }

@@ -16,7 +16,7 @@ static const recipe_stuff relative = {
 
 static double bytes_per_particle(const recipe *made) {
     mspring_network *network = recipe_network(made, NULL);
-    const double bytes = (double)mspring_network_memory_used(network) / made->particle_count;
+    const double bytes = (double)support_memory_used(network) / made->particle_count;
     mspring_network_destroy(network);
     return bytes;
 }
@@ -81,7 +81,7 @@ static double bytes_with(const recipe *made, uint32_t spare_particles, uint32_t 
     def.spare_particles = spare_particles;
     def.spare_springs = spare_springs;
     mspring_network *network = recipe_network(made, &def);
-    const double bytes = (double)mspring_network_memory_used(network);
+    const double bytes = (double)support_memory_used(network);
     mspring_network_destroy(network);
     return bytes;
 }
@@ -118,8 +118,8 @@ static void frames_are_smaller(void **state) {
         size_t frame = 0, all = 0;
         recipe_lattice(&made, 128, 128, 0, 0, 1, kinds[i], &seed);
         mspring_network *network = recipe_network(&made, NULL);
-        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &frame));
-        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &all));
+        check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_FRAME, &frame));
+        check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &all));
         print_message("snapshots, %s springs: a frame %.1f bytes per particle, all %.2f times that\n",
                       i == 0 ? "absolute" : "relative", (double)frame / made.particle_count,
                       (double)all / (double)frame);
@@ -133,14 +133,14 @@ static void frames_are_smaller(void **state) {
 static double bytes_with_floor(const recipe *made, mspring_solver solver, uint32_t planes, float friction) {
     static const double sides[][4] = {{0, -9, 0, 1}, {-9, 0, 1, 0}, {9, 0, -1, 0}};
     mspring_network_def def = support_def(0, 1);
-    def.solver = solver;
+    def.settings.solver = solver;
     mspring_network *network = recipe_network(made, &def);
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = sides[0], floor.plane_count = planes, floor.friction = friction;
     if (planes > 0)
         check_ok(mspring_network_set_floor(network, &floor));
-    const double bytes = (double)mspring_network_memory_used(network);
+    const double bytes = (double)support_memory_used(network);
     mspring_network_destroy(network);
     return bytes;
 }

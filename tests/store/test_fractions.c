@@ -27,8 +27,8 @@ static recipe mixed_recipe(uint32_t kinds) {
 
 static void check_fractions(const mspring_network *network, const recipe *made) {
     for (uint32_t s = 0; s < made->spring_count; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        check_ok(mspring_network_get_spring(network, s, &info));
+        support_spring_info info;
+        check_ok(support_get_spring(network, s, &info));
         const bool relative = s % 9 != 0;
         assert_int_equal((info.flags & MSPRING_SPRING_RELATIVE) != 0, relative);
         assert_true(info.nominal_stiffness == made->springs[s].stiffness);
@@ -43,18 +43,17 @@ static void fractions_are_those_given(void **state) {
     for (size_t i = 0; i < COUNT_OF(kinds); i++) {
         recipe made = mixed_recipe(kinds[i]);
         mspring_network *network = recipe_network(&made, NULL);
-        const size_t used = mspring_network_memory_used(network);
+        const size_t used = support_memory_used(network);
         check_fractions(network, &made);
         // An edit that changes nothing, and one that does.
-        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 100, 1, &made.springs[100].stiffness, 1));
-        assert_int_equal(mspring_network_memory_used(network), used);
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 100, 1, &made.springs[100].stiffness, 1));
+        assert_int_equal(support_memory_used(network), used);
         made.springs[100].stiffness = 0.77f;
         made.springs[made.spring_count - 1].damping = 0.02f;
-        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 100, 1, &made.springs[100].stiffness, 1));
-        check_ok(mspring_network_set(network, MSPRING_DAMPING, made.spring_count - 1, 1,
-                                     &made.springs[made.spring_count - 1].damping, 1));
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 100, 1, &made.springs[100].stiffness, 1));
+        check_ok(mspring_network_set(network, MSPRING_DAMPING, NULL, made.spring_count - 1, 1, &made.springs[made.spring_count - 1].damping, 1));
         check_fractions(network, &made);
-        assert_int_equal(mspring_network_memory_used(network) > used, kinds[i] <= 255);
+        assert_int_equal(support_memory_used(network) > used, kinds[i] <= 255);
         mspring_network_destroy(network);
         recipe_free(&made);
     }
@@ -64,11 +63,11 @@ static void edits_of_absolute_springs_share_on(void **state) {
     (void)state;
     recipe made = mixed_recipe(3);
     mspring_network *network = recipe_network(&made, NULL);
-    const size_t used = mspring_network_memory_used(network);
+    const size_t used = support_memory_used(network);
     made.springs[90].stiffness = 55;
-    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 90, 1, &made.springs[90].stiffness, 1));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 90, 1, &made.springs[90].stiffness, 1));
     check_fractions(network, &made);
-    assert_int_equal(mspring_network_memory_used(network), used);
+    assert_int_equal(support_memory_used(network), used);
     mspring_network_destroy(network);
     recipe_free(&made);
 }
@@ -79,7 +78,7 @@ static void snapshots_bring_fractions(void **state) {
     recipe made = mixed_recipe(3);
     mspring_network *edited = recipe_network(&made, NULL), *network = recipe_network(&made, NULL);
     made.springs[100].stiffness = 0.77f;
-    check_ok(mspring_network_set(edited, MSPRING_STIFFNESS, 100, 1, &made.springs[100].stiffness, 1));
+    check_ok(mspring_network_set(edited, MSPRING_STIFFNESS, NULL, 100, 1, &made.springs[100].stiffness, 1));
     support_bring(edited, network, MSPRING_SNAPSHOT_ALL);
     check_fractions(network, &made);
     assert_int_equal(support_hash(network), support_hash(edited));
@@ -103,11 +102,11 @@ static void an_edit_without_memory_changes_nothing(void **state) {
     mspring_network *network = recipe_network(&made, &def);
     const float fraction = 0.3f;
     watched.fail_at = watched.calls + 1;
-    assert_int_equal(mspring_network_set(network, MSPRING_DAMPING, 7, 1, &fraction, 1), MSPRING_ERROR_MEMORY);
+    assert_int_equal(mspring_network_set(network, MSPRING_DAMPING, NULL, 7, 1, &fraction, 1), MSPRING_ERROR_MEMORY);
     check_contains(mspring_network_error(network), "memory");
     check_fractions(network, &made);
     watched.fail_at = 0;
-    check_ok(mspring_network_set(network, MSPRING_DAMPING, 7, 1, &fraction, 1));
+    check_ok(mspring_network_set(network, MSPRING_DAMPING, NULL, 7, 1, &fraction, 1));
     made.springs[7].damping = fraction;
     check_fractions(network, &made);
     mspring_network_destroy(network);

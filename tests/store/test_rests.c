@@ -26,8 +26,8 @@ static recipe mixed_recipe(void) {
 
 static void check_rest_lengths(const mspring_network *network, const recipe *made) {
     for (mspring_id s = 0; s < made->spring_count; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        check_ok(mspring_network_get_spring(network, s, &info));
+        support_spring_info info;
+        check_ok(support_get_spring(network, s, &info));
         assert_true(info.rest_length == made->springs[s].rest_length);
     }
 }
@@ -41,8 +41,7 @@ static void rest_lengths_are_those_given(void **state) {
     const mspring_id edited[] = {100, made.spring_count - 1};
     for (size_t i = 0; i < COUNT_OF(edited); i++) {
         made.springs[edited[i]].rest_length = 0.5f;
-        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, edited[i], 1,
-                                     &made.springs[edited[i]].rest_length, 1));
+        check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, edited[i], 1, &made.springs[edited[i]].rest_length, 1));
         check_rest_lengths(network, &made);
     }
     mspring_network_destroy(network);
@@ -61,12 +60,12 @@ static void shared_rest_lengths_take_no_memory(void **state) {
             made.springs[s].rest_length *= (float)support_random_between(&seed, 0.99, 1.01);
         }
         mspring_network *network = recipe_network(&made, NULL);
-        used[regular] = mspring_network_memory_used(network);
+        used[regular] = support_memory_used(network);
         if (regular) {
             const float rest_length = 1.5f;
-            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 3, 1, &rest_length, 1));
+            check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, 3, 1, &rest_length, 1));
             // Now each has its own.
-            assert_true(mspring_network_memory_used(network) >= used[1] + (size_t)160 * 100 * 15);
+            assert_true(support_memory_used(network) >= used[1] + (size_t)160 * 100 * 15);
         }
         mspring_network_destroy(network);
         recipe_free(&made);
@@ -84,12 +83,12 @@ static void an_edit_without_memory_changes_nothing(void **state) {
     mspring_network *network = recipe_network(&made, &def);
     const float rest_length = 0.5f;
     watched.fail_at = watched.calls + 1;
-    assert_int_equal(mspring_network_set(network, MSPRING_REST_LENGTH, 7, 1, &rest_length, 1),
+    assert_int_equal(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, 7, 1, &rest_length, 1),
                      MSPRING_ERROR_MEMORY);
     assert_string_not_equal(mspring_network_error(network), "");
     check_rest_lengths(network, &made);
     watched.fail_at = 0;
-    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 7, 1, &rest_length, 1));
+    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, 7, 1, &rest_length, 1));
     mspring_network_destroy(network);
     check_watched_clean(&watched);
     recipe_free(&made);

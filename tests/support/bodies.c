@@ -174,13 +174,13 @@ static void find_outline(bodies *b) {
 mspring_network *bodies_network(bodies *b, const mspring_network_def *def) {
     mspring_network *network = support_network(b->builder, def);
     b->builder = NULL;
-    b->gravity_y = (double)def->gravity_y;
+    b->gravity_y = (double)def->settings.gravity_y;
     for (uint32_t s = 0; s < b->spring_count; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        check_ok(mspring_network_get_spring(network, s, &info));
+        support_spring_info info;
+        check_ok(support_get_spring(network, s, &info));
         b->springs[s].rest_length = (double)info.rest_length;
     }
-    check_ok(mspring_network_set_velocities(network, 0, b->count, b->vx, b->vy, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, b->count, b->vx, b->vy, 1));
     find_outline(b);
     return network;
 }
@@ -201,7 +201,7 @@ uint32_t bodies_heap(bodies *b, int blocks, double y) {
 
 mspring_contact_def bodies_contact(double thickness, float friction, float restitution) {
     mspring_contact_def def;
-    check_ok(mspring_contact_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &def, sizeof def));
     def.thickness = thickness;
     def.friction = friction;
     def.restitution = restitution;
@@ -236,8 +236,8 @@ bodies_measure bodies_measured(bodies *b, const mspring_network *network) {
     bodies_measure m = {0};
     double *fx = calloc(2 * (size_t)b->count, sizeof *fx), *fy = fx + b->count;
     assert_non_null(fx);
-    check_ok(mspring_network_get_positions(network, 0, b->count, b->x, b->y, 1));
-    check_ok(mspring_network_get_velocities(network, 0, b->count, b->vx, b->vy, 1));
+    check_ok(mspring_network_get_positions(network, NULL, 0, b->count, b->x, b->y, 1));
+    check_ok(mspring_network_get_velocities(network, NULL, 0, b->count, b->vx, b->vy, 1));
     m.energy = add_springs(b, fx, fy);
     for (uint32_t p = 0; p < b->count; p++) {
         const double mass = b->mass[p], vx = (double)b->vx[p], vy = (double)b->vy[p], v = sqrt(vx * vx + vy * vy);

@@ -53,11 +53,11 @@ void growth_end(life *it) {
 
 void growth_use(mspring_network *network, mspring_solver solver, mspring_integrator integrator,
                 uint32_t iterations) {
-    mspring_solver_def def;
-    check_ok(mspring_solver_def_init(&def, sizeof def));
+    mspring_settings def;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
     def.solver = solver;
     def.integrator = integrator;
     def.iterations = iterations;
     def.substeps = 2;
-    check_ok(mspring_network_set_solver(network, &def));
+    check_ok(support_set_solver(network, &def));
 }

@@ -34,5 +34,5 @@ mspring_simd level_lowest(void) {
 }
 
 void level_check(const mspring_network *network, mspring_simd level) {
-    assert_string_equal(mspring_simd_name(mspring_network_simd_level(network)), mspring_simd_name(level));
+    assert_string_equal(mspring_simd_name(support_simd_level(network)), mspring_simd_name(level));
 }

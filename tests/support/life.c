@@ -78,7 +78,7 @@ static void add_particles(life *it, uint32_t count) {
     mspring_id ids[MOST_AT_ONCE];
     for (uint32_t i = 0; i < count; i++) {
         const double x = support_random_between(&it->seed, -5, 30), y = support_random_between(&it->seed, 8, 16);
-        check_ok(mspring_particle_def_init(&defs[i], sizeof defs[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &defs[i], sizeof defs[i]));
         defs[i].x = x;
         defs[i].y = y;
         defs[i].mass = (float)support_random_between(&it->seed, 1, 3);
@@ -110,7 +110,7 @@ static void add_spring(life *it) {
     if (a == MSPRING_NONE || b == MSPRING_NONE) {
         return;
     }
-    check_ok(mspring_spring_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
     def.a = a;
     def.b = b;
     def.stiffness = (float)stiffness;
@@ -155,13 +155,13 @@ static void forget_spring(life *it, mspring_id s) {
 }
 
 static void remove_spring(life *it, mspring_id s) {
-    check_ok(mspring_network_remove_springs(it->network, &s, 1));
-    check_error(mspring_network_remove_springs(it->network, &s, 1), MSPRING_ERROR_ID);
+    check_ok(mspring_network_remove_springs(it->network, &s, 0, 1));
+    check_error(mspring_network_remove_springs(it->network, &s, 0, 1), MSPRING_ERROR_ID);
     forget_spring(it, s);
 }
 
 static void remove_particle(life *it, mspring_id p) {
-    check_ok(mspring_network_remove_particles(it->network, &p, 1));
+    check_ok(mspring_network_remove_particles(it->network, &p, 0, 1));
     for (mspring_id s = 0; s < it->spring_end; s++) {
         if (it->has_spring[s] && (it->springs[s].def.a == p || it->springs[s].def.b == p)) {
             forget_spring(it, s);
@@ -181,7 +181,7 @@ void life_remove(life *it) {
 }
 
 static void recycle(life *it) {
-    check_ok(mspring_network_recycle(it->network));
+    check_ok(mspring_network_reuse_ids(it->network));
     it->used_particles -= it->gone_particles;
     it->used_springs -= it->gone_springs;
     it->gone_particles = it->gone_springs = 0;
@@ -195,9 +195,9 @@ static void break_or_restore(life *it) {
         return;
     }
     if (it->springs[s].is_broken) {
-        check_ok(mspring_network_restore_springs(it->network, &s, 1, 0));
+        check_ok(mspring_network_restore_springs(it->network, &s, 0, 1, 0));
     } else {
-        check_ok(mspring_network_break_springs(it->network, &s, 1));
+        check_ok(mspring_network_break_springs(it->network, &s, 0, 1));
     }
     it->springs[s].is_broken = !it->springs[s].is_broken;
 }
@@ -209,8 +209,8 @@ static void edit(life *it) {
     }
     it->mass[p] = (float)support_random_between(&it->seed, 1, 3);
     it->springs[s].def.stiffness = (float)support_random_between(&it->seed, 20, 60);
-    check_ok(mspring_network_set_at(it->network, MSPRING_MASS, &p, 1, &it->mass[p], 1));
-    check_ok(mspring_network_set_at(it->network, MSPRING_STIFFNESS, &s, 1, &it->springs[s].def.stiffness, 1));
+    check_ok(mspring_network_set(it->network, MSPRING_MASS, &p, 0, 1, &it->mass[p], 1));
+    check_ok(mspring_network_set(it->network, MSPRING_STIFFNESS, &s, 0, 1, &it->springs[s].def.stiffness, 1));
 }
 
 void life_do_something(life *it) {
@@ -245,14 +245,14 @@ void life_do_something(life *it) {
 /* ---------------------------------------------------------------------------------------------------- checking */
 
 static void check_spring(const life *it, mspring_id s) {
-    mspring_spring_info info = {.struct_size = sizeof info};
+    support_spring_info info;
     const mspring_spring_def *def = &it->springs[s].def;
-    assert_int_equal(mspring_network_has_spring(it->network, s), it->has_spring[s]);
+    assert_int_equal(support_has_spring(it->network, s), it->has_spring[s]);
     if (!it->has_spring[s]) {
-        check_error(mspring_network_get_spring(it->network, s, &info), MSPRING_ERROR_ID);
+        check_error(support_get_spring(it->network, s, &info), MSPRING_ERROR_ID);
         return;
     }
-    check_ok(mspring_network_get_spring(it->network, s, &info));
+    check_ok(support_get_spring(it->network, s, &info));
     assert_int_equal(info.a, def->a);
     assert_int_equal(info.b, def->b);
     assert_int_equal(!(info.flags & MSPRING_SPRING_BROKEN), !it->springs[s].is_broken);
@@ -262,9 +262,9 @@ static void check_spring(const life *it, mspring_id s) {
 
 void life_check(const life *it) {
     mspring_view view = {.struct_size = sizeof view};
-    assert_int_equal(mspring_network_particle_count(it->network), it->particle_end);
-    assert_int_equal(mspring_network_spring_count(it->network), it->spring_end);
-    check_ok(mspring_network_view(it->network, &view));
+    assert_int_equal(mspring_network_count(it->network, MSPRING_PARTICLES), it->particle_end);
+    assert_int_equal(mspring_network_count(it->network, MSPRING_SPRINGS), it->spring_end);
+    check_ok(mspring_network_get_view(it->network, &view));
     assert_int_equal(view.particle_count, it->particle_end);
     uint32_t in_slots = 0, there = 0;
     for (uint32_t slot = 0; slot < view.slot_count; slot++) {
@@ -280,9 +280,9 @@ void life_check(const life *it) {
     for (mspring_id p = 0; p < it->particle_end; p++) {
         float mass, scale;
         there += it->has_particle[p];
-        assert_int_equal(mspring_network_has_particle(it->network, p), it->has_particle[p]);
-        check_ok(mspring_network_get(it->network, MSPRING_MASS, p, 1, &mass, 1));
-        check_ok(mspring_network_get(it->network, MSPRING_INVERSE_MASS_SCALE, p, 1, &scale, 1));
+        assert_int_equal(support_has_particle(it->network, p), it->has_particle[p]);
+        check_ok(mspring_network_get(it->network, MSPRING_MASS, NULL, p, 1, &mass, 1));
+        check_ok(mspring_network_get(it->network, MSPRING_INVERSE_MASS_SCALE, NULL, p, 1, &scale, 1));
         if (it->has_particle[p]) {
             assert_true(mass == it->mass[p] && scale == (it->is_pinned[p] ? 0.0f : 1.0f));
         }
@@ -291,8 +291,8 @@ void life_check(const life *it) {
     for (mspring_id s = 0; s < it->spring_end; s++) {
         check_spring(it, s);
     }
-    assert_false(mspring_network_has_particle(it->network, it->particle_end));
-    assert_false(mspring_network_has_spring(it->network, it->spring_end));
+    assert_false(support_has_particle(it->network, it->particle_end));
+    assert_false(support_has_spring(it->network, it->spring_end));
 }
 
 recipe life_recipe(const life *it, mspring_id *ids) {

@@ -11,7 +11,7 @@
 typedef struct look {
     uint64_t hash;
     double energy[3], momentum[3];
-    mspring_spring_info *springs;
+    support_spring_info *springs;
     float *by_spring[4], *scale;
     uint32_t *component, component_count;
 } look;

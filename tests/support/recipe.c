@@ -22,7 +22,7 @@ mspring_id recipe_particle(recipe *made, double x, double y, double mass, uint32
         assert_non_null(made->particles);
     }
     mspring_particle_def *def = &made->particles[made->particle_count];
-    check_ok(mspring_particle_def_init(def, sizeof *def));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, def, sizeof *def));
     def->x = x;
     def->y = y;
     def->mass = (float)mass;
@@ -38,7 +38,7 @@ mspring_id recipe_spring(recipe *made, mspring_id a, mspring_id b, double stiffn
         assert_non_null(made->springs);
     }
     mspring_spring_def *def = &made->springs[made->spring_count];
-    check_ok(mspring_spring_def_init(def, sizeof *def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, def, sizeof *def));
     def->a = a;
     def->b = b;
     def->stiffness = (float)stiffness;
@@ -227,7 +227,7 @@ mspring_builder *recipe_builder(const recipe *made, const mspring_allocator *all
         result = mspring_builder_add_springs(builder, made->springs, made->spring_count, NULL);
     }
     if (result != MSPRING_OK) {
-        print_error("%s\n", mspring_builder_error(builder));
+        print_error("%s\n", support_builder_error(builder));
     }
     check_ok(result);
     return builder;
@@ -240,11 +240,11 @@ mspring_network *recipe_network(const recipe *made, const mspring_network_def *d
 mspring_network *recipe_solved(const recipe *made, const mspring_network_def *def, mspring_solver solver,
                                mspring_integrator integrator) {
     mspring_network *network = recipe_network(made, def);
-    mspring_solver_def settings;
-    check_ok(mspring_solver_def_init(&settings, sizeof settings));
+    mspring_settings settings;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &settings, sizeof settings));
     settings.solver = solver;
     settings.integrator = integrator;
-    check_ok(mspring_network_set_solver(network, &settings));
+    check_ok(support_set_solver(network, &settings));
     return network;
 }
 

@@ -37,7 +37,7 @@ mspring_network *same_in_copies(const same_scene *scene, mspring_network_def def
     support_compact(clone, 0, &job);
     assert_null(job);
     step_both(network, clone, 5);
-    for (mspring_id p = 0; p < mspring_network_particle_count(network); p += 7)
+    for (mspring_id p = 0; p < mspring_network_count(network, MSPRING_PARTICLES); p += 7)
         check_near(support_position(network, p).y, support_position(clone, p).y, tolerance);
     mspring_network_destroy(young);
     mspring_network_destroy(clone);

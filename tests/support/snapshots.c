@@ -18,19 +18,19 @@ mspring_network *snapshots_make(const recipe *made, mspring_simd level, uint32_t
 
 void snapshots_use_solver(mspring_network *network, mspring_solver kind, mspring_integrator integrator,
                           uint32_t coarse_period) {
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = kind;
     solver.integrator = integrator;
     solver.coarse_period = coarse_period;
     solver.substeps = 2;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
 }
 
 saved snapshots_save(const mspring_network *network, mspring_snapshot_contents contents) {
     saved out;
     size_t written = 0;
-    check_ok(mspring_network_snapshot_size(network, contents, &out.size));
+    check_ok(mspring_network_get_snapshot_size(network, contents, &out.size));
     out.bytes = malloc(out.size + 1);
     assert_non_null(out.bytes);
     out.bytes[out.size] = 0xab;
@@ -58,39 +58,39 @@ void snapshots_load(mspring_network *network, const saved *from) {
 }
 
 void snapshots_set_up(mspring_network *network) {
-    const uint32_t springs = mspring_network_spring_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
     float values[MOST * 2];
     assert_true(springs <= COUNT_OF(values));
     for (uint32_t i = 0; i < springs; i++) {
         values[i] = i % 7 == 0 ? INFINITY : 0.05f + 0.01f * (float)(i % 5);
     }
-    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, springs, values, 1));
+    check_ok(mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, 0, springs, values, 1));
     for (uint32_t i = 0; i < springs; i++) {
         values[i] = 0.01f;
     }
-    check_ok(mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, springs, values, 1));
+    check_ok(mspring_network_set(network, MSPRING_WARN_STRAIN, NULL, 0, springs, values, 1));
     check_ok(support_set_relax_fraction(network, 0.7f));
     const float rest_length = 1.03f;
     const mspring_id spring = 3;
-    check_ok(mspring_network_set_at(network, MSPRING_REST_LENGTH, &spring, 1, &rest_length, 1));
+    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, &spring, 0, 1, &rest_length, 1));
 }
 
 void snapshots_run_frame(mspring_network *network, uint32_t frame) {
-    const uint32_t springs = mspring_network_spring_count(network);
-    const uint32_t particles = mspring_network_particle_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
+    const uint32_t particles = mspring_network_count(network, MSPRING_PARTICLES);
     const mspring_id broken[] = {frame * 7 % springs, frame * 13 % springs};
-    check_ok(mspring_network_break_springs(network, broken, 2));
+    check_ok(mspring_network_break_springs(network, broken, 0, 2));
     if (frame % 3 == 1) {
         const mspring_id whole[] = {(frame - 1) * 7 % springs};
-        check_ok(mspring_network_restore_springs(network, whole, 1, frame % 2 == 0 ? 0 : 0.5));
+        check_ok(mspring_network_restore_springs(network, whole, 0, 1, frame % 2 == 0 ? 0 : 0.5));
     }
     if (frame % 4 == 2) {
         const float mass = 1 + 0.1f * (float)(frame % 10);
-        check_ok(mspring_network_set(network, MSPRING_MASS, frame % particles, 1, &mass, 1));
+        check_ok(mspring_network_set(network, MSPRING_MASS, NULL, frame % particles, 1, &mass, 1));
     }
     if (frame % 5 == 3) {
         const float scale = frame % 2 == 0 ? 0.5f : 1;
-        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, frame * 3 % particles, 1, &scale, 1));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, frame * 3 % particles, 1, &scale, 1));
     }
     check_ok(support_set_gravity(network, 0.1f * (float)(frame % 3), -9.8f));
     check_ok(mspring_network_apply_force(network, frame * 11 % particles, 30, 5));
@@ -102,13 +102,13 @@ void snapshots_run_frame(mspring_network *network, uint32_t frame) {
 uint64_t snapshots_look_at(const mspring_network *network) {
     double energy[3];
     float strain[MOST * 2], mass[MOST], scale[MOST];
-    const uint32_t springs = mspring_network_spring_count(network);
-    const uint32_t particles = mspring_network_particle_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
+    const uint32_t particles = mspring_network_count(network, MSPRING_PARTICLES);
     uint64_t sum = support_hash(network);
-    check_ok(mspring_network_energy(network, &energy[0], &energy[1], &energy[2]));
-    check_ok(mspring_network_get(network, MSPRING_STRAIN, 0, springs, strain, 1));
-    check_ok(mspring_network_get(network, MSPRING_MASS, 0, particles, mass, 1));
-    check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, 0, particles, scale, 1));
+    check_ok(support_get_energy(network, &energy[0], &energy[1], &energy[2]));
+    check_ok(mspring_network_get(network, MSPRING_STRAIN, NULL, 0, springs, strain, 1));
+    check_ok(mspring_network_get(network, MSPRING_MASS, NULL, 0, particles, mass, 1));
+    check_ok(mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, NULL, 0, particles, scale, 1));
     const void *const parts[] = {energy, strain, mass, scale};
     const size_t sizes[] = {sizeof energy, springs * sizeof *strain, particles * sizeof *mass,
                             particles * sizeof *scale};
@@ -118,11 +118,11 @@ uint64_t snapshots_look_at(const mspring_network *network) {
         }
     }
     for (mspring_id s = 0; s < springs; s++) {
-        if (!mspring_network_has_spring(network, s)) {
+        if (!support_has_spring(network, s)) {
             continue;
         }
-        mspring_spring_info info = {.struct_size = sizeof info};
-        check_ok(mspring_network_get_spring(network, s, &info));
+        support_spring_info info;
+        check_ok(support_get_spring(network, s, &info));
         uint32_t stiffness;
         memcpy(&stiffness, &info.stiffness, sizeof stiffness);
         sum = (sum ^ info.flags ^ (uint64_t)stiffness << 32) * 0x100000001b3u;
@@ -165,7 +165,7 @@ uint8_t *snapshots_section_of(const saved *of, const char *tag, uint64_t *size) 
 
 mspring_network *snapshots_small_guarded(const recipe *made, mspring_guard guard) {
     mspring_network_def def = support_def(-9.8f, 4);
-    def.guard = guard;
+    def.settings.guard = guard;
     mspring_network *network = recipe_network(made, &def);
     snapshots_set_up(network);
     for (uint32_t frame = 0; frame < 6; frame++) {

@@ -90,12 +90,12 @@ mspring_builder *support_builder(void) {
 static mspring_id add_particle(mspring_builder *builder, double x, double y, float mass, uint32_t flags) {
     mspring_particle_def def;
     mspring_id id = MSPRING_NONE;
-    check_ok(mspring_particle_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def));
     def.x = x;
     def.y = y;
     def.mass = mass;
     def.flags = flags;
-    check_ok(mspring_builder_add_particle(builder, &def, &id));
+    check_ok(mspring_builder_add_particles(builder, &def, 1, &id));
     return id;
 }
 
@@ -110,12 +110,12 @@ mspring_id support_pinned(mspring_builder *builder, double x, double y, float ma
 mspring_id support_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness, float damping) {
     mspring_spring_def def;
     mspring_id id = MSPRING_NONE;
-    check_ok(mspring_spring_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
     def.a = a;
     def.b = b;
     def.stiffness = stiffness;
     def.damping = damping;
-    check_ok(mspring_builder_add_spring(builder, &def, &id));
+    check_ok(mspring_builder_add_springs(builder, &def, 1, &id));
     return id;
 }
 
@@ -123,22 +123,22 @@ mspring_id support_join(mspring_builder *builder, mspring_id a, mspring_id b, fl
                         uint32_t flags) {
     mspring_spring_def def;
     mspring_id id = MSPRING_NONE;
-    check_ok(mspring_spring_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
     def.a = a;
     def.b = b;
     def.stiffness = stiffness;
     def.rest_length = rest_length;
     def.flags = flags;
-    check_ok(mspring_builder_add_spring(builder, &def, &id));
+    check_ok(mspring_builder_add_springs(builder, &def, 1, &id));
     return id;
 }
 
 mspring_network_def support_def(float gravity_y, uint32_t substeps) {
     mspring_network_def def;
-    check_ok(mspring_network_def_init(&def, sizeof def));
-    def.gravity_y = gravity_y;
-    def.substeps = substeps;
-    def.guard = MSPRING_GUARD_GROWTH;
+    check_ok(mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def));
+    def.settings.gravity_y = gravity_y;
+    def.settings.substeps = substeps;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
     return def;
 }
 
@@ -150,7 +150,7 @@ mspring_network *support_network(mspring_builder *builder, const mspring_network
     mspring_network *network = NULL;
     mspring_result result = mspring_network_create(builder, def, &network);
     if (result != MSPRING_OK) {
-        print_error("%s\n", mspring_builder_error(builder));
+        print_error("%s\n", support_builder_error(builder));
     }
     check_ok(result);
     mspring_builder_destroy(builder);
@@ -171,16 +171,16 @@ uint64_t support_fallback_count(const mspring_network *network) {
     return support_step_info(network).fallback_count;
 }
 
-mspring_solver_def support_solver(const mspring_network *network) {
-    mspring_solver_def def = {.struct_size = sizeof def};
-    check_ok(mspring_network_get_solver(network, &def));
+mspring_settings support_solver(const mspring_network *network) {
+    mspring_settings def = {.struct_size = sizeof def};
+    check_ok(mspring_network_get_settings(network, &def));
     return def;
 }
 
 void support_set_residual(mspring_network *network, float residual) {
-    mspring_solver_def def = support_solver(network);
+    mspring_settings def = support_solver(network);
     def.residual = residual;
-    check_ok(mspring_network_set_solver(network, &def));
+    check_ok(support_set_solver(network, &def));
 }
 
 mspring_settings support_settings(const mspring_network *network) {
@@ -226,13 +226,13 @@ void support_steps(mspring_network *network, uint32_t count, double dt) {
 
 void support_kick(mspring_network *network, mspring_id particle, float speed) {
     const float along = 0.3f * speed;
-    check_ok(mspring_network_set_velocities(network, particle, 1, &speed, &along, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, particle, 1, &speed, &along, 1));
 }
 
 mspring_result support_add_hook(mspring_network *network, mspring_phase phase, mspring_hook_fn fn, void *user,
                                 uint32_t *hook) {
     mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
     def.phase = phase;
     def.fn = fn;
     def.user = user;
@@ -260,12 +260,12 @@ void support_compact(mspring_network *network, uint32_t functions, mspring_job *
 
 support_point support_position(const mspring_network *network, mspring_id particle) {
     support_point point = {0, 0};
-    check_ok(mspring_network_get_positions(network, particle, 1, &point.x, &point.y, 1));
+    check_ok(mspring_network_get_positions(network, NULL, particle, 1, &point.x, &point.y, 1));
     return point;
 }
 
 double support_distance(const mspring_network *a, const mspring_network *b) {
-    const uint32_t count = mspring_network_particle_count(a);
+    const uint32_t count = mspring_network_count(a, MSPRING_PARTICLES);
     double sum = 0;
     for (mspring_id id = 0; id < count; id++) {
         const support_point p = support_position(a, id), q = support_position(b, id);
@@ -276,19 +276,19 @@ double support_distance(const mspring_network *a, const mspring_network *b) {
 
 support_point support_velocity(const mspring_network *network, mspring_id particle) {
     float vx = 0, vy = 0;
-    check_ok(mspring_network_get_velocities(network, particle, 1, &vx, &vy, 1));
+    check_ok(mspring_network_get_velocities(network, NULL, particle, 1, &vx, &vy, 1));
     return (support_point){vx, vy};
 }
 
 uint64_t support_hash(const mspring_network *network) {
     uint64_t hash = 0;
-    check_ok(mspring_network_state_hash(network, &hash));
+    check_ok(mspring_network_get_state_hash(network, &hash));
     return hash;
 }
 
 void support_bring(const mspring_network *from, mspring_network *to, mspring_snapshot_contents contents) {
     size_t size = 0;
-    check_ok(mspring_network_snapshot_size(from, contents, &size));
+    check_ok(mspring_network_get_snapshot_size(from, contents, &size));
     void *bytes = malloc(size);
     assert_non_null(bytes);
     check_ok(mspring_network_save(from, contents, bytes, size, NULL));
@@ -298,13 +298,13 @@ void support_bring(const mspring_network *from, mspring_network *to, mspring_sna
 
 double support_energy_of_motion(const mspring_network *network) {
     double kinetic, elastic;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, NULL));
+    check_ok(support_get_energy(network, &kinetic, &elastic, NULL));
     return kinetic + elastic;
 }
 
 double support_energy(const mspring_network *network) {
     double kinetic, elastic, potential;
-    check_ok(mspring_network_energy(network, &kinetic, &elastic, &potential));
+    check_ok(support_get_energy(network, &kinetic, &elastic, &potential));
     return kinetic + elastic + potential;
 }
 

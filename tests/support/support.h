@@ -13,10 +13,9 @@
 #include <setjmp.h>
 
 #include <cmocka.h>
-#include <massspring/massspring_batch.h>
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
+
+#include "readings.h"
 
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 
@@ -127,7 +126,7 @@ void support_compact(mspring_network *network, uint32_t functions, mspring_job *
 mspring_step_info support_step_info(const mspring_network *network);
 uint32_t support_substeps(const mspring_network *network);
 uint64_t support_fallback_count(const mspring_network *network);
-mspring_solver_def support_solver(const mspring_network *network);
+mspring_settings support_solver(const mspring_network *network);
 void support_set_residual(mspring_network *network, float residual);
 
 typedef struct support_point {

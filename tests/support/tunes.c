@@ -19,16 +19,16 @@ uint32_t tunes_tell(double done, void *user) {
 
 mspring_tune_def tunes_def(tunes_watch *w) {
     mspring_tune_def def;
-    check_ok(mspring_tune_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_TUNE_DEF, &def, sizeof def));
     def.clock = read_watch;
     def.user = w;
     def.budget = 1e6;
     return def;
 }
 
-mspring_solver_def tunes_setting(mspring_solver solver, uint32_t substeps, uint32_t iterations) {
-    mspring_solver_def def;
-    check_ok(mspring_solver_def_init(&def, sizeof def));
+mspring_settings tunes_setting(mspring_solver solver, uint32_t substeps, uint32_t iterations) {
+    mspring_settings def;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
     def.solver = solver;
     def.substeps = substeps;
     def.iterations = iterations;

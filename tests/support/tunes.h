@@ -5,7 +5,7 @@
 #ifndef TUNES_H
 #define TUNES_H
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <stdbool.h>
 
 #include "recipe.h"
@@ -31,7 +31,7 @@ uint32_t tunes_tell(double done, void *user);
 
 /// Defaults with this clock and a budget that is not used up.
 mspring_tune_def tunes_def(tunes_watch *w);
-mspring_solver_def tunes_setting(mspring_solver solver, uint32_t substeps, uint32_t iterations);
+mspring_settings tunes_setting(mspring_solver solver, uint32_t substeps, uint32_t iterations);
 
 /// A table without rows, to be written to.
 void tunes_clear(tunes_table *out);

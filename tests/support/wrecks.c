@@ -27,7 +27,7 @@ mspring_network *wrecks_network(const recipe *made, mspring_simd level, uint32_t
     mspring_network_def def = support_def(-9.8f, 4);
     def.simd_level = level;
     def.worker_count = worker_count;
-    def.global_damping = 0.1f;
+    def.settings.global_damping = 0.1f;
     return recipe_network(made, &def);
 }
 
@@ -43,30 +43,30 @@ bool wrecks_breaks(const recipe *made, wreck kind, mspring_id s) {
 void wrecks_make(mspring_network *network, const recipe *made, wreck kind) {
     for (mspring_id s = 0; s < made->spring_count; s++) {
         if (wrecks_breaks(made, kind, s)) {
-            check_ok(mspring_network_break_springs(network, &s, 1));
+            check_ok(mspring_network_break_springs(network, &s, 0, 1));
         }
     }
 }
 
-mspring_plan wrecks_plan(const mspring_network *network) {
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
+support_plan wrecks_plan(const mspring_network *network) {
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     return plan;
 }
 
 uint32_t wrecks_swept(const mspring_network *network) {
-    const mspring_plan plan = wrecks_plan(network);
+    const support_plan plan = wrecks_plan(network);
     return plan.lattice_springs + plan.chain_springs + plan.irregular_springs;
 }
 
 void wrecks_set_solver(mspring_network *network, mspring_solver which, mspring_integrator integrator) {
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = which;
     solver.integrator = integrator;
     solver.substeps = 2;
     solver.iterations = 60;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
 }
 
 static void push(const mspring_hook_args *args, void *user) {
@@ -78,7 +78,7 @@ static void push(const mspring_hook_args *args, void *user) {
 
 static void add_pushing_hook(mspring_network *network) {
     mspring_hook_def hook;
-    check_ok(mspring_hook_def_init(&hook, sizeof hook));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &hook, sizeof hook));
     hook.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
     hook.fn = push;
     hook.period = 2;
@@ -89,7 +89,7 @@ static void add_pushing_hook(mspring_network *network) {
 void wrecks_set_up(mspring_network *network, int run) {
     const double plane[4] = {0, -2, 0, 1};
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.planes = plane;
     def.plane_count = 1;
     def.friction = 0.3f;
@@ -101,6 +101,6 @@ void wrecks_set_up(mspring_network *network, int run) {
         wrecks_set_solver(network, run < 5 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_DIRECT,
                           run % 3 == 0   ? MSPRING_INTEGRATOR_BDF2
                           : run % 3 == 1 ? MSPRING_INTEGRATOR_EULER
-                                         : MSPRING_INTEGRATOR_GA0);
+                                         : MSPRING_INTEGRATOR_ALPHA);
     }
 }

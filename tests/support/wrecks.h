@@ -5,9 +5,10 @@
 #ifndef TEST_WRECKS_H
 #define TEST_WRECKS_H
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <stdbool.h>
 
+#include "readings.h"
 #include "recipe.h"
 
 /// Rows of every kind, springs of both kinds, dampers.
@@ -21,7 +22,7 @@ typedef enum wreck { SHATTERED, TORN, DISSOLVED, WRECKS } wreck;
 bool wrecks_breaks(const recipe *made, wreck kind, mspring_id s);
 void wrecks_make(mspring_network *network, const recipe *made, wreck kind);
 
-mspring_plan wrecks_plan(const mspring_network *network);
+support_plan wrecks_plan(const mspring_network *network);
 /// Springs that a step sweeps.
 uint32_t wrecks_swept(const mspring_network *network);
 

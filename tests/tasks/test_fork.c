@@ -44,11 +44,11 @@ static mspring_network *make(uint32_t worker_count, mspring_solver solver, const
     def.allocator = allocator;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
-    mspring_solver_def solver_def;
-    check_ok(mspring_solver_def_init(&solver_def, sizeof solver_def));
+    mspring_settings solver_def;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver_def, sizeof solver_def));
     solver_def.solver = solver;
     solver_def.substeps = solver == MSPRING_SOLVER_EXPLICIT ? 8 : 2;
-    check_ok(mspring_network_set_solver(network, &solver_def));
+    check_ok(support_set_solver(network, &solver_def));
     return network;
 }
 
@@ -129,7 +129,7 @@ static uint64_t destroy_at_once(mspring_network *network) {
 static uint64_t destroy_a_clone(mspring_network *network) {
     mspring_network *clone = NULL;
     mspring_clone_def def;
-    if (mspring_clone_def_init(&def, sizeof def) != MSPRING_OK) {
+    if (mspring_init(MSPRING_STRUCT_CLONE_DEF, &def, sizeof def) != MSPRING_OK) {
         return 0;
     }
     def.worker_count = 2;

@@ -37,7 +37,7 @@ static mspring_network *make(const recipe *made, uint32_t worker_count, const ms
 
 static mspring_hook_def concurrent(mspring_phase phase, mspring_hook_fn fn, void *user, uint32_t range) {
     mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
     def.phase = phase;
     def.fn = fn;
     def.user = user;
@@ -85,7 +85,7 @@ static void ranges_cover_all_slots(void **state) {
     for (size_t w = 0; w < COUNT_OF(worker_counts); w++) {
         mspring_network *network = make(&made, worker_counts[w], NULL);
         mspring_view view = {.struct_size = sizeof view};
-        check_ok(mspring_network_view(network, &view));
+        check_ok(mspring_network_get_view(network, &view));
         assert_true(view.slot_count <= SLOTS);
         for (size_t r = 0; r < COUNT_OF(ranges); r++) {
             static census of;
@@ -213,12 +213,12 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     caller *inside = user;
     double x, y, energy;
     uint64_t hash;
-    bool good = mspring_network_get_positions(inside->network, args->worker, 1, &x, &y, 1) == MSPRING_OK &&
-                mspring_network_energy(inside->network, &energy, NULL, NULL) == MSPRING_OK &&
-                mspring_network_state_hash(inside->network, &hash) == MSPRING_OK;
+    bool good = mspring_network_get_positions(inside->network, NULL, args->worker, 1, &x, &y, 1) == MSPRING_OK &&
+                support_get_energy(inside->network, &energy, NULL, NULL) == MSPRING_OK &&
+                mspring_network_get_state_hash(inside->network, &hash) == MSPRING_OK;
     good = good && mspring_network_step(inside->network, 0.01) == MSPRING_ERROR_BUSY &&
            support_set_gravity(inside->network, 0, 0) == MSPRING_ERROR_BUSY &&
-           mspring_network_set_positions(inside->network, 0, 1, &x, &y, 1) == MSPRING_ERROR_BUSY;
+           mspring_network_set_positions(inside->network, NULL, 0, 1, &x, &y, 1) == MSPRING_ERROR_BUSY;
     atomic_fetch_add(&inside->calls, 1);
     atomic_fetch_add(&inside->wrong, !good);
 }

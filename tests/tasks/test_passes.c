@@ -14,10 +14,10 @@ static const recipe_stuff stuff = {
     .mass = {0.5, 2}, .stiffness = {500, 3000}, .damping = {0, 10}, .pinned = 0.03, .holes = 0.1};
 static const recipe_stuff solid = {.mass = {1, 1}, .stiffness = {1000, 1000}};
 
-static mspring_plan plan_of(const recipe *made) {
+static support_plan plan_of(const recipe *made) {
     mspring_network *network = recipe_network(made, NULL);
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     mspring_network_destroy(network);
     return plan;
 }
@@ -37,8 +37,8 @@ typedef struct manner {
 static uint64_t hash_after_steps(const recipe *made, manner how) {
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
     def.worker_count = how.workers;
-    def.global_damping = 0.25f;
-    def.max_speed = 1e15f;
+    def.settings.global_damping = 0.25f;
+    def.settings.max_speed = 1e15f;
     mspring_network *network = recipe_network(made, &def);
     if (how.one_by_one) {
         check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, do_nothing, NULL, NULL));
@@ -91,7 +91,7 @@ static void passes_give_the_bits_of_single_substeps(void **state) {
         uint64_t seed = 7000 + variant;
         recipe made = {0};
         add_everything(&made, variant, &seed);
-        const mspring_plan plan = plan_of(&made);
+        const support_plan plan = plan_of(&made);
         deep += plan.pass_rows > 0 && plan.pass_substeps > 1;
         lagging += plan.pass_rows > 0 && plan.pass_lag > 1;
         divided += plan.pass_rows < plan.lattice_rows;
@@ -113,7 +113,7 @@ static void ropes_do_not_prevent_passes(void **state) {
     recipe made = {0};
     recipe_lattice(&made, 100, 100, 0, 0, 1, &solid, &seed);
     recipe_rope(&made, 0, 9999, 20, &solid, &seed); // from corner to corner
-    const mspring_plan plan = plan_of(&made);
+    const support_plan plan = plan_of(&made);
     assert_int_equal(plan.pass_rows, 100);
     assert_int_equal(plan.irregular_particles, 19);
     assert_true(plan.pass_substeps > 1);
@@ -127,7 +127,7 @@ static void what_cannot_share_a_pass_does_not_prevent_those_of_others(void **sta
     recipe_lattice(&made, 100, 100, 0, 0, 1, &solid, &seed);
     const mspring_id second = recipe_lattice(&made, 120, 1000, 200, 0, 1, &solid, &seed);
     recipe_spring(&made, second, second + 119999, 1000, 0, 0); // from its first row to its last
-    const mspring_plan plan = plan_of(&made);
+    const support_plan plan = plan_of(&made);
     assert_int_equal(plan.lattice_rows, 220);
     assert_int_equal(plan.pass_rows, 100);
     assert_int_equal(hash_after_steps(&made, (manner){.workers = 1}),

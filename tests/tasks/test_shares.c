@@ -87,7 +87,7 @@ static void hook(const mspring_hook_args *args, void *user) {
 static void lay_floor(mspring_network *network) {
     const double plane[4] = {0, 0.5, 0.1, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.plane_count = 1;
     floor.planes = plane;
     floor.friction = 0.3f;
@@ -97,8 +97,8 @@ static void lay_floor(mspring_network *network) {
 /// In the first step springs are not warm yet, so workers share it; later ones yield.
 static void make_soft(mspring_network *network) {
     const float strain = 0.3f;
-    for (mspring_id s = 0; s < mspring_network_spring_count(network); s++)
-        check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, s, 1, &strain, 1));
+    for (mspring_id s = 0; s < mspring_network_count(network, MSPRING_SPRINGS); s++)
+        check_ok(mspring_network_set(network, MSPRING_YIELD_STRAIN, NULL, s, 1, &strain, 1));
 }
 
 static uint64_t run(const recipe *made, const way *w, const team *who) {
@@ -112,7 +112,7 @@ static uint64_t run(const recipe *made, const way *w, const team *who) {
         make_soft(network);
     if (w->period > 0) {
         mspring_hook_def hooked;
-        check_ok(mspring_hook_def_init(&hooked, sizeof hooked));
+        check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &hooked, sizeof hooked));
         hooked.phase = MSPRING_PHASE_AFTER_SUBSTEP;
         hooked.fn = hook;
         hooked.period = w->period;
@@ -156,10 +156,10 @@ static void heavy_strips_are_shared_by_weight(void **state) {
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
         recipe made = lattice(&ways[cases[i].way]);
         mspring_network_def def = support_def(-9.8f, 40);
-        mspring_plan plan = {.struct_size = sizeof plan};
+        support_plan plan;
         enlist(&def, &cases[i].team);
         mspring_network *network = recipe_network(&made, &def);
-        check_ok(mspring_network_get_plan(network, &plan));
+        check_ok(support_get_plan(network, &plan));
         assert_int_equal(plan.pass_workers, cases[i].used);
         mspring_network_destroy(network);
         recipe_free(&made);
@@ -210,8 +210,8 @@ static uint64_t run_sleepers(const team *who) {
         recipe_lattice(&made, 60, 60, 100 * i, 0, 1, &stuff, &seed);
     mspring_network_def def = support_def(0, 10);
     enlist(&def, who);
-    def.sleep_speed = 1e-3f;
-    def.sleep_time = 0.02f;
+    def.settings.sleep_speed = 1e-3f;
+    def.settings.sleep_time = 0.02f;
     mspring_network *network = recipe_network(&made, &def);
     recipe_free(&made);
     assert_int_equal(network->halos.count > 0, who->count > 1);
@@ -250,10 +250,10 @@ static bool has_used_halos(const mspring_network *network) {
 
 static void add_cells(mspring_builder *builder, const uint16_t *cells, uint32_t width, double x) {
     mspring_material stuff;
-    check_ok(mspring_material_init(&stuff, sizeof stuff));
+    check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &stuff, sizeof stuff));
     stuff.mass = 1, stuff.stiffness = 200, stuff.damping = 0.5f;
     mspring_lattice_def def;
-    check_ok(mspring_lattice_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &def, sizeof def));
     def.width = width, def.height = ROWS, def.cells = cells, def.materials = &stuff, def.material_count = 1;
     def.x = x;
     check_ok(mspring_builder_add_lattice(builder, &def, NULL));
@@ -263,8 +263,8 @@ static mspring_network *make_sleepy(mspring_builder *builder, uint32_t substeps,
                                     const team *who) {
     mspring_network_def settings = support_def(0, substeps);
     enlist(&settings, who);
-    settings.sleep_speed = sleep_speed;
-    settings.sleep_time = 0.02f;
+    settings.settings.sleep_speed = sleep_speed;
+    settings.settings.sleep_time = 0.02f;
     mspring_network *network;
     check_ok(mspring_network_create(builder, &settings, &network));
     mspring_builder_destroy(builder);
@@ -285,14 +285,14 @@ static bool run_beside_sleeper(int depth, float sleep_speed, const team *who, do
     mspring_builder *builder;
     check_ok(mspring_builder_create(NULL, &builder));
     add_cells(builder, cells[0], WIDE, 0);
-    assert_int_equal(mspring_builder_particle_count(builder), count);
+    assert_int_equal(mspring_builder_count(builder, MSPRING_PARTICLES), count);
     add_cells(builder, full[0], STILL, 200);
     mspring_network *network = make_sleepy(builder, SUBSTEPS_BESIDE_NOTCH, sleep_speed, who);
     for (mspring_id p = 0; p < count; p += 3)
         support_kick(network, p, 1 + (float)(p % 7));
     support_steps(network, 8, 0.01);
     assert_true(support_sleeps(network, count) == (sleep_speed > 0) && !support_sleeps(network, 0));
-    check_ok(mspring_network_get_positions(network, 0, count, x, y, 1));
+    check_ok(mspring_network_get_positions(network, NULL, 0, count, x, y, 1));
     const bool shared = has_used_halos(network);
     mspring_network_destroy(network);
     return shared;
@@ -364,7 +364,7 @@ static uint64_t run_quilt(uint64_t seed, int mover, float sleep_speed, const tea
     mspring_builder *builder;
     check_ok(mspring_builder_create(NULL, &builder));
     add_cells(builder, cells[0], WIDE, 0);
-    assert_int_equal(mspring_builder_particle_count(builder), count);
+    assert_int_equal(mspring_builder_count(builder, MSPRING_PARTICLES), count);
     mspring_network *network = make_sleepy(builder, SUBSTEPS_OF_QUILT, sleep_speed, who);
     for (p = 0; p < count; p++)
         support_kick(network, p, side_of[p] == mover ? 1 + (float)(p % 7) : 2e-3f * (float)(p % 3));
@@ -411,7 +411,7 @@ static void clones_are_shared_in_their_own_way(void **state) {
         mspring_network_def def = support_def(-9.8f, 40), other = def;
         mspring_clone_def into;
         mspring_network *clone = NULL;
-        check_ok(mspring_clone_def_init(&into, sizeof into));
+        check_ok(mspring_init(MSPRING_STRUCT_CLONE_DEF, &into, sizeof into));
         enlist(&def, &pairs[i][0]);
         mspring_network *network = recipe_network(&made, &def);
         support_steps(network, 1, 0.01);

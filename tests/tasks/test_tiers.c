@@ -121,7 +121,7 @@ static void check_tiers(const mspring_network *network) {
 static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
     def.worker_count = how.workers;
-    def.global_damping = 0.25f;
+    def.settings.global_damping = 0.25f;
     host hosts[HOST_COUNT];
     hosts_fill(hosts, how.workers);
     if (how.independent)
@@ -129,8 +129,8 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     mspring_network *network = recipe_network(made, &def);
     // Ropes that hang on tiers, or on a lattice, are no strands.
     assert_int_equal(network->topology.chain_count, of == WITH_CABLES ? 1 : of == IN_RIGGING ? 61 : 0);
-    mspring_plan plan = {.struct_size = sizeof plan};
-    check_ok(mspring_network_get_plan(network, &plan));
+    support_plan plan;
+    check_ok(support_get_plan(network, &plan));
     assert_int_equal(plan.irregular_layers > 0, how.has_tiers || of <= ON_A_RAFT);
     // The raft is part of the web, another lattice is not.
     assert_int_equal(network->topology.lattice_count, of == WITH_CABLES || of >= ON_A_RAFT ? of != IN_RIGGING : 0);
@@ -144,7 +144,7 @@ static uint64_t hash_after_steps(const recipe *made, content of, manner how) {
     }
     const double planes[2][4] = {{0, 0.5, 0.01, 1}, {700, 0, -1, 0.2}};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.plane_count = 2;
     floor.planes = planes[0];
     floor.friction = 0.3f;
@@ -249,8 +249,8 @@ static void pieces_sleep_in_tiers(void **state) {
     uint64_t hashes[2][2];
     for (int one_by_one = 0; one_by_one < 2; one_by_one++) {
         mspring_network_def def = support_def(0, SUBSTEPS);
-        def.sleep_speed = 0.001f;
-        def.sleep_time = 0.05f;
+        def.settings.sleep_speed = 0.001f;
+        def.settings.sleep_time = 0.05f;
         mspring_network *network = recipe_network(&made, &def);
         if (one_by_one) {
             take_one_by_one(network);
@@ -259,7 +259,7 @@ static void pieces_sleep_in_tiers(void **state) {
         for (mspring_id p = 0; p < 40; p++) {
             moving = p * 997;
             check_ok(
-                mspring_network_set_velocities_at(network, &moving, 1, &(float){1}, &(float){(float)(p % 3)}, 1));
+                mspring_network_set_velocities(network, &moving, 0, 1, &(float){1}, &(float){(float)(p % 3)}, 1));
         }
         support_steps(network, 8, 1.0 / 64);
         assert_true(network->sleep.sleeping > 0 && network->sleep.sleeping < network->sleep.count);
@@ -328,7 +328,7 @@ static void clones_and_compact_ones_have_tiers(void **state) {
     const mspring_network_def def = support_def(-9.8f, SUBSTEPS);
     mspring_network *network = recipe_network(&made, &def), *clone = NULL;
     for (mspring_id s = 0; s < made.spring_count; s += 997) {
-        check_ok(mspring_network_break_springs(network, &s, 1));
+        check_ok(mspring_network_break_springs(network, &s, 0, 1));
     }
     for (int compact = 0; compact < 2; compact++) {
         if (compact) {

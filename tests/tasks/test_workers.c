@@ -53,7 +53,7 @@ static uint64_t run(const recipe *made, uint32_t worker_count, const mspring_tas
     def.tasks = tasks;
     mspring_network *network = recipe_network(made, &def);
     const uint32_t expected = tasks != NULL ? tasks->worker_count : worker_count;
-    assert_int_equal(mspring_network_worker_count(network), expected);
+    assert_int_equal(support_worker_count(network), expected);
     const uint64_t hash = hash_of_steps(network);
     mspring_network_destroy(network);
     return hash;
@@ -101,16 +101,16 @@ static uint64_t hash_of_shared_steps(mspring_network *network) {
 }
 
 /// Steps of an implicit network, some of its springs broken on the way.
-static uint64_t run_implicit(const recipe *made, const mspring_solver_def *solver, uint32_t worker_count,
+static uint64_t run_implicit(const recipe *made, const mspring_settings *solver, uint32_t worker_count,
                              const mspring_tasks *tasks) {
     mspring_network_def def = support_def(-9.8f, 1);
     def.worker_count = worker_count;
     def.tasks = tasks;
     mspring_network *network = recipe_network(made, &def);
-    check_ok(mspring_network_set_solver(network, solver));
+    check_ok(support_set_solver(network, solver));
     uint64_t hash = hash_of_shared_steps(network);
     for (mspring_id spring = 100; spring < 2000; spring += 100) {
-        check_ok(mspring_network_break_springs(network, &spring, 1));
+        check_ok(mspring_network_break_springs(network, &spring, 0, 1));
     }
     hash = hash * 31 + hash_of_shared_steps(network);
     mspring_network_destroy(network);
@@ -120,10 +120,10 @@ static uint64_t run_implicit(const recipe *made, const mspring_solver_def *solve
 static void any_number_of_workers_gives_the_same_implicit_bits(void **state) {
     (void)state;
     recipe made = mixed_recipe();
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = MSPRING_SOLVER_IMPLICIT;
-    for (mspring_integrator i = MSPRING_INTEGRATOR_GA0; i < ROUNDS(MSPRING_INTEGRATOR_EULER + 1); i++) {
+    for (mspring_integrator i = MSPRING_INTEGRATOR_ALPHA; i < ROUNDS(MSPRING_INTEGRATOR_EULER + 1); i++) {
         solver.integrator = i;
         solver.coarse_period = 1 + (uint32_t)i;
         const uint64_t expected = run_implicit(&made, &solver, 1, NULL);
@@ -145,7 +145,7 @@ static void workers_without_cores_are_left_alone(void **state) {
     (void)state;
     recipe made = mixed_recipe();
     mspring_network_def def = support_def(-9.8f, 1);
-    def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.settings.solver = MSPRING_SOLVER_IMPLICIT;
     mspring_network *alone = recipe_network(&made, &def);
     def.worker_count = 2;
     mspring_network *shared = recipe_network(&made, &def);
@@ -166,11 +166,11 @@ static void a_clone_has_room_for_its_workers(void **state) {
     (void)state;
     recipe made = mixed_recipe();
     mspring_network_def def = support_def(-9.8f, 1);
-    def.solver = MSPRING_SOLVER_IMPLICIT;
+    def.settings.solver = MSPRING_SOLVER_IMPLICIT;
     mspring_network *network = recipe_network(&made, &def), *clone = NULL;
     support_steps(network, 2, 0.02);
     mspring_clone_def more;
-    check_ok(mspring_clone_def_init(&more, sizeof more));
+    check_ok(mspring_init(MSPRING_STRUCT_CLONE_DEF, &more, sizeof more));
     more.worker_count = 3;
     check_ok(mspring_network_clone(network, &more, &clone));
     support_steps(network, 3, 0.02);
@@ -215,7 +215,7 @@ static void refuse(mspring_builder *builder, const mspring_network_def *def, msp
     mspring_network *const untouched = (mspring_network *)(uintptr_t)16;
     mspring_network *network = untouched;
     check_error(mspring_network_create(builder, def, &network), code);
-    check_contains(mspring_builder_error(builder), part);
+    check_contains(support_builder_error(builder), part);
     assert_ptr_equal(network, untouched);
 }
 
@@ -246,7 +246,7 @@ static void bad_workers_are_refused(void **state) {
     tasks.worker_count = 4;
     tasks.struct_size = 3;
     refuse(builder, &def, MSPRING_ERROR_STRUCT, "mspring_tasks");
-    assert_int_equal(mspring_network_worker_count(NULL), 0);
+    assert_int_equal(support_worker_count(NULL), 0);
     mspring_builder_destroy(builder);
 }
 
@@ -309,7 +309,7 @@ static void threads_that_cannot_be_had_are_an_error(void **state) {
     const mspring_result result = mspring_network_create(builder, &def, &network);
     assert_int_equal(setrlimit(RLIMIT_AS, &before), 0);
     check_error(result, MSPRING_ERROR_THREAD);
-    check_contains(mspring_builder_error(builder), "has no thread for worker");
+    check_contains(support_builder_error(builder), "has no thread for worker");
     assert_ptr_equal(network, untouched);
     check_watched_clean(&watched);
     // With fewer it works.

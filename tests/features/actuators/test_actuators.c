@@ -33,8 +33,8 @@ static mspring_network *network_of(uint32_t substeps, mspring_solver solver) {
     (void)support_spring(b, 4, 25, 1000, 2);
     (void)support_spring(b, 30, 40, 300, 2);
     mspring_network_def def = support_def(-9.8f, substeps);
-    def.solver = solver;
-    def.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.solver = solver;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
     return support_network(b, &def);
 }
 
@@ -44,7 +44,7 @@ static float signal_of(uint32_t i, int step) {
 
 static void is_a_rest_length(mspring_solver solver, bool has_yield) {
     mspring_network *driven = network_of(20, solver), *set = network_of(20, solver);
-    const uint32_t count = mspring_network_spring_count(driven);
+    const uint32_t count = mspring_network_count(driven, MSPRING_SPRINGS);
     const float never_yet = 100;
     float nominal[128], signals[128], lengths[128];
     mspring_id springs[128];
@@ -52,22 +52,22 @@ static void is_a_rest_length(mspring_solver solver, bool has_yield) {
     for (uint32_t i = 0; i < count; i++)
         springs[i] = count - 1 - i;
     if (has_yield) {
-        check_ok(mspring_network_set(driven, MSPRING_YIELD_STRAIN, 0, count, &never_yet, 0));
-        check_ok(mspring_network_set(set, MSPRING_YIELD_STRAIN, 0, count, &never_yet, 0));
+        check_ok(mspring_network_set(driven, MSPRING_YIELD_STRAIN, NULL, 0, count, &never_yet, 0));
+        check_ok(mspring_network_set(set, MSPRING_YIELD_STRAIN, NULL, 0, count, &never_yet, 0));
     }
-    check_ok(mspring_network_get_at(set, MSPRING_REST_LENGTH, springs, count, nominal, 1));
+    check_ok(mspring_network_get(set, MSPRING_REST_LENGTH, springs, 0, count, nominal, 1));
     check_ok(mspring_network_set_actuators(driven, springs, count, 1));
     for (int step = 0; step < 40; step++) {
         for (uint32_t i = 0; i < count; i++) {
             signals[i] = signal_of(i, step);
             lengths[i] = nominal[i] * signals[i];
         }
-        check_ok(mspring_network_set_at(set, MSPRING_REST_LENGTH, springs, count, lengths, 1));
-        check_ok(mspring_network_set_signals(driven, 0, count / 2, signals, 1));
-        check_ok(mspring_network_set_signals(driven, count / 2, count - count / 2, signals + count / 2, 1));
+        check_ok(mspring_network_set(set, MSPRING_REST_LENGTH, springs, 0, count, lengths, 1));
+        check_ok(mspring_network_set(driven, MSPRING_SIGNAL, NULL, 0, count / 2, signals, 1));
+        check_ok(mspring_network_set(driven, MSPRING_SIGNAL, NULL, count / 2, count - count / 2, signals + count / 2, 1));
         check_ok(mspring_network_step(set, DT));
         check_ok(mspring_network_step(driven, DT));
-        check_ok(mspring_network_get_at(driven, MSPRING_REST_LENGTH, springs, count, signals, 1));
+        check_ok(mspring_network_get(driven, MSPRING_REST_LENGTH, springs, 0, count, signals, 1));
         for (uint32_t i = 0; i < count; i++)
             check_near((double)signals[i], (double)lengths[i], 0);
     }
@@ -97,13 +97,13 @@ static void changes_are_even(void **state) {
     check_ok(support_set_gravity(driven, 0, 0)); // its dither begins anew with each step
     check_ok(support_set_gravity(set, 0, 0));
     check_ok(mspring_network_set_actuators(driven, springs, 2, 4));
-    check_ok(mspring_network_get_at(set, MSPRING_REST_LENGTH, springs, 2, from, 1));
-    check_ok(mspring_network_set_signals(driven, 0, 2, &(float){1.5f}, 0));
+    check_ok(mspring_network_get(set, MSPRING_REST_LENGTH, springs, 0, 2, from, 1));
+    check_ok(mspring_network_set(driven, MSPRING_SIGNAL, NULL, 0, 2, &(float){1.5f}, 0));
     check_ok(mspring_network_step(driven, DT));
     for (int part = 1; part <= 4; part++) {
         for (int i = 0; i < 2; i++)
             lengths[i] = part == 4 ? from[i] * 1.5f : from[i] + (from[i] * 1.5f - from[i]) * (0.25f * (float)part);
-        check_ok(mspring_network_set_at(set, MSPRING_REST_LENGTH, springs, 2, lengths, 1));
+        check_ok(mspring_network_set(set, MSPRING_REST_LENGTH, springs, 0, 2, lengths, 1));
         check_ok(mspring_network_step(set, DT / 4));
     }
     assert_true(support_hash(driven) == support_hash(set));
@@ -122,23 +122,57 @@ static void failed_steps_take_them_back(void **state) {
         float before = 0, after = 0;
         for (int i = 0; i < 2; i++) {
             check_ok(mspring_network_set_actuators(both[i], springs, 3, changes));
-            check_ok(mspring_network_set_signals(both[i], 0, 3, &(float){1.2f}, 0));
+            check_ok(mspring_network_set(both[i], MSPRING_SIGNAL, NULL, 0, 3, &(float){1.2f}, 0));
             check_ok(mspring_network_step(both[i], DT));
-            check_ok(mspring_network_set_signals(both[i], 1, 2, &(float){0.8f}, 0));
+            check_ok(mspring_network_set(both[i], MSPRING_SIGNAL, NULL, 1, 2, &(float){0.8f}, 0));
         }
-        check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, 70, 1, &before, 1));
-        check_ok(mspring_network_set_velocities(network, 7, 1, &fast, &fast, 1));
+        check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, NULL, 70, 1, &before, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, 7, 1, &fast, &fast, 1));
         check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
-        check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, 70, 1, &after, 1));
+        check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, NULL, 70, 1, &after, 1));
         check_near((double)after, (double)before, 0);
         for (int i = 0; i < 2; i++) {
-            check_ok(mspring_network_set_velocities(both[i], 7, 1, &rest, &rest, 1));
+            check_ok(mspring_network_set_velocities(both[i], NULL, 7, 1, &rest, &rest, 1));
             support_steps(both[i], 3, DT); // the signals that were set count
         }
         assert_true(support_hash(network) == support_hash(again));
         mspring_network_destroy(network);
         mspring_network_destroy(again);
     }
+}
+
+// Signals that are set already wake nothing; others do, and one beside which the rest length was changed.
+static void signals_of_now_wake_nothing(void **state) {
+    (void)state;
+    mspring_network *network = network_of(20, MSPRING_SOLVER_EXPLICIT);
+    const mspring_id springs[] = {3, 70};
+    mspring_settings settings = support_settings(network);
+    settings.sleep_speed = 0.01f;
+    settings.gravity_y = 0;
+    settings.global_damping = 5;
+    settings.guard = MSPRING_GUARD_GROWTH;
+    check_ok(mspring_network_set_settings(network, &settings));
+    check_ok(mspring_network_set_actuators(network, springs, 2, 2));
+    const float one = 1, more = 1.1f, length = 1.05f;
+    float signals[2] = {0, 0};
+    support_fall_asleep(network, DT);
+    check_ok(mspring_network_set(network, MSPRING_SIGNAL, NULL, 0, MSPRING_ALL, &one, 0));
+    assert_true(support_is_asleep(network));
+    check_ok(mspring_network_set(network, MSPRING_SIGNAL, NULL, 1, 1, &more, 0));
+    assert_false(support_is_asleep(network));
+    support_fall_asleep(network, DT);
+    check_ok(mspring_network_get(network, MSPRING_SIGNAL, NULL, 0, 2, signals, 1));
+    check_near((double)signals[1], (double)more, 1e-6);
+    check_ok(mspring_network_set(network, MSPRING_SIGNAL, NULL, 1, 1, &more, 0));
+    assert_true(support_is_asleep(network));
+    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, springs, 1, 1, &length, 1));
+    support_fall_asleep(network, DT);
+    check_ok(mspring_network_set(network, MSPRING_SIGNAL, NULL, 1, 1, &more, 0));
+    assert_false(support_is_asleep(network));
+    support_steps(network, 1, DT);
+    check_ok(mspring_network_get(network, MSPRING_REST_LENGTH, springs, 1, 1, signals, 1));
+    check_near((double)signals[0], 1.1, 1e-6);
+    mspring_network_destroy(network);
 }
 
 static void refusals(void **state) {
@@ -152,17 +186,17 @@ static void refusals(void **state) {
     check_contains(mspring_network_error(network), "actuator 1");
     check_error(mspring_network_set_actuators(network, good, 2, 0), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_set_actuators(network, good, 2, 257), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_signals(network, 0, 1, signals, 1), MSPRING_ERROR_ID);
+    check_error(mspring_network_set(network, MSPRING_SIGNAL, NULL, 0, 1, signals, 1), MSPRING_ERROR_ID);
     check_ok(mspring_network_set_actuators(network, good, 2, 1));
-    assert_int_equal(mspring_network_actuator_count(network), 2);
-    check_error(mspring_network_set_signals(network, 0, 2, signals, 1), MSPRING_ERROR_ARGUMENT);
+    assert_int_equal(mspring_network_count(network, MSPRING_ACTUATORS), 2);
+    check_error(mspring_network_set(network, MSPRING_SIGNAL, NULL, 0, 2, signals, 1), MSPRING_ERROR_ARGUMENT);
     check_contains(mspring_network_error(network), "actuator 1");
-    check_error(mspring_network_set_signals(network, 0, 2, signals + 1, 1), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_set_signals(network, 1, 2, signals, 1), MSPRING_ERROR_ID);
-    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, 5, 1, &length, 1)); // a weld
+    check_error(mspring_network_set(network, MSPRING_SIGNAL, NULL, 0, 2, signals + 1, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_set(network, MSPRING_SIGNAL, NULL, 1, 2, signals, 1), MSPRING_ERROR_ID);
+    check_ok(mspring_network_set(network, MSPRING_REST_LENGTH, NULL, 5, 1, &length, 1)); // a weld
     check_error(mspring_network_set_actuators(network, &(mspring_id){5}, 1, 1), MSPRING_ERROR_ARGUMENT);
     check_ok(mspring_network_set_actuators(network, NULL, 0, 1));
-    assert_int_equal(mspring_network_actuator_count(network), 0);
+    assert_int_equal(mspring_network_count(network, MSPRING_ACTUATORS), 0);
     mspring_network_destroy(network);
 }
 
@@ -175,9 +209,9 @@ static mspring_builder *body(double x, double y) {
     (void)support_particle(b, x + 1, y, 2);
     (void)support_pinned(b, x, y + 1, 3);
     (void)support_spring(b, 0, 1, 100, 1);
-    check_ok(mspring_spring_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
     def.a = 1, def.b = 2, def.stiffness = 50, def.break_strain = 0.5f;
-    check_ok(mspring_builder_add_spring(b, &def, NULL));
+    check_ok(mspring_builder_add_springs(b, &def, 1, NULL));
     return b;
 }
 
@@ -200,7 +234,7 @@ static void copies_are_what_was_added(void **state) {
     mspring_builder_destroy(one);
     mspring_network *a = support_network(all, &def), *b = support_network(by_hand, &def);
     float limit = 0;
-    check_ok(mspring_network_get(a, MSPRING_BREAK_STRAIN, 5, 1, &limit, 1));
+    check_ok(mspring_network_get(a, MSPRING_BREAK_STRAIN, NULL, 5, 1, &limit, 1));
     check_near((double)limit, 0.5, 0);
     check_near(support_position(a, 7).x, 21, 0);
     support_steps(a, 50, DT);
@@ -215,14 +249,42 @@ static void copies_are_refused(void **state) {
     mspring_builder *one = body(1, 2), *all = support_builder();
     (void)state;
     check_error(mspring_builder_add_copies(all, one, 2, far, far, 1, NULL, NULL), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_builder_error(all), "copy 1");
+    check_contains(support_builder_error(all), "copy 1");
     check_error(mspring_builder_add_copies(all, one, 2, none, none, 1, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(support_builder_error(all), "copy 1");
     check_error(mspring_builder_add_copies(all, one, 0, none, none, 1, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(support_builder_error(all), "0 copies");
     check_error(mspring_builder_add_copies(all, one, 1, far, NULL, 1, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    check_contains(support_builder_error(all), "NULL");
     check_error(mspring_builder_add_copies(one, one, 1, NULL, NULL, 1, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    (void)support_builder_error(one);
     check_error(mspring_builder_add_copies(one, all, 1, NULL, NULL, 1, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    (void)support_builder_error(one);
     check_error(mspring_builder_add_copies(all, one, UINT32_MAX, NULL, NULL, 1, NULL, NULL), MSPRING_ERROR_LIMIT);
-    assert_int_equal(mspring_builder_particle_count(all), 0);
+    check_contains(support_builder_error(all), "4294967295");
+    assert_int_equal(mspring_builder_count(all, MSPRING_PARTICLES), 0);
+    mspring_builder_destroy(one);
+    mspring_builder_destroy(all);
+}
+
+// A body whose description has failed gives no copies, and the builder of these tells why, until told to forget.
+static void failures_come_along(void **state) {
+    (void)state;
+    mspring_builder *one = body(1, 2), *all = support_builder();
+    mspring_network *network = NULL;
+    mspring_particle_def heavy = mspring_particle_def_default();
+    heavy.mass = 1e31f;
+    check_error(mspring_builder_add_particles(one, &heavy, 1, NULL), MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_builder_add_copies(all, one, 2, NULL, NULL, 0, NULL, NULL), MSPRING_ERROR_ARGUMENT);
+    mspring_builder_forget_error(one);
+    check_ok(mspring_builder_add_copies(all, one, 2, NULL, NULL, 0, NULL, NULL));
+    check_contains(mspring_builder_error(all), "mass");
+    check_error(mspring_network_create(all, NULL, &network), MSPRING_ERROR_ARGUMENT);
+    check_contains(mspring_builder_error(all), "mass");
+    mspring_builder_forget_error(all);
+    check_ok(mspring_network_create(all, NULL, &network));
+    assert_int_equal(mspring_network_count(network, MSPRING_PARTICLES), 6);
+    mspring_network_destroy(network);
     mspring_builder_destroy(one);
     mspring_builder_destroy(all);
 }
@@ -231,7 +293,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_signal_is_a_rest_length),   cmocka_unit_test(changes_are_even),
         cmocka_unit_test(failed_steps_take_them_back), cmocka_unit_test(refusals),
+        cmocka_unit_test(signals_of_now_wake_nothing),
         cmocka_unit_test(copies_are_what_was_added),   cmocka_unit_test(copies_are_refused),
+        cmocka_unit_test(failures_come_along),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,7 +23,7 @@ static inline mspring_id at(const sheet *s, uint32_t column, uint32_t row) {
 // Particles by rows from below, whatever the library's own lattices do.
 static inline void build(mspring_builder *builder, const sheet *s, bool is_clamped) {
     static const int directions[4][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}};
-    const mspring_id first = mspring_builder_particle_count(builder);
+    const mspring_id first = mspring_builder_count(builder, MSPRING_PARTICLES);
     for (uint32_t j = 0; j < s->height; j++)
         for (uint32_t i = 0; i < s->width; i++) {
             const double x = s->x + i * s->spacing, y = s->y + j * s->spacing;
@@ -43,7 +43,7 @@ static inline void build(mspring_builder *builder, const sheet *s, bool is_clamp
 
 static inline mspring_area_def elastic(float stiffness) {
     mspring_area_def def;
-    check_ok(mspring_area_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_AREA_DEF, &def, sizeof def));
     def.stiffness = stiffness;
     return def;
 }
@@ -62,9 +62,9 @@ static inline uint32_t add_cells(mspring_network *network, float stiffness) {
     return count;
 }
 
-static inline mspring_area_info info_of(const mspring_network *network, mspring_id area) {
-    mspring_area_info info = {.struct_size = sizeof info};
-    check_ok(mspring_network_get_area_info(network, area, &info));
+static inline support_area_info info_of(const mspring_network *network, mspring_id area) {
+    support_area_info info;
+    check_ok(support_get_area_info(network, area, &info));
     return info;
 }
 

@@ -14,9 +14,9 @@
 static mspring_network *dropped(float area_stiffness, float friction) {
     mspring_network_def def = support_def(-9.8f, 16);
     mspring_floor_def floor;
-    def.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
     mspring_network *network = sheet_network(&jelly, &def);
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     const double ground[4] = {0, 0, 0, 1};
     floor.planes = ground;
     floor.plane_count = 1;
@@ -58,18 +58,18 @@ static void a_balloon_keeps_pressure_times_area(void **state) {
         const float pressure = i % 2 ? 400 : 40;
         mspring_network_def def = support_def(0, 40);
         mspring_id area;
-        def.global_damping = 4;
+        def.settings.global_damping = 4;
         mspring_network *network = balloon(pressure, i / 2, def, &area);
-        const mspring_area_info start = info_of(network, area);
+        const support_area_info start = info_of(network, area);
         check_near(start.pressure, (double)pressure, 1e-6 * (double)pressure);
         for (int step = 0; step < 600; step++) {
             support_steps(network, 1, 1.0 / 64);
-            const mspring_area_info now = info_of(network, area);
+            const support_area_info now = info_of(network, area);
             check_near(now.pressure * now.area, (double)pressure * start.area, 1e-6 * (double)pressure);
         }
         // At rest the skin's pull balances the gas: with c the chord and r the radius, k (c - c0) = p r cos(pi /
         // n).
-        const mspring_area_info end = info_of(network, area);
+        const support_area_info end = info_of(network, area);
         const support_point p = support_position(network, 0), q = support_position(network, 1);
         const double radius = hypot(p.x, p.y), chord = hypot(q.x - p.x, q.y - p.y);
         const double pull = 1000 * (chord - 2 * sin(3.14159265358979 / SKIN));
@@ -83,27 +83,31 @@ static void fill_inflates(void **state) {
     (void)state;
     mspring_network_def def = support_def(0, 40);
     mspring_id area;
-    def.global_damping = 8;
+    def.settings.global_damping = 8;
     mspring_network *network = balloon(40, false, def, &area);
     support_steps(network, 300, 1.0 / 64);
-    const mspring_area_info before = info_of(network, area);
+    const support_area_info before = info_of(network, area);
     mspring_area_def now = {.struct_size = sizeof now};
-    check_ok(mspring_network_get_area(network, area, &now));
+    check_ok(support_get_area(network, area, &now));
     now.fill = 3;
-    check_ok(mspring_network_set_area(network, area, &now));
+    check_ok(support_set_area(network, area, &now));
     support_steps(network, 600, 1.0 / 64);
-    const mspring_area_info after = info_of(network, area);
+    const support_area_info after = info_of(network, area);
     assert_true(after.area > 1.05 * before.area);
     check_near(after.pressure * after.area, 3 * before.pressure * before.area, 1e-4 * before.pressure);
     // -P f A0 ln(A / (f A0))
-    check_near(after.energy, -40 * 3 * now.rest_area * log(after.area / (3 * now.rest_area)), 1e-9);
+    check_near(after.energy, -40 * 3 * now.rest_area * log(after.area / (3 * now.rest_area)), 5e-5); // floats of 145 J
     // An elastic one that nothing else holds is filled to its fill.
     now = elastic(100);
     now.rest_area = 2.5;
     now.fill = 1.2f;
-    check_ok(mspring_network_set_area(network, area, &now));
+    mspring_id corners[SKIN];
+    for (uint32_t i = 0; i < SKIN; i++)
+        corners[i] = i;
+    check_ok(mspring_network_remove_elements(network, &area, 0, 1)); // no property makes it one
+    check_ok(mspring_network_add_area(network, &now, corners, SKIN, &area));
     const float slack = 1e-3f;
-    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, 0, SKIN, &slack, 0));
+    check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, 0, SKIN, &slack, 0));
     support_steps(network, 3000, 1.0 / 64);
     check_near(info_of(network, area).area, 3.0, 1e-3);
     mspring_network_destroy(network);
@@ -132,10 +136,10 @@ static void energy_and_momentum_stay(void **state) {
         for (uint32_t i = 0; i < s.width * s.height; i += 3)
             support_kick(network, i, i % 2 ? 0.3f : -0.2f);
         double x, y, angular, end_x, end_y, end_angular;
-        check_ok(mspring_network_momentum(network, &x, &y, &angular));
+        check_ok(support_get_momentum(network, &x, &y, &angular));
         const double energy = support_energy(network);
         support_steps(network, 64, 1.0 / 64);
-        check_ok(mspring_network_momentum(network, &end_x, &end_y, &end_angular));
+        check_ok(support_get_momentum(network, &end_x, &end_y, &end_angular));
         check_near(support_energy(network), energy, 0.01 * fabs(energy));
         check_near(end_x, x, 1e-5);
         check_near(end_y, y, 1e-5);
@@ -192,7 +196,7 @@ static double sag_share(uint32_t n, double k, double shear, double area) {
     if (area > 0)
         assert_int_equal(add_cells(network, (float)area), 20 * n * n);
     double stable;
-    check_ok(mspring_network_stable_dt(network, &stable, NULL));
+    check_ok(mspring_network_get_stable_dt(network, &stable, NULL));
     // Slowest: f1 = 0.56 h / l^2 sqrt(E / (12 rho)); damped near critically, settled in some ten periods.
     const double e = k * (k + 2 * shear + 2 * area) / (k + shear + area);
     const double stiffer = 1 + (3 * k / e - 1) / (n * n) + 3 * k / (e * n), bending = e / 12 * stiffer;
@@ -248,9 +252,9 @@ static double frequency_share(uint32_t n, double k, double shear, double area) {
         (void)add_cells(network, (float)area);
     for (uint32_t p = 0; p < s.width * s.height; p++) {
         const float vx = 0, vy = -(float)(0.05 * first_mode((double)(p % s.width) / (20.0 * n)));
-        check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
     }
-    check_ok(mspring_network_stable_dt(network, &stable, NULL));
+    check_ok(mspring_network_get_stable_dt(network, &stable, NULL));
     const double e = k * (k + 2 * shear + 2 * area) / (k + shear + area), dt = 0.9 * stable * SUBSTEPS;
     const double bending = e / 12 * (1 + (3 * k / e - 1) / (n * n) + 3 * k / (e * n));
     const double omega = 3.516 / 400 * sqrt(bending / (0.02 / 20) / (1 + 4 / (40.0 * n)));
@@ -293,7 +297,7 @@ static void stable_dt_counts_areas(void **state) {
         double now, any_shape;
         if (i > 0)
             (void)add_cells(network, (float)area);
-        check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+        check_ok(mspring_network_get_stable_dt(network, &now, &any_shape));
         check_near(now / sqrt(0.1 / (400 + area)), 1.01, 0.01);
         assert_true(any_shape <= 1.001 * now && any_shape > 0.65 * now);
         // Just below it is stable, just above the guard finds it.
@@ -312,7 +316,7 @@ static void a_balloons_border_is_found(void **state) {
     mspring_network_def def = support_def(0, 1);
     double now, any_shape;
     mspring_network *network = balloon(400, false, def, NULL);
-    check_ok(mspring_network_stable_dt(network, &now, &any_shape));
+    check_ok(mspring_network_get_stable_dt(network, &now, &any_shape));
     assert_true(any_shape <= now);
     support_kick(network, 3, 0.01f);
     support_steps(network, 2000, 0.99 * any_shape);
@@ -328,19 +332,24 @@ static void a_break_opens_an_area(void **state) {
     const mspring_id broken = 0;
     (void)add_cells(network, 100);
     assert_int_equal(info_of(network, 0).is_open, 0);
-    check_ok(mspring_network_break_springs(network, &broken, 1));
+    check_ok(mspring_network_break_springs(network, &broken, 0, 1));
     assert_int_equal(info_of(network, 0).is_open, 1);
     check_near(info_of(network, 0).pressure, 0, 0);
     support_steps(network, 1, 1.0 / 64);
-    check_ok(mspring_network_restore_springs(network, &broken, 1, 0));
+    check_ok(mspring_network_restore_springs(network, &broken, 0, 1, 0));
     assert_int_equal(info_of(network, 0).is_open, 0);
     const mspring_id corner = 0;
-    check_ok(mspring_network_remove_particles(network, &corner, 1));
-    mspring_area_info info = {.struct_size = sizeof info};
-    check_error(mspring_network_get_area_info(network, 0, &info), MSPRING_ERROR_ID);
-    check_ok(mspring_network_get_area_info(network, 1, &info));
-    check_ok(mspring_network_remove_area(network, 1));
-    check_error(mspring_network_remove_area(network, 1), MSPRING_ERROR_ID);
+    check_ok(mspring_network_remove_particles(network, &corner, 0, 1));
+    support_area_info info;
+    check_error(support_get_area_info(network, 0, &info), MSPRING_ERROR_ID);
+    check_ok(support_get_area_info(network, 1, &info));
+    const mspring_id listed[] = {2, 1};
+    check_ok(mspring_network_remove_elements(network, NULL, 1, 1));
+    check_ok(mspring_network_remove_elements(network, NULL, 0, 2)); // a range leaves out what was removed
+    check_error(mspring_network_remove_elements(network, listed, 0, 2), MSPRING_ERROR_ID);
+    check_contains(mspring_network_error(network), "index 1");
+    check_contains(mspring_network_error(network), "element 1");
+    check_ok(support_get_area_info(network, 2, &info));
     support_steps(network, 10, 1.0 / 64);
     mspring_network_destroy(network);
 }
@@ -354,12 +363,12 @@ static mspring_network *mixture(mspring_network_def def) {
     s.width = 70;
     s.height = 40;
     build(builder, &s, false);
-    const mspring_id second = mspring_builder_particle_count(builder);
+    const mspring_id second = mspring_builder_count(builder, MSPRING_PARTICLES);
     s.x = 20;
     s.width = 7;
     s.height = 9;
     build(builder, &s, false);
-    const mspring_id ring = mspring_builder_particle_count(builder);
+    const mspring_id ring = mspring_builder_count(builder, MSPRING_PARTICLES);
     mspring_id corners[SKIN];
     for (uint32_t i = 0; i < SKIN; i++)
         corners[i] = support_particle(builder, 30 + cos(i * 0.19634954), sin(i * 0.19634954), 0.05f);
@@ -379,7 +388,7 @@ static mspring_network *mixture(mspring_network_def def) {
 static void go_on(mspring_network *network) {
     for (mspring_id step = 0; step < 6; step++) {
         const mspring_id broken[] = {37 * step + 5, 53 * step + 700};
-        check_ok(mspring_network_break_springs(network, broken, 2));
+        check_ok(mspring_network_break_springs(network, broken, 0, 2));
         support_steps(network, 3, 1.0 / 64);
     }
 }
@@ -406,7 +415,7 @@ static void without_areas_nothing_changes(void **state) {
     mspring_network *never = sheet_network(&jelly, &def), *had = sheet_network(&jelly, &def);
     const uint32_t count = add_cells(had, 100);
     for (mspring_id area = 0; area < count; area++)
-        check_ok(mspring_network_remove_area(had, area));
+        check_ok(mspring_network_remove_elements(had, NULL, area, 1));
     support_kick(never, 3, 1);
     support_kick(had, 3, 1);
     support_steps(never, 20, 1.0 / 64);
@@ -419,8 +428,8 @@ static void without_areas_nothing_changes(void **state) {
 static void sleepers_keep_their_areas(void **state) {
     (void)state;
     mspring_network_def def = support_def(0, 40);
-    def.global_damping = 20;
-    def.sleep_speed = 0.02f;
+    def.settings.global_damping = 20;
+    def.settings.sleep_speed = 0.02f;
     mspring_id area;
     mspring_network *network = balloon(100, false, def, &area);
     support_fall_asleep(network, 1.0 / 64);
@@ -429,8 +438,8 @@ static void sleepers_keep_their_areas(void **state) {
     check_near(info_of(network, area).area, size, 0);
     mspring_area_def more = gas(200);
     more.rest_area = 3;
-    check_ok(mspring_network_set_area(network, area, &more));
-    assert_false(mspring_network_is_asleep(network));
+    check_ok(support_set_area(network, area, &more));
+    assert_false(support_is_asleep(network));
     support_steps(network, 60, 1.0 / 64);
     assert_true(info_of(network, area).area > 1.02 * size);
     mspring_network_destroy(network);
@@ -473,12 +482,12 @@ static void guards_that_clamp_have_areas(void **state) {
     for (int i = 0; i < 6; i++) {
         sheet s = {.width = 8, .height = 8, .spacing = 1, .stiffness = 1e6f, .shear_share = 1, .mass = 1};
         mspring_network_def def = support_def(0, 4);
-        def.guard = guards[i / 3];
-        def.solver = (mspring_solver)(i % 3);
+        def.settings.guard = guards[i / 3];
+        def.settings.solver = (mspring_solver)(i % 3);
         mspring_network *network = sheet_network(&s, &def);
         (void)add_cells(network, 1e6f);
         support_kick(network, 5, 0.1f);
-        if (def.guard == MSPRING_GUARD_CLAMP_BOUNDS && def.solver == MSPRING_SOLVER_EXPLICIT)
+        if (def.settings.guard == MSPRING_GUARD_CLAMP_BOUNDS && def.settings.solver == MSPRING_SOLVER_EXPLICIT)
             s.width = 0; // it only keeps what has grown within bounds
         for (int step = 0; step < 300; step++) {
             support_steps(network, 1, 1.0 / 60);

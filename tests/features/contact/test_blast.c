@@ -39,14 +39,14 @@ static mspring_network *blocks(const setting *of) {
                                               .mass = 20,
                                               .f = 0.3});
     mspring_network_def def = support_def(-9.8f, of->substeps);
-    def.solver = of->solver;
+    def.settings.solver = of->solver;
     def.simd_level = of->level;
     def.worker_count = of->workers;
     def.allocator = of->allocator;
     mspring_network *network = bodies_network(b, &def);
     static const double plane[4] = {0, -0.01, 0, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = plane;
     floor.plane_count = 1;
     check_ok(mspring_network_set_floor(network, &floor));
@@ -65,10 +65,10 @@ static void blow_up(mspring_network *network, float speed) {
     for (mspring_id p = 0; p < WIDTH * HEIGHT; p++)
         if (p % WIDTH > 7 && p / WIDTH > 1 && p / WIDTH < 7)
             torn[count++] = p;
-    check_ok(mspring_network_detach_particles(network, torn, count));
+    check_ok(mspring_network_detach_particles(network, torn, 0, count));
     for (uint32_t i = 0; i < count; i++) {
         const float vx = speed * ((float)(torn[i] % WIDTH) - 9), vy = speed * ((float)(torn[i] / WIDTH) - 4);
-        check_ok(mspring_network_set_velocities(network, torn[i], 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, torn[i], 1, &vx, &vy, 1));
     }
 }
 
@@ -95,7 +95,7 @@ static uint32_t fly(const setting *of, besides what, uint64_t *hashes) {
         if (step == BLAST)
             blow_up(network, 40);
         if (what == DROP_LISTS)
-            check_ok(mspring_network_set_contact_groups(network, 0, BLOCKS * WIDTH * HEIGHT, 1, UINT32_MAX));
+            check_ok(support_set_layers(network, 0, BLOCKS * WIDTH * HEIGHT, 1, UINT32_MAX));
         if (what == ROLL_BACK && step >= BLAST && step % 4 == 3) {
             saved frame = snapshots_save(network, MSPRING_SNAPSHOT_FRAME);
             support_steps(network, 3, DT);
@@ -150,8 +150,8 @@ static void count_pairs(float speed, uint32_t sums[2]) {
     mspring_network *network = blocks(&(setting){.workers = 1, .substeps = 40});
     const mspring_id splinter = BLOCKS * WIDTH * HEIGHT - 1; // thrown out of the last block, upwards
     const float x = 0;
-    check_ok(mspring_network_detach_particles(network, &splinter, 1));
-    check_ok(mspring_network_set_velocities(network, splinter, 1, &x, &speed, 1));
+    check_ok(mspring_network_detach_particles(network, &splinter, 0, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, splinter, 1, &x, &speed, 1));
     sums[0] = sums[1] = 0;
     for (uint32_t step = 0; step < STEPS; step++) {
         support_steps(network, 1, DT);
@@ -294,7 +294,7 @@ static void a_crowd_is_refused(void **state) {
     mspring_network *network = recipe_network(&made, NULL);
     recipe_free(&made);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = 0.3;
     check_ok(mspring_network_set_contact(network, &contact));
     const uint64_t before = support_hash(network);

@@ -27,7 +27,7 @@ typedef struct body {
 
 static void add_spring(body *b, uint32_t from, uint32_t to, double stiffness) {
     mspring_spring_def *def = &b->springs[b->spring_count++];
-    check_ok(mspring_spring_def_init(def, sizeof *def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, def, sizeof *def));
     def->a = from;
     def->b = to;
     def->stiffness = (float)stiffness;
@@ -105,19 +105,19 @@ static mspring_network *network_of(const body *b, mspring_simd level) {
     mspring_builder *builder = support_builder();
     for (uint32_t i = 0; i < b->count; i++) {
         mspring_particle_def def;
-        check_ok(mspring_particle_def_init(&def, sizeof def));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def));
         def.x = b->x[i];
         def.y = b->y[i];
         def.vx = (float)b->vx[i];
         def.vy = (float)b->vy[i];
         def.mass = (float)b->mass[i];
-        check_ok(mspring_builder_add_particle(builder, &def, NULL));
+        check_ok(mspring_builder_add_particles(builder, &def, 1, NULL));
     }
     check_ok(mspring_builder_add_springs(builder, b->springs, b->spring_count, NULL));
     mspring_network_def def = support_def((float)-g, 1);
     def.simd_level = level;
-    def.global_damping = (float)b->damping;
-    def.guard = MSPRING_GUARD_BOUNDS; // it shall not be the guard that takes back what grows
+    def.settings.global_damping = (float)b->damping;
+    def.settings.guard = MSPRING_GUARD_BOUNDS; // it shall not be the guard that takes back what grows
     return support_network(builder, &def);
 }
 
@@ -126,8 +126,8 @@ static mspring_network *network_of(const body *b, mspring_simd level) {
 static double kept_energy(const body *b, const mspring_network *network, double h, double lag) {
     double x[MOST], y[MOST], fx[MOST] = {0}, fy[MOST] = {0}, sum = 0;
     float vx[MOST], vy[MOST];
-    check_ok(mspring_network_get_positions(network, 0, b->count, x, y, 1));
-    check_ok(mspring_network_get_velocities(network, 0, b->count, vx, vy, 1));
+    check_ok(mspring_network_get_positions(network, NULL, 0, b->count, x, y, 1));
+    check_ok(mspring_network_get_velocities(network, NULL, 0, b->count, vx, vy, 1));
     for (uint32_t i = 0; i < b->spring_count; i++) {
         const mspring_spring_def *s = &b->springs[i];
         const double dx = x[s->b] - x[s->a], dy = y[s->b] - y[s->a], length = hypot(dx, dy);
@@ -155,7 +155,7 @@ static float heights[HEIGHTS];
 
 static mspring_floor_def floor_of_kind(uint32_t kind, uint64_t seed) {
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     const double slope = kind == 1 ? support_random_between(&seed, -0.3, 0.3) : 0;
     const double box[3 * 4] = {0, 0, slope, 1, -3, 0, 1, 0, 8, 0, -1, 0};
     for (uint32_t i = 0; i < COUNT_OF(box); i++) {
@@ -176,7 +176,7 @@ static mspring_floor_def floor_of_kind(uint32_t kind, uint64_t seed) {
 /// Smallest distance of any particle.
 static double above(const body *b, const mspring_network *network, const mspring_floor_def *def) {
     double x[MOST], y[MOST], least = INFINITY;
-    check_ok(mspring_network_get_positions(network, 0, b->count, x, y, 1));
+    check_ok(mspring_network_get_positions(network, NULL, 0, b->count, x, y, 1));
     for (uint32_t i = 0; i < b->count; i++) {
         for (uint32_t p = 0; p < def->plane_count; p++) {
             const double *plane = planes + 4 * p;
@@ -303,14 +303,14 @@ static void what_is_pressed_down_gains_nothing(void **state) {
             mspring_builder *builder = support_builder();
             const mspring_id up = support_pinned(builder, 0, 12, 1), mass = support_particle(builder, 0, 3, 1);
             mspring_spring_def spring;
-            check_ok(mspring_spring_def_init(&spring, sizeof spring));
+            check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
             spring.a = up;
             spring.b = mass;
             spring.stiffness = 1000;
             spring.rest_length = 11.2f;
             check_ok(mspring_builder_add_springs(builder, &spring, 1, NULL));
             mspring_network_def def = support_def((float)-g, 1);
-            def.guard = MSPRING_GUARD_BOUNDS;
+            def.settings.guard = MSPRING_GUARD_BOUNDS;
             mspring_network *network = support_network(builder, &def);
             mspring_floor_def level = floor_of_kind(0, 1);
             level.restitution = (float)(0.25 * j);
@@ -379,17 +379,17 @@ static mspring_network *one_particle(double height, const way *how, float restit
     if (was_tied)
         (void)support_spring(builder, 0, support_particle(builder, 1, height, 1), 1e6f, 0);
     mspring_network_def def = support_def((float)-g, 1);
-    def.global_damping = (float)damping;
+    def.settings.global_damping = (float)damping;
     mspring_network *network = support_network(builder, &def);
     const mspring_id spring = 0;
     if (was_tied)
-        check_ok(mspring_network_break_springs(network, &spring, 1));
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+        check_ok(mspring_network_break_springs(network, &spring, 0, 1));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = how->solver;
     solver.integrator = how->integrator;
     solver.substeps = how->substeps;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     mspring_floor_def level = floor_of_kind(0, 1);
     level.restitution = restitution;
     check_ok(mspring_network_set_floor(network, &level));
@@ -422,10 +422,10 @@ static void check_tops(const way *how, double height, double dt, double restitut
 }
 
 static const way ways[] = {
-    {MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, 1},   {MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, 8},
-    {MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_GA0, 1},   {MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1},
+    {MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_ALPHA, 1},   {MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_ALPHA, 8},
+    {MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_ALPHA, 1},   {MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1},
     {MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_EULER, 1}, {MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 8},
-    {MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_GA0, 1},     {MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, 3},
+    {MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_ALPHA, 1},     {MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_BDF2, 3},
     {MSPRING_SOLVER_DIRECT, MSPRING_INTEGRATOR_EULER, 1},
 };
 
@@ -495,14 +495,14 @@ static void damped_particles_bounce_no_higher(void **state) {
 /// Micrometres above the floor at the beginning of a substep, at any speed: thrown back as from anywhere.
 static void what_begins_just_above_bounces(void **state) {
     (void)state;
-    static const way some[] = {{MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_GA0, 1},
+    static const way some[] = {{MSPRING_SOLVER_EXPLICIT, MSPRING_INTEGRATOR_ALPHA, 1},
                                {MSPRING_SOLVER_IMPLICIT, MSPRING_INTEGRATOR_BDF2, 1}};
     const double dt = 1.0 / 64, speed = 7;
     for (size_t i = 0; i < COUNT_OF(some); i++) {
         for (double height = 0; height < 0.1; height = 2 * height + 1e-7) {
             mspring_network *network = one_particle(height, &some[i], 1, 0, false);
             const float vx = 0, vy = -(float)speed;
-            check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
+            check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &vx, &vy, 1));
             check_ok(mspring_network_step(network, dt));
             check_near(support_velocity(network, 0).y, speed, 1.5 * g * dt);
             mspring_network_destroy(network);

@@ -24,7 +24,7 @@ static void report(const char *format, ...) {
 
 static mspring_collider_def shape(mspring_collider_kind kind, double x, double y, double angle) {
     mspring_collider_def def;
-    check_ok(mspring_collider_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
     def.kind = kind;
     def.x = x;
     def.y = y;
@@ -238,7 +238,7 @@ static void colliders_bear_weight(void **state) {
     (void)bodies_add(
         b, &(bodies_lattice){.width = 14, .height = 3, .y = 1 + THICKNESS, .spacing = 1, .mass = 10, .f = 0.5});
     mspring_network_def def = support_def(-9.8f, 40);
-    def.global_damping = 1;
+    def.settings.global_damping = 1;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0, 0));
     const mspring_collider_def defs[2] = {box(2, 1, -4, -0.5, 0), circle(2, 4, -2)};

@@ -32,7 +32,7 @@ static outcome collide(uint64_t trial, const kind *of, bool touches) {
     double speed;
     bodies *b = bodies_two(trial, of->fastest, dt / stable, &speed);
     mspring_network_def def = support_def(0, is_explicit ? stable : FEW_SUBSTEPS[trial % COUNT_OF(FEW_SUBSTEPS)]);
-    def.solver = of->solver;
+    def.settings.solver = of->solver;
     mspring_network *network = bodies_network(b, &def);
     b->h = is_explicit ? b->h : 0;
     if (touches)

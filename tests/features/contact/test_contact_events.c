@@ -10,7 +10,7 @@
 #include "bodies.h"
 #include "snapshots.h"
 
-#include <massspring/massspring_contact.h>
+#include <massspring/massspring.h>
 
 #define THICKNESS 0.5
 #define DT (1.0 / 64)
@@ -44,7 +44,7 @@ static mspring_network *ball_above_rope(bodies *b, double mass, float gravity, f
     mspring_network_def def = support_def(gravity, SUBSTEPS);
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.2f, restitution));
-    check_ok(mspring_network_reserve_contact_events(network, 64));
+    check_ok(support_reserve_contact_events(network, 64));
     return network;
 }
 
@@ -54,7 +54,7 @@ static void ball_begins_and_ends(void **state) {
     uint32_t ball;
     mspring_network *network = ball_above_rope(b, 0, 0, 1, &ball);
     b->vy[ball] = -4;
-    check_ok(mspring_network_set_velocities(network, ball, 1, &b->vx[ball], &b->vy[ball], 1));
+    check_ok(mspring_network_set_velocities(network, NULL, ball, 1, &b->vx[ball], &b->vy[ball], 1));
     support_steps(network, 64, DT);
     assert_int_equal(read_events(network), 2);
     assert_int_equal(events[0].kind, MSPRING_CONTACT_BEGAN);
@@ -87,10 +87,10 @@ static void what_rests_or_slides_begins_once(void **state) {
     for (uint32_t p = first; p < b->count; p++)
         b->vx[p] = 6;
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
-    def.global_damping = 0.3f;
+    def.settings.global_damping = 0.3f;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.1f, 0));
-    check_ok(mspring_network_reserve_contact_events(network, ROOM));
+    check_ok(support_reserve_contact_events(network, ROOM));
     support_steps(network, 64 * 10, DT);
     uint32_t began[64] = {0}, ended[64] = {0};
     const uint32_t count = read_events(network);
@@ -117,12 +117,12 @@ static void sleepers_stay_in_contact(void **state) {
             b, &(bodies_lattice){
                    .width = 6, .height = 2, .y = 0.5 + THICKNESS + 1.5 * i, .spacing = 1, .mass = 5, .f = 0.3});
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
-    def.global_damping = 2;
-    def.sleep_speed = 0.1f;
-    def.sleep_time = 0.5f;
+    def.settings.global_damping = 2;
+    def.settings.sleep_speed = 0.1f;
+    def.settings.sleep_time = 0.5f;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.3f, 0));
-    check_ok(mspring_network_reserve_contact_events(network, ROOM));
+    check_ok(support_reserve_contact_events(network, ROOM));
     support_fall_asleep(network, DT);
     const uint32_t first = read_events(network);
     assert_int_equal(balance(first), (int)first);
@@ -144,7 +144,7 @@ static void colliders_have_events(void **state) {
     mspring_network *network = ball_above_rope(b, 100, 0, 0, &ball);
     mspring_collider_def def;
     mspring_id other, box;
-    check_ok(mspring_collider_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
     def.kind = MSPRING_COLLIDER_BOX;
     def.width = def.height = 1;
     def.x = 50;
@@ -196,7 +196,7 @@ static mspring_network *heap(mspring_simd level, uint32_t workers, uint32_t capa
     def.worker_count = workers;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.4f, 0.2f));
-    check_ok(mspring_network_reserve_contact_events(network, capacity));
+    check_ok(support_reserve_contact_events(network, capacity));
     bodies_free(b);
     return network;
 }
@@ -282,7 +282,7 @@ static void rest_that_is_loaded_begins_nothing(void **state) {
     support_steps(network, 50, DT);
     assert_int_equal(read_events(network), 0);
     const float up = 5;
-    check_ok(mspring_network_set_velocities(network, ball, 1, &up, &up, 0));
+    check_ok(mspring_network_set_velocities(network, NULL, ball, 1, &up, &up, 0));
     support_steps(network, 10, DT);
     assert_int_equal(read_events(network), 1);
     assert_int_equal(events[0].kind, MSPRING_CONTACT_ENDED);
@@ -298,7 +298,7 @@ static void steps_that_fail_have_none(void **state) {
     uint32_t ball;
     mspring_network *network = ball_above_rope(b, 0, 0, 0, &ball);
     b->vy[ball] = -4;
-    check_ok(mspring_network_set_velocities(network, ball, 1, &b->vx[ball], &b->vy[ball], 1));
+    check_ok(mspring_network_set_velocities(network, NULL, ball, 1, &b->vx[ball], &b->vy[ball], 1));
     for (int step = 0; step < 40; step++) {
         (void)read_events(network);
         saved frame = snapshots_save(network, MSPRING_SNAPSHOT_FRAME);
@@ -350,21 +350,51 @@ static void bad_calls_are_rejected(void **state) {
     bodies *b = bodies_begin(DT / SUBSTEPS);
     uint32_t ball, count = 77;
     mspring_network *network = ball_above_rope(b, 0, 0, 0, &ball);
-    check_error(mspring_network_reserve_contact_events(NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_error(support_reserve_contact_events(NULL, 1), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_read_contact_events(NULL, NULL, 0, &count, NULL), MSPRING_ERROR_ARGUMENT);
-    check_error(mspring_network_reserve_contact_events(network, UINT32_MAX), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_network_error(network), "4294967295");
+    const uint32_t too_many[] = {0x1000001, UINT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(too_many); i++) {
+        check_error(support_reserve_contact_events(network, too_many[i]), MSPRING_ERROR_ARGUMENT);
+        check_contains(mspring_network_error(network), i ? "event_capacity is 4294967295" : "16777217");
+    }
     check_error(mspring_network_read_contact_events(network, NULL, 1, &count, NULL), MSPRING_ERROR_ARGUMENT);
     check_error(mspring_network_read_contact_events(network, events, 1, NULL, NULL), MSPRING_ERROR_ARGUMENT);
     events[0].struct_size = 4;
     check_error(mspring_network_read_contact_events(network, events, 1, &count, NULL), MSPRING_ERROR_STRUCT);
     assert_int_equal(count, 77);
     check_ok(mspring_network_set_contact(network, NULL));
-    check_error(mspring_network_reserve_contact_events(network, 1), MSPRING_ERROR_ARGUMENT);
-    check_contains(mspring_network_error(network), "mspring_network_set_contact");
     check_error(mspring_network_read_contact_events(network, NULL, 0, &count, NULL), MSPRING_ERROR_ARGUMENT);
     mspring_network_destroy(network);
     bodies_free(b);
+}
+
+/// A capacity is read back. Another one drops what waits, and another friction does not.
+static void capacities_are_of_contact(void **state) {
+    (void)state;
+    mspring_network *network = heap(MSPRING_SIMD_AUTO, 1, 64), *plain = heap(MSPRING_SIMD_AUTO, 1, 0);
+    mspring_contact_def def = mspring_contact_def_default();
+    check_ok(mspring_network_get_contact(plain, &def));
+    assert_int_equal(def.event_capacity, 0);
+    check_ok(mspring_network_get_contact(network, &def));
+    assert_int_equal(def.event_capacity, 64);
+    support_steps(network, 60, DT);
+    check_ok(mspring_network_set_contact(network, &def));
+    assert_true(read_events(network) > 0);
+    support_steps(network, 20, DT);
+    mspring_network *clone;
+    check_ok(mspring_network_clone(network, NULL, &clone));
+    def.friction += 0.1f;
+    check_ok(mspring_network_set_contact(network, &def));
+    const uint32_t waiting = read_events(clone);
+    assert_true(waiting > 0);
+    assert_int_equal(read_events(network), waiting);
+    support_steps(network, 20, DT);
+    def.event_capacity = 65;
+    check_ok(mspring_network_set_contact(network, &def));
+    assert_int_equal(read_events(network), 0);
+    mspring_network_destroy(network);
+    mspring_network_destroy(plain);
+    mspring_network_destroy(clone);
 }
 
 static void memory_is_given_back(void **state) {
@@ -372,21 +402,21 @@ static void memory_is_given_back(void **state) {
     watched_allocator watched = {0};
     const mspring_allocator allocator = watched_interface(&watched);
     mspring_clone_def clone_def;
-    check_ok(mspring_clone_def_init(&clone_def, sizeof clone_def));
+    check_ok(mspring_init(MSPRING_STRUCT_CLONE_DEF, &clone_def, sizeof clone_def));
     clone_def.allocator = &allocator;
     mspring_network *from = heap(MSPRING_SIMD_AUTO, 1, 0), *network;
     check_ok(mspring_network_clone(from, &clone_def, &network));
-    const size_t before = mspring_network_memory_used(network);
+    const size_t before = support_memory_used(network);
     for (size_t fail_at = 1; fail_at <= 2; fail_at++) {
         watched.fail_at = watched.calls + fail_at;
-        check_error(mspring_network_reserve_contact_events(network, 100), MSPRING_ERROR_MEMORY);
-        assert_int_equal(mspring_network_memory_used(network), before);
+        check_error(support_reserve_contact_events(network, 100), MSPRING_ERROR_MEMORY);
+        assert_int_equal(support_memory_used(network), before);
     }
     watched.fail_at = 0;
-    check_ok(mspring_network_reserve_contact_events(network, 100));
-    const size_t with = mspring_network_memory_used(network);
+    check_ok(support_reserve_contact_events(network, 100));
+    const size_t with = support_memory_used(network);
     mspring_collider_def def;
-    check_ok(mspring_collider_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
     def.kind = MSPRING_COLLIDER_BOX;
     def.x = 100;
     check_ok(mspring_network_add_collider(network, &def, NULL));
@@ -396,7 +426,7 @@ static void memory_is_given_back(void **state) {
     support_steps(network, 60, DT);
     assert_int_equal(watched.calls, calls);
     assert_true(with > before + 100 * sizeof *events);
-    check_ok(mspring_network_reserve_contact_events(network, 0));
+    check_ok(support_reserve_contact_events(network, 0));
     mspring_network_destroy(network);
     check_watched_clean(&watched);
     mspring_network_destroy(from);
@@ -409,7 +439,8 @@ int main(void) {
         cmocka_unit_test(events_are_the_same_everywhere), cmocka_unit_test(events_are_watched_for_nothing),
         cmocka_unit_test(loads_and_clones_go_on),         cmocka_unit_test(rest_that_is_loaded_begins_nothing),
         cmocka_unit_test(steps_that_fail_have_none),      cmocka_unit_test(what_has_no_room_is_counted),
-        cmocka_unit_test(bad_calls_are_rejected),         cmocka_unit_test(memory_is_given_back),
+        cmocka_unit_test(bad_calls_are_rejected),         cmocka_unit_test(capacities_are_of_contact),
+        cmocka_unit_test(memory_is_given_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,7 +43,7 @@ static mspring_network *graph(uint32_t count, joins is_joined, bool is_round) {
 
 static mspring_result touch(mspring_network *network, double thickness) {
     mspring_contact_def def;
-    check_ok(mspring_contact_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &def, sizeof def));
     def.thickness = thickness;
     return mspring_network_set_contact(network, &def);
 }
@@ -100,7 +100,7 @@ static void breaks_leave_the_outline_right(void **state) {
     for (uint32_t kind = 0; kind < 3; kind++) {
         const joins is_joined = kind == 0 ? joins_all : kind == 1 ? joins_sides : joins_hub;
         mspring_network *network = graph(40, is_joined, true), *fresh = graph(40, is_joined, true);
-        const uint32_t count = mspring_network_spring_count(network);
+        const uint32_t count = mspring_network_count(network, MSPRING_SPRINGS);
         check_ok(touch(network, 0.05));
         for (uint32_t round = 0; round < 4; round++) {
             uint64_t seed = 100 * kind + round;
@@ -109,8 +109,8 @@ static void breaks_leave_the_outline_right(void **state) {
                 const bool breaks = support_random(&seed) % 4 > 0;
                 for (uint32_t k = 0; k < 2; k++) {
                     mspring_network *one = k ? fresh : network;
-                    check_ok(breaks ? mspring_network_break_springs(one, &spring, 1)
-                                    : mspring_network_restore_springs(one, &spring, 1, 0));
+                    check_ok(breaks ? mspring_network_break_springs(one, &spring, 0, 1)
+                                    : mspring_network_restore_springs(one, &spring, 0, 1, 0));
                 }
             }
             check_ok(touch(fresh, 0.05));
@@ -130,7 +130,7 @@ static void cliques_are_judged_as_a_whole(void **state) {
     const mspring_id first = 0;
     mspring_network *network = graph(120, joins_all, true);
     check_ok(touch(network, 0.005));
-    check_ok(mspring_network_detach_particles(network, &first, 1));
+    check_ok(mspring_network_detach_particles(network, &first, 0, 1));
     mspringi_outline_update(network, network->contacts);
     assert_true(network->contacts->outline.tries < 20 * 120 * 120); // log2(120) is 7; n^3 / 2 is 864,000
     mspring_network_destroy(network);
@@ -211,8 +211,8 @@ static void heaps_of_rods_are_not_refused(void **state) {
             (void)support_spring(builder, 2 * i, 2 * i + 1, 1e6, 1);
         }
         mspring_network_def def = support_def(-9.8f, 1);
-        def.solver = (mspring_solver)solver;
-        def.guard = support_guard_of(def.solver);
+        def.settings.solver = (mspring_solver)solver;
+        def.settings.guard = support_guard_of(def.settings.solver);
         mspring_network *network = support_network(builder, &def);
         check_ok(touch(network, 0.2));
         check_ok(mspring_network_step(network, 1.0 / 60));
@@ -227,10 +227,10 @@ static void hubs_at_rest_are_no_burden(void **state) {
     for (uint32_t solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++)
         for (uint32_t i = 0; i < COUNT_OF(counts); i++) {
             mspring_network *network = i % 2 ? graph(counts[i], joins_hub, true) : two_hubs(counts[i], i / 2);
-            mspring_solver_def def;
-            check_ok(mspring_solver_def_init(&def, sizeof def));
+            mspring_settings def;
+            check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
             def.solver = (mspring_solver)solver;
-            check_ok(mspring_network_set_solver(network, &def));
+            check_ok(support_set_solver(network, &def));
             check_ok(touch(network, 0.02));
             for (uint32_t step = 0; step < 20; step++) {
                 check_ok(mspring_network_step(network, 1.0 / 60));
@@ -254,11 +254,11 @@ static void refused_steps_end_their_work(void **state) {
             (void)support_spring(builder, 2 * i, 2 * i + 1, 100, 0);
         }
         mspring_network_def def = support_def(0, 4);
-        def.solver = (mspring_solver)solver;
-        def.guard = support_guard_of(def.solver);
+        def.settings.solver = (mspring_solver)solver;
+        def.settings.guard = support_guard_of(def.settings.solver);
         mspring_network *network = support_network(builder, &def);
         mspring_contact_def contact;
-        check_ok(mspring_contact_def_init(&contact, sizeof contact));
+        check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
         contact.capacity = contact.max_capacity = 8000;
         check_ok(mspring_network_set_contact(network, &contact));
         const uint64_t hash = support_hash(network);
@@ -284,7 +284,7 @@ static void crowds_end_at_the_first_pair_too_many(void **state) {
     const mspring_network_def def = support_def(0, 4);
     mspring_network *network = support_network(builder, &def);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = 0.2;
     contact.capacity = contact.max_capacity = 300000;
     check_ok(mspring_network_set_contact(network, &contact));
@@ -315,7 +315,7 @@ static void tall_pits_are_not_refused(void **state) {
     mspring_network *network = support_network(builder, &def);
     const double planes[3][4] = {{0, 0, 0, 1}, {-9, 0, 1, 0}, {9, 0, -1, 0}};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = planes[0];
     floor.plane_count = 3;
     check_ok(mspring_network_set_floor(network, &floor));
@@ -346,7 +346,7 @@ static void walls_close_on_heaps(void **state) {
         check_ok(touch(network, 0.5));
         for (int i = 0; i < 3; i++) {
             mspring_collider_def wall;
-            check_ok(mspring_collider_def_init(&wall, sizeof wall));
+            check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &wall, sizeof wall));
             wall.kind = MSPRING_COLLIDER_BOX;
             wall.width = i < 2 ? 2 : 60;
             wall.height = i < 2 ? 60 : 2;

@@ -40,10 +40,10 @@ static mspring_network *stack(uint32_t trial) {
     mspring_builder *builder = support_builder();
     add_bodies(builder, &seed);
     mspring_network_def def = support_def(-9.8f, trial % 3 == 0 ? 16 : 2);
-    def.solver = (mspring_solver)(trial % 3);
+    def.settings.solver = (mspring_solver)(trial % 3);
     mspring_network *network = support_network(builder, &def);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = 0.3;
     contact.friction = 0.5f;
     contact.flags = MSPRING_CONTACT_SELF;
@@ -51,7 +51,7 @@ static mspring_network *stack(uint32_t trial) {
     for (mspring_id p = 0; p < PARTICLES; p++) {
         const float vx = (float)support_random_between(&seed, -1, 1),
                     vy = (float)support_random_between(&seed, -1, 1);
-        check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
     }
     return network;
 }
@@ -61,10 +61,10 @@ static void break_some(mspring_network *network, uint32_t trial) {
     uint64_t seed = trial;
     mspring_id broken[4 * PARTICLES];
     uint32_t count = 0;
-    for (mspring_id s = 0; s < mspring_network_spring_count(network); s++)
+    for (mspring_id s = 0; s < mspring_network_count(network, MSPRING_SPRINGS); s++)
         if (support_random_between(&seed, 0, 2) < 1)
             broken[count++] = s;
-    check_ok(mspring_network_break_springs(network, broken, count));
+    check_ok(mspring_network_break_springs(network, broken, 0, count));
 }
 
 static void run(uint32_t trial) {

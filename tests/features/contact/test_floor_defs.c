@@ -5,10 +5,9 @@
 /// SPDX-License-Identifier: MIT
 #include <fenv.h>
 #include <math.h>
-#include <stdbool.h>
-#include <stdlib.h>
 
 #include "allocator.h"
+#include "grounds.h"
 #include "recipe.h"
 #include "support.h"
 
@@ -23,7 +22,7 @@ static mspring_result lay(mspring_network *network, const numbers *n) {
     const double plane[] = {n->x, n->y, n->across_x, n->across_y};
     const float heights[] = {(float)n->height[0], (float)n->height[1]};
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.planes = plane;
     def.plane_count = 1;
     def.heights_x = n->heights_x;
@@ -110,15 +109,42 @@ static void so_many_heights_are_refused(void **state) {
     mspring_network *network = two_particles();
     const float height = 0;
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.heights = &height; // of which nothing is read
-    const uint32_t counts[] = {1, MSPRING_MAX_HEIGHTS + 1, UINT32_MAX};
+    const uint32_t counts[] = {MSPRING_MAX_HEIGHTS + 1, UINT32_MAX};
     for (size_t i = 0; i < COUNT_OF(counts); i++) {
         def.height_count = counts[i];
         check_error(mspring_network_set_floor(network, &def), MSPRING_ERROR_ARGUMENT);
-        check_contains(mspring_network_error(network), "heights, it may have 0 or 2 to");
+        check_contains(mspring_network_error(network), "heights, it may have 0 to 67108864");
+        check_contains(mspring_network_error(network), i ? "4294967295" : "67108865");
     }
     mspring_network_destroy(network);
+}
+
+/// One height is level ground, and no list is heights of 0: the same bits as of two that are given.
+static void one_height_is_level_ground(void **state) {
+    (void)state;
+    const float zeros[] = {0, 0}, height = 0.5f;
+    uint64_t hashes[3] = {0};
+    for (uint32_t i = 0; i < 3; i++) {
+        mspring_network *network = two_particles();
+        mspring_floor_def def = mspring_floor_def_default(), found = mspring_floor_def_default();
+        def.heights = i == 0 ? zeros : i == 1 ? &height : NULL;
+        def.heights_y = i == 1 ? 4 : 4.5;
+        def.height_count = i == 0 ? 2 : 1;
+        def.restitution = 0.5f;
+        check_ok(mspring_network_set_floor(network, &def));
+        check_ok(mspring_network_get_floor(network, &found));
+        assert_int_equal(found.height_count, def.height_count);
+        assert_true(found.heights[0] == (i == 1 ? height : 0));
+        check_ok(mspring_network_set_floor(network, &found));
+        check_ok(mspring_network_set_floor(network, &def));
+        support_steps(network, 100, 0.01);
+        check_near(support_position(network, 0).y, 4.5, 0.02);
+        hashes[i] = support_hash(network);
+        mspring_network_destroy(network);
+    }
+    assert_true(hashes[1] == hashes[0] && hashes[2] == hashes[0]);
 }
 
 /// A box of as many sides as there may be, each given by another point and a vector of another length.
@@ -134,7 +160,7 @@ static void all_planes_hold(void **state) {
         planes[i][3] = ny * (i + 1);
     }
     mspring_floor_def box;
-    check_ok(mspring_floor_def_init(&box, sizeof box));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &box, sizeof box));
     box.planes = planes[0];
     box.plane_count = MSPRING_MAX_PLANES;
     box.restitution = 1;
@@ -145,7 +171,7 @@ static void all_planes_hold(void **state) {
         mspring_network *network = support_network(builder, &def);
         check_ok(mspring_network_set_floor(network, &box));
         const float vx = (float)(3 * cos(turn / 2 * way)), vy = (float)(3 * sin(turn / 2 * way));
-        check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &vx, &vy, 1));
         double farthest = 0;
         for (int step = 0; step < 100; step++) {
             support_steps(network, 1, 0.02);
@@ -169,7 +195,7 @@ static void heights_are_above_heights_y(void **state) {
     mspring_network *network = two_particles();
     const float heights[] = {0.5f, 0.5f, -0.25f, -0.25f};
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.heights = heights;
     def.height_count = 4;
     def.heights_x = -0.9; // they are at -0.9, -0.3, 0.3 and 0.9
@@ -178,7 +204,7 @@ static void heights_are_above_heights_y(void **state) {
     check_ok(mspring_network_set_floor(network, &def));
     // The first slides down the slope in the middle at last, unless it is held; the other one lies on level ground.
     const float held = 0;
-    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, 1, &held, 1));
+    check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, 0, 1, &held, 1));
     support_steps(network, 200, 0.01);
     check_near(support_position(network, 1).y, 2.75, 1e-5); // of floats of some metres
     assert_true(support_position(network, 1).x == 1);
@@ -190,24 +216,45 @@ static void impulses_are_asked_for_one_by_one(void **state) {
     const numbers level = {0, 5, 0, 1, -1, -7, 2, {0, 0}, 0, 0};
     mspring_network *network = two_particles();
     float x[2] = {7, 7}, y[2] = {7, 7};
-    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y, 1));
+    check_ok(mspring_network_get_columns(
+        network, NULL, 0, 2,
+        (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, x}, {MSPRING_FLOOR_IMPULSE_Y, 1, y}}, 2));
     assert_true(x[0] == 0 && x[1] == 0 && y[0] == 0 && y[1] == 0); // there is none
     check_ok(lay(network, &level));
     support_steps(network, 10, 0.01);
-    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y, 1));
+    check_ok(mspring_network_get_columns(
+        network, NULL, 0, 2,
+        (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, x}, {MSPRING_FLOOR_IMPULSE_Y, 1, y}}, 2));
     // They lie on it: the floor gives what gravity does.
     check_near(y[0], 9.8 * 0.01, 1e-6);
     check_near(y[1], 2 * 9.8 * 0.01, 1e-6);
     float one_x = 7, one_y = 7;
-    check_ok(mspring_network_get_floor_impulses(network, 1, 1, &one_x, &one_y, 1));
+    check_ok(mspring_network_get_columns(
+        network, NULL, 1, 1,
+        (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, &one_x}, {MSPRING_FLOOR_IMPULSE_Y, 1, &one_y}}, 2));
     assert_true(one_x == 0 && one_y == y[1]);
-    check_ok(mspring_network_get_floor_impulses(network, 2, 0, NULL, NULL, 1));
-    check_error(mspring_network_get_floor_impulses(network, 3, 0, NULL, NULL, 1), MSPRING_ERROR_ID);
-    check_error(mspring_network_get_floor_impulses(network, 1, 2, x, y, 1), MSPRING_ERROR_ID);
-    check_error(mspring_network_get_floor_impulses(network, 1, 1, x, NULL, 1), MSPRING_ERROR_ARGUMENT);
+    check_ok(mspring_network_get_columns(
+        network, NULL, 2, 0,
+        (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, NULL}, {MSPRING_FLOOR_IMPULSE_Y, 1, NULL}}, 2));
+    check_error(mspring_network_get_columns(network, NULL, 3, 0,
+                                            (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, NULL},
+                                                                     {MSPRING_FLOOR_IMPULSE_Y, 1, NULL}},
+                                            2),
+                MSPRING_ERROR_ID);
+    check_error(mspring_network_get_columns(
+                    network, NULL, 1, 2,
+                    (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, x}, {MSPRING_FLOOR_IMPULSE_Y, 1, y}}, 2),
+                MSPRING_ERROR_ID);
+    check_error(mspring_network_get_columns(
+                    network, NULL, 1, 1,
+                    (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, x}, {MSPRING_FLOOR_IMPULSE_Y, 1, NULL}},
+                    2),
+                MSPRING_ERROR_ARGUMENT);
     // Without the floor there is nothing any more that it gave.
     check_ok(mspring_network_set_floor(network, NULL));
-    check_ok(mspring_network_get_floor_impulses(network, 0, 2, x, y, 1));
+    check_ok(mspring_network_get_columns(
+        network, NULL, 0, 2,
+        (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, x}, {MSPRING_FLOOR_IMPULSE_Y, 1, y}}, 2));
     assert_true(x[0] == 0 && x[1] == 0 && y[0] == 0 && y[1] == 0);
     mspring_network_destroy(network);
 }
@@ -223,7 +270,7 @@ static void impulses_are_the_change_of_momentum(void **state) {
     const mspring_network_def network_def = support_def((float)-g, 5);
     mspring_network *network = support_network(builder, &network_def);
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.heights = heights;
     def.height_count = 3;
     def.heights_x = -4;
@@ -237,7 +284,9 @@ static void impulses_are_the_change_of_momentum(void **state) {
         support_steps(network, 1, dt);
         const support_point after = support_velocity(network, 0);
         float x, y;
-        check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y, 1));
+        check_ok(mspring_network_get_columns(
+            network, NULL, 0, 1,
+            (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, &x}, {MSPRING_FLOOR_IMPULSE_Y, 1, &y}}, 2));
         // Velocities of up to 10 m/s, rounded in each of five substeps and once more in the impulse.
         check_near(x, mass * (after.x - before.x), 2e-5);
         const double fallen = step == 0 ? dt - dt / 10 : dt; // the first of five substeps begins in its middle
@@ -259,7 +308,7 @@ static void who_leaves_is_let_go(void **state) {
     mspring_network *network = two_particles();
     check_ok(lay(network, &rough));
     const float vx = 0.3f, vy = 0.5f;
-    check_ok(mspring_network_set_velocities(network, 0, 1, &vx, &vy, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 1, &vx, &vy, 1));
     support_steps(network, 4, 1e-7); // in which it goes less than rounding would
     assert_true(support_velocity(network, 0).x == (double)vx);
     check_near(support_velocity(network, 0).y, 0.5, 5e-6);
@@ -269,7 +318,9 @@ static void who_leaves_is_let_go(void **state) {
     check_near(support_velocity(network, 0).y, 0.5 - 9.8 * (t - 0.5e-3), 1e-5);      // of half a substep ago
     check_near(support_position(network, 0).y, 5 + 0.5 * t - 9.8 * t * t / 2, 1e-5); // floats of some metres
     float x, y;
-    check_ok(mspring_network_get_floor_impulses(network, 0, 1, &x, &y, 1));
+    check_ok(mspring_network_get_columns(
+        network, NULL, 0, 1,
+        (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, &x}, {MSPRING_FLOOR_IMPULSE_Y, 1, &y}}, 2));
     assert_true(x == 0 && y == 0);
     mspring_network_destroy(network);
 }
@@ -289,14 +340,14 @@ static void floors_come_and_go_with_their_memory(void **state) {
     mspring_network_def def = support_def(-9.8f, 4);
     def.allocator = &allocator;
     mspring_network *network = recipe_network(&made, &def);
-    const size_t without = mspring_network_memory_used(network);
+    const size_t without = support_memory_used(network);
     check_ok(lay(network, &level));
-    const size_t with = mspring_network_memory_used(network);
+    const size_t with = support_memory_used(network);
     assert_true(with > without);
     for (int round = 0; round < 3; round++) {
         other.y--; // the same floor would be left as it is
         check_ok(lay(network, &other));
-        assert_true(mspring_network_memory_used(network) == with);
+        assert_true(support_memory_used(network) == with);
     }
     mspring_result result = MSPRING_ERROR_MEMORY;
     size_t fail_at = 0;
@@ -304,12 +355,12 @@ static void floors_come_and_go_with_their_memory(void **state) {
         watched.fail_at = watched.calls + ++fail_at;
         result = lay(network, &level);
         assert_true(result == MSPRING_OK || result == MSPRING_ERROR_MEMORY);
-        assert_true(mspring_network_memory_used(network) == with);
+        assert_true(support_memory_used(network) == with);
     }
     assert_true(fail_at > 4);
     watched.fail_at = 0;
     check_ok(mspring_network_set_floor(network, NULL));
-    assert_true(mspring_network_memory_used(network) == without);
+    assert_true(support_memory_used(network) == without);
     const int mode = fegetround();
     assert_int_equal(fesetround(FE_UPWARD), 0);
     const volatile float one = 1, little = 1e-10f;
@@ -324,16 +375,83 @@ static void floors_come_and_go_with_their_memory(void **state) {
     recipe_free(&made);
 }
 
+static void refuse(mspring_network *network, mspring_floor_def def, mspring_result code, const char *part) {
+    check_error(mspring_network_set_floor(network, &def), code);
+    check_contains(mspring_network_error(network), part);
+}
+
+static void errors_name_the_culprit(void **state) {
+    (void)state;
+    mspring_network *network = two_particles();
+    mspring_floor_def def = grounds_level(0, 0);
+    check_ok(mspring_network_set_floor(network, &def));
+    refuse(network, grounds_def(), MSPRING_ERROR_ARGUMENT, "neither");
+    def.friction = -1;
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "friction");
+    def.friction = NAN;
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "friction");
+    def = grounds_level(0, 1.5f);
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "restitution");
+    def = grounds_level(0, 0);
+    def.struct_size = 3;
+    refuse(network, def, MSPRING_ERROR_STRUCT, "mspring_floor_def");
+    def = grounds_level(0, 0);
+    def.plane_count = MSPRING_MAX_PLANES + 1;
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "planes");
+    const double planes[8] = {0, 0, 0, 1, 0, 0, 0, 0};
+    def.plane_count = 2;
+    def.planes = planes;
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "plane 1");
+    def.planes = NULL;
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "NULL");
+    const double far_plane[4] = {0, 1e13, 0, 1};
+    def.plane_count = 1;
+    def.planes = far_plane;
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "out of bounds");
+    float heights[3] = {0, 1, NAN};
+    def = grounds_def();
+    def.heights = heights;
+    def.height_count = 3;
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "height 2");
+    heights[2] = 0;
+    def.spacing = 0;
+    refuse(network, def, MSPRING_ERROR_ARGUMENT, "apart");
+    def.spacing = 1;
+    check_error(mspring_network_set_floor(NULL, &def), MSPRING_ERROR_ARGUMENT);
+    float x, y;
+    check_error(mspring_network_get_columns(
+                    network, NULL, 0, 3,
+                    (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, &x}, {MSPRING_FLOOR_IMPULSE_Y, 1, &y}},
+                    2),
+                MSPRING_ERROR_ID);
+    check_error(mspring_network_get_columns(
+                    network, NULL, 0, 1,
+                    (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, NULL}, {MSPRING_FLOOR_IMPULSE_Y, 1, &y}},
+                    2),
+                MSPRING_ERROR_ARGUMENT);
+    check_error(mspring_network_get_columns(
+                    NULL, NULL, 0, 0,
+                    (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, &x}, {MSPRING_FLOOR_IMPULSE_Y, 1, &y}},
+                    2),
+                MSPRING_ERROR_ARGUMENT);
+    // The floor of before is still there.
+    support_steps(network, 128, 1.0 / 64);
+    assert_true(support_position(network, 0).y > -GROUNDS_TOLERANCE);
+    mspring_network_destroy(network);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_have_their_ranges),
         cmocka_unit_test(so_many_heights_are_refused),
+        cmocka_unit_test(one_height_is_level_ground),
         cmocka_unit_test(all_planes_hold),
         cmocka_unit_test(heights_are_above_heights_y),
         cmocka_unit_test(impulses_are_asked_for_one_by_one),
         cmocka_unit_test(impulses_are_the_change_of_momentum),
         cmocka_unit_test(who_leaves_is_let_go),
         cmocka_unit_test(floors_come_and_go_with_their_memory),
+        cmocka_unit_test(errors_name_the_culprit),
     };
     return cmocka_run_group_tests_name("floor_defs", tests, NULL, NULL);
 }

@@ -11,7 +11,7 @@
 static void lay_floor(mspring_network *network, const double plane[4], const float *heights, uint32_t height_count,
                       float restitution) {
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.planes = plane;
     def.plane_count = plane ? 1 : 0;
     def.heights = heights;
@@ -57,7 +57,7 @@ static void what_begins_to_fall_meets_the_floor_on_its_way(void **state) {
     mspring_network *network = support_network(builder, &def);
     lay_floor(network, level, NULL, 0, 1);
     const float slow[3] = {0.05f, 0.05f, 0.05f}, none[3] = {0, 0, 0};
-    check_ok(mspring_network_set_velocities(network, 0, 3, slow, none, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 3, slow, none, 1));
     support_steps(network, 1, dt);
     // Down in sqrt(2 height / g), and up again as fast as it came. A substep is 1 ms, in which it goes 3 mm.
     const double left = dt - sqrt(2 * height / g), speed = sqrt(2 * g * height);
@@ -96,25 +96,25 @@ static void the_floor_leaves_alone_what_sleeps(void **state) {
         recipe_rope(&made, from, to, LONG - 1, &stuff, &seed);
     }
     mspring_network_def def = support_def(-9.8f, 4);
-    def.sleep_speed = 0.02f;
-    def.sleep_time = 0.2f;
-    def.global_damping = 10;
+    def.settings.sleep_speed = 0.02f;
+    def.settings.sleep_time = 0.2f;
+    def.settings.global_damping = 10;
     mspring_network *network = recipe_network(&made, &def);
     lay_floor(network, NULL, slope, 2, 0);
-    for (int i = 0; i < 3000 && !mspring_network_is_asleep(network); i++) {
+    for (int i = 0; i < 3000 && !support_is_asleep(network); i++) {
         support_steps(network, 1, 1.0 / 64);
     }
-    assert_int_equal(mspring_network_is_asleep(network), 1);
+    assert_int_equal(support_is_asleep(network), 1);
     const float kick = 0.5f;
     for (mspring_id p = 0; p < made.particle_count; p += 3 * LONG) {
-        check_ok(mspring_network_set_velocities(network, p, 1, &kick, &kick, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, p, 1, &kick, &kick, 1));
     }
     double x[STRANDS * LONG], y[STRANDS * LONG];
     uint8_t sleeps[STRANDS * LONG];
     uint32_t count = 0;
-    check_ok(mspring_network_get_positions(network, 0, STRANDS * LONG, x, y, 1));
+    check_ok(mspring_network_get_positions(network, NULL, 0, STRANDS * LONG, x, y, 1));
     support_steps(network, 5, 1.0 / 64);
-    check_ok(mspring_network_get_sleepers(network, 0, STRANDS * LONG, sleeps, 1));
+    check_ok(support_get_sleepers(network, 0, STRANDS * LONG, sleeps, 1));
     for (mspring_id p = 0; p < STRANDS * LONG; p++) {
         if (sleeps[p]) {
             check_near(support_position(network, p).x, x[p], 0);
@@ -130,7 +130,7 @@ static void the_floor_leaves_alone_what_sleeps(void **state) {
     check_near(support_position(network, pushed).x, x[pushed], 0);
     check_near(support_position(network, pushed).y, y[pushed], 0);
     check_near(support_velocity(network, pushed).y, -5, 0);
-    check_ok(mspring_network_get_sleepers(network, pushed, 1, sleeps, 1));
+    check_ok(support_get_sleepers(network, pushed, 1, sleeps, 1));
     assert_int_equal(sleeps[0], 0);
     check_ok(mspring_network_remove_hook(network, hook));
     support_steps(network, 1, 1.0 / 64);
@@ -182,16 +182,16 @@ static void a_long_rope_slides_evenly(void **state) {
                 support_spring(builder, i - 1, i, 1e5f, 10);
         }
         mspring_network_def def = support_def(-9.8f, 2);
-        def.solver = direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+        def.settings.solver = direct ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
         mspring_network *network = support_network(builder, &def);
         mspring_floor_def floor;
-        check_ok(mspring_floor_def_init(&floor, sizeof floor));
+        check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
         floor.planes = level;
         floor.plane_count = 1;
         floor.friction = 0.5f;
         check_ok(mspring_network_set_floor(network, &floor));
         const float vx = 1, vy = 0;
-        check_ok(mspring_network_set_velocities(network, 0, count, &vx, &vy, 0));
+        check_ok(mspring_network_set_velocities(network, NULL, 0, count, &vx, &vy, 0));
         support_steps(network, steps, dt);
         const double due = 1 - 0.5 * 9.8 * steps * dt;
         for (mspring_id id = 0; id < count; id++)

@@ -40,7 +40,7 @@ static mspring_network *make_ground(uint32_t kind, uint32_t count) {
     const mspring_network_def def = support_def(0, 1);
     mspring_network *network = support_network(builder, &def);
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.heights = heights;
     floor.height_count = count;
     floor.heights_x = -3.7;

@@ -30,8 +30,8 @@ static mspring_network *make_body(landing *l, uint64_t *seed, double spacing) {
     mspring_builder *builder = support_builder();
     mspring_material material;
     mspring_lattice_def def;
-    check_ok(mspring_material_init(&material, sizeof material));
-    check_ok(mspring_lattice_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &material, sizeof material));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &def, sizeof def));
     l->width = def.width = 3 + (uint32_t)support_random_between(seed, 0, 12);
     def.height = 3 + (uint32_t)support_random_between(seed, 0, 8);
     l->count = def.width * def.height;
@@ -41,7 +41,7 @@ static mspring_network *make_body(landing *l, uint64_t *seed, double spacing) {
     mspring_network_def network = support_def(-9.8f, (uint32_t)ceil(l->dt * rate / (2 * share)));
     material.mass = 1;
     material.stiffness = (float)stiffness;
-    material.damping = (float)(decades(seed, 1e-4, 0.05) * network.substeps / l->dt);
+    material.damping = (float)(decades(seed, 1e-4, 0.05) * network.settings.substeps / l->dt);
     def.cells = cells;
     def.materials = &material;
     def.material_count = 1;
@@ -57,7 +57,7 @@ static mspring_network *make_body(landing *l, uint64_t *seed, double spacing) {
 static void add_collider(landing *l, uint64_t *seed) {
     mspring_collider_def def;
     mspring_id id;
-    check_ok(mspring_collider_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
     l->slope = support_random_between(seed, 0.2, 1);
     const double plane[] = {-300, -300 * l->slope, 300, 300 * l->slope},
                  valley[] = {-300, 300 * l->slope, 0, 0, 300, 300 * l->slope};
@@ -84,7 +84,7 @@ static landing make_landing(uint32_t trial, uint32_t capacity) {
                  angle = support_random_between(&seed, 0, 6.28);
     l.network = make_body(&l, &seed, spacing);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = l.thickness = spacing * support_random_between(&seed, 0.1, 0.5);
     contact.friction = trial % 3 ? 0 : 0.5f;
     contact.capacity = capacity;
@@ -99,8 +99,8 @@ static landing make_landing(uint32_t trial, uint32_t capacity) {
         const double u = (i % l.width - 0.5 * (l.width - 1)) * spacing,
                      v = ((double)(i / l.width) - 0.5 * ((double)l.count / l.width - 1)) * spacing;
         const double x = cos(angle) * u - sin(angle) * v, y = sin(angle) * u + cos(angle) * v + top + reach + 0.5;
-        check_ok(mspring_network_set_positions(l.network, i, 1, &x, &y, 1));
-        check_ok(mspring_network_set_velocities(l.network, i, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_positions(l.network, NULL, i, 1, &x, &y, 1));
+        check_ok(mspring_network_set_velocities(l.network, NULL, i, 1, &vx, &vy, 1));
     }
     l.steps = (uint32_t)((STEPS_OF_FLIGHT + (reach + 1) / speed) / l.dt);
     return l;
@@ -128,7 +128,7 @@ static void inner_particles_stay_on_their_side(void **state) {
         for (uint32_t s = 0; s < l.steps; s++) {
             double x[MOST], y[MOST];
             step(&l);
-            check_ok(mspring_network_get_positions(l.network, 0, l.count, x, y, 1));
+            check_ok(mspring_network_get_positions(l.network, NULL, 0, l.count, x, y, 1));
             for (mspring_id p = 0; p < l.count; p++)
                 if (l.is_inside[p] && !(beyond(&l, x[p], y[p]) <= l.thickness))
                     fail_msg("landing %u, step %u: particle %u is %g thicknesses beyond the surface", trial, s, p,
@@ -148,7 +148,7 @@ static void bits_depend_on_the_state_alone(void **state) {
             if (s % 16 == 15)
                 support_bring(one.network, other.network, s % 32 == 15 ? MSPRING_SNAPSHOT_ALL : MSPRING_SNAPSHOT_FRAME);
             else {
-                check_ok(mspring_network_set_contact_groups(other.network, 0, one.count, 1, UINT32_MAX));
+                check_ok(support_set_layers(other.network, 0, one.count, 1, UINT32_MAX));
                 step(&other);
             }
             if (support_hash(one.network) != support_hash(other.network))

@@ -18,7 +18,7 @@ static void lay_floor(mspring_network *network) {
     static float heights[HEIGHTS];
     uint64_t seed = 11;
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     for (uint32_t i = 0; i < HEIGHTS; i++) {
         heights[i] = (float)support_random_between(&seed, -0.4, 0.4);
     }
@@ -39,26 +39,26 @@ static mspring_builder *scatter(uint32_t count, uint32_t near_count) {
     mspring_builder *builder = support_builder();
     for (uint32_t i = 0; i < count; i++) {
         mspring_particle_def def;
-        check_ok(mspring_particle_def_init(&def, sizeof def));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def));
         def.x = support_random_between(&seed, -5, 8);
         def.y = support_random_between(&seed, 0.2, 0.8) + (i < near_count ? 0.0 : 14.0);
         def.vx = (float)support_random_between(&seed, -2, 2);
         def.vy = (float)support_random_between(&seed, -2, 2);
         def.mass = (float)support_random_between(&seed, 0.5, 2);
-        check_ok(mspring_builder_add_particle(builder, &def, NULL));
+        check_ok(mspring_builder_add_particles(builder, &def, 1, NULL));
     }
     return builder;
 }
 
 static mspring_network_def loose_def(void) {
     mspring_network_def def = support_def(-9.8f, SUBSTEPS);
-    def.global_damping = 0.1f;
+    def.settings.global_damping = 0.1f;
     return def;
 }
 
 static uint64_t hash_of(const mspring_network *network) {
     uint64_t hash = 0;
-    check_ok(mspring_network_state_hash(network, &hash));
+    check_ok(mspring_network_get_state_hash(network, &hash));
     return hash;
 }
 

@@ -25,8 +25,8 @@ static mspring_network *thrown(const throw *t, bool has_floor) {
     mspring_builder *builder = support_builder();
     mspring_lattice_def block;
     mspring_material material;
-    check_ok(mspring_lattice_def_init(&block, sizeof block));
-    check_ok(mspring_material_init(&material, sizeof material));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &block, sizeof block));
+    check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &material, sizeof material));
     const uint16_t cells[5 * 5] = {0};
     block.width = block.height = 5;
     block.cells = cells;
@@ -38,21 +38,21 @@ static mspring_network *thrown(const throw *t, bool has_floor) {
         material.yield_strain = t->yield_strain;
     check_ok(mspring_builder_add_lattice(builder, &block, NULL));
     mspring_particle_def ball;
-    check_ok(mspring_particle_def_init(&ball, sizeof ball));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &ball, sizeof ball));
     ball.x = 2.3;
     ball.y = 5.2;
     ball.vx = (float)(0.1 * t->speed);
     ball.vy = (float)-t->speed;
     ball.mass = (float)t->mass;
-    check_ok(mspring_builder_add_particle(builder, &ball, NULL));
+    check_ok(mspring_builder_add_particles(builder, &ball, 1, NULL));
     mspring_network_def def = support_def(0, t->substeps);
-    def.solver = t->solver;
+    def.settings.solver = t->solver;
     def.flags = MSPRING_NETWORK_PRECISE;
     mspring_network *network = support_network(builder, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.3f, 0.5f));
     const double planes[] = {0, -1000, 0, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = planes;
     floor.plane_count = 1;
     if (has_floor)
@@ -63,9 +63,9 @@ static mspring_network *thrown(const throw *t, bool has_floor) {
 /// Positions are rounded otherwise, and so are velocities.
 static void check_throw(const throw *t) {
     mspring_network *with = thrown(t, true), *without = thrown(t, false);
-    const mspring_id ball = mspring_network_particle_count(with) - 1;
+    const mspring_id ball = mspring_network_count(with, MSPRING_PARTICLES) - 1;
     double x, y, turn, x0, y0, turn0;
-    check_ok(mspring_network_momentum(with, &x0, &y0, &turn0));
+    check_ok(support_get_momentum(with, &x0, &y0, &turn0));
     const double had = support_energy(with);
     for (int step = 0; step < 24; step++) {
         support_steps(with, 1, DT);
@@ -73,7 +73,7 @@ static void check_throw(const throw *t) {
         const support_point at = support_position(with, ball), other = support_position(without, ball);
         check_near(at.x, other.x, 2e-3);
         check_near(at.y, other.y, 2e-3);
-        check_ok(mspring_network_momentum(with, &x, &y, &turn));
+        check_ok(support_get_momentum(with, &x, &y, &turn));
         check_near(x, x0, 1e-4 * t->mass * t->speed);
         check_near(y, y0, 1e-4 * t->mass * t->speed);
         assert_true(support_energy(with) <= had * (1 + 1e-5));

@@ -21,7 +21,7 @@ static bool settle(bodies *b, mspring_network *network, uint32_t seconds, const 
     *last = (bodies_measure){0};
     for (uint32_t step = 1; step <= steps && slept == 0; step++) {
         support_steps(network, 1, DT);
-        if (mspring_network_is_asleep(network))
+        if (support_is_asleep(network))
             slept = step;
         if (step % 64 != 0 && step + 64 < steps && slept == 0)
             continue;
@@ -44,11 +44,11 @@ static bool settle(bodies *b, mspring_network *network, uint32_t seconds, const 
 /// Global damping lets elastic waves of the fall die out, as a game's does.
 static mspring_network *pile_up(bodies *b, mspring_solver solver, uint32_t flags, float sleep_speed) {
     mspring_network_def def = support_def(-9.8f, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 2);
-    def.solver = solver;
+    def.settings.solver = solver;
     def.flags |= flags;
-    def.global_damping = 0.5f;
-    def.sleep_speed = sleep_speed;
-    def.sleep_time = 0.5f;
+    def.settings.global_damping = 0.5f;
+    def.settings.sleep_speed = sleep_speed;
+    def.settings.sleep_time = 0.5f;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.5f, 0));
     return network;
@@ -168,10 +168,10 @@ static mspring_network *drop_bars(bodies *b, mspring_solver solver, uint32_t cou
                                         .mass = 1,
                                         .f = 0.5});
     mspring_network_def def = support_def(-9.81f, 1);
-    def.solver = solver;
+    def.settings.solver = solver;
     mspring_network *network = bodies_network(b, &def);
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = &planes[0][0];
     floor.plane_count = COUNT_OF(planes);
     floor.friction = 0.5f;
@@ -190,7 +190,7 @@ static void dropped_bars_come_to_rest_in_implicit_steps(void **state) {
         mspring_network *network = drop_bars(b, MSPRING_SOLVER_IMPLICIT, 12, seed);
         support_steps(network, 420, 1.0 / 60);
         double kinetic, elastic, potential;
-        check_ok(mspring_network_energy(network, &kinetic, &elastic, &potential));
+        check_ok(support_get_energy(network, &kinetic, &elastic, &potential));
         assert_true(kinetic < 1e-3);
         mspring_network_destroy(network);
         bodies_free(b);
@@ -205,20 +205,20 @@ static void rigid_contact_leaves_no_state(void **state) {
         mspring_network *network = drop_bars(b, (mspring_solver)solver, 8, 5);
         uint32_t spent = 0;
         size_t size;
-        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+        check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
         uint8_t *bytes = malloc(size);
         assert_non_null(bytes);
         support_steps(network, 60, 1.0 / 60);
         for (int step = 0; step < 30; step++) {
             uint64_t went_on, began_anew;
             support_steps(network, 1, 1.0 / 60);
-            spent += (mspring_network_step_flags(network) & MSPRING_STEP_FEWER) != 0;
+            spent += (support_step_flags(network) & MSPRING_STEP_FEWER) != 0;
             check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, bytes, size, NULL));
             support_steps(network, 1, 1.0 / 60);
-            check_ok(mspring_network_state_hash(network, &went_on));
+            check_ok(mspring_network_get_state_hash(network, &went_on));
             check_ok(mspring_network_load(network, bytes, size));
             support_steps(network, 1, 1.0 / 60);
-            check_ok(mspring_network_state_hash(network, &began_anew));
+            check_ok(mspring_network_get_state_hash(network, &began_anew));
             assert_true(went_on == began_anew);
         }
         assert_true(spent > 0);

@@ -19,7 +19,7 @@
 static void add_collider(mspring_network *network, mspring_collider_kind kind, double x, double y, double size) {
     mspring_collider_def def;
     mspring_id id;
-    check_ok(mspring_collider_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
     def.kind = kind;
     def.x = x;
     def.y = y;
@@ -52,7 +52,7 @@ static mspring_network *rain(uint32_t substeps, bool has_colliders) {
     mspring_network *network = bodies_network(b, &def);
     static const double planes[3][4] = {{0, 0, 0, 1}, {-20, 0, 1, 0}, {20, 0, -1, 0}};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = planes[0];
     floor.plane_count = 3;
     check_ok(mspring_network_set_floor(network, &floor));
@@ -103,7 +103,7 @@ static void check_list(const mspring_network *network) {
 /// Of two drops, m; by brute force.
 static double deepest_of(const mspring_network *network) {
     double nearest = THICKNESS * THICKNESS, x[DROPS], y[DROPS];
-    check_ok(mspring_network_get_positions(network, BAR, DROPS, x, y, 1));
+    check_ok(mspring_network_get_positions(network, NULL, BAR, DROPS, x, y, 1));
     for (uint32_t i = 0; i < DROPS; i++)
         for (uint32_t j = 0; j < i; j++)
             nearest = fmin(nearest, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
@@ -115,7 +115,7 @@ static void run(uint32_t substeps, bool has_colliders) {
     mspring_contact_info info = {.struct_size = sizeof info};
     uint32_t touching = 0;
     for (uint32_t step = 0; step < STEPS; step++) {
-        check_ok(mspring_network_set_contact_groups(anew, 0, BAR + DROPS, 1, UINT32_MAX)); // drops the list
+        check_ok(support_set_layers(anew, 0, BAR + DROPS, 1, UINT32_MAX)); // drops the list
         support_steps(kept, 1, DT);
         support_steps(anew, 1, DT);
         assert_true(support_hash(kept) == support_hash(anew));

@@ -11,9 +11,9 @@ static mspring_network *block(void) {
     mspring_builder *builder = support_builder();
     mspring_material material;
     mspring_lattice_def lattice;
-    check_ok(mspring_material_init(&material, sizeof material));
+    check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &material, sizeof material));
     material.stiffness = 1000;
-    check_ok(mspring_lattice_def_init(&lattice, sizeof lattice));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &lattice, sizeof lattice));
     lattice.width = lattice.height = 8;
     lattice.cells = cells;
     lattice.materials = &material;
@@ -22,10 +22,10 @@ static mspring_network *block(void) {
     mspring_network_def def = support_def(0, 8);
     def.spare_particles = 4;
     def.spare_springs = 8;
-    def.max_speed = 50;
+    def.settings.max_speed = 50;
     mspring_network *network = support_network(builder, &def);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     check_ok(mspring_network_set_contact(network, &contact));
     return network;
 }
@@ -33,7 +33,7 @@ static mspring_network *block(void) {
 static mspring_id add(mspring_network *network, double x, double y, float vy) {
     mspring_particle_def def;
     mspring_id id;
-    check_ok(mspring_particle_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def));
     def.x = x;
     def.y = y;
     def.vy = vy;
@@ -44,7 +44,7 @@ static mspring_id add(mspring_network *network, double x, double y, float vy) {
 static void join(mspring_network *network, mspring_id a, mspring_id b) {
     mspring_spring_def def;
     mspring_id id;
-    check_ok(mspring_spring_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def));
     def.a = a;
     def.b = b;
     def.stiffness = 100;
@@ -54,7 +54,7 @@ static void join(mspring_network *network, mspring_id a, mspring_id b) {
 
 static uint64_t hash(const mspring_network *network) {
     uint64_t value;
-    check_ok(mspring_network_state_hash(network, &value));
+    check_ok(mspring_network_get_state_hash(network, &value));
     return value;
 }
 
@@ -69,7 +69,7 @@ static uint64_t future(bool is_refused_first) {
     if (is_refused_first)
         check_error(mspring_network_step(network, DT), MSPRING_ERROR_UNSTABLE);
     check_ok(mspring_network_apply_force(network, 5, -1e6f, 0));
-    check_ok(mspring_network_set_positions(network, added, 1, &x, &y, 1));
+    check_ok(mspring_network_set_positions(network, NULL, added, 1, &x, &y, 1));
     add(network, 0.5, 8.5, -3);
     support_steps(network, 40, DT);
     const uint64_t value = hash(network);

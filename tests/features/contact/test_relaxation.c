@@ -65,7 +65,7 @@ static double gain_of_broken_v(uint64_t seed, float push_speed, double *allowed)
     mspring_network *network = bodies_network(b, &def);
     const double push = touch(network, 0.5 * length, 0, push_speed);
     support_steps(network, 2, DT);
-    check_ok(mspring_network_break_springs(network, (const mspring_id[]){0, 1}, 2));
+    check_ok(mspring_network_break_springs(network, (const mspring_id[]){0, 1}, 0, 2));
     double most = 0;
     for (int step = 0; step < 64; step++) {
         support_steps(network, 1, DT);
@@ -147,7 +147,7 @@ static double gain_of_breaks(uint32_t trial) {
     if (trial % 2) { // a V around both
         const double walls[] = {64, 58, -36, 0, 64, -58};
         mspring_collider_def wall;
-        check_ok(mspring_collider_def_init(&wall, sizeof wall));
+        check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &wall, sizeof wall));
         wall.points = walls;
         wall.point_count = 3;
         wall.angle = support_random_between(&seed, 0, 6.283);
@@ -161,7 +161,7 @@ static double gain_of_breaks(uint32_t trial) {
         if (step >= steps / 3 && step % 7 == 0 && b->spring_count > 0) {
             for (int i = 0; i < 3; i++) {
                 const mspring_id spring = (mspring_id)support_random_between(&seed, 0, b->spring_count - 1e-9);
-                (void)!mspring_network_break_springs(network, &spring, 1);
+                (void)!mspring_network_break_springs(network, &spring, 0, 1);
                 b->springs[spring].stiffness = 0;
             }
             from = bodies_measured(b, network).energy;
@@ -204,11 +204,11 @@ static void part_under_weight(uint32_t count, double spacing, uint32_t substeps,
                                               .mass = 1,
                                               .f = 0.3});
     mspring_network_def def = support_def(gravity, substeps);
-    def.global_damping = 0.5f;
+    def.settings.global_damping = 0.5f;
     mspring_network *network = bodies_network(b, &def);
     const double plane[] = {0, 0, 0, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = plane, floor.plane_count = 1, floor.friction = 0.3f;
     check_ok(mspring_network_set_floor(network, &floor));
     const double push = touch(network, 0.5 * spacing, 0.3f, -1);
@@ -249,7 +249,7 @@ static void sink(double overlap, uint32_t light, double mass, uint32_t substeps)
     (void)bodies_add(
         b, &(bodies_lattice){.width = 4, .height = 3, .y = y + 0.5, .spacing = 1, .mass = mass, .f = 0.3});
     mspring_network_def def = support_def(-9.8f, substeps);
-    def.global_damping = 0.5f;
+    def.settings.global_damping = 0.5f;
     mspring_network *network = bodies_network(b, &def);
     (void)touch(network, THICKNESS, 0.5f, -1);
     for (int step = 0; step < 64 * 6; step++) {
@@ -282,11 +282,11 @@ static void impulses_leave_push_out_out(void **state) {
     const mspring_network_def def = support_def(0, 8);
     mspring_network *network = bodies_network(b, &def);
     (void)touch(network, THICKNESS, 0, -1);
-    check_ok(mspring_network_reserve_contact_events(network, 16));
+    check_ok(support_reserve_contact_events(network, 16));
     const double points[] = {-3, 0, 3, 0};
     mspring_collider_def line;
     mspring_id collider;
-    check_ok(mspring_collider_def_init(&line, sizeof line));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &line, sizeof line));
     line.points = points;
     line.point_count = 2;
     check_ok(mspring_network_add_collider(network, &line, &collider));

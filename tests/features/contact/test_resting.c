@@ -33,11 +33,11 @@ static mspring_network *stack(bodies *b, mspring_solver solver, uint32_t bars, f
                                               .mass = 73.4,
                                               .f = 0.5});
     mspring_network_def def = support_def(-9.8f, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 2);
-    def.solver = solver;
-    def.guard = support_guard_of(def.solver);
-    def.global_damping = 0.5f;
-    def.sleep_speed = sleep_speed;
-    def.sleep_time = 0.5f;
+    def.settings.solver = solver;
+    def.settings.guard = support_guard_of(def.settings.solver);
+    def.settings.global_damping = 0.5f;
+    def.settings.sleep_speed = sleep_speed;
+    def.settings.sleep_time = 0.5f;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.5f, 0));
     return network;
@@ -71,7 +71,7 @@ static void stack_comes_to_rest(void **state) {
 static uint32_t sleepers(const mspring_network *network, const bodies *b) {
     uint8_t *asleep = calloc(b->count, 1);
     assert_non_null(asleep);
-    check_ok(mspring_network_get_sleepers(network, 0, b->count, asleep, 1));
+    check_ok(support_get_sleepers(network, 0, b->count, asleep, 1));
     uint32_t count = 0;
     for (uint32_t p = 0; p < b->count; p++)
         count += asleep[p];
@@ -84,7 +84,7 @@ static void sleep_in_a_stack(mspring_solver solver) {
     mspring_network *network = stack(b, solver, 3, 0.05f);
     const uint32_t lowest = 40; // the first particle of the lowest bar
     uint32_t steps = 0;
-    while (!mspring_network_is_asleep(network)) {
+    while (!support_is_asleep(network)) {
         support_steps(network, 1, DT);
         const uint32_t count = sleepers(network, b);
         assert_true(++steps < 4000);
@@ -97,7 +97,7 @@ static void sleep_in_a_stack(mspring_solver solver) {
     support_kick(network, lowest, 3.0f);
     support_steps(network, 2, DT);
     assert_int_equal(sleepers(network, b), 0);
-    for (steps = 0; !mspring_network_is_asleep(network) && steps < 4000; steps++)
+    for (steps = 0; !support_is_asleep(network) && steps < 4000; steps++)
         support_steps(network, 1, DT);
     assert_true(steps < 4000);
     mspring_network_destroy(network);
@@ -122,8 +122,8 @@ static void comer_wakes_a_sleeper(void **state) {
     for (uint32_t p = second; p < b->count; p++)
         b->vx[p] = 4;
     mspring_network_def def = support_def(-9.8f, 40);
-    def.sleep_speed = 0.5f;
-    def.sleep_time = 0.1f;
+    def.settings.sleep_speed = 0.5f;
+    def.settings.sleep_time = 0.1f;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0, 0));
     bool slept = false;
@@ -147,13 +147,13 @@ static void sleeper_takes_momentum(void **state) {
         const uint32_t ball = bodies_add(
             b, &(bodies_lattice){.width = 1, .height = 1, .x = -30 - 0.13 * i, .spacing = 1, .mass = 50});
         mspring_network_def def = support_def(0, 40);
-        def.sleep_speed = 0.5f;
-        def.sleep_time = 0.1f;
+        def.settings.sleep_speed = 0.5f;
+        def.settings.sleep_time = 0.1f;
         mspring_network *network = bodies_network(b, &def);
         check_ok(bodies_touch(network, THICKNESS, 0, 0));
         support_fall_asleep(network, DT);
         const float vx = 100, vy = 0;
-        check_ok(mspring_network_set_velocities(network, ball, 1, &vx, &vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, ball, 1, &vx, &vy, 1));
         support_steps(network, 40, DT);
         const bodies_measure m = bodies_measured(b, network);
         check_near(m.x, 50 * 100, 0.1);
@@ -175,8 +175,8 @@ static void slide(mspring_solver solver, double share, double *way, double *spee
     const uint32_t first = bodies_add(
         b, &(bodies_lattice){.width = 8, .height = 3, .x = -15.3, .y = 1, .spacing = 1, .mass = 73.4, .f = 0.5});
     mspring_network_def def = support_def(0, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 4);
-    def.solver = solver;
-    def.guard = support_guard_of(def.solver);
+    def.settings.solver = solver;
+    def.settings.guard = support_guard_of(def.settings.solver);
     mspring_network *network = bodies_network(b, &def);
     check_ok(support_set_gravity(network, (float)(9.8 * sin(angle)), (float)(-9.8 * cos(angle))));
     check_ok(bodies_touch(network, THICKNESS, (float)friction, 0));
@@ -227,8 +227,8 @@ static void check_bounce(mspring_solver solver, uint32_t substeps, float restitu
     const uint32_t ball =
         bodies_add(b, &(bodies_lattice){.width = 1, .height = 1, .x = 0.2, .y = 5, .spacing = 1, .mass = 3});
     mspring_network_def def = support_def(-9.8f, substeps);
-    def.solver = solver;
-    def.guard = support_guard_of(def.solver);
+    def.settings.solver = solver;
+    def.settings.guard = support_guard_of(def.settings.solver);
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.5f, restitution));
     double low = 5, high = 0;

@@ -16,7 +16,7 @@ typedef enum beside { NOTHING, A_FAR_COLLIDER, A_COLLIDER, A_PIN_BELOW, A_PIN_AB
 
 static void add_circle(mspring_network *network, bool is_near, const mspring_contact_def *contact) {
     mspring_collider_def def;
-    check_ok(mspring_collider_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
     def.kind = MSPRING_COLLIDER_CIRCLE;
     def.radius = 1;
     def.x = is_near ? 1 : 100;
@@ -53,8 +53,8 @@ static mspring_network *pair_of(uint32_t trial, beside what) {
         made.particles[pin].vx = made.particles[pin].vy = 0;
     }
     mspring_network_def def = support_def(0, 1 + trial % 4);
-    def.solver = trial % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
-    def.guard = support_guard_of(def.solver);
+    def.settings.solver = trial % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+    def.settings.guard = support_guard_of(def.settings.solver);
     mspring_network *network = recipe_network(&made, &def);
     const mspring_contact_def contact = bodies_contact(0.5, trial % 3 ? 0 : 0.5f, trial % 5 ? 0 : 0.6f);
     check_ok(mspring_network_set_contact(network, &contact));

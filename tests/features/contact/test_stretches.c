@@ -19,7 +19,7 @@ static const float level[PARTS + 1] = {0, 0, 0, 0};
 /// Level ground from x = 0 to 300, of 100 m stretches.
 static mspring_floor_def level_def(void) {
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.heights = level;
     def.height_count = PARTS + 1;
     def.spacing = 100;
@@ -38,7 +38,7 @@ static uint32_t stretch_at(uint32_t i, double *x) {
 
 static mspring_network *make(mspring_builder *builder, mspring_solver solver) {
     mspring_network_def def = support_def((float)-g, 10);
-    def.solver = solver;
+    def.settings.solver = solver;
     return support_network(builder, &def);
 }
 
@@ -63,7 +63,7 @@ static void each_stretch_has_its_friction(void **state) {
             check_ok(mspring_network_set_floor(network, &def));
             for (mspring_id p = 0; p < 2 * BEYOND; p++) {
                 const float vx = (float)speed, vy = 0;
-                check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+                check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
             }
             support_steps(network, (uint32_t)lround(seconds / dt), dt);
             for (mspring_id p = 0; p < 2 * BEYOND; p++) {
@@ -142,14 +142,14 @@ static void each_plane_has_its_own(void **state) {
     support_particle(builder, 9, 5, 1); // is thrown back by the wall
     mspring_network *network = make(builder, MSPRING_SOLVER_EXPLICIT);
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.planes = planes[0];
     def.plane_count = 2;
     def.plane_frictions = friction;
     def.plane_restitutions = restitution;
     check_ok(mspring_network_set_floor(network, &def));
     const float vx[2] = {3, 4}, vy[2] = {0, 0};
-    check_ok(mspring_network_set_velocities(network, 0, 2, vx, vy, 1));
+    check_ok(mspring_network_set_velocities(network, NULL, 0, 2, vx, vy, 1));
     support_steps(network, 50, 0.01);
     check_near(support_velocity(network, 0).x, 3 - 0.3 * g * 0.5, 0.01);
     check_near(support_velocity(network, 1).x, -4, 1e-5);
@@ -177,7 +177,7 @@ static uint64_t fall(const mspring_network_def *network_def, const float *own, c
     }
     mspring_network *network = recipe_network(&made, network_def);
     mspring_floor_def def;
-    check_ok(mspring_floor_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
     def.planes = wall;
     def.plane_count = 1;
     def.heights = heights;
@@ -191,7 +191,7 @@ static uint64_t fall(const mspring_network_def *network_def, const float *own, c
     check_ok(mspring_network_set_floor(network, &def));
     support_steps(network, 60, 1.0 / 64);
     uint64_t hash = 0;
-    check_ok(mspring_network_state_hash(network, &hash));
+    check_ok(mspring_network_get_state_hash(network, &hash));
     mspring_network_destroy(network);
     recipe_free(&made);
     return hash;
@@ -211,7 +211,7 @@ static void bits_do_not_depend_on_how_it_is_said(void **state) {
     }
     for (mspring_solver solver = MSPRING_SOLVER_EXPLICIT; solver <= MSPRING_SOLVER_DIRECT; solver++) {
         mspring_network_def def = support_def((float)-g, solver == MSPRING_SOLVER_EXPLICIT ? 20 : 2);
-        def.solver = solver;
+        def.settings.solver = solver;
         const uint64_t plain = fall(&def, NULL, NULL), rough = fall(&def, own[0], own[1]);
         assert_true(fall(&def, alike[0], alike[1]) == plain);
         assert_true(fall(&def, alike[0], NULL) == plain);

@@ -272,7 +272,7 @@ static double squeezed(double ratio, double speed, bool is_loose) {
     mspring_network *network = bodies_network(b, &def);
     const double plane[4] = {0, 0, 0, 1};
     mspring_floor_def floor;
-    check_ok(mspring_floor_def_init(&floor, sizeof floor));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor));
     floor.planes = plane;
     floor.plane_count = 1;
     floor.friction = 0.3f;
@@ -286,7 +286,7 @@ static double squeezed(double ratio, double speed, bool is_loose) {
         deepest = fmax(deepest, info.deepest);
         for (uint32_t i = 0; i < b->count; i++) {
             double x, y;
-            check_ok(mspring_network_get_positions(network, i, 1, &x, &y, 1));
+            check_ok(mspring_network_get_positions(network, NULL, i, 1, &x, &y, 1));
             assert_true(y > -1e-4);
         }
     }

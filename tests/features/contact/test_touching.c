@@ -38,8 +38,8 @@ static mspring_network *crowd_network_by(mspring_solver solver, double apart, do
                                          uint32_t workers, float gravity) {
     bodies *b = crowd(apart, speed);
     mspring_network_def def = support_def(gravity, solver == MSPRING_SOLVER_EXPLICIT ? SUBSTEPS : 2);
-    def.solver = solver;
-    def.guard = support_guard_of(solver);
+    def.settings.solver = solver;
+    def.settings.guard = support_guard_of(solver);
     def.simd_level = level;
     def.worker_count = workers;
     mspring_network *network = bodies_network(b, &def);
@@ -191,23 +191,23 @@ static void outline_follows_breaks(void **state) {
     const mspring_network_def def = support_def(0, SUBSTEPS);
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, 0.1, 0, 0));
-    const uint32_t springs = mspring_network_spring_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
     const uint32_t whole = info_of(network).edges;
     for (int round = 0; round < 60; round++) {
         mspring_id ids[8];
         for (int i = 0; i < 8; i++)
             ids[i] = (mspring_id)(support_random(&seed) % springs);
         if (round % 3 == 2)
-            check_ok(mspring_network_restore_springs(network, ids, 8, 0));
+            check_ok(mspring_network_restore_springs(network, ids, 0, 8, 0));
         else
-            check_ok(mspring_network_break_springs(network, ids, 8));
+            check_ok(mspring_network_break_springs(network, ids, 0, 8));
         if (round == 20)
             check_ok(mspring_network_compact(network));
         check_outline(network);
     }
-    check_ok(mspring_network_expand(network));
+    check_ok(support_expand(network));
     for (mspring_id s = 0; s < springs; s++)
-        check_ok(mspring_network_restore_springs(network, &s, 1, 0));
+        check_ok(mspring_network_restore_springs(network, &s, 0, 1, 0));
     check_outline(network);
     assert_int_equal(info_of(network).edges, whole);
     mspring_network_destroy(network);
@@ -229,11 +229,11 @@ static void halves_of_a_cut_body_collide(void **state) {
         check_ok(mspring_network_set_contact(network, &contact));
         for (uint32_t s = 0; s < b->spring_count; s++)
             if ((b->column[b->springs[s].a] < 8) != (b->column[b->springs[s].b] < 8))
-                check_ok(mspring_network_break_springs(network, &s, 1));
+                check_ok(mspring_network_break_springs(network, &s, 0, 1));
         support_steps(network, 10, DT);
         for (uint32_t p = 0; p < b->count; p++)
             b->vx[p] = b->column[p] < 8 ? 5.0f : -5.0f;
-        check_ok(mspring_network_set_velocities(network, 0, b->count, b->vx, b->vy, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, 0, b->count, b->vx, b->vy, 1));
         uint32_t touching = 0;
         (void)run(network, 60, &touching);
         assert_true(touching > 0);
@@ -296,7 +296,7 @@ static void what_is_added_touches(void **state) {
     check_ok(bodies_touch(network, THICKNESS, 0, 0));
     support_steps(network, 1, DT);
     mspring_particle_def added;
-    check_ok(mspring_particle_def_init(&added, sizeof added));
+    check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &added, sizeof added));
     for (int round = 0; round < 3; round++) {
         mspring_id id = MSPRING_NONE;
         added.x = 0.3 * round;
@@ -304,9 +304,9 @@ static void what_is_added_touches(void **state) {
         check_ok(mspring_network_add_particles(network, &added, 1, &id));
         support_steps(network, 100, DT);
         check_near(support_position(network, id).y, 1 + THICKNESS, 1e-3);
-        check_ok(mspring_network_remove_particles(network, &id, 1));
+        check_ok(mspring_network_remove_particles(network, &id, 0, 1));
         support_steps(network, 1, DT);
-        check_ok(mspring_network_recycle(network));
+        check_ok(mspring_network_reuse_ids(network));
     }
     mspring_network_destroy(network);
     bodies_free(b);
@@ -338,7 +338,7 @@ static void clamped_steps_have_contact(void **state) {
     (void)state;
     bodies *b = crowd(14, 12);
     mspring_network_def def = support_def(-9.8f, SUBSTEPS / 5);
-    def.guard = MSPRING_GUARD_CLAMP;
+    def.settings.guard = MSPRING_GUARD_CLAMP;
     mspring_network *network = bodies_network(b, &def);
     check_ok(bodies_touch(network, THICKNESS, 0.3f, 0));
     uint32_t touching = 0, crossings = 0;
@@ -363,10 +363,10 @@ static void groups_part(void **state) {
             bodies_add(b, &(bodies_lattice){.width = 1, .height = 1, .y = 2, .spacing = 1, .mass = 2});
         const mspring_network_def def = support_def(-9.8f, SUBSTEPS);
         mspring_network *network = bodies_network(b, &def);
-        check_error(mspring_network_set_contact_groups(network, 0, 1, 1, 1), MSPRING_ERROR_ARGUMENT);
+        check_error(support_set_layers(network, 0, 1, 1, 1), MSPRING_ERROR_ARGUMENT);
         check_ok(bodies_touch(network, THICKNESS, 0, 0));
-        check_error(mspring_network_set_contact_groups(network, 5, b->count, 1, 1), MSPRING_ERROR_ID);
-        check_ok(mspring_network_set_contact_groups(network, ball, 1, 2, mask));
+        check_error(support_set_layers(network, 5, b->count, 1, 1), MSPRING_ERROR_ID);
+        check_ok(support_set_layers(network, ball, 1, 2, mask));
         support_steps(network, 80, DT);
         assert_true((support_position(network, ball).y > 0) == (mask & 1));
         mspring_network_destroy(network);
@@ -432,11 +432,11 @@ static void all_solvers_take_contact(void **state) {
     mspring_network *network = touching_crowd(MSPRING_SIMD_AUTO, 1);
     const mspring_solver solvers[] = {MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT, MSPRING_SOLVER_EXPLICIT};
     for (size_t i = 0; i < 3; i++) {
-        mspring_solver_def def;
-        check_ok(mspring_solver_def_init(&def, sizeof def));
+        mspring_settings def;
+        check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
         def.solver = solvers[i];
         def.substeps = solvers[i] == MSPRING_SOLVER_EXPLICIT ? SUBSTEPS : 2;
-        check_ok(mspring_network_set_solver(network, &def));
+        check_ok(support_set_solver(network, &def));
         support_steps(network, 2, 1.0 / 64);
         check_ok(support_set_guard(network, i == 1 ? MSPRING_GUARD_BOUNDS : MSPRING_GUARD_IMPLICIT));
         support_steps(network, 2, 1.0 / 64);
@@ -506,20 +506,20 @@ static void falling_blocks_have_room_by_default(void **state) {
 static void explicit_contact_takes_less_memory(void **state) {
     (void)state;
     mspring_network *network = crowd_network(14, 12, MSPRING_SIMD_AUTO, 1, 0);
-    const size_t before = mspring_network_memory_used(network);
+    const size_t before = support_memory_used(network);
     check_ok(bodies_touch(network, THICKNESS, 0.2f, 0));
-    const size_t by_contact = mspring_network_memory_used(network) - before;
-    mspring_solver_def def;
-    check_ok(mspring_solver_def_init(&def, sizeof def));
+    const size_t by_contact = support_memory_used(network) - before;
+    mspring_settings def;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &def, sizeof def));
     def.solver = MSPRING_SOLVER_IMPLICIT;
-    check_ok(mspring_network_set_solver(network, &def));
-    const size_t with_solver = mspring_network_memory_used(network);
+    check_ok(support_set_solver(network, &def));
+    const size_t with_solver = support_memory_used(network);
     check_ok(mspring_network_set_contact(network, NULL));
-    const size_t solver_alone = mspring_network_memory_used(network);
+    const size_t solver_alone = support_memory_used(network);
     // A row is 240 bytes beside 144, and 33 for each of the eight pairs that it stands for.
     assert_true(with_solver - solver_alone > by_contact + by_contact / 5);
     check_ok(bodies_touch(network, THICKNESS, 0.2f, 0));
-    assert_int_equal(mspring_network_memory_used(network), with_solver);
+    assert_int_equal(support_memory_used(network), with_solver);
     mspring_network_destroy(network);
 }
 
@@ -528,7 +528,7 @@ static void memory_is_given_back(void **state) {
     watched_allocator watched = {0};
     const mspring_allocator allocator = watched_interface(&watched);
     mspring_clone_def clone_def;
-    check_ok(mspring_clone_def_init(&clone_def, sizeof clone_def));
+    check_ok(mspring_init(MSPRING_STRUCT_CLONE_DEF, &clone_def, sizeof clone_def));
     clone_def.allocator = &allocator;
     mspring_network *from = crowd_network(16, 10, MSPRING_SIMD_AUTO, 1, 0), *network;
     check_ok(mspring_network_clone(from, &clone_def, &network));
@@ -545,11 +545,11 @@ static void memory_is_given_back(void **state) {
     check_ok(result);
     assert_true(failures > 5);
     support_steps(network, 60, DT);
-    const size_t with = mspring_network_memory_used(network);
+    const size_t with = support_memory_used(network);
     check_ok(bodies_touch(network, THICKNESS, 0.1f, 0));
-    assert_int_equal(mspring_network_memory_used(network), with);
+    assert_int_equal(support_memory_used(network), with);
     check_ok(mspring_network_set_contact(network, NULL));
-    assert_true(mspring_network_memory_used(network) < with);
+    assert_true(support_memory_used(network) < with);
     mspring_network_destroy(network);
     check_watched_clean(&watched);
     mspring_network_destroy(from);

@@ -29,10 +29,10 @@ static void add_body(mspring_builder *builder, press *p, uint32_t width, uint32_
     static const uint16_t cells[CELLS] = {0};
     mspring_material material;
     mspring_lattice_def def;
-    check_ok(mspring_material_init(&material, sizeof material));
+    check_ok(mspring_init(MSPRING_STRUCT_MATERIAL, &material, sizeof material));
     material.mass = (float)mass;
     material.stiffness = (float)(stiffness * mass);
-    check_ok(mspring_lattice_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_LATTICE_DEF, &def, sizeof def));
     def.width = width;
     def.height = height;
     def.cells = cells;
@@ -51,7 +51,7 @@ static void add_body(mspring_builder *builder, press *p, uint32_t width, uint32_
 static void add_wall(press *p, double ax, double ay, double bx, double by, uint64_t *seed) {
     const double points[] = {ax, ay, bx, by};
     mspring_collider_def def;
-    check_ok(mspring_collider_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def));
     def.points = points;
     def.point_count = 2;
     def.radius = p->radius;
@@ -78,11 +78,11 @@ static press make_press(uint32_t trial, place where) {
     const uint32_t first = p.count;
     add_body(builder, &p, 4, 3, right, 0.1, ratio, k);
     mspring_network_def def = support_def(0, 1 + trial % 4);
-    def.solver = trial % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
-    def.guard = support_guard_of(def.solver);
+    def.settings.solver = trial % 2 ? MSPRING_SOLVER_DIRECT : MSPRING_SOLVER_IMPLICIT;
+    def.settings.guard = support_guard_of(def.settings.solver);
     p.network = support_network(builder, &def);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = p.thickness;
     contact.friction = trial % 5 ? 0 : 0.5f;
     check_ok(mspring_network_set_contact(p.network, &contact));
@@ -95,7 +95,7 @@ static press make_press(uint32_t trial, place where) {
     for (mspring_id id = first; id < p.count; id++)
         support_kick(p.network, id, (float)speed);
     // The heavy body has time to come as far as the wall.
-    p.dt = fmax(def.substeps * decades(&seed, 3e-4, 6e-3), 8 / (speed * STEPS));
+    p.dt = fmax(def.settings.substeps * decades(&seed, 3e-4, 6e-3), 8 / (speed * STEPS));
     p.wall_speed = where == A_WALL_THAT_COMES ? -decades(&seed, 0.1, 10) : 0;
     return p;
 }

@@ -18,7 +18,7 @@ static const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER
 
 static mspring_grip_def grip_of(mspring_id particle, double x, double y) {
     mspring_grip_def def;
-    check_ok(mspring_grip_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, &def, sizeof def));
     def.particle = particle;
     def.x = x;
     def.y = y;
@@ -72,17 +72,17 @@ static mspring_network *make(making how) {
     mspring_network_def def = support_def(0, 1);
     def.simd_level = how.level;
     def.worker_count = how.workers > 0 ? how.workers : 1;
-    def.sleep_speed = how.sleep_speed;
-    def.sleep_time = 0.2f;
+    def.settings.sleep_speed = how.sleep_speed;
+    def.settings.sleep_time = 0.2f;
     def.spare_particles = def.spare_springs = how.spare;
-    def.global_damping = how.sleep_speed > 0 ? 2.0f : 0.0f;
+    def.settings.global_damping = how.sleep_speed > 0 ? 2.0f : 0.0f;
     mspring_network *network = recipe_network(&made, &def);
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     solver.solver = how.solver;
     solver.substeps = how.solver == MSPRING_SOLVER_EXPLICIT ? 20 : 2;
     solver.coarse_period = how.solver == MSPRING_SOLVER_IMPLICIT ? 3 : 0;
-    check_ok(mspring_network_set_solver(network, &solver));
+    check_ok(support_set_solver(network, &solver));
     recipe_free(&made);
     return network;
 }
@@ -95,7 +95,7 @@ static mspring_id hand_of(uint32_t frame) {
 // A hand that does a bit of everything, as a function of the frame's number alone.
 static void run_frame(mspring_network *network, uint32_t frame) {
     const mspring_id hand = hand_of(frame);
-    const mspring_id loose = mspring_network_particle_count(network) - 1;
+    const mspring_id loose = mspring_network_count(network, MSPRING_PARTICLES) - 1;
     switch (frame % 16) {
     case 1:
         hold(network, hand, 3, 4, 5);
@@ -149,9 +149,9 @@ static void without_grips_nothing_changes(void **state) {
         mspring_network *network = make((making){.solver = solvers[i]}),
                         *other = make((making){.solver = solvers[i]});
         hold(network, 0, 7, 1, 1);
-        const size_t used = mspring_network_memory_used(network);
+        const size_t used = support_memory_used(network);
         hold(network, 1, 8, 1, 1);
-        assert_int_equal(mspring_network_memory_used(network), used); // only the first allocates
+        assert_int_equal(support_memory_used(network), used); // only the first allocates
         for (mspring_id grip = 0; grip < 2; grip++) {
             check_ok(mspring_network_remove_grip(network, grip));
             check_error(mspring_network_remove_grip(network, grip), MSPRING_ERROR_ID);
@@ -284,7 +284,7 @@ static void sleeper_wakes(void **state) {
     (void)state;
     for (size_t i = 0; i < COUNT_OF(solvers); i++) {
         mspring_network *network = make((making){.solver = solvers[i], .sleep_speed = 0.02f});
-        const mspring_id loose = mspring_network_particle_count(network) - 1;
+        const mspring_id loose = mspring_network_count(network, MSPRING_PARTICLES) - 1;
         support_fall_asleep(network, DT);
         hold(network, 0, 3, 3, 0.5);
         assert_false(support_sleeps(network, 3));
@@ -342,21 +342,21 @@ static void removed_particle_takes_its_grip_along(void **state) {
         mspring_network *network = make((making){.solver = solvers[i], .spare = 3});
         mspring_particle_def def;
         mspring_id added;
-        check_ok(mspring_particle_def_init(&def, sizeof def));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def));
         def.x = -30;
         check_ok(mspring_network_add_particles(network, &def, 1, &added));
         hold(network, 0, added, -31, 0);
         hold(network, 1, 3, 3, 1);
         support_steps(network, 5, DT);
         assert_true(support_position(network, added).x < -30.001);
-        check_ok(mspring_network_remove_particles(network, &added, 1));
+        check_ok(mspring_network_remove_particles(network, &added, 0, 1));
         assert_int_equal(read(network, 1).particle, 3);
         check_error(mspring_network_move_grip(network, 0, 0, 0), MSPRING_ERROR_ID);
         const mspring_grip_def gone = grip_of(added, 0, 0);
         check_error(mspring_network_set_grip(network, 1, &gone), MSPRING_ERROR_ID);
         check_error(mspring_network_add_grip(network, &gone, NULL), MSPRING_ERROR_ID);
         // The id is another particle's, which nothing holds.
-        check_ok(mspring_network_recycle(network));
+        check_ok(mspring_network_reuse_ids(network));
         check_ok(mspring_network_add_particles(network, &def, 1, &added));
         support_steps(network, 5, DT);
         check_near(support_position(network, added).x, -30, 0);
@@ -371,8 +371,8 @@ static void pinned_particle_feels_nothing(void **state) {
                         *other = make((making){.solver = solvers[i]});
         const float pinned = 0, whole = 1;
         double x, y;
-        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 3, 1, &pinned, 1));
-        check_ok(mspring_network_set(other, MSPRING_INVERSE_MASS_SCALE, 3, 1, &pinned, 1));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, 3, 1, &pinned, 1));
+        check_ok(mspring_network_set(other, MSPRING_INVERSE_MASS_SCALE, NULL, 3, 1, &pinned, 1));
         hold(network, 0, 3, 8, 8);
         support_steps(network, 5, DT);
         support_steps(other, 5, DT);
@@ -380,7 +380,7 @@ static void pinned_particle_feels_nothing(void **state) {
         mspring_network_destroy(other);
         check_ok(mspring_network_get_grip_impulse(network, 0, &x, &y));
         assert_true(x == 0 && y == 0);
-        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 3, 1, &whole, 1));
+        check_ok(mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, 3, 1, &whole, 1));
         support_steps(network, 5, DT);
         assert_true(support_position(network, 3).y > 0.01);
         mspring_network_destroy(network);
@@ -394,8 +394,8 @@ static void compaction_keeps_grips(void **state) {
         mspring_network *network = make((making){.solver = solvers[i]}),
                         *other = make((making){.solver = solvers[i]});
         for (mspring_id s = 0; s < 60; s++) {
-            check_ok(mspring_network_break_springs(network, &s, 1));
-            check_ok(mspring_network_break_springs(other, &s, 1));
+            check_ok(mspring_network_break_springs(network, &s, 0, 1));
+            check_ok(mspring_network_break_springs(other, &s, 0, 1));
         }
         hold(network, 0, 50, 12, 3);
         hold(other, 0, 50, 12, 3);
@@ -447,7 +447,7 @@ static void wrong_grips_are_refused(void **state) {
     (void)state;
     mspring_network *network = make((making){0});
     hold(network, 0, 3, 4, 5);
-    mspring_grip_def def = grip_of(mspring_network_particle_count(network), 0, 0);
+    mspring_grip_def def = grip_of(mspring_network_count(network, MSPRING_PARTICLES), 0, 0);
     refuse(network, &def, MSPRING_ERROR_ID, "does not exist");
     def.particle = MSPRING_NONE;
     refuse(network, &def, MSPRING_ERROR_ID, "is not set (MSPRING_NONE)");

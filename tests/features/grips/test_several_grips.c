@@ -29,8 +29,8 @@ static mspring_network *held_network(uint32_t trial, uint64_t *seed) {
     const uint32_t count = 2 + (uint32_t)support_random_between(seed, 0, MOST_PARTICLES - 2);
     const double mass = decades(seed, 1e-2, 1e2);
     mspring_network_def def = support_def(0, 1 + trial % 16);
-    const double h = DT / def.substeps;
-    def.solver = (mspring_solver)(trial % 3);
+    const double h = DT / def.settings.substeps;
+    def.settings.solver = (mspring_solver)(trial % 3);
     // Explicit substeps are 20 times shorter than springs vibrate: half of h v F in the energy is far below 1 %
     // then.
     const double stiffness = trial % 3 == 0 ? mass * decades(seed, 1e-5, 1e-2) / (h * h) : decades(seed, 10, 1e7);
@@ -46,7 +46,7 @@ static hand random_hand(uint32_t trial, bool moves) {
     hand h = {.network = held_network(trial, &seed), .count = 2 + trial % (MOST_GRIPS - 1)};
     for (uint32_t i = 0; i < h.count; i++) {
         mspring_grip_def *grip = &h.grips[i];
-        check_ok(mspring_grip_def_init(grip, sizeof *grip));
+        check_ok(mspring_init(MSPRING_STRUCT_GRIP_DEF, grip, sizeof *grip));
         grip->particle = 0;
         grip->x = support_random_between(&seed, -1, 1);
         grip->y = support_random_between(&seed, -1, 1);
@@ -65,7 +65,7 @@ static hand random_hand(uint32_t trial, bool moves) {
 /// Kinetic, elastic, and that of the grips' springs: quadratic up to the bound, linear beyond.
 static double energy(const hand *h) {
     double kinetic, elastic, potential;
-    check_ok(mspring_network_energy(h->network, &kinetic, &elastic, &potential));
+    check_ok(support_get_energy(h->network, &kinetic, &elastic, &potential));
     const support_point at = support_position(h->network, 0);
     double sum = kinetic + elastic;
     for (uint32_t i = 0; i < h->count; i++) {

@@ -30,7 +30,7 @@ static mspring_network *mixed_network(uint32_t substeps, bool ropes) {
 
 static void add(mspring_network *network, mspring_phase phase, uint32_t period, mspring_hook_fn fn, void *user) {
     mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
     def.phase = phase;
     def.period = period;
     def.fn = fn;
@@ -62,7 +62,7 @@ static void log_call(const mspring_hook_args *args, void *user) {
     const logger *self = user;
     assert_true(self->to->count < MOST_CALLS);
     self->to->calls[self->to->count++] =
-        (call){args->phase, self->period, args->substep, args->group_count, args->dt};
+        (call){args->phase, self->period, args->substep, args->run_count, args->dt};
 }
 
 static void calls_come_once_for_each_group(void **state) {
@@ -142,7 +142,7 @@ static void check_brakes(const uint32_t *periods, uint32_t count, bool ropes, bo
     mspring_network *held = mixed_network(SUBSTEPS, ropes), *remembered = mixed_network(SUBSTEPS, ropes);
     mspring_network *without = mixed_network(SUBSTEPS, ropes);
     mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(held, &view));
+    check_ok(mspring_network_get_view(held, &view));
     assert_true(view.slot_count <= SLOTS);
     for (uint32_t i = 0; i < count; i++) {
         brakes[i] = (brake){.period = periods[i], .strength = 0.3f + 0.1f * (float)i};
@@ -194,7 +194,7 @@ static void what_is_held_and_spoilt_is_taken_back(void **state) {
         static brake gentle = {.period = 4, .strength = 0.2f};
         mspring_hook_def def;
         uint32_t hook;
-        check_ok(mspring_hook_def_init(&def, sizeof def));
+        check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
         def.phase = MSPRING_PHASE_BEFORE_SUBSTEP;
         def.period = 3;
         def.fn = poison;
@@ -257,7 +257,7 @@ static void bad_definitions_are_refused(void **state) {
     mspring_network *network = mixed_network(1, false);
     uint32_t number = 4711;
     mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
     def.fn = floor_hook;
     check_error(mspring_network_add_hook(network, NULL, &number), MSPRING_ERROR_ARGUMENT);
     def.period = 0;

@@ -57,7 +57,7 @@ static const kind kinds[] = {
 
 static void add_ground(mspring_network *network, const kind *k, ground *to, uint32_t more_flags) {
     mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
     def.phase = k->phase;
     def.period = k->period;
     def.flags = k->flags | more_flags;
@@ -88,7 +88,7 @@ static mspring_network *falling(double x, double y, float vy, mspring_solver sol
         made.particles[p].vy += vy;
     }
     mspring_network_def def = support_def(-9.8f, solver == MSPRING_SOLVER_EXPLICIT ? 10 : 2);
-    def.solver = solver;
+    def.settings.solver = solver;
     def.worker_count = workers;
     def.spare_particles = 40;
     mspring_network *network = recipe_network(&made, &def);
@@ -98,7 +98,7 @@ static mspring_network *falling(double x, double y, float vy, mspring_solver sol
 
 static uint64_t hash_of(const mspring_network *network) {
     uint64_t hash = 0;
-    check_ok(mspring_network_state_hash(network, &hash));
+    check_ok(mspring_network_get_state_hash(network, &hash));
     return hash;
 }
 
@@ -156,14 +156,14 @@ static void others_make_no_difference(void **state) {
                 if (others & 2) {
                     const double plane[4] = {0, -2, 0, 1};
                     mspring_floor_def def;
-                    check_ok(mspring_floor_def_init(&def, sizeof def));
+                    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def));
                     def.planes = plane;
                     def.plane_count = 1;
                     check_ok(mspring_network_set_floor(networks[n], &def));
                 }
                 if (others & 4) {
                     mspring_contact_def def;
-                    check_ok(mspring_contact_def_init(&def, sizeof def));
+                    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &def, sizeof def));
                     def.flags = MSPRING_CONTACT_SELF;
                     check_ok(mspring_network_set_contact(networks[n], &def));
                 }
@@ -185,14 +185,14 @@ static void what_springs_throw_is_found(void **state) {
             mspring_builder *builder = support_builder();
             const mspring_id a = support_particle(builder, 0, 500, 1), b = support_particle(builder, 0, 499.9, 1);
             mspring_spring_def spring;
-            check_ok(mspring_spring_def_init(&spring, sizeof spring));
+            check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
             spring.a = a;
             spring.b = b;
             spring.stiffness = 2e4f;
             spring.rest_length = 1000;
-            check_ok(mspring_builder_add_spring(builder, &spring, NULL));
+            check_ok(mspring_builder_add_springs(builder, &spring, 1, NULL));
             mspring_network_def def = support_def(-9.8f, 30);
-            def.max_speed = 1e9f;
+            def.settings.max_speed = 1e9f;
             networks[n] = support_network(builder, &def);
             add_ground(networks[n], &kinds[k], &grounds[n], n == 0 ? 0 : MSPRING_HOOK_BELOW);
         }
@@ -222,20 +222,20 @@ static mspring_network *flying_off(double overlap, float speed) {
     recipe_free(&made);
     const mspring_id a = support_particle(builder, 100, 1, 1), b = support_particle(builder, 100, 1.1, 1);
     mspring_spring_def spring;
-    check_ok(mspring_spring_def_init(&spring, sizeof spring));
+    check_ok(mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring));
     spring.a = a;
     spring.b = b;
     spring.stiffness = 2e4f;
     spring.rest_length = 20;
-    check_ok(mspring_builder_add_spring(builder, &spring, NULL));
+    check_ok(mspring_builder_add_springs(builder, &spring, 1, NULL));
     const mspring_network_def def = support_def(-9.8f, 100);
     mspring_network *network = support_network(builder, &def);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = 0.2;
     check_ok(mspring_network_set_contact(network, &contact));
     mspring_collider_def ball;
-    check_ok(mspring_collider_def_init(&ball, sizeof ball));
+    check_ok(mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &ball, sizeof ball));
     ball.kind = MSPRING_COLLIDER_CIRCLE;
     ball.radius = 0.5;
     ball.x = 1;
@@ -312,13 +312,13 @@ static void nobody_below_is_missed(void **state) {
         }
         mspring_network_def def = support_def(-9.8f, 8);
         def.spare_particles = 100;
-        def.sleep_speed = round % 2 ? 3.0f : 0.0f;
-        def.sleep_time = 0.02f;
-        def.guard = MSPRING_GUARD_CLAMP_BOUNDS;
+        def.settings.sleep_speed = round % 2 ? 3.0f : 0.0f;
+        def.settings.sleep_time = 0.02f;
+        def.settings.guard = MSPRING_GUARD_CLAMP_BOUNDS;
         mspring_network *network = support_network(builder, &def);
         coverage seen = {.y = far};
         mspring_hook_def hook;
-        check_ok(mspring_hook_def_init(&hook, sizeof hook));
+        check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &hook, sizeof hook));
         hook.phase = MSPRING_PHASE_AFTER_SUBSTEP;
         hook.flags = MSPRING_HOOK_BELOW;
         hook.below_y = seen.y;
@@ -330,11 +330,11 @@ static void nobody_below_is_missed(void **state) {
             const mspring_id p = (mspring_id)(support_random(&seed) % 300);
             const float speed = (float)pow(10, support_random_between(&seed, 0, 5));
             const float vx = (float)support_random_between(&seed, -1, 1) * speed, vy = -speed;
-            check_ok(mspring_network_set_velocities(network, p, 1, &vx, &vy, 1));
+            check_ok(mspring_network_set_velocities(network, NULL, p, 1, &vx, &vy, 1));
             if (step % 4 == 0) {
                 mspring_particle_def more;
                 mspring_id id;
-                check_ok(mspring_particle_def_init(&more, sizeof more));
+                check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &more, sizeof more));
                 more.x = far;
                 more.y = far + support_random_between(&seed, -20, 20);
                 check_ok(mspring_network_add_particles(network, &more, 1, &id));
@@ -354,14 +354,14 @@ static void sleepers_below_are_seen(void **state) {
         mspring_builder *builder = support_builder();
         support_spring(builder, support_particle(builder, 0, 0, 1), support_particle(builder, 1, 0, 1), 10, 0);
         mspring_network_def def = support_def(0, 4);
-        def.sleep_speed = 0.1f;
+        def.settings.sleep_speed = 0.1f;
         mspring_network *network = support_network(builder, &def);
         support_fall_asleep(network, dt);
         for (size_t k = 0; k < COUNT_OF(kinds); k++) {
             uint32_t number;
             ground to = {.y = above ? -1.0 : -0.0};
             mspring_hook_def hook;
-            check_ok(mspring_hook_def_init(&hook, sizeof hook));
+            check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &hook, sizeof hook));
             hook.phase = kinds[k].phase;
             hook.flags = MSPRING_HOOK_BELOW;
             hook.below_y = above ? -100 : 5;
@@ -418,7 +418,7 @@ static void heights_have_their_range(void **state) {
     const double bad[] = {NAN, INFINITY, -INFINITY, 1.1e12, -1.1e12}, good[] = {1e12, -1e12, 0};
     ground to = {.y = 0};
     mspring_hook_def def;
-    check_ok(mspring_hook_def_init(&def, sizeof def));
+    check_ok(mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def));
     def.fn = act;
     def.user = &to;
     for (size_t i = 0; i < COUNT_OF(bad); i++) {

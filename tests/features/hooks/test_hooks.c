@@ -77,7 +77,7 @@ static void record(const mspring_hook_args *args, void *user) {
     assert_ptr_equal(args->inverse_mass, to->view.inverse_mass);
     assert_ptr_equal(args->particle_of_slot, to->view.particle_of_slot);
     assert_ptr_equal(args->slot_of_particle, to->view.slot_of_particle);
-    assert_int_equal(mspring_network_particle_count(args->network), to->view.particle_count);
+    assert_int_equal(mspring_network_count(args->network, MSPRING_PARTICLES), to->view.particle_count);
     assert_true(args->origin_x == to->view.origin_x && args->origin_y == to->view.origin_y);
 
     assert_true(args->slot_count > 0 && args->first_slot < to->view.slot_count &&
@@ -96,7 +96,7 @@ static void hooks_are_called_in_order_for_every_particle(void **state) {
     mspring_network *network = mixed_network(SUBSTEPS);
     recorder seen = {.dt = 0.01, .view = {.struct_size = sizeof seen.view}};
     recorder_hook hooks[HOOKS];
-    check_ok(mspring_network_view(network, &seen.view));
+    check_ok(mspring_network_get_view(network, &seen.view));
     assert_true(seen.view.slot_count <= SLOTS);
     // Added out of the order of phases: it is the phase that decides, and within it the order of adding.
     const uint32_t order[HOOKS] = {4, 2, 0, 5, 1, 3};
@@ -141,7 +141,7 @@ static void forces_of_hooks_equal_forces_of_the_host(void **state) {
     for (size_t i = 0; i < COUNT_OF(phases); i++) {
         mspring_network *hooked = mixed_network(4), *hosted = mixed_network(4);
         float x[300], y[300];
-        const uint32_t count = mspring_network_particle_count(hooked);
+        const uint32_t count = mspring_network_count(hooked, MSPRING_PARTICLES);
         uint64_t seed = 77;
         assert_true(count <= 300);
         for (uint32_t id = 0; id < count; id++) {
@@ -151,7 +151,7 @@ static void forces_of_hooks_equal_forces_of_the_host(void **state) {
         puller forces = {x, y};
         check_ok(support_add_hook(hooked, phases[i], pull, &forces, NULL));
         for (int step = 0; step < 25; step++) {
-            check_ok(mspring_network_apply_forces(hosted, 0, count, x, y, 1));
+            check_ok(mspring_network_apply_forces(hosted, MSPRING_PUSH_STEP, NULL, 0, count, x, y, 1));
             check_ok(mspring_network_step(hosted, 0.02));
             check_ok(mspring_network_step(hooked, 0.02));
         }
@@ -234,7 +234,7 @@ static void a_hook_can_be_a_floor(void **state) {
         }
     }
     mspring_network_def def = support_def(-9.8f, 8);
-    def.global_damping = 2;
+    def.settings.global_damping = 2;
     mspring_network *network = support_network(builder, &def);
     double level = -5;
     check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, floor_hook, &level, NULL));
@@ -357,7 +357,7 @@ static void empty_slots_gather_nothing(void **state) {
     check_ok(support_add_hook(network, MSPRING_PHASE_BEFORE_STEP, accelerate_all_slots, NULL, NULL));
     check_ok(support_add_hook(network, MSPRING_PHASE_AFTER_SUBSTEP, hold_particles, NULL, NULL));
     mspring_view view = {.struct_size = sizeof view};
-    check_ok(mspring_network_view(network, &view));
+    check_ok(mspring_network_get_view(network, &view));
     support_steps(network, 30000, 0.01); // 1.2e6 m/s, more than max_speed, if it gathered
     for (uint32_t slot = 0; slot < view.slot_count; slot++) {
         if (view.particle_of_slot[slot] == MSPRING_NONE) {
@@ -382,40 +382,39 @@ static void call_from_inside(const mspring_hook_args *args, void *user) {
     float f[2] = {1, 1};
     double d[2] = {1, 1};
     uint32_t number = 4711;
-    mspring_solver_def solver;
-    check_ok(mspring_solver_def_init(&solver, sizeof solver));
+    mspring_settings solver;
+    check_ok(mspring_init(MSPRING_STRUCT_SETTINGS, &solver, sizeof solver));
     check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_BUSY);
     check_contains(mspring_network_error(network), "hook");
-    check_error(mspring_network_set_solver(network, &solver), MSPRING_ERROR_BUSY);
+    check_error(support_set_solver(network, &solver), MSPRING_ERROR_BUSY);
     check_error(support_set_gravity(network, 0, 0), MSPRING_ERROR_BUSY);
     check_error(support_set_global_damping(network, 1), MSPRING_ERROR_BUSY);
     check_error(mspring_network_apply_force(network, 0, 1, 1), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_apply_forces(network, 0, 2, f, f, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, 2, f, f, 1), MSPRING_ERROR_BUSY);
     check_error(support_add_hook(network, args->phase, call_from_inside, user, &number), MSPRING_ERROR_BUSY);
     check_error(mspring_network_remove_hook(network, 0), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_positions(network, 0, 2, d, d, 1), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_positions_float(network, 0, 2, f, f, 1), MSPRING_ERROR_BUSY);
-    check_error(mspring_network_set_velocities(network, 0, 2, f, f, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_positions(network, NULL, 0, 2, d, d, 1), MSPRING_ERROR_BUSY);
+    check_error(mspring_network_set_velocities(network, NULL, 0, 2, f, f, 1), MSPRING_ERROR_BUSY);
     assert_int_equal(number, 4711);
 
     // What is marked shared works.
     mspring_view view = {.struct_size = sizeof view};
-    mspring_plan plan = {.struct_size = sizeof plan};
-    mspring_spring_info info = {.struct_size = sizeof info};
+    support_plan plan;
+    support_spring_info info;
     mspring_id spring;
     uint64_t hash;
     double energy;
-    check_ok(mspring_network_view(network, &view));
-    check_ok(mspring_network_get_plan(network, &plan));
-    check_ok(mspring_network_get_spring(network, 0, &info));
-    check_ok(mspring_network_get_positions(network, 0, 2, d, d, 1));
-    check_ok(mspring_network_get_velocities(network, 0, 2, f, f, 1));
-    check_ok(mspring_network_get(network, MSPRING_MASS, 0, 2, f, 1));
-    check_ok(mspring_network_get(network, MSPRING_STRAIN, 0, 2, f, 1));
-    check_ok(mspring_network_energy(network, &energy, NULL, NULL));
-    check_ok(mspring_network_momentum(network, &energy, NULL, NULL));
-    check_ok(mspring_network_max_strain(network, NULL, &spring));
-    check_ok(mspring_network_state_hash(network, &hash));
+    check_ok(mspring_network_get_view(network, &view));
+    check_ok(support_get_plan(network, &plan));
+    check_ok(support_get_spring(network, 0, &info));
+    check_ok(mspring_network_get_positions(network, NULL, 0, 2, d, d, 1));
+    check_ok(mspring_network_get_velocities(network, NULL, 0, 2, f, f, 1));
+    check_ok(mspring_network_get(network, MSPRING_MASS, NULL, 0, 2, f, 1));
+    check_ok(mspring_network_get(network, MSPRING_STRAIN, NULL, 0, 2, f, 1));
+    check_ok(support_get_energy(network, &energy, NULL, NULL));
+    check_ok(support_get_momentum(network, &energy, NULL, NULL));
+    check_ok(support_get_max_strain(network, NULL, &spring));
+    check_ok(mspring_network_get_state_hash(network, &hash));
 }
 
 static void exclusive_calls_from_inside_are_refused(void **state) {
@@ -517,10 +516,10 @@ static mspring_network *network_with_spare(uint32_t spare) {
     def.spare_particles = spare;
     mspring_network *network = recipe_network(&made, &def);
     double min_x, min_y, max_x, max_y;
-    check_ok(mspring_network_bounds(network, &min_x, &min_y, &max_x, &max_y));
+    check_ok(support_get_bounds(network, &min_x, &min_y, &max_x, &max_y));
     const double plane[4] = {0, min_y - 0.01, 0, 1};
     mspring_floor_def ground;
-    check_ok(mspring_floor_def_init(&ground, sizeof ground));
+    check_ok(mspring_init(MSPRING_STRUCT_FLOOR_DEF, &ground, sizeof ground));
     ground.planes = plane;
     ground.plane_count = 1;
     check_ok(mspring_network_set_floor(network, &ground));
@@ -532,12 +531,12 @@ static void add_some(mspring_network *network) {
     mspring_particle_def added[40];
     mspring_id ids[COUNT_OF(added)];
     for (size_t i = 0; i < COUNT_OF(added); i++) {
-        check_ok(mspring_particle_def_init(&added[i], sizeof added[i]));
+        check_ok(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &added[i], sizeof added[i]));
         added[i].x = 0.5 * (double)i;
         added[i].y = 20;
     }
     check_ok(mspring_network_add_particles(network, added, COUNT_OF(added), ids));
-    check_ok(mspring_network_remove_particles(network, ids + 20, 20));
+    check_ok(mspring_network_remove_particles(network, ids + 20, 0, 20));
 }
 
 /// Spare particles that are not in use: no hook sees their slots, and no bit is another one, however many there
@@ -560,7 +559,7 @@ static void spare_slots_make_no_difference(void **state) {
         hashes[i][1] = support_hash(network);
         // A step that is refused.
         const float fast = 1e14f, none = 0;
-        check_ok(mspring_network_set_velocities(network, 3, 1, &fast, &none, 1));
+        check_ok(mspring_network_set_velocities(network, NULL, 3, 1, &fast, &none, 1));
         hashes[i][2] = support_hash(network);
         check_error(mspring_network_step(network, 0.004), MSPRING_ERROR_UNSTABLE);
         assert_int_equal(support_hash(network), hashes[i][2]);

@@ -35,8 +35,8 @@ static void leave_and_destroy(mspring_phase phase, uint32_t workers) {
     step_and_leave(network);
     for (int i = 0; i < 2; i++) {
         check_error(mspring_network_step(network, 0.01), MSPRING_ERROR_BUSY);
-        check_error(mspring_network_break_springs(network, &first, 1), MSPRING_ERROR_BUSY);
-        check_error(mspring_network_set_velocities(network, 0, 1, &value, &value, 1), MSPRING_ERROR_BUSY);
+        check_error(mspring_network_break_springs(network, &first, 0, 1), MSPRING_ERROR_BUSY);
+        check_error(mspring_network_set_velocities(network, NULL, 0, 1, &value, &value, 1), MSPRING_ERROR_BUSY);
         check_error(mspring_network_load(network, &value, sizeof value), MSPRING_ERROR_BUSY);
         check_error(mspring_network_compact(network), MSPRING_ERROR_BUSY);
         check_contains(mspring_network_error(network), "hook");

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "recipe.h"
+#include "snapshots.h"
 #include "support.h"
 
 #define DT (1.0 / 64)
@@ -27,10 +28,10 @@ static mspring_network *make(recipe *made, const way *how) {
     mspring_network_def def = support_def(0, how->substeps);
     def.simd_level = how->level;
     def.worker_count = how->workers;
-    def.solver = how->solver;
-    def.global_damping = 6;
-    def.sleep_speed = 0.02f;
-    def.sleep_time = 0.25f;
+    def.settings.solver = how->solver;
+    def.settings.global_damping = 6;
+    def.settings.sleep_speed = 0.02f;
+    def.settings.sleep_time = 0.25f;
     mspring_network *network = recipe_network(made, &def);
     recipe_free(made);
     return network;
@@ -84,7 +85,7 @@ static bool is_refused(double firmness) {
     mspring_network *network = make_two(firmness, &as_usual), *awake = NULL;
     mspring_result result = MSPRING_OK;
     support_steps(network, 128, DT / 2); // shorter ones, which A bears however firm it is here
-    assert_int_equal(mspring_network_is_asleep(network), 1);
+    assert_int_equal(support_is_asleep(network), 1);
     check_ok(mspring_network_clone(network, NULL, &awake));
     support_kick(network, IN_A, 0.1f);
     support_kick(awake, IN_A, 0.1f);
@@ -130,10 +131,10 @@ static uint64_t direct_session(mspring_simd level, uint32_t workers) {
             support_kick(network, frame % 80 == 30 ? IN_A : IN_B, 2);
         }
         if (frame == 50) {
-            check_ok(mspring_network_break_springs(network, &spring, 1));
+            check_ok(mspring_network_break_springs(network, &spring, 0, 1));
         }
         if (frame == 120) {
-            check_ok(mspring_network_restore_springs(network, &spring, 1, 0.1));
+            check_ok(mspring_network_restore_springs(network, &spring, 0, 1, 0.1));
         }
         support_steps(network, 1, DT);
         print =
@@ -166,7 +167,7 @@ static void direct_sleepers_go_on_elsewhere(void **state) {
     support_steps(all[0], 3, DT);
     assert_int_equal(support_sleeps(all[0], IN_A), 1);
     size_t size;
-    check_ok(mspring_network_snapshot_size(all[0], MSPRING_SNAPSHOT_ALL, &size));
+    check_ok(mspring_network_get_snapshot_size(all[0], MSPRING_SNAPSHOT_ALL, &size));
     void *bytes = malloc(size);
     assert_non_null(bytes);
     check_ok(mspring_network_save(all[0], MSPRING_SNAPSHOT_ALL, bytes, size, NULL));
@@ -209,7 +210,7 @@ static uint64_t loose_session(mspring_simd level, uint32_t workers, uint32_t sub
     for (int frame = 0; frame < 90; frame++) { // from sqrt(2) m/s to 0.02 takes 46 of them
         support_kick(network, IN_A, 1);
         support_steps(network, 1, DT);
-        check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep, 1));
+        check_ok(support_get_sleepers(network, first, LOOSE, asleep, 1));
         for (uint32_t i = 0; i < LOOSE; i++) {
             print = print * 3 + asleep[i];
         }
@@ -220,14 +221,14 @@ static uint64_t loose_session(mspring_simd level, uint32_t workers, uint32_t sub
     assert_int_equal(support_sleeps(network, IN_A), 0);
     print = print * 31 + support_hash(network);
 
-    check_ok(mspring_network_get_positions(network, first, LOOSE, x, y, 1));
+    check_ok(mspring_network_get_positions(network, NULL, first, LOOSE, x, y, 1));
     support_kick(network, pushed, 3);
     for (int frame = 0; frame < 10; frame++) {
         support_kick(network, IN_A, 1);
         support_steps(network, 1, DT);
     }
-    check_ok(mspring_network_get_sleepers(network, first, LOOSE, asleep, 1));
-    check_ok(mspring_network_get_positions(network, first, LOOSE, to_x, to_y, 1));
+    check_ok(support_get_sleepers(network, first, LOOSE, asleep, 1));
+    check_ok(mspring_network_get_positions(network, NULL, first, LOOSE, to_x, to_y, 1));
     for (uint32_t i = 0; i < LOOSE; i++) {
         const bool is_pushed = first + i == pushed;
         assert_int_equal(asleep[i], !is_pushed);
@@ -262,12 +263,12 @@ static void thousands_of_loose_ones_sleep(void **state) {
 /// none sleeps.
 static mspring_network *make_wreck(const recipe *made, mspring_id whole, float sleep_speed) {
     mspring_network_def def = support_def(0, 4);
-    def.sleep_speed = sleep_speed;
-    def.sleep_time = 0;
+    def.settings.sleep_speed = sleep_speed;
+    def.settings.sleep_time = 0;
     mspring_network *network = recipe_network(made, &def);
     for (mspring_id s = 0; s < made->spring_count; s++) {
         if (s != whole) {
-            check_ok(mspring_network_break_springs(network, &s, 1));
+            check_ok(mspring_network_break_springs(network, &s, 0, 1));
         }
     }
     support_steps(network, 1, DT);
@@ -284,7 +285,7 @@ static void a_spring_alone_moves_among_sleepers(void **state) {
     recipe_lattice(&made, 34, 3, 0, 0, 1, &stuff, &seed);
     for (mspring_id s = 0; s < made.spring_count; s++) {
         mspring_network *network = make_wreck(&made, s, 0.001f), *other = make_wreck(&made, s, 0);
-        assert_int_equal(mspring_network_is_asleep(network), 1);
+        assert_int_equal(support_is_asleep(network), 1);
         support_kick(network, made.springs[s].a, 1);
         support_kick(other, made.springs[s].a, 1);
         for (int step = 0; step < 4; step++) {
@@ -294,7 +295,7 @@ static void a_spring_alone_moves_among_sleepers(void **state) {
         }
         uint8_t asleep[102];
         uint32_t sleepers = 0;
-        check_ok(mspring_network_get_sleepers(network, 0, COUNT_OF(asleep), asleep, 1));
+        check_ok(support_get_sleepers(network, 0, COUNT_OF(asleep), asleep, 1));
         for (size_t p = 0; p < COUNT_OF(asleep); p++) {
             sleepers += asleep[p];
         }
@@ -313,9 +314,9 @@ static void the_only_island_goes_on_in_another_layout(void **state) {
     recipe made = {0};
     recipe_lattice(&made, COLUMNS, ROWS, 0, 0, 1, &stuff, &seed);
     mspring_network *network = make(&made, &as_usual);
-    const uint32_t springs = mspring_network_spring_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
     for (mspring_id s = 0; s < springs; s += 5) {
-        check_ok(mspring_network_break_springs(network, &s, 1));
+        check_ok(mspring_network_break_springs(network, &s, 0, 1));
     }
     uint32_t count;
     check_ok(mspring_network_update_components(network, &count, NULL));
@@ -323,13 +324,84 @@ static void the_only_island_goes_on_in_another_layout(void **state) {
     support_steps(network, 10, DT);
     check_ok(mspring_network_compact(network));
     support_steps(network, 5, DT);
-    assert_int_equal(mspring_network_is_asleep(network), 0);
+    assert_int_equal(support_is_asleep(network), 0);
     support_steps(network, 1, DT); // 0.25 s
-    assert_int_equal(mspring_network_is_asleep(network), 1);
-    check_ok(mspring_network_expand(network));
-    assert_int_equal(mspring_network_is_asleep(network), 1);
+    assert_int_equal(support_is_asleep(network), 1);
+    check_ok(support_expand(network));
+    assert_int_equal(support_is_asleep(network), 1);
     check_ok(mspring_network_compact(network));
-    assert_int_equal(mspring_network_is_asleep(network), 1);
+    assert_int_equal(support_is_asleep(network), 1);
+    mspring_network_destroy(network);
+}
+
+/* ------------------------------------------------------------------------------------------- values of now */
+
+/// Numbers that may be set, and another one for each.
+static const struct {
+    mspring_property property;
+    float other;
+} writable[] = {
+    {MSPRING_MASS, 1.5f},           {MSPRING_INVERSE_MASS_SCALE, 0.5f}, {MSPRING_FRICTION, 0.25f},
+    {MSPRING_RESTITUTION, 0.25f},   {MSPRING_STIFFNESS, 900},           {MSPRING_DAMPING, 0.5f},
+    {MSPRING_REST_LENGTH, 1.25f},   {MSPRING_WARN_STRAIN, 0.5f},        {MSPRING_PLASTIC_STRAIN, 0.125f},
+    {MSPRING_ELEMENT_STIFFNESS, 5}, {MSPRING_PRESSURE, 2},              {MSPRING_FILL, 1.5f},
+    {MSPRING_REST_AREA, 1.25f},     {MSPRING_REST_ANGLE, 0.25f},        {MSPRING_ELEMENT_DAMPING, 0.5f},
+    {MSPRING_SIGNAL, 1.25f}};
+
+/// An area, an angle, actuators and contact on what make_two() makes.
+static mspring_network *make_all_kinds(void) {
+    const mspring_id corners[] = {0, 1, COLUMNS + 1, COLUMNS}, arms[] = {5, 6, 7}, actuated[] = {3, 9};
+    mspring_network *network = make_two(1000, &as_usual);
+    mspring_area_def area = mspring_area_def_default();
+    mspring_angle_def angle = mspring_angle_def_default();
+    mspring_contact_def contact = mspring_contact_def_default();
+    area.stiffness = 10;
+    angle.stiffness = 1;
+    contact.thickness = 0.1;
+    check_ok(mspring_network_add_area(network, &area, corners, 4, NULL));
+    check_ok(mspring_network_add_angles(network, &angle, arms, 1, 3, NULL));
+    check_ok(mspring_network_set_actuators(network, actuated, 2, 1));
+    check_ok(mspring_network_set_contact(network, &contact));
+    support_fall_asleep(network, DT);
+    return network;
+}
+
+/// What is set already wakes nothing, and is no edit to frames. Another value wakes what it is of, but for strains at
+/// which a spring warns.
+static void values_of_now_wake_nothing(void **state) {
+    (void)state;
+    mspring_network *network = make_all_kinds();
+    saved frame = snapshots_save(network, MSPRING_SNAPSHOT_FRAME);
+    for (size_t i = 0; i < COUNT_OF(writable); i++) {
+        const mspring_property property = writable[i].property;
+        const mspring_id id = property == MSPRING_REST_ANGLE || property == MSPRING_ELEMENT_DAMPING;
+        float now;
+        check_ok(mspring_network_get(network, property, NULL, id, 1, &now, 1));
+        check_ok(mspring_network_set(network, property, NULL, id, 1, &now, 1));
+        if (!support_is_asleep(network))
+            print_error("property 0x%x wakes\n", (unsigned)property);
+        assert_true(support_is_asleep(network));
+    }
+    for (int mask = 0; mask < 2; mask++) {
+        uint32_t now;
+        check_ok(mspring_network_get_integers(network, mask ? MSPRING_MASKS : MSPRING_LAYERS, NULL, 3, 1, &now, 1));
+        check_ok(mspring_network_set_integers(network, mask ? MSPRING_MASKS : MSPRING_LAYERS, NULL, 3, 1, &now, 1));
+        assert_true(support_is_asleep(network));
+    }
+    check_ok(mspring_network_load(network, frame.bytes, frame.size));
+    free(frame.bytes);
+    for (size_t i = 0; i < COUNT_OF(writable); i++) {
+        const mspring_property property = writable[i].property;
+        const mspring_id id = property == MSPRING_REST_ANGLE || property == MSPRING_ELEMENT_DAMPING;
+        support_fall_asleep(network, DT);
+        check_ok(mspring_network_set(network, property, NULL, id, 1, &writable[i].other, 1));
+        if (property != MSPRING_WARN_STRAIN && support_is_asleep(network))
+            print_error("property 0x%x wakes nothing\n", (unsigned)property);
+        assert_true(property == MSPRING_WARN_STRAIN || !support_is_asleep(network));
+        float now;
+        check_ok(mspring_network_get(network, property, NULL, id, 1, &now, 1));
+        check_near((double)now, (double)writable[i].other, 1e-6);
+    }
     mspring_network_destroy(network);
 }
 
@@ -342,6 +414,7 @@ int main(void) {
         cmocka_unit_test(thousands_of_loose_ones_sleep),
         cmocka_unit_test(a_spring_alone_moves_among_sleepers),
         cmocka_unit_test(the_only_island_goes_on_in_another_layout),
+        cmocka_unit_test(values_of_now_wake_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,13 +29,13 @@ static mspring_network *piles(mspring_solver solver) {
         }
     }
     mspring_network_def def = support_def(-9.8f, 8);
-    def.solver = solver;
-    def.sleep_speed = 0.05f;
-    def.sleep_time = 0.2f;
-    def.global_damping = 2;
+    def.settings.solver = solver;
+    def.settings.sleep_speed = 0.05f;
+    def.settings.sleep_time = 0.2f;
+    def.settings.global_damping = 2;
     mspring_network *network = support_network(builder, &def);
     mspring_contact_def contact;
-    check_ok(mspring_contact_def_init(&contact, sizeof contact));
+    check_ok(mspring_init(MSPRING_STRUCT_CONTACT_DEF, &contact, sizeof contact));
     contact.thickness = 0.2;
     contact.friction = 1;
     check_ok(mspring_network_set_contact(network, &contact));
@@ -47,9 +47,9 @@ static void move_away(mspring_network *network, mspring_id first, uint32_t count
     for (mspring_id id = first; id < first + count; id++) {
         const double x = 100 + id, y = 50;
         if (how == BY_LIST) {
-            check_ok(mspring_network_set_positions_at(network, &id, 1, &x, &y, 1));
+            check_ok(mspring_network_set_positions(network, &id, 0, 1, &x, &y, 1));
         } else {
-            check_ok(mspring_network_set_positions(network, id, 1, &x, &y, 1));
+            check_ok(mspring_network_set_positions(network, NULL, id, 1, &x, &y, 1));
         }
     }
 }
@@ -58,13 +58,13 @@ static void prepare(mspring_network *network, way how) {
     const mspring_id spring = 0;
     if (how == STIFFENED_BEFORE) {
         const float stiffness = 2e4f;
-        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, spring, 1, &stiffness, 0));
+        check_ok(mspring_network_set(network, MSPRING_STIFFNESS, NULL, spring, 1, &stiffness, 0));
     }
     if (how == BROKEN_BEFORE)
-        check_ok(mspring_network_break_springs(network, &spring, 1));
+        check_ok(mspring_network_break_springs(network, &spring, 0, 1));
     if (how == AFTER_A_LOAD) {
         size_t size;
-        check_ok(mspring_network_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
+        check_ok(mspring_network_get_snapshot_size(network, MSPRING_SNAPSHOT_ALL, &size));
         void *snapshot = malloc(size);
         assert_non_null(snapshot);
         check_ok(mspring_network_save(network, MSPRING_SNAPSHOT_ALL, snapshot, size, NULL));
@@ -85,7 +85,7 @@ static void run(mspring_solver solver, way how, mspring_id first, uint32_t count
     // In half a second it falls 0.8 m, or onto the pins, which are 0.2 m lower.
     if (!(support_position(network, 4).y < before - 0.15))
         fail_msg("solver %d, way %d, support %u: the upper bar sleeps on", (int)solver, (int)how, first);
-    check_ok(mspring_network_get_sleepers(network, 0, IN_PILE * PILES, asleep, 1));
+    check_ok(support_get_sleepers(network, 0, IN_PILE * PILES, asleep, 1));
     for (mspring_id id = IN_PILE; id < IN_PILE * PILES; id++)
         assert_int_equal(asleep[id], 1);
     mspring_network_destroy(network);
@@ -115,11 +115,9 @@ static void lift_in_a_step(const mspring_hook_args *args, void *user) {
 static void save_and_go_on(mspring_solver solver, silent_way how) {
     mspring_network *network = piles(solver), *other = piles(solver);
     bool is_due = true;
-    mspring_mutable_view view = {.struct_size = sizeof view};
     if (how == BY_VIEW) {
-        check_ok(mspring_network_view_mutable(network, &view));
-        view.x[view.slot_of_particle[2]] += 60;
-        view.x[view.slot_of_particle[3]] += 60;
+        support_shift(network, 2, 60, 0);
+        support_shift(network, 3, 60, 0);
     }
     if (how == BY_CALL)
         move_away(network, 2, 2, BY_POSITIONS);

@@ -9,7 +9,7 @@ typedef struct euler {
     double *forces; ///< [2][slots]
 } euler;
 
-static mspring_result create(mspring_network *network, const mspring_solver_def *def, uint32_t tile_size,
+static mspring_result create(mspring_network *network, const mspring_settings *def, uint32_t tile_size,
                              void **object) {
     euler *made = mspringi_alloc(&network->memory, 1, sizeof *made);
     (void)def;
@@ -24,7 +24,7 @@ static mspring_result create(mspring_network *network, const mspring_solver_def 
     return MSPRING_OK;
 }
 
-static void get_def(const void *object, mspring_solver_def *def) {
+static void get_def(const void *object, mspring_settings *def) {
     (void)object;
     (void)def; // nothing but the kind
 }

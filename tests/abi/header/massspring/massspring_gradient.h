@@ -24,7 +24,7 @@
 /// **What is differentiated** is the explicit scheme itself (massspring.h, Physics), substep by substep. The number of
 /// substeps and dt are constants. States are those of the network, bit for bit; derivatives are in double precision.
 /// You get derivatives by the stiffness, damping and rest length of springs, positions and velocities, signals of
-/// actuators (massspring_batch.h) and forces. A network may have pins, global damping, gravity, and half-planes without
+/// actuators (batch.h) and forces. A network may have pins, global damping, gravity, and half-planes without
 /// friction and restitution. Anything else is rejected with a message that names it.
 ///
 /// **Memory.** A gradient keeps frames (MSPRING_SNAPSHOT_FRAME) of some steps, and the states of all substeps between
@@ -68,69 +68,67 @@ typedef enum mspring_gradient_of {
 /// @param forced        [forced_count] particles to which mspring_gradient_step() applies forces, each once; copied
 /// @param forced_count  0: none; then forced may be NULL
 /// @param gradient      receives the gradient
-/// @threads exclusive for network   @allocates yes, with the network's allocator   @since 0.2
-/// @errors ARGUMENT also if the network has something without a gradient (the message names it); ID, DUPLICATE in
-///         forced; LIMIT, MEMORY, BUSY
+/// Threads: exclusive for network. Allocates: yes, with the network's allocator. Errors: ARGUMENT also if the network
+/// has something without a gradient (the message names it); ID, DUPLICATE in forced; LIMIT, MEMORY, BUSY.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_create(mspring_network *network,
     uint32_t step_count, const mspring_id *forced, uint32_t forced_count, mspring_gradient **gradient);
 
 /// Free a gradient. NULL is allowed. The network stays.
-/// @threads exclusive   @allocates never   @since 0.2
+/// Threads: exclusive. Allocates: never.
 MSPRING_API void MSPRING_CALL mspring_gradient_destroy(mspring_gradient *gradient);
 
-/// Return the error message of the last call; "" if that succeeded, as mspring_builder_error(). NULL gives "".
-/// @threads shared   @allocates never   @since 0.2
+/// Return the error message of the last call; "" if that succeeded. NULL gives "".
+/// Threads: shared. Allocates: never.
 MSPRING_API const char *MSPRING_CALL mspring_gradient_error(const mspring_gradient *gradient);
 
 /// Step the network and record the step. The state is, bit for bit, that of mspring_network_step() after
-/// mspring_network_set_signals() and mspring_network_apply_forces_at().
+/// mspring_network_set() of MSPRING_SIGNAL and mspring_network_apply_forces().
 /// Between these calls only read the network. mspring_gradient_reverse() detects most edits, and returns an error.
 /// The guard of the step is MSPRING_GUARD_GROWTH, unless the network has MSPRING_GUARD_BOUNDS. So a step that another
 /// guard would clamp or repeat fails.
 /// @param dt       s, as for mspring_network_step()
-/// @param signals  [mspring_network_actuator_count()] 0.01 to 100; NULL: rest lengths stay
+/// @param signals  [mspring_network_count(network, MSPRING_ACTUATORS)] 0.01 to 100; NULL: rest lengths stay
 /// @param forces   [forced_count][2] x and y, N, during this step; NULL: none
-/// @threads exclusive for gradient and network   @allocates some steps   @since 0.2
-/// @errors as mspring_network_step(), mspring_network_set_signals(), mspring_network_apply_forces_at(); LIMIT after
-///         step_count steps; ARGUMENT also after mspring_gradient_reverse(), or if the layout has changed; MEMORY
+/// Threads: exclusive for gradient and network. Allocates: some steps. Errors: as mspring_network_step(),
+/// mspring_network_set() of MSPRING_SIGNAL and mspring_network_apply_forces(); LIMIT after step_count steps; ARGUMENT
+/// also after mspring_gradient_reverse(), or if the layout has changed; MEMORY.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_step(
     mspring_gradient *gradient, double dt, const float *signals, const float *forces);
 
 /// Add derivatives of the loss by the state before the earliest step reversed so far: at first, the final state.
 /// @param ids         [count] particles, or NULL: first ... first + count - 1
-/// @param first       not used if ids is given
+/// @param first       place in ids where they begin, or the first id
 /// @param positions   [count][2] derivatives by x and y, unit of the loss per m; NULL: none
 /// @param velocities  [count][2] derivatives by vx and vy, unit of the loss per m/s; NULL: none
-/// @threads exclusive   @allocates never   @since 0.2   @errors ID, ARGUMENT also for NaN and infinity
+/// Threads: exclusive. Allocates: never. Errors: ID, ARGUMENT also for NaN and infinity.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_add_seeds(mspring_gradient *gradient,
     const mspring_id *ids, mspring_id first, uint32_t count, const double *positions, const double *velocities);
 
 /// Go back by step_count steps. On entering a segment between two frames, its steps are first computed again on the
 /// clone.
 /// @param step_count  at most the number of steps not reversed yet
-/// @threads exclusive for gradient, shared for network   @allocates yes   @since 0.2
-/// @errors ARGUMENT also if steps computed again differ because the network was edited between them, or if the floor
-///         acted in a corner; UNSTABLE if a derivative is not finite; MEMORY. After any error but a step_count that is
-///         too large, destroy the gradient: its derivatives are incomplete.
+/// Threads: exclusive for gradient, shared for network. Allocates: yes. Errors: ARGUMENT also if steps computed again
+/// differ because the network was edited between them, or if the floor acted in a corner; UNSTABLE if a derivative is
+/// not finite; MEMORY. After any error but a step_count that is too large, destroy the gradient: its derivatives are
+/// incomplete.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_reverse(
     mspring_gradient *gradient, uint32_t step_count);
 
 /// Read derivatives of the loss. They include all steps reversed so far.
 /// @param of      the quantity
 /// @param ids     [count] springs or particles, or NULL: first ... first + count - 1; removed ones read as 0
-/// @param first   not used if ids is given
+/// @param first   place in ids where they begin, or the first id
 /// @param values  receives the derivative by element i in values[i * stride]
 /// @param stride  elements from one value to the next, at least 1
-/// @threads shared   @allocates never   @since 0.2   @errors ID, ARGUMENT; without a message
+/// Threads: shared. Allocates: never. Errors: ID, ARGUMENT; without a message.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_get(const mspring_gradient *gradient,
     mspring_gradient_of of, const mspring_id *ids, mspring_id first, uint32_t count, double *values, uint32_t stride);
 
 /// Read derivatives of the loss by the signals, or by the forces (N), of a step; 0 if the step is not reversed.
 /// The derivative by a signal includes later steps without signals, in which the rest lengths stayed.
 /// @param step    number of the step, from 0
-/// @param values  receives [mspring_network_actuator_count()], or [forced_count][2] by x and y
-/// @threads shared   @allocates never   @since 0.2   @errors ID for a step that was not recorded, ARGUMENT; without a
-///          message
+/// @param values  receives [mspring_network_count(network, MSPRING_ACTUATORS)], or [forced_count][2] by x and y
+/// Threads: shared. Allocates: never. Errors: ID for a step that was not recorded, ARGUMENT; without a message.
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_get_signals(
     const mspring_gradient *gradient, uint32_t step, double *values);
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_gradient_get_forces(
