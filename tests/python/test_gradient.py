@@ -73,7 +73,7 @@ class GradientTest(unittest.TestCase):
         with made() as a, made() as b:
             a.gradient(loss, STEPS, dt=DT)
             b.step(DT, STEPS)
-            self.assertEqual(a.state_hash(), b.state_hash())
+            self.assertEqual(a.state_hash, b.state_hash)
 
     def test_terms_of_all_steps(self):
         with made() as network, massspring.Gradient(network, 4, forced=[6]) as run:
@@ -91,6 +91,10 @@ class GradientTest(unittest.TestCase):
                 run.step(DT)
             with self.assertRaisesRegex(massspring.Error, "stiffness, damping"):
                 run.get("mass")
+            with self.assertRaisesRegex(massspring.IdError, "no step 1"):
+                run.signals_of(1)
+            with self.assertRaisesRegex(massspring.IdError, "too large"):
+                run.get("stiffness", 9999)
         with made() as network:
             network.set_contact(thickness=0.1)
             with self.assertRaisesRegex(massspring.Error, "contact"):

@@ -24,7 +24,7 @@ def drop(stiffness, rows):
     network = bar(10, rows)
     network.set("stiffness", np.float32(stiffness))
     network.step(1 / 64, 40)
-    return {"drop": float(network.positions[:, 1].min()), "hash": network.state_hash()}
+    return {"drop": float(network.positions[:, 1].min()), "hash": network.state_hash}
 
 
 def slow(stiffness, rows):

@@ -18,10 +18,12 @@ class Header:
         if not texts:
             raise FileNotFoundError(f"there are no headers in {folder}")
         self.text = "".join(without_preprocessor_branches(texts[name]) for name in in_order(texts))
-        self.constants = constants(self.text)
+        self.macros = constants(self.text)
         self.enums, self.enumerators = enums(self.text)
-        self.constants.update(self.enumerators)
+        self.constants = {**self.macros, **self.enumerators}
         self.structs = structs(self.text)
+        kinds = re.findall(r"^MSPRING_DEFAULT\((\w+), (\w+)\);", self.text, flags=re.M)
+        self.kinds = {name: self.enumerators[kind] for name, kind in kinds}  # what mspring_init() makes
         numbers = [self.constants["MSPRING_VERSION_" + part] for part in ("MAJOR", "MINOR", "PATCH")]
         self.version = ".".join(map(str, numbers))
         self.constants["MSPRING_VERSION"] = numbers[0] * 1000000 + numbers[1] * 1000 + numbers[2]
@@ -30,6 +32,7 @@ class Header:
         """The headers as cffi reads them: without comments, macros and the preprocessor's lines."""
         text = re.sub(r"//[^\n]*|/\*.*?\*/", "", self.text, flags=re.S)
         text = re.sub(r"^[ \t]*#(?:\\\n|[^\n])*$", "", text, flags=re.M)
+        text = re.sub(r"^MSPRING_DEFAULT\(.*\);$", "", text, flags=re.M)  # as with MSPRING_NO_INLINE
         text = re.sub(r"\bMSPRING_(API|CALL|NODISCARD)\b", "", text)
         text = text.replace("MSPRING_ENUM_INT", str(-0x7FFFFFFF - 1))
         text = re.sub(r"\[(MSPRING_\w+)\]", lambda size: f"[{self.constants[size.group(1)]}]", text)

@@ -16,6 +16,7 @@ import numpy as np
 import massspring
 
 DT, SUBSTEPS, ACTUATED = 1 / 50, 20, 40
+OBSERVED = dict.fromkeys(("relative_x", "relative_y", "vx", "vy"), [0, 5, 30, 35])  # of the corners
 EVOGYM = 792  # steps a second of one robot of EvoGym's engine, on the machine of bench/RESULTS.md
 
 
@@ -26,7 +27,7 @@ def robot():
 
 
 def batch_of(count, has_contact):
-    batch = massspring.Batch(robot(), count, actuators=range(0, 2 * ACTUATED, 2), probes=[0, 5, 30, 35],
+    batch = massspring.Batch(robot(), count, actuators=range(0, 2 * ACTUATED, 2), observations=OBSERVED,
                              substeps=SUBSTEPS, gravity=(0, -9.8), max_speed=100)
     batch.network.set_floor(planes=[[0, 0, 0, 1]], friction=0.8)
     if has_contact:
@@ -57,13 +58,13 @@ def run(batch, seconds):
 
 def calls(batch, repeats=200):
     """Nanoseconds: of a signal, and of putting a robot back."""
-    take = massspring.lib.mspring_network_set_signals
+    take, signal = massspring.lib.mspring_network_set, massspring.Property.SIGNAL
     network, data = batch.network.pointer, massspring.ffi.from_buffer("float[]", batch.signals)
     groups = np.arange(batch.count, dtype=np.uint32)
     spans = []
     for _ in range(repeats):
         begin = time.perf_counter()
-        take(network, 0, batch.signals.size, data, 1)
+        take(network, signal, massspring.ffi.NULL, 0, batch.signals.size, data, 1)
         middle = time.perf_counter()
         batch.reset(groups)
         spans.append((middle - begin, time.perf_counter() - middle))
@@ -73,7 +74,7 @@ def calls(batch, repeats=200):
 
 def main():
     count, seconds = [int(text) for text in sys.argv[1:]] + [256, 5][len(sys.argv) - 1:]
-    print(f"{count} robots, {SUBSTEPS} substeps, {batch_of(count, False).network.simd_level}")
+    print(f"{count} robots, {SUBSTEPS} substeps, {batch_of(count, False).network.info.simd_level.name.lower()}")
     for has_contact in (False, True):
         batch = batch_of(count, has_contact)
         batch.step(DT, count=50)
@@ -82,7 +83,7 @@ def main():
         print(f"self-contact {'yes' if has_contact else 'no '}: {rate:9,.0f} steps a second, {rate / EVOGYM:.0f} times "
               f"{EVOGYM}. us a robot: numpy's signals {1e6 * times[0] / count:.2f}, step {1e6 * times[1] / count:.2f}, "
               f"observe {1e6 * times[2] / count:.2f}, reset {1e6 * times[3] / count:.3f}. "
-              f"{batch.network.memory_used / count / 1024:.1f} kB a robot, held {int(batch.held.sum())}")
+              f"{batch.network.info.memory_used / count / 1024:.1f} kB a robot, held {int(batch.held.sum())}")
         signal, reset = calls(batch)
         print(f"  a signal is handed over in {signal:.2f} ns, a robot put back in {reset:.0f} ns")
 

@@ -76,7 +76,7 @@ class Crowd:
 
     def __init__(self, count):
         self.batch = massspring.Batch(BUILDER, count, actuators=MUSCLES, changes=5, substeps=10, gravity=(0, 0))
-        self.feet = (np.arange(count)[:, None] * self.batch.particles + FEET).ravel().astype("u4")
+        self.feet = (self.batch.first_particles[:-1, None] + FEET).ravel()
 
     def ways(self, gaits):
         self.batch.reset()

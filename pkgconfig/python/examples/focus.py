@@ -24,8 +24,7 @@ TARGET = (ROWS // 2, 48)      # row, column
 def lattice():
     builder = massspring.Builder()
     ids = builder.add_lattice(np.zeros((ROWS, COLUMNS), int), {"mass": 1.0, "stiffness": STIFF})
-    network = massspring.Network(builder, substeps=3, gravity=(0, 0), flags=massspring.NETWORK_PRECISE,
-                                 global_damping=0.05)
+    network = massspring.Network(builder, substeps=3, gravity=(0, 0), precise=True, global_damping=0.05)
     return network, ids
 
 

@@ -47,7 +47,7 @@ def seconds_of(call, networks):
 
 def main():
     count, repeats = [int(text) for text in sys.argv[1:]] + [1000, 40][len(sys.argv) - 1:]
-    level = together(SHAPES[0], 1)[0].simd_level
+    level = together(SHAPES[0], 1)[0].info.simd_level.name.lower()
     print(f"{count} bodies, {SUBSTEPS} substeps, {level}, the median of {repeats} turns")
     print("cells   us a body apart   together   times faster   share of Python's calls")
     for shape in SHAPES:

@@ -29,7 +29,7 @@ def bounce(stiffness, damping):
         heights, sizes = [], []
         for _ in range(130):
             network.step(1 / 64)
-            box = network.bounds()
+            box = network.body
             heights.append(box.min_y)
             sizes.append(box.max_y - box.min_y)
     first = int(np.argmax(np.array(heights) < 0.01 * FALL))

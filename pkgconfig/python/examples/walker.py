@@ -22,6 +22,7 @@ SHAPE = np.array([[1, 1, 1, 1, 1, 1, 1, 1],
                   [1, 1, 1, 0, 0, 1, 1, 1],
                   [1, 1, 1, 0, 0, 1, 1, 1]], bool)
 SPACING = 0.1  # m
+SEEN = ("relative_x", "relative_y", "vx", "vy")  # of some particles: what a robot feels
 # Rows of particles whose springs get one signal together, as (first row, column) and (last row, column).
 MUSCLES = [((2, 0), (5, 0)), ((2, 2), (5, 2)), ((2, 5), (5, 5)), ((2, 7), (5, 7)), ((0, 0), (0, 7)), ((2, 2), (2, 5))]
 
@@ -52,15 +53,15 @@ class Walkers:
         feet = [int(np.argmin(abs(x - np.arange(8)))) for x in (0, 7)]
         count_of_row = SHAPE.sum(1).cumsum()
         probes = [feet[0], feet[1], int(count_of_row[-1]) - 6, int(count_of_row[-1]) - 1]  # corners of the body, feet
-        self.batch = massspring.Batch(builder, count, actuators=springs, probes=probes, substeps=20,
-                                      gravity=(0, -9.8), max_speed=50)
+        self.batch = massspring.Batch(builder, count, actuators=springs, observations=dict.fromkeys(SEEN, probes),
+                                      substeps=20, gravity=(0, -9.8), max_speed=50)
         self.batch.network.set_floor(planes=[[0, 0, 0, 1]], friction=1.0)
         self.action_shape, self.observation_shape = (count, len(MUSCLES)), self.reset()[0].shape
 
     def _observation(self):
         self.batch.observe()
-        return np.concatenate([self.batch.velocities, self.batch.probe_states.reshape(self.batch.count, -1),
-                               self.batch.centres[:, 1:]], 1)
+        probes = np.stack([self.batch[name] for name in SEEN], 2)
+        return np.concatenate([self.batch.velocities, probes.reshape(self.batch.count, -1), self.batch.centres[:, 1:]], 1)
 
     def reset(self):
         self.batch.reset()
@@ -116,7 +117,7 @@ def draw(mean, picture):
 
     def watch(at):
         if at.steps % 2 == 0:
-            frames.add(network.positions, network.ends, network.strains, at.batch.centres[0, 0])
+            frames.add(network.positions, network.ends, network.get("strain"), at.batch.centres[0, 0])
 
     way = walk(walkers, mean[None], watch)
     frames.save(picture)

@@ -14,12 +14,11 @@ its subclasses, one for each mspring_result. massspring.lib and massspring.ffi (
 SPDX-License-Identifier: MIT
 """
 from . import _header, plotting
-from ._core import ffi, lib, text_of
+from ._core import enum_value, ffi, lib, text_of
 from ._header import *  # noqa: F401,F403
 from ._header import VERSION as __version__
-from ._measure import Bounds, Energy, Momentum
 from ._state import StateView
-from ._types import ClosedError, Error, Record, StaleViewError
+from ._types import ClosedError, Error, StaleViewError
 from .batch import Batch
 from .builder import Builder, material
 from .gradient import Gradient, Gradients
@@ -38,12 +37,12 @@ def features() -> int:
     return lib.mspring_features()
 
 
-def simd_supported() -> str:
-    """The best instruction set that CPU, operating system and build offer."""
-    return text_of(lib.mspring_simd_name(lib.mspring_simd_supported()))
+def simd_available(level: "Simd | SimdName") -> bool:  # noqa: F405
+    """Whether networks can run at an instruction set here, such as "avx2"."""
+    return bool(lib.mspring_simd_available(enum_value("mspring_simd", "level", level)))
 
 
-__all__ = ["Batch", "Bounds", "Builder", "ClosedError", "Energy", "Error", "Momentum", "Network", "Record",
-           "StaleViewError", "StateView", "SweepResult", "TuneTable", "__version__", "features", "ffi", "lib", "material",
-           "plotting", "simd_supported", "sweep", "version"]
+__all__ = ["Batch", "Builder", "ClosedError", "Error", "Network", "StaleViewError", "StateView", "SweepResult",
+           "TuneTable", "__version__", "features", "ffi", "lib", "material", "plotting", "simd_available", "sweep",
+           "version"]
 __all__ += _header.__all__

@@ -4,21 +4,21 @@ SPDX-License-Identifier: MIT
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, List, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _header
-from ._calls import Export, NetworkCalls, Span, output
-from ._core import Ids, bad_argument, empty, enum_value, ffi, lib, numbers, pointer
+from ._calls import Export, NetworkCalls, output
+from ._core import Ids, Span, bad_argument, column, defaults, enum_value, ffi, lib, pointer, word
 from ._types import StaleViewError
 
 if TYPE_CHECKING:
-    from ._header import Property, PropertyName
+    from ._header import Property, PropertyName, Push, PushName
 
 
 class StateView:
-    """The state as it lies in memory, without a copy: read-only arrays by slot. Network.view() makes it.
+    """The state as it lies in memory, without a copy: read-only arrays by slot. Network.view is one.
 
     x, y, vx, vy      float32 by slot, m relative to origin, and m/s
     inverse_mass      float32 by slot, 1/kg; 0 if the particle is pinned, or where there is none
@@ -35,8 +35,8 @@ class StateView:
 
     def __init__(self, network: StateCalls):
         with network._lock:
-            self._struct = empty("mspring_view")
-            network._read(lib.mspring_network_view, self._struct)
+            self._struct = defaults("mspring_view")
+            network._read(lib.mspring_network_get_view, self._struct)
             self._network, self._changes, self._owner = network, network._changes, network._live()
 
     def _now(self) -> Any:
@@ -67,9 +67,21 @@ class StateView:
         return self._now().slot_count
 
 
+def default_of(number: int) -> Any:
+    """The value of a property for which none was given."""
+    name = _header.Property(number).name.lower()
+    kind = ("mspring_particle_def", "mspring_spring_def")[number >> 8] if number >> 8 < 2 else None
+    if kind and name in _header.KEYWORDS[kind]:
+        return getattr(defaults(kind), name)
+    if number not in _header.PROPERTY_DEFAULTS:
+        raise TypeError(f"{name} is None, but it has no default: give a number")
+    return _header.PROPERTY_DEFAULTS[number]
+
+
 class StateCalls(NetworkCalls):
     """State and properties of a Network."""
 
+    @property
     def view(self) -> StateView:
         """The state as it lies in memory, without a copy."""
         return StateView(self)
@@ -80,31 +92,23 @@ class StateCalls(NetworkCalls):
         """World positions, m: float64 (n, 2), or (2,) for one id.
 
         ids  None for all, an id, a range, a slice, a list of ids or a mask
-        out  (n, 2), contiguous, float64 or float32, to fill instead of a new array
+        out  (n, 2), contiguous, float64, to fill instead of a new array
         """
-        span = Span(ids, self.particle_count)
-        if out is not None and getattr(out, "dtype", None) == np.float32:
-            out = output(out, (span.count, 2), "f4")
-            return self._pairs(lib.mspring_network_get_positions_float, lib.mspring_network_get_positions_float_at,
-                               span, "float", out)
-        out = output(out, (span.count, 2), "f8")
-        return self._pairs(lib.mspring_network_get_positions, lib.mspring_network_get_positions_at, span, "double", out)
+        span = self._particles(ids)
+        return self._pairs(lib.mspring_network_get_positions, span, "double", output(out, (span.count, 2), "f8"))
 
     def set_positions(self, values: Any, ids: Ids = None) -> None:
         """Set world positions, m: (n, 2), or (2,) for all of them."""
-        self._set_pairs(lib.mspring_network_set_positions, lib.mspring_network_set_positions_at,
-                        Span(ids, self.particle_count), "double", "positions", values)
+        self._set_pairs(lib.mspring_network_set_positions, (), self._particles(ids), "double", "positions", values)
 
     def get_velocities(self, ids: Ids = None, out: Optional[np.ndarray] = None) -> np.ndarray:
         """Velocities, m/s: float32 (n, 2), or (2,) for one id. Explicit steps leave those of half a substep ago."""
-        span = Span(ids, self.particle_count)
-        return self._pairs(lib.mspring_network_get_velocities, lib.mspring_network_get_velocities_at, span, "float",
-                           output(out, (span.count, 2), "f4"))
+        span = self._particles(ids)
+        return self._pairs(lib.mspring_network_get_velocities, span, "float", output(out, (span.count, 2), "f4"))
 
     def set_velocities(self, values: Any, ids: Ids = None) -> None:
         """Set velocities, m/s: (n, 2), or (2,) for all of them. A pinned particle moves by its velocity."""
-        self._set_pairs(lib.mspring_network_set_velocities, lib.mspring_network_set_velocities_at,
-                        Span(ids, self.particle_count), "float", "velocities", values)
+        self._set_pairs(lib.mspring_network_set_velocities, (), self._particles(ids), "float", "velocities", values)
 
     @property
     def positions(self) -> np.ndarray:
@@ -124,88 +128,79 @@ class StateCalls(NetworkCalls):
     def velocities(self, values: Any) -> None:
         self.set_velocities(values)
 
+    @property
     def state_hash(self) -> int:
         """Hash of positions, velocities, their lag and origin. Equal states have equal hashes on every machine."""
         made = ffi.new("uint64_t *")
-        self._read(lib.mspring_network_state_hash, made)
+        self._read(lib.mspring_network_get_state_hash, made)
         return made[0]
 
     # ------------------------------------------------------------------------------------------------- forces
 
-    def apply_forces(self, forces: Any, ids: Ids = None) -> None:
-        """Add forces during the whole next step, N: (n, 2), or (2,) for each. Forces on an id that repeats add up."""
-        self._set_pairs(lib.mspring_network_apply_forces, lib.mspring_network_apply_forces_at,
-                        Span(ids, self.particle_count), "float", "forces", forces)
+    def apply_forces(self, forces: Any, ids: Ids = None, push: Union[Push, PushName] = "step") -> None:
+        """Add forces during the whole next step, N: (n, 2), or (2,) for each. On an id that repeats they add up.
 
-    def apply_impulses(self, impulses: Any, ids: Ids = None) -> None:
-        """Change velocities by impulses at once, N s: (n, 2), or (2,) for each."""
-        self._set_pairs(lib.mspring_network_apply_impulses, lib.mspring_network_apply_impulses_at,
-                        Span(ids, self.particle_count), "float", "impulses", impulses)
+        push  "step"; "substep": only during its first substep; or "impulse": these are impulses, N s, which change
+              velocities at once
+        """
+        self._set_pairs(lib.mspring_network_apply_forces, (enum_value("mspring_push", "push", push),),
+                        self._particles(ids), "float", "forces", forces)
 
     def apply_torque(self, torque: float, ids: Ids = None) -> None:
         """Add a torque during the next step, N m: forces around the centre of mass, whose sum is 0."""
-        span = Span(ids, self.particle_count)
-        listed = ffi.NULL if span.ids is None else pointer("mspring_id", span.ids)
-        self._change(lib.mspring_network_apply_torque, listed, span.first, span.count, torque)
+        self._change(lib.mspring_network_apply_torque, *self._particles(ids).arguments, torque)
 
     # --------------------------------------------------------------------------------------------- properties
 
-    def _property(self, name: Union[Property, str, int], ids: Ids) -> Tuple[int, Span]:
+    def _property(self, name: Any, ids: Ids) -> Tuple[int, Span, str, str]:
+        """Its number, the things, and the types of numpy and C. Bits of the number name the kind and the type."""
         number = enum_value("mspring_property", "property", name)
-        of_particles = number in _header.PARTICLE_PROPERTIES
-        return number, Span(ids, self.particle_count if of_particles else self.spring_count)
+        is_integer = number >> 7 & 1
+        return number, Span(ids, self._count(number >> 8)), ("f4", "u4")[is_integer], ("float", "uint32_t")[is_integer]
 
     def get(self, property: Union[Property, PropertyName], ids: Ids = None, out: Optional[np.ndarray] = None) -> Any:
-        """Read a property of particles or springs: float32 (n,), or one number for one id.
+        """Read a property: float32 or, of flags, layers and ids, uint32 (n,); or one number for one id.
 
-        property  such as "mass" (kg), "stiffness" (N/m), "rest_length" (m), "strain" or "force" (N): see Property
+        property  such as "mass" (kg), "strain", "tension" (N), "layers" or "pressure" (N/m): see Property
         ids       None for all, an id, a range, a slice, a list of ids or a mask
         """
-        number, span = self._property(property, ids)
-        out = output(out, (span.count,), "f4")
-        values = pointer("float", out)
-        if span.ids is None:
-            self._read(lib.mspring_network_get, number, span.first, span.count, values, 1)
-        else:
-            self._read(lib.mspring_network_get_at, number, pointer("mspring_id", span.ids), span.count, values, 1)
-        return float(out[0]) if span.is_one else out
+        number, span, dtype, ctype = self._property(property, ids)
+        out = output(out, (span.count,), dtype)
+        function = lib.mspring_network_get if dtype == "f4" else lib.mspring_network_get_integers
+        self._read(function, number, *span.arguments, pointer(ctype, out), 1)
+        return out[0].item() if span.is_one else out
 
     def set(self, property: Union[Property, PropertyName], values: Any, ids: Ids = None) -> None:
-        """Set a property of particles or springs: all values or, on error, none. values is (n,), or one for all."""
-        number, span = self._property(property, ids)
-        array = np.atleast_1d(numbers("values", values, "f4", (None,) * np.ndim(values)))
-        if np.ndim(values) > 1 or (np.ndim(values) and len(array) != span.count):
-            raise bad_argument(f"values has the shape {np.shape(values)}: it must be a number or ({span.count},)")
-        stride = 1 if np.ndim(values) else 0
-        if span.ids is None:
-            self._change(lib.mspring_network_set, number, span.first, span.count, pointer("float", array), stride)
-        else:
-            self._change(lib.mspring_network_set_at, number, pointer("mspring_id", span.ids), span.count,
-                         pointer("float", array), stride)
+        """Set a property: all values or, on error, none.
 
-    @property
-    def strains(self) -> np.ndarray:
-        """Strains of all springs by id: float32. 0 if a spring is broken."""
-        return self.get("strain")
+        values  (n,), or one for all; None for the default, as of break_strain or friction
+        """
+        number, span, dtype, ctype = self._property(property, ids)
+        if values is None:
+            values = default_of(number)
+        elif isinstance(values, str):
+            values = word(_header.Property(number).name.lower(), values)
+        array = np.ascontiguousarray(column("values", values, span.count, np.dtype(dtype)), dtype)
+        function = lib.mspring_network_set if dtype == "f4" else lib.mspring_network_set_integers
+        self._change(function, number, *span.arguments, pointer(ctype, array), int(np.ndim(values)))
+
+    def columns(self, *properties: Union[Property, PropertyName], ids: Ids = None) -> List[Any]:
+        """Read properties of the same things in one pass: length, strain = network.columns("length", "strain").
+
+        Each is what get() returns. Lengths, directions and strains together take little longer than one of them.
+        """
+        if not properties:
+            raise bad_argument("columns() needs properties")
+        wanted = [self._property(name, ids) for name in properties]
+        columns = ffi.new("mspring_column[]", len(wanted))
+        span = wanted[0][1]  # the library sees whether all are of its kind
+        arrays = [np.empty(span.count, dtype) for _, _, dtype, _ in wanted]
+        for column_, (number, _, _, ctype), array in zip(columns, wanted, arrays):
+            column_.property, column_.stride, column_.values = number, 1, pointer(ctype, array)
+        self._read(lib.mspring_network_get_columns, *span.arguments, columns, len(wanted))
+        return [array[0].item() for array in arrays] if span.is_one else arrays
 
     @property
     def ends(self) -> np.ndarray:
         """Particles at the ends of all springs by id: uint32 (n, 2). NONE for removed ones."""
-        out = np.empty((self.spring_count, 2), np.uint32)
-        self._read(lib.mspring_network_get_ends, 0, len(out), _header.ENDS_IDS, pointer("uint32_t", out),
-                   pointer("uint32_t", out, 1), 2)
-        return out
-
-    @property
-    def spring_flags(self) -> np.ndarray:
-        """Flags of all springs by id: uint32, such as SPRING_BROKEN."""
-        out = np.empty(self.spring_count, np.uint32)
-        self._read(lib.mspring_network_get_spring_flags, 0, len(out), pointer("uint32_t", out), 1)
-        return out
-
-    @property
-    def sleepers(self) -> np.ndarray:
-        """Which particles sleep, by id: booleans."""
-        out = np.empty(self.particle_count, np.uint8)
-        self._read(lib.mspring_network_get_sleepers, 0, len(out), pointer("uint8_t", out), 1)
-        return out.astype(bool)
+        return np.stack(self.columns("end_a", "end_b"), 1)

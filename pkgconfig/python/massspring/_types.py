@@ -2,7 +2,7 @@
 
 SPDX-License-Identifier: MIT
 """
-from typing import Any, ClassVar, Dict, Iterator, Optional, Tuple
+from typing import Any, NamedTuple, Optional, Tuple
 
 NO_ID = 0xFFFFFFFF
 
@@ -32,34 +32,17 @@ class StaleViewError(Error, ValueError):
     """A view was used after the network had changed. Take a new one."""
 
 
-class Record:
-    """A report of the library: attributes by the names of the C struct. Ids that name nothing are None."""
+class Field(NamedTuple):
+    """A field of a struct as a keyword argument."""
 
-    _fields: ClassVar[Dict[str, Any]] = {}
+    kind: str                # its type in C
+    shape: Tuple[str, ...]   # of an array: numbers, fields that count, or "field - 1"
+    about: str
 
-    def __init__(self, struct: Any):
-        for name, kind in self._fields.items():
-            value = getattr(struct, name)
-            if kind == "mspring_id":
-                value = None if value == NO_ID else value
-            elif kind:
-                try:
-                    value = kind(value)
-                except ValueError:
-                    pass  # of a newer library
-            elif not isinstance(value, (int, float)):
-                value = tuple(value)
-            setattr(self, name, value)
 
-    def as_dict(self) -> Dict[str, Any]:
-        """The attributes as a dict."""
-        return {name: getattr(self, name) for name in self._fields}
+class Flag(NamedTuple):
+    """A flag as a keyword argument."""
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._fields)
-
-    def __eq__(self, other: object) -> bool:
-        return type(other) is type(self) and other.as_dict() == self.as_dict()  # type: ignore[attr-defined]
-
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self.as_dict().items())})"
+    field: str
+    bit: int
+    about: str

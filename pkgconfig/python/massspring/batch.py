@@ -1,86 +1,114 @@
-"""Many copies of one body in a network: driven, observed, held and put back singly.
+"""Many copies of bodies in a network: driven, observed, held and put back singly.
 
 SPDX-License-Identifier: MIT
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _header
-from ._calls import Span, count_of, output
-from ._core import Ids, bad_argument, enum_value, ffi, id_array, lib, numbers, pointer, with_keywords
+from ._calls import count_of, output
+from ._core import Ids, Span, bad_argument, dtype_of, enum_value, id_array, lib, pointer, with_keywords
 from .builder import Builder
 from .network import Network
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._header import NetworkKeywords, Reset
+    from ._header import NetworkKeywords, PropertyName, Reset, ResetName
 
-
-def _add_copies(robot: Builder, count: int, offsets: Any) -> Builder:
-    """A builder of count copies."""
-    stride, x, y = 0, ffi.NULL, ffi.NULL
-    if offsets is not None:
-        array = numbers("offsets", offsets, "f8", (count, 2))
-        stride, x, y = 2, pointer("double", array), pointer("double", array, 1)
-    made = Builder()
-    with robot._lock:
-        made._call(lib.mspring_builder_add_copies, robot._live(), count, x, y, stride, ffi.NULL, ffi.NULL)
-    return made
+# What a row begins with: numbers of the group itself.
+OF_GROUP = ("group_x", "group_y", "group_vx", "group_vy", "group_min_x", "group_min_y", "group_max_x", "group_max_y",
+            "group_flags")
 
 
 @with_keywords("mspring_network_def")
 class Batch:
-    """count copies of what a builder holds, in one network. Each of them is a group.
+    """count copies of what a builder holds, in one network; or, of pairs (builder, count), of several. Each is a group.
 
-    actuators  ids of springs of the builder: their rest lengths follow signals
-    changes    in how many parts a step takes them to their signals
-    probes     ids of particles of the builder, of which observations have positions and velocities
-    offsets    (count, 2), where each copy stands, m. None: all in the same place, as groups do not touch each other
-    substeps   must be given
+    actuators     ids of springs of the builder: their rest lengths follow signals. Of several: a list for each
+    changes       in how many parts a step takes them to their signals
+    observations  properties, and of which particles, springs, elements or actuators of each group: {"strain": [3, 4]}.
+                  Where a group has no such thing, the number is 0.
+    offsets       (count, 2), where each copy stands, m. None: in the same place, as groups do not touch each other
+    substeps      must be given
 
     A group that a step would throw out of bounds (max_speed) is held where it was, until reset(). The others have the
     same bits as if it were not there. network is the Network: give it floor and contact. Steps release the GIL.
     """
 
     count: int
-    particles: int
-    springs: int
     network: Network
-    actuators: np.ndarray
-    probes: np.ndarray
+    first_particles: np.ndarray
+    first_springs: np.ndarray
 
-    def __init__(self, builder: Builder, count: int, *, actuators: Any = (), changes: int = 1, probes: Any = (),
+    def __init__(self, bodies: Union[Builder, Sequence[Tuple[Builder, int]]], count: Optional[int] = None, *,
+                 actuators: Any = (), changes: int = 1, observations: Optional[Mapping[PropertyName, Any]] = None,
                  offsets: Any = None, **settings: Unpack[NetworkKeywords]):
-        self.count = count_of("count", count)
         if "substeps" not in settings:
             raise TypeError("a batch needs substeps: automatic ones would follow the stiffest of its groups")
-        self.particles, self.springs = builder.particle_count, builder.spring_count
-        self.network = Network(_add_copies(builder, self.count, offsets), **{"guard": "bounds", **settings})
-        firsts = np.arange(self.count + 1, dtype=np.uint32) * np.uint32(self.particles)
-        self.network._change(lib.mspring_network_set_groups, pointer("mspring_id", firsts), self.count)
-        self.actuators, self.probes = id_array("actuators", actuators), id_array("probes", probes)
-        self._set_actuators(count_of("changes", changes))
-        self._rows = np.zeros((self.count, _header.OBSERVE_PARTICLES + 4 * len(self.probes)))
-        self._signals = np.ones((self.count, len(self.actuators)), np.float32)
+        if isinstance(bodies, Builder):
+            pairs, listed = [(bodies, 1 if count is None else count)], [actuators]
+        else:
+            pairs, listed = list(bodies), list(actuators) or [()] * len(bodies)
+        if len(listed) != len(pairs):
+            raise bad_argument(f"actuators has {len(listed)} lists: it must have one for each of {len(pairs)} bodies")
+        self.count = sum(count_of("count", number) for _, number in pairs)
+        self.network = Network(self._builder(pairs, offsets), **{"guard": "bounds", **settings})
+        self.network._change(lib.mspring_network_set_groups, pointer("mspring_id", self.first_particles), self.count)
+        self._set_actuators(pairs, [id_array("actuators", one) for one in listed], changes)
+        self._observe(dict(observations or {}))
         self.observe()
 
-    def _set_actuators(self, changes: int) -> None:
-        if self.actuators.size and self.actuators.max() >= self.springs:
-            raise _header.IdError(f"actuators has {self.actuators.max()}, but there are {self.springs} springs",
-                                  _header.ERROR_ID)
-        springs = np.arange(self.count, dtype=np.uint32)[:, None] * np.uint32(self.springs) + self.actuators
-        springs = np.ascontiguousarray(springs.ravel(), np.uint32)
-        self.network._change(lib.mspring_network_set_actuators, pointer("mspring_id", springs), len(springs), changes)
+    def _builder(self, pairs: List[Tuple[Builder, int]], offsets: Any) -> Builder:
+        """A builder of all copies."""
+        made, particles, springs, done = Builder(), [0], [0], 0
+        for builder, number in pairs:
+            part = None if offsets is None else np.asarray(offsets)[done:done + number]
+            made.add_copies(builder, number, part)
+            for firsts, size in ((particles, builder.particle_count), (springs, builder.spring_count)):
+                firsts += range(firsts[-1] + size, firsts[-1] + number * size + 1, size) if size else firsts[-1:] * number
+            done += number
+        if offsets is not None and len(offsets) != done:
+            raise bad_argument(f"offsets has {len(offsets)} rows: it must have {done}")
+        self.first_particles, self.first_springs = np.array(particles, np.uint32), np.array(springs, np.uint32)
+        return made
+
+    def _set_actuators(self, pairs: List[Tuple[Builder, int]], listed: List[np.ndarray], changes: int) -> None:
+        """Actuators in the order of groups. Signals are a rectangle, of which a group uses the first ones of its row."""
+        springs, group = [], 0
+        self._signals = np.ones((self.count, max(len(one) for one in listed)), np.float32)
+        self._used = np.zeros(self._signals.shape, bool)
+        for (builder, number), one in zip(pairs, listed):
+            if one.size and one.max() >= builder.spring_count:
+                raise _header.IdError(f"actuators has {one.max()}, but there are {builder.spring_count} springs",
+                                      _header.ERROR_ID)
+            springs.append((self.first_springs[group:group + number, None] + one).ravel())
+            self._used[group:group + number, :len(one)] = True
+            group += number
+        self.network.set_actuators(np.concatenate(springs), changes)
+
+    def _observe(self, wanted: Dict[Any, Any]) -> None:
+        """The columns of a row."""
+        self._places: Dict[int, Any] = {}
+        columns = []
+        for name, ids in [*((name, None) for name in OF_GROUP), *wanted.items()]:
+            number = enum_value("mspring_property", "observations", name)
+            if ids is None and number >> 8 != _header.GROUPS:
+                raise TypeError(f"observations has no ids for {name}: give a list")
+            indices = [0] if ids is None else id_array("observations", ids).tolist()
+            self._places[number] = len(columns) if ids is None else slice(len(columns), len(columns) + len(indices))
+            columns += [(number, index) for index in indices]
+        self._columns = np.array(columns, dtype_of("mspring_observation"))
+        self.rows = np.zeros((self.count, len(columns)))
 
     def __len__(self) -> int:
         return self.count
 
     def __repr__(self) -> str:
-        return f"Batch({self.count} groups of {self.particles} particles and {self.springs} springs)"
+        return f"Batch({self.count} groups, {self.first_particles[-1]} particles, {self.first_springs[-1]} springs)"
 
     def __enter__(self) -> Batch:
         return self
@@ -105,80 +133,74 @@ class Batch:
         signals  rest lengths as multiples of those at first, 0.01 to 100: (count, actuators) or (actuators,). They are
                  copied into signals, which the steps use. They stay until others are given.
         """
+        wanted = self._signals
         if signals is not None:
             array = np.asarray(signals)
             if array.dtype.kind not in "biuf":
                 raise TypeError(f"signals has the dtype {array.dtype}: it must be real numbers")
             try:
-                self._signals[...] = array
+                wanted = np.broadcast_to(array, self._signals.shape)
             except ValueError:
                 raise bad_argument(f"signals has the shape {array.shape}: it must be {self._signals.shape}") from None
         if self._signals.size:
-            self.network._change(lib.mspring_network_set_signals, 0, self._signals.size,
-                                 pointer("float", self._signals), 1)
+            self.network.set("signal", wanted.ravel() if self._used.all() else wanted[self._used])
+            self._signals[...] = wanted
         self.network.step(dt, count)
 
-    def _choice(self, groups: Ids) -> Any:
-        """The list and the number of chosen groups. The caller keeps the list."""
-        if groups is None:
-            return None, 0
-        listed = Span(groups, self.count).as_list()
-        return (listed, len(listed)) if len(listed) else (None, None)
+    def _groups(self, groups: Ids) -> Tuple[Any, ...]:
+        return Span(groups, self.count, "groups").arguments
 
     def mark(self, groups: Ids = None) -> None:
         """Remember the state of groups, of all for None, for reset(to="mark")."""
-        listed, count = self._choice(groups)
-        if count is not None:
-            self.network._change(lib.mspring_network_mark_groups,
-                                 ffi.NULL if listed is None else pointer("uint32_t", listed), count)
+        self.network._change(lib.mspring_network_mark_groups, *self._groups(groups))
 
-    def reset(self, groups: Ids = None, to: "Reset | str" = "start") -> None:
+    def reset(self, groups: Ids = None, to: Union[Reset, ResetName] = "start") -> None:
         """Put groups back to their "start" or their "mark", and hold them no more. groups: ids, a mask, None for all."""
-        listed, count = self._choice(groups)
-        if count is not None:
-            self.network._change(lib.mspring_network_reset_groups,
-                                 ffi.NULL if listed is None else pointer("uint32_t", listed), count,
-                                 enum_value("mspring_reset", "to", to))
+        self.network._change(lib.mspring_network_reset_groups, enum_value("mspring_reset", "to", to),
+                             *self._groups(groups))
 
     # --------------------------------------------------------------------------------------------- observations
 
     def observe(self, out: Optional[np.ndarray] = None) -> np.ndarray:
         """Read all groups, and return a row for each: (count, columns) of float64.
 
-        Without out the rows are the batch's own, which centres, velocities, boxes, held and probe_states show.
+        Without out they are rows, which batch["strain"], centres, velocities, boxes and held show.
         """
-        rows = self._rows if out is None else output(out, self._rows.shape, "f8")
-        self.network._read(lib.mspring_network_observe_groups, 0, self.count, pointer("uint32_t", self.probes),
-                           len(self.probes), pointer("double", rows), rows.shape[1])
+        rows = self.rows if out is None else output(out, self.rows.shape, "f8")
+        self.network._read(lib.mspring_network_observe_groups, *self._groups(None),
+                           pointer("mspring_observation", self._columns), len(self._columns), pointer("double", rows),
+                           rows.shape[1])
         return rows
+
+    def __getitem__(self, name: PropertyName) -> np.ndarray:
+        """A property at the last observe(): (count, ids) as observations has them, (count,) of groups; a view."""
+        number = enum_value("mspring_property", "name", name)
+        if number not in self._places:
+            raise KeyError(f"{name} is not among the observations")
+        return self.rows[:, self._places[number]]
 
     @property
     def centres(self) -> np.ndarray:
         """Centres of mass at the last observe(), m: (count, 2), a view."""
-        return self._rows[:, _header.OBSERVE_X:_header.OBSERVE_Y + 1]
+        return self.rows[:, 0:2]
 
     @property
     def velocities(self) -> np.ndarray:
         """Velocities of the centres at the last observe(), m/s: (count, 2), a view."""
-        return self._rows[:, _header.OBSERVE_VX:_header.OBSERVE_VY + 1]
+        return self.rows[:, 2:4]
 
     @property
     def boxes(self) -> np.ndarray:
         """Smallest boxes at the last observe(), m: (count, 4) of min x, min y, max x, max y, a view."""
-        return self._rows[:, _header.OBSERVE_MIN_X:_header.OBSERVE_MAX_Y + 1]
+        return self.rows[:, 4:8]
 
     @property
     def held(self) -> np.ndarray:
         """Which groups were held at the last observe(): booleans."""
-        return self._rows[:, _header.OBSERVE_HELD] > 0
-
-    @property
-    def probe_states(self) -> np.ndarray:
-        """Probes at the last observe(): (count, probes, 4) of position relative to the centre and velocity, a view."""
-        return self._rows[:, _header.OBSERVE_PARTICLES:].reshape(self.count, len(self.probes), 4)
+        return self.rows[:, 8].astype(np.uint32) & _header.GROUP_HELD != 0
 
     def positions(self, group: int) -> np.ndarray:
         """World positions of one group's particles, m: (particles, 2)."""
         if not 0 <= group < self.count:
             raise _header.IdError(f"there is no group {group}, but only {self.count}", _header.ERROR_ID)
-        return self.network.get_positions(range(group * self.particles, (group + 1) * self.particles))
+        return self.network.get_positions(range(*self.first_particles[group:group + 2].tolist()))

@@ -4,16 +4,18 @@ SPDX-License-Identifier: MIT
 """
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Callable, Dict, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _header
-from ._calls import Span, count_of
-from ._core import Handle, Ids, as_number, bad_argument, fail, ffi, id_array, lib, numbers, pointer, text_of
+from ._calls import count_of
+from ._core import Handle, Ids, Span, array_of, as_number, enum_value, ffi, id_array, lib, optional, pointer
 
-_SPRINGS = ("stiffness", "damping", "rest_length")
-_PARTICLES = ("x", "y", "vx", "vy")
+if TYPE_CHECKING:
+    from ._header import GradientOf, GradientOfName
+
+_SPRINGS: Tuple[GradientOfName, ...] = ("stiffness", "damping", "rest_length")
 
 
 class Gradient(Handle):
@@ -32,7 +34,7 @@ class Gradient(Handle):
     def __init__(self, network: Any, steps: int, forced: Any = ()):
         self.network, self.forced = network, id_array("forced", forced)
         self.capacity, self.count, self.left = count_of("steps", steps), 0, 0
-        self.actuators = network._value(lib.mspring_network_actuator_count)
+        self.actuators = network.actuator_count
         made = ffi.new("mspring_gradient **")
         network._change(lib.mspring_gradient_create, self.capacity, pointer("mspring_id", self.forced),
                         len(self.forced), made)
@@ -52,32 +54,26 @@ class Gradient(Handle):
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _call(self, function: Any, *arguments: Any) -> None:
+    def _call(self, function: Any, *arguments: Any, error: Any = lib.mspring_gradient_error) -> None:
         with self.network._lock:
             self.network._live()
-            live = self._live()
-            result = function(live, *arguments)
-            if result:
-                fail(result, text_of(lib.mspring_gradient_error(live)) or function.__name__)
+            self._checked(function, error, arguments)
 
     def step(self, dt: float, signals: Any = None, forces: Any = None) -> None:
         """Step the network by dt, s. signals: (actuators,) or None; forces: (forced, 2) in N, or None."""
-        s = None if signals is None else numbers("signals", signals, "f4", (self.actuators,))
-        f = None if forces is None else numbers("forces", forces, "f4", (len(self.forced), 2))
+        s = None if signals is None else array_of("signals", signals, "f4", (self.actuators,))
+        f = None if forces is None else array_of("forces", forces, "f4", (len(self.forced), 2))
         with self.network._lock:
             self.network._changes += 1
-            self._call(lib.mspring_gradient_step, as_number(dt), ffi.NULL if s is None else pointer("float", s),
-                       ffi.NULL if f is None else pointer("float", f))
+            self._call(lib.mspring_gradient_step, as_number(dt), optional("float", s), optional("float", f))
         self.count = self.left = self.count + 1
 
     def add_seeds(self, positions: Any = None, velocities: Any = None, ids: Ids = None) -> None:
         """Add derivatives of the loss by positions and velocities, (n, 2), where the reverse stands."""
-        span = Span(ids, self.network.particle_count)
-        p = None if positions is None else numbers("positions", positions, "f8", (span.count, 2))
-        v = None if velocities is None else numbers("velocities", velocities, "f8", (span.count, 2))
-        self._call(lib.mspring_gradient_add_seeds,
-                   ffi.NULL if span.ids is None else pointer("mspring_id", span.ids), span.first, span.count,
-                   ffi.NULL if p is None else pointer("double", p), ffi.NULL if v is None else pointer("double", v))
+        span = self.network._particles(ids)
+        p = None if positions is None else array_of("positions", positions, "f8", (span.count, 2))
+        v = None if velocities is None else array_of("velocities", velocities, "f8", (span.count, 2))
+        self._call(lib.mspring_gradient_add_seeds, *span.arguments, optional("double", p), optional("double", v))
 
     def reverse(self, count: Optional[int] = None) -> None:
         """Go back by count steps, or by all that are left. The GIL is released."""
@@ -85,16 +81,14 @@ class Gradient(Handle):
         self._call(lib.mspring_gradient_reverse, count)
         self.left -= count
 
-    def get(self, of: str, ids: Ids = None) -> np.ndarray:
+    def get(self, of: Union[GradientOf, GradientOfName], ids: Ids = None) -> Any:
         """Derivatives by stiffness, damping or rest_length of springs, or by x, y, vx or vy of particles."""
-        if of not in _SPRINGS + _PARTICLES:
-            raise bad_argument(f"of is {of!r}: it must be one of {', '.join(_SPRINGS + _PARTICLES)}")
-        total = self.network.spring_count if of in _SPRINGS else self.network.particle_count
-        span = Span(ids, total)
+        number = enum_value("mspring_gradient_of", "of", of)
+        kind = _header.Property[_header.GradientOf(number).name] >> 8  # of the property of that name
+        span = Span(ids, self.network._count(kind))
         out = np.empty(span.count)
-        self._call(lib.mspring_gradient_get, getattr(_header, "GRADIENT_" + of.upper()),
-                   ffi.NULL if span.ids is None else pointer("mspring_id", span.ids), span.first, span.count,
-                   pointer("double", out), 1)
+        self._call(lib.mspring_gradient_get, number, *span.arguments, pointer("double", out), 1,
+                   error=lambda _: ffi.new("char[]", b"ids has one that is removed or too large"))
         return out[0] if span.is_one else out
 
     @property
@@ -126,7 +120,9 @@ class Gradient(Handle):
         return self._input(lib.mspring_gradient_get_forces, step, np.zeros((len(self.forced), 2)))
 
     def _input(self, function: Any, step: int, out: np.ndarray) -> np.ndarray:
-        self._call(function, count_of("step", step), pointer("double", out))
+        if not 0 <= step < self.count:
+            raise _header.IdError(f"there is no step {step}, but {self.count} were taken", _header.ERROR_ID)
+        self._call(function, step, pointer("double", out))
         return out
 
     def _inputs(self, function: Any, shape: Tuple[int, ...]) -> np.ndarray:
@@ -160,6 +156,6 @@ def gradient_of(network: Any, loss: Callable[..., Any], steps: int, dt: float, s
         value, *seeds = loss(network.positions, network.velocities)
         run.add_seeds(*seeds)
         run.reverse()
-        values = {name: run.get(name) for name in _SPRINGS}
+        values: Dict[str, np.ndarray] = {name: run.get(name) for name in _SPRINGS}
         values.update((name, getattr(run, name)) for name in ("positions", "velocities", "signals", "forces"))
     return Gradients(float(value), values)

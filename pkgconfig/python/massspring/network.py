@@ -12,7 +12,7 @@ import numpy as np
 from . import _header
 from ._bodies import BodyCalls
 from ._calls import count_of
-from ._core import (as_number, bad_argument, changed, empty, enum_value, fail, ffi, filled, id_array, lib, pointer, text_of,
+from ._core import (Ids, as_number, bad_argument, changed, defaults, enum_value, fail, ffi, filled, lib, pointer, text_of,
                     with_keywords)
 from ._edits import EditCalls
 from ._laws import LawCalls
@@ -24,16 +24,18 @@ from .gradient import Gradients, gradient_of
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._header import (NetworkKeywords, Settings, SettingsKeywords, SnapshotContents, SolverDef, SolverKeywords,
-                          StepInfo)
+    from ._header import (CloneKeywords, NetworkKeywords, Settings, SettingsKeywords, SnapshotContents,
+                          SnapshotContentsName, StepInfo)
 
 
 @with_keywords("mspring_network_def")
 class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     """Masses joined by springs with dampers, in two dimensions. Units are SI; the y axis points up.
 
-    Network(builder, **settings) makes one of what the builder holds. Each keyword has the default of the C library.
-    gravity=(x, y) sets both. Enums may be given as text: solver="implicit".
+    Network(builder, **settings) makes one of what the builder holds. gravity=(x, y) sets both. Enums and special numbers
+    may be given as text: solver="implicit", substeps="auto". Flags are booleans: precise=True.
+
+    What takes no argument and changes nothing is a property.
 
     Use it in a with statement, call close(), or let it be collected. Steps release the GIL: networks step in parallel
     in threads. Calls on one network from several threads wait for each other. A call that fails changes nothing.
@@ -43,7 +45,9 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     def __init__(self, builder: Builder, **settings: Unpack[NetworkKeywords]):
         if not isinstance(builder, Builder):
             raise TypeError(f"builder is {builder!r}: it must be a massspring.Builder")
-        def_ = filled("mspring_network_def", dict(settings))
+        self._create(builder, filled("mspring_network_def", dict(settings)))
+
+    def _create(self, builder: Builder, def_: Any) -> None:
         made = ffi.new("mspring_network **")
         builder._call(lib.mspring_network_create, def_, made)
         self._take(made[0])
@@ -67,15 +71,14 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
             return "Network(closed)"
         return f"Network({self.particle_count} particles, {self.spring_count} springs)"
 
-    def clone(self, worker_count: int = 1) -> Network:
-        """Make an independent copy. The same calls on both give the same bits. It has no hooks."""
-        def_ = filled("mspring_clone_def", {"worker_count": worker_count})
+    @with_keywords("mspring_clone_def")
+    def clone(self, **fields: Unpack[CloneKeywords]) -> Network:
+        """Make an independent copy. The same calls on both give the same bits."""
         made = ffi.new("mspring_network **")
-        self._read(lib.mspring_network_clone, def_, made)
+        self._read(lib.mspring_network_clone, filled("mspring_clone_def", dict(fields)), made)
         copy = Network.__new__(Network)
         copy._take(made[0])
-        copy._was_compacted, copy._event_capacity = self._was_compacted, self._event_capacity
-        copy._contact_capacity, copy._component_count = self._contact_capacity, self._component_count
+        copy._was_compacted = self._was_compacted
         return copy
 
     def __copy__(self) -> Network:
@@ -110,13 +113,14 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
         is_its = info.result == result
         fail(result, message, info.particle if is_its else None, info.spring if is_its else None)
 
-    def set_actuators(self, springs: Any, changes: int = 1) -> None:
-        """Make springs actuators, whose rest lengths follow the signals of gradient(). Their lengths of now are signal 1.
+    def set_actuators(self, springs: Ids, changes: int = 1) -> None:
+        """Make springs actuators: their rest lengths follow set("signal", ...), and the signals of gradient().
 
-        springs  ids; these replace the actuators that there are
+        springs  these replace the actuators that there are; their lengths of now are signal 1
         changes  in how many even parts a step takes a length to its signal, 1 to 256
         """
-        ids = id_array("springs", springs)
+        span = self._springs(springs)
+        ids = span.ids if span.ids is not None else np.arange(span.first, span.first + span.count, dtype=np.uint32)
         self._change(lib.mspring_network_set_actuators, pointer("mspring_id", ids), len(ids),
                      count_of("changes", changes))
 
@@ -136,17 +140,12 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     @property
     def step_info(self) -> StepInfo:
         """Report of the last step, and of all steps so far."""
-        return self._report(_header.StepInfo, "mspring_step_info", lib.mspring_network_get_step_info)
+        return self._report("mspring_step_info", lib.mspring_network_get_step_info)
 
     @property
     def time(self) -> float:
         """Simulated time, s."""
         return self.step_info.time
-
-    @property
-    def is_asleep(self) -> bool:
-        """Whether all of the network sleeps."""
-        return bool(self._value(lib.mspring_network_is_asleep))
 
     def wake(self) -> None:
         """Wake all of the network."""
@@ -156,35 +155,25 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
 
     @property
     def settings(self) -> Settings:
-        """The settings that the next step uses."""
-        return self._report(_header.Settings, "mspring_settings", lib.mspring_network_get_settings)
+        """The settings that the next step uses, those of the solver included. set_settings() changes them."""
+        return self._report("mspring_settings", lib.mspring_network_get_settings)
 
     @with_keywords("mspring_settings")
     def set_settings(self, **fields: Unpack[SettingsKeywords]) -> None:
-        """Change some settings: all that are given or, on error, none. gravity=(x, y) sets both."""
-        self._modify("mspring_settings", lib.mspring_network_get_settings, lib.mspring_network_set_settings,
+        """Change some settings: all that are given or, on error, none. The others stay. gravity=(x, y) sets both."""
+        self._modify("mspring_settings", lib.mspring_network_get_settings, lib.mspring_network_set_settings, (),
                      dict(fields))
-
-    @property
-    def solver(self) -> SolverDef:
-        """The solver and its settings."""
-        return self._report(_header.SolverDef, "mspring_solver_def", lib.mspring_network_get_solver)
-
-    @with_keywords("mspring_solver_def")
-    def set_solver(self, **fields: Unpack[SolverKeywords]) -> None:
-        """Change the solver, or some of its settings. The others stay."""
-        self._modify("mspring_solver_def", lib.mspring_network_get_solver, lib.mspring_network_set_solver, dict(fields))
 
     # ------------------------------------------------------------------------------------------------ snapshots
 
-    def save(self, contents: Union[SnapshotContents, str] = "all") -> bytes:
+    def save(self, contents: Union[SnapshotContents, SnapshotContentsName] = "all") -> bytes:
         """Save a snapshot: all that the following steps depend on, or a "frame" for quick rollback.
 
         It fits networks that are made of the same particles and springs. Floor, contact and colliders are not in it.
         """
         number, size = enum_value("mspring_snapshot_contents", "contents", contents), ffi.new("size_t *")
         with self._lock:
-            self._read(lib.mspring_network_snapshot_size, number, size)
+            self._read(lib.mspring_network_get_snapshot_size, number, size)
             room = np.empty(size[0], np.uint8)
             self._read(lib.mspring_network_save, number, pointer("char", room), len(room), size)
         return room[:size[0]].tobytes()
@@ -199,8 +188,9 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
 
     # ------------------------------------------------------------------------------------------------- archives
 
+    @property
     def archive(self) -> bytes:
-        """Return an archive as bytes: all of the network but hooks, components and unread events.
+        """An archive as bytes: all of the network but hooks, components and unread events.
 
         This and all later versions read it, on every machine. Networks are pickled as archives.
         """
@@ -216,7 +206,7 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
 
     def write(self, path: Union[str, os.PathLike[str]]) -> None:
         """Write an archive to a file. Network.read() makes a network that continues from it."""
-        archive = self.archive()
+        archive = self.archive
         with open(path, "wb") as file:
             file.write(archive)
 
@@ -225,29 +215,26 @@ class Network(StateCalls, EditCalls, BodyCalls, LawCalls, MeasureCalls):
     def read(cls, source: Union[bytes, str, os.PathLike[str]], **settings: Unpack[NetworkKeywords]) -> Network:
         """Make a network of an archive. It continues where the archived one was, with the same ids.
 
-        source    bytes of archive(), or the path of a file
+        source    bytes of an archive, or the path of a file
         settings  override those of the archive, such as worker_count
         """
         if isinstance(source, (str, os.PathLike)):
             with open(source, "rb") as file:
                 source = file.read()
-        return cls._of_archive(bytes(source), dict(settings))
+        return cls._of_archive(memoryview(source).tobytes(), dict(settings))
 
     @classmethod
     def _of_archive(cls, archive: bytes, settings: Dict[str, Any]) -> Network:
-        made, def_ = ffi.new("mspring_network **"), empty("mspring_network_def")
+        network, def_ = cls.__new__(cls), defaults("mspring_network_def")
         with Builder() as builder:
             builder._call(lib.mspring_builder_read, ffi.from_buffer(archive), len(archive), ffi.NULL)
             builder._call(lib.mspring_builder_get_network_def, def_)
-            builder._call(lib.mspring_network_create, changed("mspring_network_def", def_, settings), made)
-        network = cls.__new__(cls)
-        network._take(made[0])
+            network._create(builder, changed("mspring_network_def", def_, settings))
         network._was_compacted = True  # perhaps
-        network._event_capacity = network._contact_capacity = 1024  # read at a time
         return network
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        return type(self)._of_archive, (self.archive(), {})
+        return type(self)._of_archive, (self.archive, {})
 
     # ------------------------------------------------------------------------------------------------- pictures
 

@@ -18,18 +18,18 @@ def draw(network: Network, ax: Any = None, color: Any = "strain", cmap: str = "c
     """Draw the springs that are not broken, and loose particles. Returns the LineCollection.
 
     ax       axes of matplotlib; None: the current ones
-    color    a property of springs, such as "strain" or "force"; an array (n,) by spring id; or a colour
+    color    a property of springs, such as "strain" or "tension"; an array (n,) by spring id; or a colour
     options  those of matplotlib.collections.LineCollection
     """
     from matplotlib import pyplot
     from matplotlib.collections import LineCollection
 
     ax = ax if ax is not None else pyplot.gca()
-    whole = (network.spring_flags & (_header.SPRING_BROKEN | _header.SPRING_REMOVED)) == 0
+    whole = (network.get("spring_flags") & (_header.SPRING_BROKEN | _header.SPRING_REMOVED)) == 0
     ends, positions = network.ends[whole], network.positions
     lines = LineCollection(positions[ends], linewidths=linewidth, **options)
     if isinstance(color, str) and color.upper() in _header.Property.__members__:
-        color = network.get(color)
+        color = network.get(_header.Property[color.upper()])
     if isinstance(color, np.ndarray) and color.shape == (len(whole),):
         values = color[whole]
         limit = float(np.abs(values).max()) if values.size else 0.0
@@ -39,9 +39,8 @@ def draw(network: Network, ax: Any = None, color: Any = "strain", cmap: str = "c
     else:
         lines.set_color(color)
     ax.add_collection(lines)
-    loose = np.setdiff1d(np.arange(len(positions)), ends)
-    loose = [particle for particle in loose.tolist() if network.has_particle(particle)]
-    if loose:
+    loose = np.setdiff1d(np.flatnonzero(network.get("particle_flags") & _header.PARTICLE_REMOVED == 0), ends)
+    if len(loose):
         ax.plot(*positions[loose].T, ".", markersize=2, color="black")
     ax.autoscale_view()
     ax.set_aspect("equal")

@@ -10,14 +10,14 @@ import os
 import pickle
 from itertools import product
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
 Case = Dict[str, Any]
 
 
-def cases(grid: Dict[str, Iterable[Any]]) -> List[Case]:
+def cases(grid: Mapping[str, Iterable[Any]]) -> List[Case]:
     """All combinations of a grid's values, the last name's changing first."""
     return [dict(zip(grid, values)) for values in product(*grid.values())]
 
@@ -124,7 +124,7 @@ def _submit(processes: Optional[int], engine: Any, calls: List[Tuple[Any, ...]])
         return [future.result() for future in [pool.submit(_run, *call) for call in calls]]
 
 
-def sweep(function: Callable[..., Any], grid: Dict[str, Iterable[Any]], processes: Optional[int] = None,
+def sweep(function: Callable[..., Any], grid: Mapping[str, Iterable[Any]], processes: Optional[int] = None,
           folder: Union[str, Path, None] = None, shard: Tuple[int, int] = (0, 1), *,
           engine: Any = None) -> Optional[SweepResult]:
     """Call function(**case) for each combination of the grid's values.
