@@ -75,9 +75,9 @@ function ours() {
   const builder = new ms.Builder(), cells = Uint16Array.from({ length: WIDTH * HEIGHT }, (_, i) => (held(i) ? 1 : 0));
   builder.addLattice({ width: WIDTH, height: HEIGHT, cells, materials });
   const network = new ms.Network(builder, { gravityY: GRAVITY });
-  network.setSolver({ substeps: Math.ceil(DT / network.stableDt().now) });
-  return { name: `libmassspring, explicit, ${network.getSolver().substeps} substeps`, step: () => network.step(DT),
-    at: (i) => network.positions({ ids: [i] }) };
+  network.setSettings({ substeps: Math.ceil(DT / network.stableDt.now) });
+  return { name: `libmassspring, explicit, ${network.settings.substeps} substeps`, step: () => network.step(DT),
+    at: (i) => network.positions(i) };
 }
 
 function plainLoop(substeps) {

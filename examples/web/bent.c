@@ -4,8 +4,6 @@
 /// SPDX-License-Identifier: MIT
 #include "internal.h"
 
-#include <massspring/massspring_laws.h>
-
 // Springs whose materials say nothing of it yield at this strain.
 static const float usual_yield_strain = 0.02f;
 
@@ -13,25 +11,24 @@ mspring_result page_set_yielding(uint32_t on) {
     if (!on && !page.yields)
         return MSPRING_OK;
     const float strain = page.yield_strain > 0 ? page.yield_strain : usual_yield_strain;
-    for (uint32_t i = 0; i < page.spring_count; i++)
-        page.values[i] = on ? strain : MSPRING_NEVER;
+    const float value = on ? strain : MSPRING_NEVER;
     page.yields = page.yields || on;
-    return page_done(mspring_network_set(page.network, MSPRING_YIELD_STRAIN, 0, page.spring_count, page.values, 1));
+    return page_done(mspring_network_set(page.network, MSPRING_YIELD_STRAIN, NULL, 0, MSPRING_ALL, &value, 0));
 }
 
 mspring_result page_straighten(void) {
     if (!page.yields)
         return MSPRING_OK;
-    for (uint32_t i = 0; i < page.spring_count; i++)
-        page.values[i] = 0;
+    const float none = 0;
     const mspring_result result =
-        mspring_network_set(page.network, MSPRING_PLASTIC_STRAIN, 0, page.spring_count, page.values, 1);
+        mspring_network_set(page.network, MSPRING_PLASTIC_STRAIN, NULL, 0, MSPRING_ALL, &none, 0);
     page_find_bent();
     return page_done(result);
 }
 
 void page_find_bent(void) {
-    if (mspring_network_get(page.network, MSPRING_PLASTIC_STRAIN, 0, page.spring_count, page.plastic, 1) != MSPRING_OK)
+    if (mspring_network_get(page.network, MSPRING_PLASTIC_STRAIN, NULL, 0, page.spring_count, page.plastic, 1) !=
+        MSPRING_OK)
         return;
     page.bent_count = 0;
     for (uint32_t i = 0; i < page.spring_count; i++) {

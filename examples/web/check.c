@@ -6,8 +6,6 @@
 /// SPDX-License-Identifier: MIT
 #include "page.h"
 
-#include <massspring/massspring_tools.h>
-
 #if defined(__wasm__)
 #include "environment.h"
 #define ALLOCATOR &environment_allocator
@@ -34,14 +32,14 @@ static const check_scene scenes[] = {
 };
 enum { SCENES = sizeof scenes / sizeof *scenes, MOST_CELLS = 1200 };
 
-static mspring_result fill(mspring_builder *builder, const check_scene *scene) {
+static void fill(mspring_builder *builder, const check_scene *scene) {
     static uint16_t cells[MOST_CELLS];
     static mspring_id ids[MOST_CELLS];
-    mspring_material materials[2];
-    mspring_lattice_def def;
-    mspring_result result = mspring_lattice_def_init(&def, sizeof def);
-    for (uint32_t i = 0; i < 2 && result == MSPRING_OK; i++) {
-        result = mspring_material_init(&materials[i], sizeof materials[i]);
+    mspring_material materials[2], twine = mspring_material_default();
+    mspring_lattice_def def = mspring_lattice_def_default();
+    mspring_rope_def rope = mspring_rope_def_default();
+    for (uint32_t i = 0; i < 2; i++) {
+        materials[i] = mspring_material_default();
         materials[i].mass = scene->mass;
         materials[i].stiffness = scene->stiffness;
         materials[i].damping = scene->damping;
@@ -54,48 +52,42 @@ static mspring_result fill(mspring_builder *builder, const check_scene *scene) {
     def.cells = cells;
     def.materials = materials;
     def.material_count = 2;
-    if (result == MSPRING_OK)
-        result = mspring_builder_add_lattice(builder, &def, ids);
-    for (uint32_t i = 0; i < scene->ropes && result == MSPRING_OK; i++) {
-        mspring_rope_def rope;
-        result = mspring_rope_def_init(&rope, sizeof rope);
+    mspring_builder_add_lattice(builder, &def, ids);
+    twine.mass = 10;
+    twine.stiffness = scene->stiffness / 20;
+    twine.damping = 20;
+    rope.material = &twine;
+    rope.length_ratio = 1.1f;
+    for (uint32_t i = 0; i < scene->ropes; i++) {
         rope.from = ids[3 + 4 * i];
         rope.to = ids[scene->width * (scene->height - 1) + 5 + 2 * i];
         rope.segment_count = 10 + i;
-        rope.mass = 10;
-        rope.stiffness = scene->stiffness / 20;
-        rope.damping = 20;
-        rope.slack = 1.1f;
-        if (result == MSPRING_OK)
-            result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
+        mspring_builder_add_rope(builder, &rope, NULL, NULL);
     }
-    return result;
 }
 
 mspring_result page_check(uint32_t scene, uint32_t steps, uint32_t level) {
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
-    mspring_network_def def;
-    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    mspring_network_def def = mspring_network_def_default();
     if (scene >= SCENES)
         return MSPRING_ERROR_ARGUMENT;
     def.allocator = ALLOCATOR;
-    def.substeps = scenes[scene].substeps;
-    def.solver = scenes[scene].solver;
+    def.settings.substeps = scenes[scene].substeps;
+    def.settings.solver = scenes[scene].solver;
     def.simd_level = (mspring_simd)level;
-    if (result == MSPRING_OK)
-        result = mspring_builder_create(ALLOCATOR, &builder);
-    if (result == MSPRING_OK)
-        result = fill(builder, &scenes[scene]);
-    if (result == MSPRING_OK)
+    mspring_result result = mspring_builder_create(ALLOCATOR, &builder);
+    if (result == MSPRING_OK) {
+        fill(builder, &scenes[scene]); // create returns its first failure
         result = mspring_network_create(builder, &def, &network);
+    }
     if (result == MSPRING_OK)
-        result = mspring_network_state_hash(network, &found);
+        result = mspring_network_get_state_hash(network, &found);
     for (uint32_t i = 0; i < steps && result == MSPRING_OK; i++) {
         uint64_t hash = 0;
         result = mspring_network_step(network, 1.0 / 64);
         if (result == MSPRING_OK)
-            result = mspring_network_state_hash(network, &hash);
+            result = mspring_network_get_state_hash(network, &hash);
         found = (found << 7 | found >> 57) ^ hash; // as in the golden tests: each step counts
     }
     mspring_network_destroy(network);

@@ -25,7 +25,8 @@ typedef struct page_state {
     uint32_t particle_count, spring_count, list_capacity, changes;
     // What is held, and where it is to go.
     mspring_id *held;
-    float *held_mass, *force_x, *force_y; ///< [particle_count], the forces 0 where nothing is held
+    float *held_mass;         ///< [particle_count]
+    float *force_x, *force_y; ///< [particle_count] scratch
     uint32_t held_count;
     double hold_x, hold_y, hold_mass, total_mass;
 } page_state;

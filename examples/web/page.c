@@ -6,8 +6,6 @@
 
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
-
 #if defined(__wasm__)
 #include "environment.h"
 #define ALLOCATOR &environment_allocator
@@ -91,8 +89,8 @@ static void drop_page(void) {
 }
 
 static bool take_arrays(void) {
-    page.particle_count = mspring_network_particle_count(page.network);
-    page.spring_count = mspring_network_spring_count(page.network);
+    page.particle_count = mspring_network_count(page.network, MSPRING_PARTICLES);
+    page.spring_count = mspring_network_count(page.network, MSPRING_SPRINGS);
     page.list_capacity = page.particle_count > page.spring_count ? page.particle_count : page.spring_count;
     page.springs = page_take(page.spring_count * sizeof *page.springs);
     page.ends = page_take(2 * page.spring_count * sizeof *page.ends);
@@ -108,24 +106,24 @@ static bool take_arrays(void) {
     page.force_x = page_take(page.particle_count * sizeof *page.force_x);
     page.force_y = page_take(page.particle_count * sizeof *page.force_y);
     return page.springs && page.ends && page.values && page.base_stiffness && page.break_strain &&
-           page.rest_length && page.plastic && page.list && page.events && page.held && page.held_mass && page.force_x &&
-           page.force_y;
+           page.rest_length && page.plastic && page.list && page.events && page.held && page.held_mass &&
+           page.force_x && page.force_y;
 }
 
 static mspring_result describe_springs(void) {
     enum { STRIDE = sizeof *page.springs / sizeof page.springs->a };
-    const uint32_t n = page.spring_count;
     page_spring *drawn = page.springs;
-    mspring_result result =
-        mspring_network_get_ends(page.network, 0, n, MSPRING_ENDS_IDS, page.ends, page.ends + 1, 2);
-    if (result == MSPRING_OK)
-        result = mspring_network_get_ends(page.network, 0, n, MSPRING_ENDS_SLOTS, &drawn->a, &drawn->b, STRIDE);
-    if (result == MSPRING_OK)
-        result = mspring_network_get(page.network, MSPRING_REST_LENGTH, 0, n, &drawn->rest_length, STRIDE);
-    if (result == MSPRING_OK)
-        result = mspring_network_get(page.network, MSPRING_REST_LENGTH, 0, n, page.rest_length, 1);
-    if (result == MSPRING_OK)
-        result = mspring_network_get(page.network, MSPRING_STIFFNESS, 0, n, page.base_stiffness, 1);
+    const mspring_column columns[] = {
+        {MSPRING_END_A, 2, page.ends},
+        {MSPRING_END_B, 2, page.ends + 1},
+        {MSPRING_SLOT_A, STRIDE, &drawn->a},
+        {MSPRING_SLOT_B, STRIDE, &drawn->b},
+        {MSPRING_REST_LENGTH, STRIDE, &drawn->rest_length},
+        {MSPRING_REST_LENGTH, 1, page.rest_length},
+        {MSPRING_STIFFNESS, 1, page.base_stiffness},
+    };
+    const mspring_result result = mspring_network_get_columns(page.network, NULL, 0, page.spring_count, columns,
+                                                              sizeof columns / sizeof *columns);
     for (uint32_t slot = 0; slot < page.view.slot_count; slot++)
         page.total_mass += page.view.inverse_mass[slot] > 0 ? 1 / (double)page.view.inverse_mass[slot] : 0;
     return page_done(result);
@@ -162,59 +160,47 @@ static void find_strains(const mspring_lattice_def *def, const page_material *ma
         page.yield_strain = weaker(page.yield_strain, materials[i].yield_strain);
 }
 
-static mspring_result add_ropes(mspring_builder *builder, const page_rope *ropes, uint32_t count,
-                                const mspring_id *ids) {
+static void add_ropes(mspring_builder *builder, const page_rope *ropes, uint32_t count, const mspring_id *ids) {
+    mspring_material material = mspring_material_default();
+    mspring_rope_def def = mspring_rope_def_default();
+    def.material = &material;
     for (uint32_t i = 0; i < count; i++) {
-        mspring_rope_def def;
-        mspring_result result = mspring_rope_def_init(&def, sizeof def);
-        if (result != MSPRING_OK)
-            return result;
         def.from = ids[ropes[i].from];
         def.to = ids[ropes[i].to];
         def.segment_count = ropes[i].segments;
-        def.mass = ropes[i].mass;
-        def.stiffness = ropes[i].stiffness;
-        def.damping = ropes[i].damping;
-        def.slack = ropes[i].slack;
-        result = mspring_builder_add_rope(builder, &def, NULL, 0, NULL);
-        if (result != MSPRING_OK)
-            return failed(result, mspring_builder_error(builder));
+        def.length_ratio = ropes[i].length_ratio;
+        material.mass = ropes[i].mass;
+        material.stiffness = ropes[i].stiffness;
+        material.damping = ropes[i].damping;
+        mspring_builder_add_rope(builder, &def, NULL, NULL);
     }
-    return MSPRING_OK;
 }
 
-static mspring_result build(mspring_builder *builder, mspring_lattice_def *def, const page_material *given,
-                            const page_rope *ropes, uint32_t rope_count, mspring_material *materials,
-                            mspring_id *ids) {
+static void build(mspring_builder *builder, mspring_lattice_def *def, const page_material *given,
+                  const page_rope *ropes, uint32_t rope_count, mspring_material *materials, mspring_id *ids) {
     for (uint32_t i = 0; i < def->material_count; i++) {
-        mspring_result result = mspring_material_init(&materials[i], sizeof materials[i]);
-        if (result != MSPRING_OK)
-            return failed(result, NULL);
+        materials[i] = mspring_material_default();
         materials[i].mass = given[i].mass;
         materials[i].stiffness = given[i].stiffness;
         materials[i].damping = given[i].damping;
         materials[i].particle_flags = given[i].pinned > 0 ? MSPRING_PARTICLE_PINNED : 0;
     }
     def->materials = materials;
-    mspring_result result = mspring_builder_add_lattice(builder, def, ids);
-    if (result == MSPRING_OK)
-        result = add_ropes(builder, ropes, rope_count, ids);
-    return result == MSPRING_OK ? MSPRING_OK : failed(result, mspring_builder_error(builder));
+    if (mspring_builder_add_lattice(builder, def, ids) == MSPRING_OK) // else ids are not set
+        add_ropes(builder, ropes, rope_count, ids);
 }
 
+// The first failure in describing the network, too, comes out here.
 static mspring_result make_network(mspring_builder *builder) {
-    mspring_network_def def;
-    mspring_result result = mspring_network_def_init(&def, sizeof def);
-    def.guard = MSPRING_GUARD_GROWTH; // the page says what is too stiff
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.guard = MSPRING_GUARD_GROWTH; // the page says what is too stiff
     def.allocator = ALLOCATOR;
     def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
-    def.substeps = MSPRING_SUBSTEPS_AUTO;
-    if (result == MSPRING_OK)
-        result = mspring_network_create(builder, &def, &page.network);
+    mspring_result result = mspring_network_create(builder, &def, &page.network);
     if (result != MSPRING_OK)
         return failed(result, mspring_builder_error(builder));
-    page.view.struct_size = sizeof page.view;
-    result = mspring_network_view(page.network, &page.view);
+    page.view = mspring_view_default();
+    result = mspring_network_get_view(page.network, &page.view);
     if (result == MSPRING_OK)
         result = mspring_network_reserve_events(page.network, EVENTS);
     if (result != MSPRING_OK)
@@ -234,8 +220,8 @@ mspring_result page_make(uint32_t width, uint32_t height, uint32_t material_coun
             return failed(MSPRING_ERROR_ID, "a rope ends in no cell");
     drop_page();
     mspring_builder *builder = NULL;
-    mspring_lattice_def def;
-    mspring_result result = mspring_lattice_def_init(&def, sizeof def);
+    mspring_lattice_def def = mspring_lattice_def_default();
+    mspring_result result = MSPRING_OK;
     def.width = width;
     def.height = height;
     def.cells = (const uint16_t *)(const void *)input;
@@ -246,10 +232,10 @@ mspring_result page_make(uint32_t width, uint32_t height, uint32_t material_coun
         result = failed(MSPRING_ERROR_MEMORY, NULL);
     if (result == MSPRING_OK)
         result = mspring_builder_create(ALLOCATOR, &builder);
-    if (result == MSPRING_OK)
-        result = build(builder, &def, given, ropes, rope_count, materials, ids);
-    if (result == MSPRING_OK)
+    if (result == MSPRING_OK) {
+        build(builder, &def, given, ropes, rope_count, materials, ids);
         result = make_network(builder);
+    }
     if (result == MSPRING_OK)
         find_strains(&def, given);
     else
@@ -289,52 +275,49 @@ mspring_result page_step(double dt) {
     const mspring_result result = page_done(mspring_network_step(page.network, dt));
     if (result == MSPRING_OK)
         follow_events();
-    page.view.struct_size = sizeof page.view;
-    const mspring_result seen = mspring_network_view(page.network, &page.view);
+    const mspring_result seen = mspring_network_get_view(page.network, &page.view);
     return result != MSPRING_OK ? result : page_done(seen);
 }
 
+static mspring_settings settings_now(void) {
+    mspring_settings settings = mspring_settings_default();
+    mspring_network_get_settings(page.network, &settings);
+    return settings;
+}
+
 mspring_result page_set_solver(uint32_t solver, uint32_t substeps, uint32_t iterations) {
-    mspring_solver_def def;
-    const mspring_result result = mspring_solver_def_init(&def, sizeof def);
-    if (result != MSPRING_OK)
-        return page_done(result);
-    def.solver = (mspring_solver)solver;
-    def.substeps = substeps ? substeps : MSPRING_SUBSTEPS_AUTO;
-    def.iterations = iterations;
-    def.residual = iterations ? 0 : def.residual;
-    return page_done(mspring_network_set_solver(page.network, &def));
+    mspring_settings settings = settings_now();
+    settings.solver = (mspring_solver)solver;
+    settings.substeps = substeps ? substeps : MSPRING_SUBSTEPS_AUTO;
+    settings.iterations = iterations;
+    settings.residual = iterations ? 0 : mspring_settings_default().residual;
+    return page_done(mspring_network_set_settings(page.network, &settings));
 }
 
 mspring_result page_set_gravity(float y) {
-    mspring_settings settings = {.struct_size = sizeof settings};
-    mspring_result result = mspring_network_get_settings(page.network, &settings);
-    settings.gravity_x = 0;
+    mspring_settings settings = settings_now();
     settings.gravity_y = y;
-    if (result == MSPRING_OK)
-        result = mspring_network_set_settings(page.network, &settings);
-    return page_done(result);
+    return page_done(mspring_network_set_settings(page.network, &settings));
 }
 
 mspring_result page_set_damping(float rate) {
-    mspring_settings settings = {.struct_size = sizeof settings};
-    mspring_result result = mspring_network_get_settings(page.network, &settings);
+    mspring_settings settings = settings_now();
     settings.global_damping = rate;
-    if (result == MSPRING_OK)
-        result = mspring_network_set_settings(page.network, &settings);
-    return page_done(result);
+    return page_done(mspring_network_set_settings(page.network, &settings));
 }
 
 mspring_result page_set_stiffness(float factor) {
     for (uint32_t i = 0; i < page.spring_count; i++)
         page.values[i] = factor * page.base_stiffness[i];
-    return page_done(mspring_network_set(page.network, MSPRING_STIFFNESS, 0, page.spring_count, page.values, 1));
+    return page_done(
+        mspring_network_set(page.network, MSPRING_STIFFNESS, NULL, 0, page.spring_count, page.values, 1));
 }
 
 mspring_result page_set_breaking(uint32_t on) {
     for (uint32_t i = 0; i < page.spring_count; i++)
-        page.values[i] = on && page.break_strain[i] > 0 ? page.break_strain[i] : __builtin_inff();
-    return page_done(mspring_network_set(page.network, MSPRING_BREAK_STRAIN, 0, page.spring_count, page.values, 1));
+        page.values[i] = on && page.break_strain[i] > 0 ? page.break_strain[i] : MSPRING_NEVER;
+    return page_done(
+        mspring_network_set(page.network, MSPRING_BREAK_STRAIN, NULL, 0, page.spring_count, page.values, 1));
 }
 
 /* -------------------------------------------------------------------------------------------------- looking */
@@ -380,7 +363,7 @@ uint32_t page_changes(void) {
 }
 
 uint32_t page_substeps(void) {
-    mspring_step_info info = {.struct_size = sizeof info};
+    mspring_step_info info = mspring_step_info_default();
     return mspring_network_get_step_info(page.network, &info) == MSPRING_OK ? info.substeps : 0;
 }
 
@@ -391,7 +374,7 @@ uint32_t page_needed_substeps(double dt) {
 
 float page_spring_force(uint32_t spring) {
     float force = 0;
-    return mspring_network_get(page.network, MSPRING_FORCE, spring, 1, &force, 1) == MSPRING_OK ? force : 0;
+    return mspring_network_get(page.network, MSPRING_TENSION, &spring, 0, 1, &force, 1) == MSPRING_OK ? force : 0;
 }
 
 uint32_t page_spring_end(uint32_t spring, uint32_t which) {
@@ -399,27 +382,32 @@ uint32_t page_spring_end(uint32_t spring, uint32_t which) {
 }
 
 const char *page_level(void) {
-    return mspring_simd_name(mspring_network_simd_level(page.network));
+    mspring_network_info info = mspring_network_info_default();
+    mspring_network_get_info(page.network, &info);
+    return mspring_simd_name(info.simd_level);
+}
+
+static mspring_energy energy_now(void) {
+    mspring_energy energy = mspring_energy_default();
+    mspring_network_get_energy(page.network, &energy);
+    return energy;
 }
 
 double page_kinetic_energy(void) {
-    double kinetic = 0;
-    return mspring_network_energy(page.network, &kinetic, NULL, NULL) == MSPRING_OK ? kinetic : 0;
+    return energy_now().kinetic;
 }
 
 double page_elastic_energy(void) {
-    double elastic = 0;
-    return mspring_network_energy(page.network, NULL, &elastic, NULL) == MSPRING_OK ? elastic : 0;
+    return energy_now().elastic;
 }
 
 double page_max_strain(void) {
-    float strain = 0;
-    return mspring_network_max_strain(page.network, &strain, NULL) == MSPRING_OK ? (double)strain : 0;
+    return __builtin_fabs(energy_now().largest_strain);
 }
 
 uint32_t page_hash(uint32_t upper) {
     uint64_t hash = 0;
-    if (mspring_network_state_hash(page.network, &hash) != MSPRING_OK)
+    if (mspring_network_get_state_hash(page.network, &hash) != MSPRING_OK)
         return 0;
     return (uint32_t)(upper ? hash >> 32 : hash);
 }

@@ -26,7 +26,7 @@ typedef struct page_material {
 /// A rope between two cells.
 typedef struct page_rope {
     uint32_t from, to, segments; ///< row * width + column
-    float mass, stiffness, damping, slack;
+    float mass, stiffness, damping, length_ratio;
 } page_rope;
 
 /// A spring as the script draws it: slots of its ends in the view.

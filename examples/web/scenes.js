@@ -24,7 +24,7 @@ function bridge() {
   for (let x = 0; x < width; x++) for (let y = 44; y < 48; y++) cells[at(x, y)] = x < 2 || x >= width - 2 ? 1 : 0;
   for (const tower of [40, 136])
     for (let y = 2; y < 60; y++) for (let x = tower; x < tower + 4; x++) cells[at(x, y)] = y > 56 ? 1 : 2;
-  const rope = { mass: 8, stiffness: 2e7, damping: 600, slack: 1 };
+  const rope = { mass: 8, stiffness: 2e7, damping: 600, lengthRatio: 1 };
   for (const [tower, direction] of [[40, -1], [43, 1], [136, -1], [139, 1]])
     for (let i = 1; i <= 6; i++)
       ropes.push({ from: at(tower, 2 + 2 * i), to: at(tower + direction * (6 * i), 44), segments: 10 + 2 * i, ...rope });
@@ -40,7 +40,7 @@ function weights() {
     const x = 4 + 8 * i, y = 24 + ((i * 5) % 12) * 2;
     cells[x] = 0;
     for (let dy = 0; dy < 3; dy++) for (let dx = -1; dx < 2; dx++) cells[(y + dy) * width + x + dx] = 1;
-    ropes.push({ from: x, to: y * width + x, segments: y, mass: 6, stiffness: 2e7, damping: 300, slack: 1 });
+    ropes.push({ from: x, to: y * width + x, segments: y, mass: 6, stiffness: 2e7, damping: 300, lengthRatio: 1 });
   }
   return scene;
 }
@@ -134,7 +134,7 @@ function makeScene(module, scene) {
       values.setUint32(place, id, true);
       place += 4;
     }
-    put(rope.mass, rope.stiffness, rope.damping, rope.slack);
+    put(rope.mass, rope.stiffness, rope.damping, rope.lengthRatio);
   }
   if (module.make(scene.width, scene.height, scene.materials.length, scene.ropes.length)) throw new Error(textAt(module, module.error()));
 }

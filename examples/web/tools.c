@@ -6,9 +6,6 @@
 
 #include <math.h>
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_tools.h>
-
 // What is held is drawn to its goal as if all of the network hung on a critically damped spring of this angular
 // frequency (rad/s); in one step it is never pulled or slowed by more than these parts of what would get it there.
 static const double pull_frequency = 4;
@@ -95,10 +92,11 @@ void page_pull(double dt) {
     const double ax = pull * limit(page.hold_x - x, most_distance) - slowing * vx;
     const double ay = pull * limit(page.hold_y - y, most_distance) - slowing * vy;
     for (uint32_t i = 0; i < page.held_count; i++) {
-        const float fx = (float)(ax * (double)page.held_mass[i]), fy = (float)(ay * (double)page.held_mass[i]);
-        if (mspring_network_apply_force(page.network, page.held[i], fx, fy) != MSPRING_OK)
-            return;
+        page.force_x[i] = (float)(ax * (double)page.held_mass[i]);
+        page.force_y[i] = (float)(ay * (double)page.held_mass[i]);
     }
+    (void)page_done(mspring_network_apply_forces(page.network, MSPRING_PUSH_STEP, page.held, 0, page.held_count,
+                                                 page.force_x, page.force_y, 1));
 }
 
 /* ------------------------------------------------------------------------------------------ pins, cuts, blasts */
@@ -115,14 +113,8 @@ mspring_result page_pin(double x, double y, double radius) {
             scale = page.view.inverse_mass[page.view.slot_of_particle[page.list[i]]] == 0 ? 1 : 0;
         }
     }
-    for (uint32_t i = 0; i < count; i++) {
-        const mspring_result result =
-            mspring_network_set(page.network, MSPRING_INVERSE_MASS_SCALE, page.list[i], 1, &scale, 1);
-        if (result != MSPRING_OK)
-            return page_done(result);
-    }
     page.changes++;
-    return MSPRING_OK;
+    return page_done(mspring_network_set(page.network, MSPRING_INVERSE_MASS_SCALE, page.list, 0, count, &scale, 0));
 }
 
 // Those that are restored or broken are told as events, which are read behind the next step.
@@ -132,7 +124,7 @@ mspring_result page_cut(double x, double y, double x2, double y2) {
                                                                  page.list, NULL, page.list_capacity, &count);
     if (result != MSPRING_OK)
         return page_done(result);
-    return page_done(mspring_network_break_springs(page.network, page.list, count));
+    return page_done(mspring_network_break_springs(page.network, page.list, 0, count));
 }
 
 mspring_result page_repair(void) {
@@ -140,26 +132,22 @@ mspring_result page_repair(void) {
     for (mspring_id spring = 0; spring < page.spring_count; spring++)
         if (page.springs[spring].rest_length == 0)
             page.list[count++] = spring;
-    return page_done(mspring_network_restore_springs(page.network, page.list, count, 1));
+    return page_done(mspring_network_restore_springs(page.network, page.list, 0, count, 1));
 }
 
 mspring_result page_blast(double x, double y, double radius, double speed) {
-    mspring_mutable_view to = {.struct_size = sizeof to};
-    const mspring_result result = mspring_network_view_mutable(page.network, &to);
-    if (result != MSPRING_OK)
-        return page_done(result);
     const uint32_t count = list_near(x, y, radius);
     for (uint32_t i = 0; i < count; i++) {
-        const uint32_t slot = to.slot_of_particle[page.list[i]];
+        const float inverse = page.view.inverse_mass[page.view.slot_of_particle[page.list[i]]];
         const point at = place_of(page.list[i]);
         const double distance = sqrt(square(at.x - x) + square(at.y - y));
-        if (to.inverse_mass[slot] == 0 || !(distance > 0) || distance > radius)
-            continue;
-        const double change = speed * (1 - distance / radius) / distance;
-        to.vx[slot] += (float)(change * (at.x - x));
-        to.vy[slot] += (float)(change * (at.y - y));
+        const bool moves = inverse > 0 && distance > 0 && distance < radius;
+        const double impulse = moves ? speed * (1 - distance / radius) / (distance * (double)inverse) : 0;
+        page.force_x[i] = (float)(impulse * (at.x - x));
+        page.force_y[i] = (float)(impulse * (at.y - y));
     }
-    return MSPRING_OK;
+    return page_done(mspring_network_apply_forces(page.network, MSPRING_PUSH_IMPULSE, page.list, 0, count,
+                                                  page.force_x, page.force_y, 1));
 }
 
 /* ------------------------------------------------------------------------------------------- floor and contact */
@@ -168,17 +156,15 @@ mspring_result page_set_floor(double height) {
     if (!(height > -1e11))
         return page_done(mspring_network_set_floor(page.network, NULL));
     const double plane[4] = {0, height, 0, 1};
-    mspring_floor_def def;
-    const mspring_result result = mspring_floor_def_init(&def, sizeof def);
+    mspring_floor_def def = mspring_floor_def_default();
     def.plane_count = 1;
     def.planes = plane;
     def.friction = 0.5f;
-    return result == MSPRING_OK ? page_done(mspring_network_set_floor(page.network, &def)) : result;
+    return page_done(mspring_network_set_floor(page.network, &def));
 }
 
 mspring_result page_set_collide(uint32_t on) {
-    mspring_contact_def def;
-    const mspring_result result = mspring_contact_def_init(&def, sizeof def);
+    mspring_contact_def def = mspring_contact_def_default();
     def.friction = 0.5f;
-    return result == MSPRING_OK ? page_done(mspring_network_set_contact(page.network, on ? &def : NULL)) : result;
+    return page_done(mspring_network_set_contact(page.network, on ? &def : NULL));
 }

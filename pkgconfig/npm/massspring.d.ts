@@ -3,13 +3,14 @@
  *
  * Units are SI, the y axis points up. Particles and springs have ids 0, 1, 2 ... in the order in which they were added.
  * A call that fails throws a MassSpringError and changes nothing. The headers of the library are its manual: a function
- * mspring_network_get_positions is network.positions here, and a field rest_length is restLength.
+ * mspring_network_get_positions is network.positions here, and a field rest_length is restLength. What takes no argument
+ * and changes nothing is a property, such as network.energy.
  */
 import type {
-  AngleInfo, AngleOptions, AreaInfo, AreaOptions, Body, ColliderOptions, Component, ContactEvent, ContactInfo,
-  ContactOptions, DiscOptions, FloorOptions, GripOptions, LatticeOptions, Material, MeshOptions, NetworkEvent,
-  NetworkOptions, Numbering, ParticleOptions, Plan, Plasticity, Preset, Property, Result, RopeOptions, Settings,
-  SettleOptions, SettleResult, SnapshotContents, SolverOptions, SpringOptions, StepInfo,
+  AngleOptions, AreaOptions, AutoProperty, Body, ColliderOptions, ContactEvent, ContactInfo, ContactOptions, DiscOptions,
+  ElementProperty, Energy, FloorOptions, GripOptions, IntegerProperty, LatticeOptions, Material, MeshOptions, NetworkEvent,
+  NetworkInfo, NetworkOptions, ParticleOptions, ParticleProperty, Preset, Property, Push, ReadOnlyProperty, Result,
+  RopeOptions, Settings, SettleOptions, SettleResult, SnapshotContents, SpringOptions, SpringProperty, StepInfo,
 } from './tables.js';
 
 export * from './tables.js';
@@ -17,20 +18,23 @@ export * from './tables.js';
 /** Numbers, as an array or as a typed array. */
 export type Numbers = ArrayLike<number>;
 
-/** Of each field a number for all, or an array with one for each. At least one must be an array. */
-export type Columns<T> = { [Field in keyof T]?: NonNullable<T[Field]> | Numbers };
+/** Of each field a number for all, or an array with one for each. Numbers alone are one. */
+export type Columns<T> = { [Field in keyof T]: T[Field] | Numbers };
 
-/** The particles or springs from first on. Without count: all of them, or as many as there are values. */
-export interface IdRange {
-  first?: number;
-  count?: number;
-}
-
-/** A range, or those listed. */
-export type Selection = IdRange & { ids?: Numbers | number };
+/** Which particles, springs or elements: one, those listed, or a range. Without first or count: from 0, to the end. */
+export type Which = number | Numbers | { first?: number; count?: number };
 
 /** Options that were read: all fields have values. */
 export type Full<T> = { [Field in keyof T]-?: NonNullable<T[Field]> };
+
+/** What a property is read into. */
+export type ArrayOf<P extends Property> = P extends IntegerProperty ? Uint32Array : Float32Array;
+
+type Alike<P, All> = [P] extends [All] ? P : never;
+/** Properties of one kind of thing. */
+export type OneKind<P> = Alike<P, ParticleProperty> | Alike<P, SpringProperty> | Alike<P, ElementProperty>;
+/** Properties of one kind that fit into one array. */
+export type OneType<P> = OneKind<P> & (Alike<P, IntegerProperty> | Alike<P, Exclude<Property, IntegerProperty>>);
 
 /** A call that failed. */
 export class MassSpringError extends Error {
@@ -49,23 +53,28 @@ export class MassSpringError extends Error {
 export interface Builder {
   readonly particleCount: number;
   readonly springCount: number;
-  /** Returns the id. */
-  addParticle(options: ParticleOptions): number;
+  readonly elementCount: number;
   /** Returns the id of the first. */
   addParticles(columns: Columns<ParticleOptions>): number;
-  addSpring(options: SpringOptions): number;
   addSprings(columns: Columns<SpringOptions>): number;
+  /** Reads them back, as they would be added again. */
+  particles(which?: Which): Full<ParticleOptions>[];
+  springs(which?: Which): Full<SpringOptions>[];
   /** Returns the particle of each cell, or NONE. */
   addLattice(options: LatticeOptions): Uint32Array;
   /** Returns the particles along the rope, both ends included. */
   addRope(options: RopeOptions): { particles: Uint32Array; firstSpring: number };
-  /** Have springs stiffen beyond a strain: above 0 of stretching, below 0 of pressing. Returns the first limit's id. */
-  addStrainLimits(firstSpring: number, count: number, strain: number, stiffening: number): number;
   addMesh(options: MeshOptions): { firstParticle: number; firstSpring: number };
   addDisc(options: DiscOptions): { firstParticle: number; firstSpring: number };
+  /** Adds another builder's particles and springs once for each x, y that they are moved by. */
+  addCopies(from: Builder, places: Numbers): { firstParticle: number; firstSpring: number };
+  /** Adds what a network has now. Returns the new id of each of its particles and springs, or NONE. */
+  addNetwork(network: Network, which?: Which): { particles: Uint32Array; springs: Uint32Array };
+  /** Have springs stiffen beyond a strain: above 0 of stretching, below 0 of pressing. Returns the first limit's id. */
+  addStrainLimits(strain: number, stiffening: number, which?: Which): number;
   /**
    * Read an archive of Network.write() into an empty builder. A network made of it continues where the written one was;
-   * its options override the archived ones. Returns the number of chunks that were skipped as unknown.
+   * its settings override the archived ones. Returns the number of chunks that were skipped as unknown.
    */
   read(archive: Uint8Array): number;
   /** Frees it now. Otherwise the garbage collector does so some time. */
@@ -97,9 +106,7 @@ export interface View {
 export interface Network {
   readonly particleCount: number;
   readonly springCount: number;
-  readonly isAsleep: boolean;
-  /** Bytes that the network uses. */
-  readonly memoryUsed: number;
+  readonly elementCount: number;
   /** Frees it now. Otherwise the garbage collector does so some time. */
   free(): void;
 
@@ -108,79 +115,71 @@ export interface Network {
    * differs from step to step and little damps, explicit steps add energy.
    */
   step(dt: number, count?: number): void;
-  stepInfo(): StepInfo;
-  getSettings(): Full<Settings>;
+  /** Report of the last step, and of all so far. */
+  readonly stepInfo: StepInfo;
+  /** How the network is laid out and run. */
+  readonly info: NetworkInfo;
+  /** The same in many more words, which may change. */
+  describe(): string;
+  readonly settings: Full<Settings>;
   /** Sets those that are given; the others stay. */
-  setSettings(options: Settings): void;
-  getSolver(): Full<SolverOptions>;
-  /** Sets those that are given; the others stay. */
-  setSolver(options: SolverOptions): void;
+  setSettings(settings: Settings): void;
   wake(): void;
 
-  view(): View;
-  /** A copy of world positions, m: x, y of one particle after the other. */
-  positions<T extends Float64Array | Float32Array = Float64Array>(options?: Selection & { into?: T }): T;
+  readonly view: View;
+  /** A copy of world positions, m: x, y of one particle after the other. For drawing, get(['x', 'y']) has floats. */
+  positions(which?: Which, into?: Float64Array): Float64Array;
   /** A copy of velocities, m/s. Explicit steps leave those of half a substep ago. */
-  velocities(options?: Selection & { into?: Float32Array }): Float32Array;
+  velocities(which?: Which, into?: Float32Array): Float32Array;
   /** x, y for each particle, or one pair for all. */
-  setPositions(values: Numbers, where?: Selection): void;
-  setVelocities(values: Numbers, where?: Selection): void;
+  setPositions(values: Numbers, which?: Which): void;
+  setVelocities(values: Numbers, which?: Which): void;
   /** Adds a force, N, during the whole next step. */
   applyForce(particle: number, x: number, y: number): void;
-  applyForces(values: Numbers, where?: Selection): void;
-  /** Changes velocities at once, by impulse / mass. */
-  applyImpulses(values: Numbers, where?: Selection): void;
+  /** Adds forces, N, of the whole next step or its first substep, or impulses, N s, which change velocities at once. */
+  applyForces(values: Numbers, which?: Which, push?: Push): void;
   /** Forces around the centre of mass during the next step, N m. */
-  applyTorque(torque: number, where?: Selection): void;
+  applyTorque(torque: number, which?: Which): void;
   /** Equal states have equal hashes on every machine, in every language. */
-  stateHash(): bigint;
+  readonly stateHash: bigint;
 
-  get(property: Property, options?: Selection & { into?: Float32Array }): Float32Array;
-  /** A value for each, or one for all. */
-  set(property: Property, values: Numbers | number, where?: Selection): void;
-  /** get('strain') */
-  strains(options?: Selection & { into?: Float32Array }): Float32Array;
-  maxStrain(): { strain: number; spring: number };
-  /** Both ends of one spring after the other, as for an index buffer. With 'slots' they fit a view. */
-  ends(options?: IdRange & { numbering?: Numbering; into?: Uint32Array }): Uint32Array;
-  springFlags(options?: IdRange & { into?: Uint32Array }): Uint32Array;
+  /** Integers are in a Uint32Array, all else in a Float32Array. Several properties come by turns, as for a buffer. */
+  get<P extends Property>(property: P, which?: Which, into?: ArrayOf<P>): ArrayOf<P>;
+  get<P extends Property>(properties: readonly (P & OneType<P>)[], which?: Which, into?: ArrayOf<P>): ArrayOf<P>;
+  /** Several properties in one pass, each in an array of its own. */
+  columns<P extends Property>(properties: readonly (P & OneKind<P>)[], which?: Which): { [Name in P]: ArrayOf<Name> };
+  /** A value for each, or one for all. A scale of 0 pins: set('inverseMassScale', 0, ids). */
+  set(property: Exclude<Property, ReadOnlyProperty>, values: Numbers | number, which?: Which): void;
+  set(property: AutoProperty, value: 'auto', which?: Which): void;
 
-  breakSprings(ids: Numbers | number): void;
+  breakSprings(which: Which): void;
   /** With a ramp, the rest length goes evenly from the present length to its own. */
-  restoreSprings(ids: Numbers | number, rampSeconds?: number): void;
-  detachParticles(ids: Numbers | number): void;
-  pin(ids: Numbers | number): void;
-  unpin(ids: Numbers | number): void;
+  restoreSprings(which: Which, rampSeconds?: number): void;
+  detachParticles(which: Which): void;
   /** Needs room: spareParticles and spareSprings of NetworkOptions. Returns the ids. */
   addParticles(columns: Columns<ParticleOptions>): Uint32Array;
   addSprings(columns: Columns<SpringOptions>): Uint32Array;
-  removeParticles(ids: Numbers | number): void;
-  removeSprings(ids: Numbers | number): void;
-  recycle(): void;
-  hasParticle(id: number): boolean;
-  hasSpring(id: number): boolean;
+  removeParticles(which: Which): void;
+  removeSprings(which: Which): void;
+  reuseIds(): void;
   compact(): void;
-  expand(): void;
 
   /** Events are recorded from then on, so many at most. */
   reserveEvents(capacity: number): void;
   /** Reads and removes the oldest events. lost: how many the queue had no room for. */
   readEvents(most?: number): { events: NetworkEvent[]; lost: number };
   updateComponents(): { count: number; changed: boolean };
-  componentNumbers(options?: IdRange & { into?: Uint32Array }): Uint32Array;
-  components(first: number, count: number): Component[];
+  components(first: number, count: number): Body[];
 
-  energy(): { kinetic: number; elastic: number; potential: number };
-  momentum(): { x: number; y: number; angular: number };
-  /** Particles as one body. The angle is 0 without NETWORK_POSES. */
-  body(where?: Selection): Body;
-  bounds(): { minX: number; minY: number; maxX: number; maxY: number };
+  /** Energies, the fastest particle and the most strained spring. */
+  readonly energy: Energy;
+  /** Particles as one body: all, if none are named. The angle is 0 without NETWORK_POSES. */
+  body(which?: Which): Body;
   /** The longest stable explicit substep, s, in the present shape and in any shape. */
-  stableDt(): { now: number; anyShape: number };
+  readonly stableDt: { now: number; anyShape: number };
   suggestSubsteps(dt: number, safety?: number): number;
   /** Moves the network to its static equilibrium. */
   settle(options?: SettleOptions): SettleResult;
-  plan(): Plan;
 
   nearestParticle(x: number, y: number, within?: number): { particle: number; distance: number } | null;
   particlesInCircle(x: number, y: number, radius: number): Uint32Array;
@@ -191,16 +190,13 @@ export interface Network {
   springsAcross(fromX: number, fromY: number, toX: number, toY: number, flags?: number): Uint32Array;
 
   /** null: no floor. */
+  readonly floor: FloorOptions | null;
   setFloor(options: FloorOptions | null): void;
-  floorImpulses(options?: IdRange & { into?: Float32Array }): Float32Array;
+  readonly contact: Full<ContactOptions> | null;
   /** Bodies collide from then on; null: no more. */
   setContact(options: ContactOptions | null): void;
-  getContact(): Full<ContactOptions> | null;
-  setContactGroups(groups: number, masks: number, where?: IdRange): void;
-  setContactSurface(surface: { friction?: number; restitution?: number }, where?: IdRange): void;
-  contactInfo(): ContactInfo;
-  /** Contact events are recorded from then on, so many at most. */
-  reserveContactEvents(capacity: number): void;
+  readonly contactInfo: ContactInfo;
+  /** Those that began or ended, as many as eventCapacity of ContactOptions lets wait. */
   readContactEvents(most?: number): { events: ContactEvent[]; lost: number };
   /** Returns the id of the collider. */
   addCollider(options: ColliderOptions): number;
@@ -209,37 +205,25 @@ export interface Network {
   moveCollider(collider: number, x: number, y: number, angle?: number): void;
   /** Puts it somewhere else at once. */
   placeCollider(collider: number, x: number, y: number, angle?: number): void;
-  getCollider(collider: number): Full<Omit<ColliderOptions, 'points'>>;
+  collider(collider: number): Full<Omit<ColliderOptions, 'points'>> & Pick<ColliderOptions, 'points'>;
   colliderImpulse(collider: number): { x: number; y: number; angular: number };
   /** Holds a particle softly, as a mouse does. Returns the id of the grip. */
   addGrip(options: GripOptions): number;
   removeGrip(grip: number): void;
-  setGrip(grip: number, options: GripOptions): void;
+  /** Changes some values of a grip; the others stay. */
+  setGrip(grip: number, options: Partial<GripOptions>): void;
   moveGrip(grip: number, x: number, y: number): void;
-  getGrip(grip: number): Full<GripOptions>;
+  grip(grip: number): Full<GripOptions>;
   gripImpulse(grip: number): { x: number; y: number };
 
-  /** How many springs have yielded, and the energy that it took. */
-  plasticity(): Plasticity;
-  /** An area around a polygon of particles: a balloon, a tyre. Returns its id. */
-  addArea(particles: ArrayLike<number>, options?: AreaOptions): number;
+  /** An area around a polygon of particles: a balloon, a tyre. Returns its id. set('fill', ...) inflates it. */
+  addArea(particles: Numbers, options?: AreaOptions): number;
   /** An area for each lattice cell, so that jelly turns back. */
   addCellAreas(options?: AreaOptions): { first: number; count: number };
-  removeArea(area: number): void;
-  /** All fields anew: fill inflates it. */
-  setArea(area: number, options: AreaOptions): void;
-  getArea(area: number): Full<AreaOptions>;
-  areaInfo(area: number): AreaInfo;
-  areas(): { ids: Uint32Array; areas: Float64Array; pressures: Float64Array };
-  /** Angle springs between a, b, c of each three particles: beams, spines. */
-  addAngles(particles: ArrayLike<number>, options?: AngleOptions): { first: number; count: number };
-  removeAngle(angle: number): void;
-  setAngle(angle: number, options: AngleOptions): void;
-  /** Rest angles of one after the other, rad: muscles, servos. */
-  setRestAngles(first: number, restAngles: ArrayLike<number>): void;
-  getAngle(angle: number): Full<AngleOptions>;
-  angleInfo(angle: number): AngleInfo;
-  angles(): { ids: Uint32Array; angles: Float64Array; torques: Float64Array };
+  /** Angle springs between a, b, c of each three particles; with stride 1 along a chain: beams, spines. */
+  addAngles(particles: Numbers, options?: AngleOptions, stride?: number): { first: number; count: number };
+  removeElements(which: Which): void;
+  elementParticles(element: number): Uint32Array;
 
   /** A snapshot, for rollback and replay: the following steps repeat, bit for bit. */
   save(contents?: SnapshotContents): Uint8Array;
@@ -257,7 +241,7 @@ export interface MassSpring {
   /** Bytes of memory of the module. It grows and never shrinks, but what is freed is used again. */
   readonly memoryUsed: number;
   readonly Builder: new () => Builder;
-  readonly Network: new (builder: Builder, options?: NetworkOptions) => Network;
+  readonly Network: new (builder: Builder, settings?: Settings, options?: NetworkOptions) => Network;
   /** A material that looks like steel, wood, rubber or jelly. substep is dt / substeps, s. */
   material(preset: Preset, spacing: number, substep: number): Full<Material>;
 }

@@ -12,7 +12,7 @@ import { Browser } from '../web/browser.js';
 const [site, pictures] = process.argv.slice(2);
 const PAGES = CONTENTS.flatMap(({ links }) => links.map(([, page]) => page))
   .filter((page) => !page.includes('#') && existsSync(join(site, page)));
-const SEEN = /index|choose|troubleshooting|solvers|massspring_8h|rollback|comparison|download/; // of these a picture is kept
+const SEEN = /index|choose|troubleshooting|solvers|core_8h|rollback|comparison|download/; // of these a picture is kept
 // Layout shift after the page appeared, as browsers measure it: up to 0.1 is good.
 const WATCH = `window.shifted = 0; new PerformanceObserver((list) => { for (const entry of list.getEntries())
   if (!entry.hadRecentInput) { window.shifted += entry.value; window.shifters = [...(window.shifters ?? []),
@@ -64,7 +64,7 @@ async function bySearch(browser) {
   await leads('One per cent from', /figures\.html#one-per-cent-from-exploding$/);
   await leads('a nudge of a millionth', /figures\.html#one-per-cent-from-exploding$/);
   await finds('a nudge of a millionth', "querySelector('mark')?.textContent", /^a nudge of a millionth$/);
-  if (PAGES.some((page) => page.startsWith('reference/'))) await leads('network_step', /reference\/massspring_8h\.html#/);
+  if (PAGES.some((page) => page.startsWith('reference/'))) await leads('network_step', /reference\/core_8h\.html#/);
   await finds('zyzzyva', 'textContent', /^Nothing for zyzzyva\. Try Troubleshooting or the Glossary\.$/);
   await leads('zyzzyva', /troubleshooting\.html$/);
 }
@@ -109,7 +109,7 @@ async function byHand(browser) {
   await browser.value(`document.querySelector('[data-figure=jelly] [data-play]').click()`);
   await browser.until('!window.figureStages.jelly.playing', 'the jelly stops');
   const corner = await browser.value(`(() => { const { pen, canvas, running } = window.figureStages.jelly;
-    const [x, y] = running.grips[1].positions({ ids: [12] }), { scale, left, base } = pen.places[1];
+    const [x, y] = running.grips[1].positions(12), { scale, left, base } = pen.places[1];
     const box = canvas.getBoundingClientRect();
     return { x: box.left + left + scale * x, y: box.top + base - scale * y }; })()`);
   const held = 'window.figureStages.jelly.held';

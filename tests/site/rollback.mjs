@@ -35,7 +35,7 @@ function play(run, frames) {
 
 // A peer whose world differs by a millimetre is found out: the comparison is worth something.
 const spoiled = session(3, (world, i) => {
-  if (i) world.network.setPositions([0.001, 5], { ids: [world.ball.centre] });
+  if (i) world.network.setPositions([0.001, 5], world.ball.centre);
   return world;
 });
 assert(play(spoiled, 240).some(({ count }) => count.differing > 0), 'a difference is found');

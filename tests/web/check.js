@@ -124,7 +124,7 @@ steps(4);
 good(core.collide(0));
 
 // What is wrong is refused.
-assert.throws(() => makeScene(core, { ...bar(4, 4), ropes: [{ from: 99, to: 0, segments: 1, mass: 1, stiffness: 1, damping: 0, slack: 1 }] }));
+assert.throws(() => makeScene(core, { ...bar(4, 4), ropes: [{ from: 99, to: 0, segments: 1, mass: 1, stiffness: 1, damping: 0, lengthRatio: 1 }] }));
 assert.throws(() => makeScene(core, { ...bar(4, 4), materials: [{ mass: 0, stiffness: 1, damping: 0, breakStrain: 0, pinned: 0 }] }));
 
 // Colours are looked up; white and transparent is nothing.

@@ -2,8 +2,8 @@
 import { bar, dropAtRest, DT, heightOf, IRON, probe } from './scenes.js';
 
 const WIDTH = 80, HEIGHT = 5, TOP = HEIGHT - 1;
-const make = (ms, stiffness, options) => bar(ms, { width: WIDTH, height: HEIGHT, globalDamping: 1.5,
-  material: { stiffness }, ...options });
+const make = (ms, stiffness, settings) => bar(ms, { width: WIDTH, height: HEIGHT, globalDamping: 1.5,
+  material: { stiffness }, ...settings });
 
 export default {
   name: 'bending',
@@ -22,7 +22,7 @@ export default {
         pen.network(network, 0.02);
         pen.word([40, TOP - rest], `at rest: ${rest.toFixed(4)} m`, { under: true });
       },
-      say: () => `sag ${drop().toFixed(2)} m, should end at ${rest.toFixed(2)} m · ${network.stepInfo().substeps} substeps a frame`,
+      say: () => `sag ${drop().toFixed(2)} m, should end at ${rest.toFixed(2)} m · ${network.stepInfo.substeps} substeps a frame`,
       free: () => network.free(),
     };
   },

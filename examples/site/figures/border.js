@@ -14,18 +14,18 @@ function sheet(ms, stiffness) {
 
 /** The stiffness at which one substep of 1/64 s is the longest stable one. */
 export function computed(ms) {
-  const network = sheet(ms, LARGE), { now } = network.stableDt();
+  const network = sheet(ms, LARGE), { now } = network.stableDt;
   network.free();
   return LARGE * (now / DT) ** 2;
 }
 
 export function grows(ms, stiffness, substeps = 1, frames = 1500) {
   const network = sheet(ms, stiffness);
-  network.setSolver({ substeps });
+  network.setSettings({ substeps });
   try {
     for (let frame = 0; frame < frames; frame += 25) {
       network.step(DT, 25);
-      if (network.stepInfo().largestSpeed > 0.5) return true;
+      if (network.energy.largestSpeed > 0.5) return true;
     }
     return false;
   } catch {
@@ -63,7 +63,7 @@ export default {
         } catch {
           gone = true;
         }
-        trace.push(Math.max(network.stepInfo().largestSpeed, 1e-9));
+        trace.push(Math.max(network.energy.largestSpeed, 1e-9));
         gone ||= trace.at(-1) > 300 || trace.length >= 1200;
       },
       draw(pen) {

@@ -4,8 +4,8 @@ import { bar, dropAtRest, DT, heightOf, MASS, probe } from './scenes.js';
 const WIDTH = 80, HEIGHT = 5, SHARE = 0.9, NUMBERS = [32, 48, 64, 96, 128, 192, 256, 384, 512, 1024, 2048];
 const stiffnessFor = (substeps) => (SHARE * MASS * substeps * substeps) / (2 * DT * DT);
 
-const make = (ms, substeps, options) => bar(ms, { width: WIDTH, height: HEIGHT, globalDamping: 1, substeps,
-  material: { stiffness: stiffnessFor(substeps) }, ...options });
+const make = (ms, substeps, settings) => bar(ms, { width: WIDTH, height: HEIGHT, globalDamping: 1, substeps,
+  material: { stiffness: stiffnessFor(substeps) }, ...settings });
 
 // The least time of a frame, in ms. Clocks of browsers tick each tenth of one, so it is that of several frames.
 function timeOf(network) {
@@ -23,7 +23,7 @@ function timeOf(network) {
 /** A point of the plot: at rest, and the time of a frame by both solvers. */
 function measure(ms, substeps) {
   const network = make(ms, substeps), drop = dropAtRest(network, probe(WIDTH)), explicit = timeOf(network);
-  network.setSolver({ solver: 'implicit', substeps: 1 });
+  network.setSettings({ solver: 'implicit', substeps: 1 });
   const implicit = timeOf(network);
   network.free();
   return { substeps, drop, explicit, implicit };

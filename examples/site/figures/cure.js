@@ -11,7 +11,7 @@ const make = (ms, stiffness, substeps) => bar(ms, { width: WIDTH, height: HEIGHT
 function tried(network) {
   try {
     network.step(DT);
-    return network.stepInfo().largestSpeed > 1e4;
+    return network.energy.largestSpeed > 1e4;
   } catch {
     return true;
   }

@@ -7,7 +7,7 @@ const CRITICAL = 2 * Math.sqrt(STIFFNESS * REDUCED), OMEGA = Math.sqrt(STIFFNESS
 function pair(ms, ratio) {
   const builder = new ms.Builder();
   builder.addParticles({ x: [0, 1 + PULL], mass: MASS });
-  builder.addSpring({ a: 0, b: 1, stiffness: STIFFNESS, damping: ratio * CRITICAL, restLength: 1 });
+  builder.addSprings({ a: 0, b: 1, stiffness: STIFFNESS, damping: ratio * CRITICAL, restLength: 1 });
   const network = new ms.Network(builder, { gravityY: 0, substeps: 1 });
   builder.free();
   return network;

@@ -6,12 +6,12 @@ const SIDE = 4, CORNER = SIDE - 1, PULL = 0.6, DAMPING = 55.05;
 function square(ms, damping) {
   const network = bar(ms, { width: SIDE, height: SIDE, held: false, gravityY: 0, substeps: 1,
     material: { stiffness: 36700, damping } });
-  network.setPositions([SIDE - 1 + PULL, SIDE - 1 + PULL], { ids: [CORNER] });
+  network.setPositions([SIDE - 1 + PULL, SIDE - 1 + PULL], CORNER);
   return network;
 }
 
 const total = (network) => {
-  const { kinetic, elastic } = network.energy();
+  const { kinetic, elastic } = network.energy;
   return kinetic + elastic;
 };
 
@@ -61,8 +61,8 @@ export default {
       grips: squares,
       press() {
         for (const network of squares) {
-          const [x, y] = network.positions({ ids: [CORNER] });
-          network.setPositions([x + PULL, y + PULL], { ids: [CORNER] });
+          const [x, y] = network.positions(CORNER);
+          network.setPositions([x + PULL, y + PULL], CORNER);
         }
         means.forEach((mean) => mean.begin());
       },

@@ -94,7 +94,7 @@ export class Pen {
   layoutOf(network, generation) {
     let layout = this.layouts.get(network);
     if (layout?.generation !== generation) {
-      layout = { generation, ends: network.ends({ numbering: 'slots' }), strains: new Float32Array(network.springCount) };
+      layout = { generation, ends: network.get(['slotA', 'slotB']), strains: new Float32Array(network.springCount) };
       this.layouts.set(network, layout);
     }
     return layout;
@@ -102,9 +102,9 @@ export class Pen {
 
   /** All springs, in the full colour where strained by limit. */
   network(network, limit, { thick = 0, dots = 0 } = {}) {
-    const { ends, strains } = this.layoutOf(network, network.view().layoutGeneration);
-    network.strains({ into: strains });
-    const view = network.view(), { originX, originY, inverseMass } = view, { x, y } = view;
+    const { ends, strains } = this.layoutOf(network, network.view.layoutGeneration);
+    network.get('strain', { first: 0 }, strains);
+    const view = network.view, { originX, originY, inverseMass } = view, { x, y } = view;
     const paths = this.shades.map(() => new Path2D());
     for (let s = 0; s < strains.length; s++) {
       const a = ends[2 * s], b = ends[2 * s + 1], shade = Math.max(-1, Math.min(1, strains[s] / limit || 0));

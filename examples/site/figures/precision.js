@@ -7,7 +7,7 @@ const WIDTH = 40, HEIGHT = 4, FAR = 9000, SUBSTEPS = 64, DAMPING = 5, TIMES = 20
 // The other particle holds the origin at the middle between it and the bar.
 function distant(ms, flags) {
   const network = bar(ms, { width: WIDTH, height: HEIGHT, x: FAR, substeps: SUBSTEPS, globalDamping: DAMPING, flags,
-    more: (builder) => builder.addParticle({ x: -FAR - WIDTH, flags: PARTICLE_PINNED }) });
+    more: (builder) => builder.addParticles({ x: -FAR - WIDTH, flags: PARTICLE_PINNED }) });
   network.settle();
   return network;
 }
@@ -61,7 +61,7 @@ export default {
   start(ms) {
     const networks = [distant(ms, NETWORK_PRECISE), distant(ms, 0)], rest = networks[0].positions(), body = plain(networks[0]);
     const shown = plainBar(WIDTH, HEIGHT), names = ['precise', 'default', 'plain floats'];
-    const speeds = () => [...networks.map((network) => network.stepInfo().largestSpeed), fastest(body.vx, body.vy)];
+    const speeds = () => [...networks.map((network) => network.energy.largestSpeed), fastest(body.vx, body.vy)];
     return {
       step() {
         networks.forEach((network) => network.step(DT));
@@ -91,7 +91,7 @@ export default {
       stepPlain(body);
       await breathe();
       if (frame < 64) continue;
-      [...networks.map((network) => network.stepInfo().largestSpeed), fastest(body.vx, body.vy)]
+      [...networks.map((network) => network.energy.largestSpeed), fastest(body.vx, body.vy)]
         .forEach((speed, i) => (most[i] = Math.max(most[i], speed)));
     }
     networks.forEach((network) => network.free());

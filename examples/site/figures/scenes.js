@@ -8,7 +8,7 @@ export const DT = 1 / 64;
 export const IRON = 6.7643e7;
 
 /** A lattice of width x height particles, 1 m apart. held: whether those in the first column are pinned. */
-export function bar(ms, { width, height, held = true, x = 0, y = 0, material = {}, more, ...options }) {
+export function bar(ms, { width, height, held = true, x = 0, y = 0, material = {}, more, flags, ...settings }) {
   const materials = [{ mass: MASS, stiffness: IRON, ...material }];
   materials.push({ ...materials[0], particleFlags: PARTICLE_PINNED });
   const cells = new Uint16Array(width * height);
@@ -16,7 +16,7 @@ export function bar(ms, { width, height, held = true, x = 0, y = 0, material = {
   const builder = new ms.Builder();
   builder.addLattice({ width, height, x, y, cells, materials });
   more?.(builder);
-  const network = new ms.Network(builder, options);
+  const network = new ms.Network(builder, settings, { flags });
   builder.free();
   return network;
 }
@@ -25,7 +25,7 @@ export function bar(ms, { width, height, held = true, x = 0, y = 0, material = {
 export const probe = (width) => width - 1;
 
 /** The height of a particle. */
-export const heightOf = (network, particle) => network.positions({ ids: [particle] })[1];
+export const heightOf = (network, particle) => network.positions(particle)[1];
 
 /** Where the springs of a network leave its particles at rest. The network itself stays. */
 export function dropAtRest(network, particle) {

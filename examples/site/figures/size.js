@@ -15,7 +15,7 @@ export default {
     const { width, height } = values;
     const network = bar(ms, { width, height, held: false, globalDamping: 0.3, substeps: 8,
       material: { mass: MASS, stiffness: 0.3, springFlags: SPRING_RELATIVE } });
-    network.pin(0);
+    network.set('inverseMassScale', 0, 0);
     const reach = Math.hypot(width, height);
     return {
       step: () => network.step(DT),
@@ -34,7 +34,7 @@ export default {
     for (let width = 1; width <= 24; width++)
       for (let height = 1; height <= 24; height++) {
         const builder = new ms.Builder();
-        builder.addLattice({ width, height, cells: new Uint16Array(width * height), materials: [{ stiffness: 1 }] });
+        builder.addLattice({ width, height, materials: [{ stiffness: 1 }] });
         sizes++;
         right += builder.springCount === springsOf(width, height);
         builder.free();

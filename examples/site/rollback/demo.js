@@ -129,7 +129,7 @@ class Demo {
     const lead = (event) => {
       const box = canvas.getBoundingClientRect(), point = this.pen.pick(event.clientX - box.left, event.clientY - box.top);
       if (!point) return;
-      const { world } = this.session.peers[point.index], [x, y] = world.network.positions({ ids: [world.players[point.index].centre] });
+      const { world } = this.session.peers[point.index], [x, y] = world.network.positions(world.players[point.index].centre);
       this.pressed[point.index] = (point.x > x + 0.4 ? RIGHT : point.x < x - 0.4 ? LEFT : 0) | (point.y > y + 1.3 ? JUMP : 0);
       this.lastKey[point.index] = performance.now();
     };

@@ -10,17 +10,17 @@ const RINGS = 2, RADIUS = 1;
 
 export class World {
   constructor(ms) {
-    const builder = new ms.Builder(), damping = { springFlags: SPRING_DAMPING_RATIO, damping: 0.3 };
+    const builder = new ms.Builder(), material = { springFlags: SPRING_DAMPING_RATIO, damping: 0.3 };
     const disc = (kind, x, y, radius, density, youngModulus) => {
-      const { firstParticle } = builder.addDisc({ x, y, radius, ringCount: RINGS, areaDensity: density, youngModulus, ...damping });
+      const { firstParticle } = builder.addDisc({ x, y, radius, ringCount: RINGS, areaDensity: density, youngModulus, material });
       const count = 1 + 3 * RINGS * (RINGS + 1), rim = 6 * RINGS;
       return { kind, centre: firstParticle, count, rim: Array.from({ length: rim }, (_, i) => firstParticle + count - rim + i) };
     };
     this.players = [disc('one', -5, 1.5, RADIUS, 12, 6000), disc('two', 5, 1.5, RADIUS, 12, 6000)];
     this.ball = disc('ball', 0, 5, 0.7, 5, 5000);
     this.crates = [[-1.1, 0.35], [0.4, 0.35], [-0.35, 1.75]].map(([x, y]) => {
-      const ids = builder.addLattice({ width: 4, height: 4, x, y, spacing: 0.36, cells: new Uint16Array(16),
-        materials: [{ mass: 0.8, stiffness: 9000, breakStrain: 0.3, ...damping }] });
+      const ids = builder.addLattice({ width: 4, height: 4, x, y, spacing: 0.36,
+        materials: [{ mass: 0.8, stiffness: 9000, breakStrain: 0.3, ...material }] });
       return { kind: 'crate', ids, side: 4 };
     });
     this.network = new ms.Network(builder, { substeps: 8, gravityY: -9.8, globalDamping: 0.1 });
@@ -39,17 +39,17 @@ export class World {
   // All that a player does follows from its input and from what a snapshot has.
   move({ centre, count }, input) {
     const { network } = this, where = { first: centre, count };
-    const [vx, vy] = network.velocities({ ids: [centre] });
+    const [vx, vy] = network.velocities(centre);
     const direction = (input & RIGHT ? 1 : 0) - (input & LEFT ? 1 : 0);
     if (direction && vx * direction < FASTEST) {
       const mass = network.get('mass', where), forces = new Float32Array(2 * count);
       mass.forEach((m, i) => (forces[2 * i] = direction * PUSH * m));
       network.applyForces(forces, where);
     }
-    if (input & JUMP && Math.abs(vy) < 0.4 && network.positions({ ids: [centre] })[1] < 2.6) {
+    if (input & JUMP && Math.abs(vy) < 0.4 && network.positions(centre)[1] < 2.6) {
       const mass = network.get('mass', where), impulses = new Float32Array(2 * count);
       mass.forEach((m, i) => (impulses[2 * i + 1] = LEAP * m));
-      network.applyImpulses(impulses, where);
+      network.applyForces(impulses, where, 'impulse');
     }
   }
 
@@ -62,7 +62,7 @@ export class World {
   }
 
   hash() {
-    return this.network.stateHash().toString(16);
+    return this.network.stateHash.toString(16);
   }
 }
 
@@ -73,8 +73,8 @@ export function makePlayer(seed) {
   return (me, world) => {
     if (left-- > 0) return input;
     left = 6 + Math.floor(24 * random());
-    const [mine] = world.network.positions({ ids: [world.players[me].centre] });
-    const [ball] = world.network.positions({ ids: [world.ball.centre] });
+    const [mine] = world.network.positions(world.players[me].centre);
+    const [ball] = world.network.positions(world.ball.centre);
     const chase = (ball > mine) === (random() < 0.8) ? RIGHT : LEFT;
     input = (random() < 0.85 ? chase : 0) | (random() < 0.3 ? JUMP : 0);
     return input;

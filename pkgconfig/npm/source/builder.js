@@ -1,6 +1,5 @@
 // What a network is made of.
-import { fail, Handle, whole } from './core.js';
-import { NONE } from './tables.js';
+import { array, fail, Handle, number, whole } from './core.js';
 
 function create(core) {
   core.check(core.exports.massspring_builder(core.word));
@@ -9,110 +8,125 @@ function create(core) {
 
 export class Builder extends Handle {
   constructor(core) {
-    super(core, create(core), core.exports.mspring_builder_destroy);
+    super(core, create(core));
   }
 
   get kind() {
     return 'builder';
   }
 
-  get particleCount() {
-    return this.core.exports.mspring_builder_particle_count(this.pointer);
+  // What fails is thrown at once, and so forgotten.
+  check(result) {
+    try {
+      super.check(result);
+    } catch (error) {
+      this.core.exports.mspring_builder_forget_error(this.pointer);
+      throw error;
+    }
   }
 
-  get springCount() {
-    return this.core.exports.mspring_builder_spring_count(this.pointer);
+  #make(name, struct, options) {
+    const [firstParticle, firstSpring] = this.core.call(() => this.words(name, this.core.write(struct, options)));
+    return { firstParticle, firstSpring };
   }
 
-  // Call the library with this builder, and return the two ids that it may leave.
-  #add(body) {
-    const { core, pointer } = this;
-    return core.call(() => {
-      core.data.setUint32(core.word, NONE, true);
-      core.data.setUint32(core.word + 4, NONE, true);
-      core.check(body(core, core.exports, pointer, core.word), core.exports.mspring_builder_error(pointer));
-      return [core.data.getUint32(core.word, true), core.data.getUint32(core.word + 4, true)];
+  // A call that fills ids.
+  #list(count, body) {
+    return this.core.call(() => {
+      const found = this.core.room('u32', count);
+      body(found);
+      return this.core.copyOut('u32', found, count);
     });
   }
 
-  addParticle(options) {
-    return this.#add((core, exports, pointer, id) =>
-      exports.mspring_builder_add_particle(pointer, core.write('particle_def', options), id))[0];
+  // Definitions, as they would be added again.
+  #definitions(struct, kind, where, body) {
+    return this.core.call(() => {
+      const which = this.which(where, kind), found = this.core.begin(struct, which[2]);
+      body(...which, found);
+      return this.core.readAll(struct, found, which[2]);
+    });
+  }
+
+  particles(where) {
+    return this.#definitions('particle_def', 'particles', where, (...given) => this.call('get_particles', ...given));
+  }
+
+  springs(where) {
+    return this.#definitions('spring_def', 'springs', where, (...given) => this.call('get_springs', ...given));
   }
 
   addParticles(columns) {
-    return this.#add((core, exports, pointer, id) => {
-      const defs = core.columns('particle_def', columns);
-      return exports.mspring_builder_add_particles(pointer, defs.pointer, defs.count, id);
-    })[0];
-  }
-
-  addSpring(options) {
-    return this.#add((core, exports, pointer, id) =>
-      exports.mspring_builder_add_spring(pointer, core.write('spring_def', options), id))[0];
+    return this.core.call(() => {
+      const { pointer, count } = this.core.columns('particle_def', columns);
+      return this.words('add_particles', pointer, count)[0];
+    });
   }
 
   addSprings(columns) {
-    return this.#add((core, exports, pointer, id) => {
-      const defs = core.columns('spring_def', columns);
-      return exports.mspring_builder_add_springs(pointer, defs.pointer, defs.count, id);
-    })[0];
+    return this.core.call(() => {
+      const { pointer, count } = this.core.columns('spring_def', columns);
+      return this.words('add_springs', pointer, count)[0];
+    });
   }
 
   addLattice(options) {
-    let ids;
-    this.#add((core, exports, pointer) => {
-      const count = whole(options?.width, 'width') * whole(options?.height, 'height');
-      if (!options.cells || !options.materials) fail('a lattice needs cells and materials');
-      const def = core.write('lattice_def', options), found = core.take(4 * Math.max(1, count));
-      const result = exports.mspring_builder_add_lattice(pointer, def, found);
-      if (result >= 0) ids = core.copyOut('u32', found, count);
-      return result;
+    return this.core.call(() => {
+      const count = whole(options?.width, 'width') * whole(options.height, 'height');
+      const def = this.core.write('lattice_def', options); // before room for as many ids
+      return this.#list(count, (found) => this.call('add_lattice', def, found));
     });
-    return ids;
   }
 
   addRope(options) {
-    let particles;
-    const [firstSpring] = this.#add((core, exports, pointer, spring) => {
-      const count = whole(options?.segmentCount ?? 1, 'segmentCount') + 1;
-      const def = core.write('rope_def', options), found = core.take(4 * count);
-      const result = exports.mspring_builder_add_rope(pointer, def, found, count, spring);
-      if (result >= 0) particles = core.copyOut('u32', found, count);
-      return result;
+    let firstSpring;
+    const particles = this.#list(whole(options?.segmentCount ?? 1, 'segmentCount') + 1, (found) => {
+      [firstSpring] = this.words('add_rope', this.core.write('rope_def', options), found);
     });
     return { particles, firstSpring };
   }
 
-  read(archive) {
-    if (!(archive instanceof Uint8Array)) fail('an archive must be a Uint8Array');
-    let skipped;
-    this.#add((core, exports, pointer, found) => {
-      const copy = core.take(Math.max(1, archive.length));
-      new Uint8Array(core.memory.buffer).set(archive, copy);
-      const result = exports.mspring_builder_read(pointer, copy, archive.length, found);
-      skipped = core.data.getUint32(found, true);
-      return result;
-    });
-    return skipped;
-  }
-
-  addStrainLimits(firstSpring, count, strain, stiffening) {
-    return this.#add((core, exports, pointer, id) =>
-      exports.mspring_builder_add_strain_limits(pointer, firstSpring, count, strain, stiffening, id))[0];
-  }
-
   addMesh(options) {
-    const [firstParticle, firstSpring] = this.#add((core, exports, pointer, ids) => {
-      if (!options?.x || !options.y || !options.triangles) fail('a mesh needs x, y and triangles');
-      return exports.mspring_builder_add_mesh(pointer, core.write('mesh_def', options), ids, ids + 4);
-    });
-    return { firstParticle, firstSpring };
+    if (!options?.x || !options.y || !options.triangles) fail('a mesh needs x, y and triangles');
+    return this.#make('add_mesh', 'mesh_def', options);
   }
 
   addDisc(options) {
-    const [firstParticle, firstSpring] = this.#add((core, exports, pointer, ids) =>
-      exports.mspring_builder_add_disc(pointer, core.write('disc_def', options), ids, ids + 4));
+    return this.#make('add_disc', 'disc_def', options);
+  }
+
+  addCopies(from, places) {
+    if (!(from instanceof Builder) || from.core !== this.core) fail('copies need a Builder of the same module');
+    const list = array('f64', places, 'places');
+    if (list.length % 2) fail(`places has ${list.length} numbers: it must have x, y of each copy`);
+    const [firstParticle, firstSpring] = this.core.call(() => {
+      const x = this.core.copyIn('f64', list);
+      return this.words('add_copies', from.pointer, list.length / 2, x, x + 8, 2);
+    });
     return { firstParticle, firstSpring };
+  }
+
+  addNetwork(network, where) {
+    if (network?.kind !== 'network' || network.core !== this.core) fail('this needs a Network of the same module');
+    let springs;
+    const particles = this.#list(network.particleCount, (found) => {
+      springs = this.#list(network.springCount, (others) =>
+        this.call('add_network', network.pointer, ...network.which(where, 'particles'), found, others));
+    });
+    return { particles, springs };
+  }
+
+  addStrainLimits(strain, stiffening, where) {
+    return this.core.call(() => this.words('add_strain_limits', ...this.which(where, 'springs'), number(strain, 'strain'),
+      number(stiffening, 'stiffening'))[0]);
+  }
+
+  read(archive) {
+    return this.core.call(() => this.words('read', this.core.bytesIn(archive, 'an archive'), archive.length)[0]);
+  }
+
+  // Fill a network's definition.
+  define(def) {
+    this.call('get_network_def', def);
   }
 }

@@ -1,8 +1,8 @@
 // A network: made, stepped, edited, measured and saved.
-import { array, choice, fail, MassSpringError, number, whole } from './core.js';
+import { choice, fail, MassSpringError, number, whole } from './core.js';
 import { Builder } from './builder.js';
 import { Laws } from './laws.js';
-import { FIND_WHOLE, NONE, STRUCTS } from './tables.js';
+import { FIND_WHOLE, STRUCTS } from './tables.js';
 
 /** A network that exists already. */
 export class Made {
@@ -11,28 +11,21 @@ export class Made {
   }
 }
 
-function create(core, builder, options) {
+function create(core, builder, settings, options) {
   if (!(builder instanceof Builder) || builder.core !== core) fail('a network needs a Builder of the same module');
   return core.call(() => {
-    const { exports } = core, { pointer } = builder, def = core.blank('network_def');
-    core.check(exports.mspring_builder_get_network_def(pointer, def), exports.mspring_builder_error(pointer));
+    const def = core.begin('network_def');
+    builder.define(def);
     core.overlay('network_def', def, options);
-    core.check(exports.massspring_network(pointer, def, core.word), exports.mspring_builder_error(pointer));
+    core.overlay('settings', def + STRUCTS.network_def.settings, settings);
+    builder.check(core.exports.massspring_network(builder.pointer, def, core.word));
     return core.data.getUint32(core.word, true);
   });
 }
 
 export class Network extends Laws {
-  constructor(core, from, options) {
-    super(core, from instanceof Made ? from.pointer : create(core, from, options), core.exports.mspring_network_destroy);
-  }
-
-  // A list of ids for a call.
-  #list(ids, body) {
-    this.run((core, exports, pointer) => {
-      const list = array('u32', typeof ids === 'number' ? [ids] : ids, 'ids');
-      return body(exports, pointer, core.copyIn('u32', list), list.length);
-    });
+  constructor(core, from, settings, options) {
+    super(core, from instanceof Made ? from.pointer : create(core, from, settings, options));
   }
 
   /* ------------------------------------------------------------------------------------------ step and settings */
@@ -50,253 +43,178 @@ export class Network extends Laws {
     }
   }
 
-  stepInfo() {
-    return this.report('step_info', (exports, pointer, found) => exports.mspring_network_get_step_info(pointer, found));
+  get stepInfo() {
+    return this.report('get_step_info', 'step_info');
   }
 
-  getSettings() {
-    return this.report('settings', (exports, pointer, found) => exports.mspring_network_get_settings(pointer, found));
+  get info() {
+    return this.report('get_info', 'network_info');
   }
 
-  setSettings(options) {
-    this.run((core, exports, pointer) => {
-      const found = core.blank('settings');
-      this.check(exports.mspring_network_get_settings(pointer, found));
-      core.overlay('settings', found, options);
-      return exports.mspring_network_set_settings(pointer, found);
+  get settings() {
+    return this.report('get_settings', 'settings');
+  }
+
+  setSettings(settings) {
+    const { core } = this;
+    core.call(() => {
+      const found = core.begin('settings');
+      this.call('get_settings', found);
+      core.overlay('settings', found, settings);
+      this.call('set_settings', found);
     });
-  }
-
-  getSolver() {
-    return this.report('solver_def', (exports, pointer, found) => exports.mspring_network_get_solver(pointer, found));
-  }
-
-  setSolver(options) {
-    this.run((core, exports, pointer) => {
-      const found = core.blank('solver_def');
-      this.check(exports.mspring_network_get_solver(pointer, found));
-      core.overlay('solver_def', found, options);
-      return exports.mspring_network_set_solver(pointer, found);
-    });
-  }
-
-  get isAsleep() {
-    return this.core.exports.mspring_network_is_asleep(this.pointer) === 1;
   }
 
   wake() {
-    this.check(this.core.exports.mspring_network_wake(this.pointer));
+    this.call('wake');
   }
 
   /* ----------------------------------------------------------------------------------------------------- edits */
 
-  breakSprings(ids) {
-    this.#list(ids, (exports, pointer, list, count) => exports.mspring_network_break_springs(pointer, list, count));
+  breakSprings(where) {
+    this.change('break_springs', where, 'springs');
   }
 
-  restoreSprings(ids, rampSeconds = 0) {
-    number(rampSeconds, 'rampSeconds');
-    this.#list(ids, (exports, pointer, list, count) =>
-      exports.mspring_network_restore_springs(pointer, list, count, rampSeconds));
+  restoreSprings(where, rampSeconds = 0) {
+    this.change('restore_springs', where, 'springs', number(rampSeconds, 'rampSeconds'));
   }
 
-  detachParticles(ids) {
-    this.#list(ids, (exports, pointer, list, count) => exports.mspring_network_detach_particles(pointer, list, count));
+  detachParticles(where) {
+    this.change('detach_particles', where, 'particles');
   }
 
-  pin(ids) {
-    this.set('inverseMassScale', 0, { ids });
+  removeParticles(where) {
+    this.change('remove_particles', where, 'particles');
   }
 
-  unpin(ids) {
-    this.set('inverseMassScale', 1, { ids });
+  removeSprings(where) {
+    this.change('remove_springs', where, 'springs');
   }
 
-  #added(name, columns, body) {
+  #add(struct, columns, body) {
     return this.core.call(() => {
-      const { pointer, count } = this.core.columns(name, columns), ids = this.core.take(Math.max(1, 4 * count));
-      this.check(body(this.core.exports, this.pointer, pointer, count, ids));
-      return this.core.copyOut('u32', ids, count);
+      const { pointer, count } = this.core.columns(struct, columns);
+      return this.copy('u32', count, undefined, (found) => body(pointer, count, found));
     });
   }
 
   addParticles(columns) {
-    return this.#added('particle_def', columns, (exports, pointer, defs, count, ids) =>
-      exports.mspring_network_add_particles(pointer, defs, count, ids));
+    return this.#add('particle_def', columns, (...given) => this.call('add_particles', ...given));
   }
 
   addSprings(columns) {
-    return this.#added('spring_def', columns, (exports, pointer, defs, count, ids) =>
-      exports.mspring_network_add_springs(pointer, defs, count, ids));
+    return this.#add('spring_def', columns, (...given) => this.call('add_springs', ...given));
   }
 
-  removeParticles(ids) {
-    this.#list(ids, (exports, pointer, list, count) => exports.mspring_network_remove_particles(pointer, list, count));
-  }
-
-  removeSprings(ids) {
-    this.#list(ids, (exports, pointer, list, count) => exports.mspring_network_remove_springs(pointer, list, count));
-  }
-
-  recycle() {
-    this.check(this.core.exports.mspring_network_recycle(this.pointer));
-  }
-
-  hasParticle(id) {
-    return this.core.exports.mspring_network_has_particle(this.pointer, whole(id, 'id')) === 1;
-  }
-
-  hasSpring(id) {
-    return this.core.exports.mspring_network_has_spring(this.pointer, whole(id, 'id')) === 1;
+  reuseIds() {
+    this.call('reuse_ids');
   }
 
   compact() {
-    this.check(this.core.exports.mspring_network_compact(this.pointer));
-  }
-
-  expand() {
-    this.check(this.core.exports.mspring_network_expand(this.pointer));
+    this.call('compact');
   }
 
   /* ------------------------------------------------------------------------------------- events and components */
 
   reserveEvents(capacity) {
-    this.check(this.core.exports.mspring_network_reserve_events(this.pointer, whole(capacity, 'capacity')));
+    this.call('reserve_events', whole(capacity, 'capacity'));
   }
 
   readEvents(most = 1024) {
-    const { core } = this;
-    return core.call(() => {
-      const { size } = STRUCTS.event, found = core.take(Math.max(1, whole(most, 'most')) * size);
-      this.check(core.exports.mspring_network_read_events(this.pointer, found, most, core.word, core.word + 8));
-      const count = core.data.getUint32(core.word, true), lost = Number(core.data.getBigUint64(core.word + 8, true));
-      return { events: Array.from({ length: count }, (_, i) => core.read('event', found + i * size)), lost };
-    });
+    return this.events('event', most, (...given) => this.call('read_events', ...given));
   }
 
   updateComponents() {
-    const [count, changed] = this.numbers('u32', 2, (exports, pointer, ...found) =>
-      exports.mspring_network_update_components(pointer, ...found));
+    const [count, changed] = this.words('update_components');
     return { count, changed: changed === 1 };
-  }
-
-  componentNumbers({ into, ...where } = {}) {
-    const { first, count } = this.span(where, this.particleCount);
-    return this.read('u32', count, into, [Uint32Array], (found) =>
-      this.core.exports.mspring_network_get_component_numbers(this.pointer, first, count, found, 1));
   }
 
   components(first, count) {
     const { core } = this;
     return core.call(() => {
-      const found = core.blank('component', whole(count, 'count'));
-      this.check(core.exports.mspring_network_get_components(this.pointer, whole(first, 'first'), count, found));
-      return Array.from({ length: count }, (_, i) => core.read('component', found + i * STRUCTS.component.size));
+      const found = core.begin('body', whole(count, 'count'));
+      this.call('get_components', whole(first, 'first'), count, found);
+      return core.readAll('body', found, count);
     });
   }
 
   /* ------------------------------------------------------------------------------------------------- measuring */
 
-  energy() {
-    const [kinetic, elastic, potential] = this.numbers('f64', 3, (exports, pointer, ...found) =>
-      exports.mspring_network_energy(pointer, ...found));
-    return { kinetic, elastic, potential };
-  }
-
-  momentum() {
-    const [x, y, angular] = this.numbers('f64', 3, (exports, pointer, ...found) =>
-      exports.mspring_network_momentum(pointer, ...found));
-    return { x, y, angular };
-  }
-
-  bounds() {
-    const [minX, minY, maxX, maxY] = this.numbers('f64', 4, (exports, pointer, ...found) =>
-      exports.mspring_network_bounds(pointer, ...found));
-    return { minX, minY, maxX, maxY };
+  get energy() {
+    return this.report('get_energy', 'energy');
   }
 
   body(where) {
-    return this.report('body', (exports, pointer, found) => {
-      const { ids = 0, first = 0, count } = this.range(where, this.particleCount);
-      return exports.mspring_network_get_body(pointer, ids, first, count, found);
-    });
+    return this.core.call(() => this.report('get_body', 'body', ...this.which(where, 'particles')));
   }
 
-  stableDt() {
-    const [now, anyShape] = this.numbers('f64', 2, (exports, pointer, ...found) =>
-      exports.mspring_network_stable_dt(pointer, ...found));
-    return { now, anyShape };
+  get stableDt() {
+    return this.numbers('get_stable_dt', 'f64', ['now', 'anyShape']);
   }
 
   suggestSubsteps(dt, safety = 0.95) {
-    return this.numbers('u32', 1, (exports, pointer, found) =>
-      exports.mspring_network_suggest_substeps(pointer, number(dt, 'dt'), number(safety, 'safety'), found))[0];
+    return this.words('suggest_substeps', number(dt, 'dt'), number(safety, 'safety'))[0];
   }
 
   settle(options) {
-    return this.report('settle_result', (exports, pointer, found) =>
-      exports.mspring_network_settle(pointer, this.core.write('settle_def', options), found));
+    return this.core.call(() => this.report('settle', 'settle_result', this.core.write('settle_def', options)));
   }
 
-  plan() {
-    return this.report('plan', (exports, pointer, found) => exports.mspring_network_get_plan(pointer, found));
-  }
-
-  get memoryUsed() {
-    return this.core.exports.mspring_network_memory_used(this.pointer);
+  describe() {
+    const { core } = this;
+    return core.call(() => {
+      const [size] = this.words('describe', 0, 0), text = core.take(size);
+      this.call('describe', text, size, 0);
+      return core.text(text);
+    });
   }
 
   /* --------------------------------------------------------------------------------------------------- queries */
-
-  nearestParticle(x, y, within = Infinity) {
-    const { core } = this;
-    this.check(core.exports.mspring_network_nearest_particle(this.pointer, number(x, 'x'), number(y, 'y'),
-      number(within, 'within'), core.word, core.word + 8));
-    const particle = core.data.getUint32(core.word, true);
-    return particle === NONE ? null : { particle, distance: core.data.getFloat64(core.word + 8, true) };
-  }
 
   // Ids of what a query finds: body(ids, capacity, count).
   #found(total, body) {
     const { core } = this;
     return core.call(() => {
-      const found = core.take(Math.max(1, total) * 4);
-      this.check(body(found, total, core.word));
+      const found = core.room('u32', total);
+      body(found, total, core.word);
       return core.copyOut('u32', found, core.data.getUint32(core.word, true));
     });
   }
 
-  particlesInCircle(x, y, radius) {
-    return this.#found(this.particleCount, (...found) => this.core.exports.mspring_network_particles_in_circle(
-      this.pointer, number(x, 'x'), number(y, 'y'), number(radius, 'radius'), ...found));
-  }
-
-  particlesInBox(minX, minY, maxX, maxY) {
-    return this.#found(this.particleCount, (...found) => this.core.exports.mspring_network_particles_in_box(
-      this.pointer, number(minX, 'minX'), number(minY, 'minY'), number(maxX, 'maxX'), number(maxY, 'maxY'), ...found));
+  nearestParticle(x, y, within = Infinity) {
+    const { core } = this;
+    this.call('nearest_particle', number(x, 'x'), number(y, 'y'), number(within, 'within'), core.word, core.word + 8);
+    const distance = core.data.getFloat64(core.word + 8, true);
+    return distance === Infinity ? null : { particle: core.data.getUint32(core.word, true), distance };
   }
 
   nearestSpring(x, y, within = Infinity, flags = FIND_WHOLE) {
     const { core } = this;
-    return core.call(() => {
-      const found = core.take(24);
-      this.check(core.exports.mspring_network_nearest_spring(this.pointer, number(x, 'x'), number(y, 'y'),
-        number(within, 'within'), whole(flags, 'flags'), found, found + 8, found + 16));
-      const spring = core.data.getUint32(found, true);
-      return spring === NONE ? null
-        : { spring, fraction: core.data.getFloat64(found + 8, true), distance: core.data.getFloat64(found + 16, true) };
-    });
+    this.call('nearest_spring', number(x, 'x'), number(y, 'y'), number(within, 'within'), whole(flags, 'flags'), core.word,
+      core.word + 8, core.word + 16);
+    const distance = core.data.getFloat64(core.word + 16, true);
+    return distance === Infinity ? null
+      : { spring: core.data.getUint32(core.word, true), fraction: core.data.getFloat64(core.word + 8, true), distance };
+  }
+
+  particlesInCircle(x, y, radius) {
+    return this.#found(this.particleCount, (...found) =>
+      this.call('particles_in_circle', number(x, 'x'), number(y, 'y'), number(radius, 'radius'), ...found));
+  }
+
+  particlesInBox(minX, minY, maxX, maxY) {
+    return this.#found(this.particleCount, (...found) => this.call('particles_in_box', number(minX, 'minX'),
+      number(minY, 'minY'), number(maxX, 'maxX'), number(maxY, 'maxY'), ...found));
   }
 
   springsInCircle(x, y, radius, flags = FIND_WHOLE) {
-    return this.#found(this.springCount, (...found) => this.core.exports.mspring_network_springs_in_circle(
-      this.pointer, number(x, 'x'), number(y, 'y'), number(radius, 'radius'), whole(flags, 'flags'), ...found));
+    return this.#found(this.springCount, (...found) => this.call('springs_in_circle', number(x, 'x'), number(y, 'y'),
+      number(radius, 'radius'), whole(flags, 'flags'), ...found));
   }
 
   springsAcross(fromX, fromY, toX, toY, flags = FIND_WHOLE) {
-    return this.#found(this.springCount, (ids, capacity, count) => this.core.exports.mspring_network_springs_across(
-      this.pointer, number(fromX, 'fromX'), number(fromY, 'fromY'), number(toX, 'toX'), number(toY, 'toY'),
-      whole(flags, 'flags'), ids, 0, capacity, count));
+    return this.#found(this.springCount, (ids, capacity, count) => this.call('springs_across', number(fromX, 'fromX'),
+      number(fromY, 'fromY'), number(toX, 'toX'), number(toY, 'toY'), whole(flags, 'flags'), ids, 0, capacity, count));
   }
 
   /* ------------------------------------------------------------------------------------------ snapshots, clones */
@@ -304,20 +222,14 @@ export class Network extends Laws {
   save(contents = 'all') {
     const { core } = this, index = choice('snapshot_contents', contents);
     return core.call(() => {
-      this.check(core.exports.mspring_network_snapshot_size(this.pointer, index, core.word));
-      const size = core.data.getUint32(core.word, true), found = core.take(size);
-      this.check(core.exports.mspring_network_save(this.pointer, index, found, size, core.word));
-      return new Uint8Array(core.memory.buffer, found, core.data.getUint32(core.word, true)).slice();
+      const [size] = this.words('get_snapshot_size', index), found = core.take(size);
+      this.call('save', index, found, size, core.word);
+      return core.bytesOut(found, core.data.getUint32(core.word, true));
     });
   }
 
   load(snapshot) {
-    if (!(snapshot instanceof Uint8Array)) fail('a snapshot must be a Uint8Array');
-    this.run((core, exports, pointer) => {
-      const copy = core.take(Math.max(1, snapshot.length));
-      new Uint8Array(core.memory.buffer).set(snapshot, copy);
-      return exports.mspring_network_load(pointer, copy, snapshot.length);
-    });
+    this.core.call(() => this.call('load', this.core.bytesIn(snapshot, 'a snapshot'), snapshot.length));
   }
 
   write() {
@@ -326,13 +238,12 @@ export class Network extends Laws {
       this.check(core.exports.massspring_archive(this.pointer, 0, core.word));
       const size = core.data.getUint32(core.word, true), found = core.take(size);
       this.check(core.exports.massspring_archive(this.pointer, found, core.word));
-      return new Uint8Array(core.memory.buffer, found, size).slice();
+      return core.bytesOut(found, size);
     });
   }
 
   clone() {
-    const { core } = this;
-    this.check(core.exports.mspring_network_clone(this.pointer, 0, core.word));
-    return new this.constructor(new Made(core.data.getUint32(core.word, true)));
+    const [pointer] = this.words('clone', 0);
+    return new this.constructor(new Made(pointer));
   }
 }

@@ -2,7 +2,7 @@
 import { Builder } from './builder.js';
 import { Core, MassSpringError, choice, fail, number } from './core.js';
 import { Network } from './network.js';
-import { STRUCTS } from './tables.js';
+import { ENUMS } from './tables.js';
 
 export { MassSpringError };
 export * from './tables.js';
@@ -26,15 +26,15 @@ class MassSpring {
   constructor(core) {
     this.#core = core;
     this.version = core.text(core.exports.mspring_version_string());
-    this.simd = core.exports.mspring_simd_supported() !== 1;
+    this.simd = core.exports.mspring_simd_available(ENUMS.simd.wasm) === 1;
     this.Builder = class extends Builder {
       constructor() {
         super(core);
       }
     };
     this.Network = class extends Network {
-      constructor(builder, options) {
-        super(core, builder, options);
+      constructor(builder, settings, options) {
+        super(core, builder, settings, options);
       }
     };
   }
@@ -46,9 +46,8 @@ class MassSpring {
   material(preset, spacing, substep) {
     const core = this.#core, index = choice('preset', preset);
     return core.call(() => {
-      const { size } = STRUCTS.material, found = core.take(size);
-      const result = core.exports.mspring_material_preset(found, size, index, number(spacing, 'spacing'),
-        number(substep, 'substep'));
+      const found = core.begin('material');
+      const result = core.exports.mspring_material_preset(found, index, number(spacing, 'spacing'), number(substep, 'substep'));
       if (result < 0) fail(`spacing ${spacing} m or substep ${substep} s is out of range`);
       return core.read('material', found);
     });

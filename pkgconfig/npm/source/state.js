@@ -1,224 +1,164 @@
 // A network's state: particles, springs, and what they are made of.
-import { array, choice, fail, Handle, number, whole } from './core.js';
-import { STRUCTS } from './tables.js';
+import { array, choice, fail, Handle, isArray, number, spoken, whole } from './core.js';
+import { ENUMS, PROPERTY_WORDS, STRUCTS } from './tables.js';
 
-function known(where, names) {
-  for (const name of Object.keys(where))
-    if (!names.includes(name) && where[name] !== undefined)
-      fail(`${name} has no meaning here; there are: ${names.join(', ')}`);
-  return where;
-}
+const KINDS = Object.keys(ENUMS.kind);
 
-const isTyped = (value, ...types) => types.some((type) => value instanceof type);
+// Bits 8 up of a property are what it is of, bit 7 says integer or float.
+const kindOf = (property) => KINDS[choice('property', property) >> 8];
+const typeOf = (property) => (choice('property', property) & 0x80 ? 'u32' : 'f32');
 
 export class State extends Handle {
   get kind() {
     return 'network';
   }
 
-  get particleCount() {
-    return this.core.exports.mspring_network_particle_count(this.pointer);
-  }
-
-  get springCount() {
-    return this.core.exports.mspring_network_spring_count(this.pointer);
+  // A reading call that fails keeps its message until a call that may change: make one that does nothing.
+  check(result) {
+    try {
+      super.check(result);
+    } catch (error) {
+      this.core.exports.mspring_network_read_events(this.pointer, 0, 0, this.core.word, 0);
+      throw error;
+    }
   }
 
   /* --------------------------------------------------------------------------------------------------- helpers */
 
-  check(result) {
-    this.core.check(result, result < 0 ? this.core.exports.mspring_network_error(this.pointer) : 0);
-  }
-
-  // A call with memory for its time: body returns a result of the library.
-  run(body) {
-    const { core, pointer } = this;
-    core.call(() => this.check(body(core, core.exports, pointer)));
-  }
-
   // A struct that the library fills.
-  report(name, body) {
+  report(name, struct, ...given) {
     return this.core.call(() => {
-      const found = this.core.blank(name);
-      this.check(body(this.core.exports, this.pointer, found));
-      return this.core.read(name, found);
+      const found = this.core.begin(struct);
+      this.call(name, ...given, found);
+      return this.core.read(struct, found);
     });
   }
 
-  // Numbers that the library writes one after the other.
-  numbers(kind, count, body) {
+  // Numbers that the library writes, by name.
+  numbers(name, kind, names, ...given) {
     return this.core.call(() => {
-      const wide = kind === 'f64' ? 8 : 4, found = this.core.take(count * wide);
-      this.check(body(this.core.exports, this.pointer, ...Array.from({ length: count }, (_, i) => found + i * wide)));
-      return [...this.core.view(kind, found, count)];
+      const found = this.core.room('f64', names.length);
+      this.call(name, ...given, ...names.map((_, i) => found + 8 * i));
+      return Object.fromEntries(names.map((key, i) => [key, this.core.view(kind, found + 8 * i, 1)[0]]));
     });
   }
 
-  // Which elements a call is about: { ids, count } or { first, count }. Inside of a call, which gives ids back.
-  range(where, total) {
-    if (where?.ids === undefined) return this.span(where, total);
-    known(where, ['ids']);
-    const list = array('u32', typeof where.ids === 'number' ? [where.ids] : where.ids, 'ids');
-    return { ids: this.core.copyIn('u32', list), count: list.length };
+  // A call about things of a kind: about those that are named.
+  change(name, where, kind, ...given) {
+    if (where === undefined) fail(`name the ${kind}; all are { first: 0 }`);
+    this.core.call(() => this.call(name, ...this.which(where, kind), ...given));
   }
 
-  span(where, total) {
-    const { first = 0, count } = known(where ?? {}, ['first', 'count']);
-    whole(first, 'first');
-    return { first, count: whole(count ?? Math.max(0, total - first), 'count') };
-  }
-
-  // Call one of two functions of the library: for a list, or for a range.
-  pick(range, at, plain, before, after) {
-    return range.ids !== undefined ? at(this.pointer, ...before, range.ids, range.count, ...after)
-      : plain(this.pointer, ...before, range.first, range.count, ...after);
-  }
-
-  // Where results go: into an array of the caller's, or a new one.
-  read(kind, length, into, types, body) {
-    if (into !== undefined && !isTyped(into, ...types)) fail(`into must be a ${types.map((type) => type.name).join(' or ')}`);
+  // Results as numbers: in an array of the caller's, or a new one.
+  copy(kind, length, into, body) {
+    const found = this.core.room(kind, length), made = this.core.view(kind, found, 0).constructor;
+    if (into !== undefined && !(into instanceof made)) fail(`into must be a ${made.name}`);
     if (into !== undefined && into.length !== length) fail(`into has ${into.length} numbers, it must have ${length}`);
-    return this.core.call(() => {
-      const found = this.core.take(Math.max(1, length) * (kind === 'f64' ? 8 : 4));
-      this.check(body(found));
-      return this.core.copyOut(kind, found, length, into);
-    });
+    body(found);
+    return this.core.copyOut(kind, found, length, into);
   }
 
-  // Pairs of numbers for particles: a pair for each, or one for all.
-  pairs(kind, values, where, at, plain) {
+  // Pairs of numbers for particles: a pair for each, or one for all. body gets which they are and where the pairs lie.
+  pairs(kind, values, where, body) {
     this.core.call(() => {
-      const list = array(kind, values, 'values');
-      if (list.length % 2) fail(`values has ${list.length} numbers: it must have two for each particle`);
-      const given = where?.ids === undefined && where?.count === undefined ? { ...where, count: list.length / 2 } : where;
-      const range = this.range(given, this.particleCount);
-      if (list.length !== 2 * range.count && list.length !== 2)
-        fail(`values has ${list.length} numbers: it must have ${2 * range.count}, or 2 for all`);
-      const x = this.core.copyIn(kind, list), y = x + (kind === 'f64' ? 8 : 4);
-      this.check(this.pick(range, at, plain, [], [x, y, list.length === 2 ? 0 : 2]));
+      const list = array(kind, values, 'values'), which = this.which(where, 'particles'), length = 2 * which[2];
+      if (list.length !== length && list.length !== 2)
+        fail(`values has ${list.length} numbers: it must have ${length}, or 2 for all`);
+      const x = this.core.copyIn(kind, list);
+      body(...which, x, x + (kind === 'f64' ? 8 : 4), list.length === length ? 2 : 0);
     });
   }
 
   /* ------------------------------------------------------------------------------------- positions, velocities */
 
-  view() {
+  get view() {
     return this.core.call(() => {
-      const found = this.core.blank('view'), { fields } = STRUCTS.view;
-      this.check(this.core.exports.mspring_network_view(this.pointer, found));
-      const view = this.core.read('view', found);
-      for (const [key, [kind, offset]] of Object.entries(fields))
+      const found = this.core.begin('view'), { core } = this;
+      this.call('get_view', found);
+      const view = core.read('view', found);
+      for (const [key, [kind, offset]] of Object.entries(STRUCTS.view.fields))
         if (kind.endsWith('*'))
-          view[key] = this.core.view(kind.slice(0, -1), this.core.data.getUint32(found + offset, true),
+          view[key] = core.view(kind.slice(0, -1), core.data.getUint32(found + offset, true),
             key === 'slotOfParticle' ? view.particleCount : view.slotCount);
       return view;
     });
   }
 
-  positions({ into, ...where } = {}) {
-    const { exports } = this.core, single = into instanceof Float32Array, wide = single ? 4 : 8;
+  get stateHash() {
+    this.call('get_state_hash', this.core.word);
+    return this.core.data.getBigUint64(this.core.word, true);
+  }
+
+  positions(where, into) {
     return this.core.call(() => {
-      const range = this.range(where, this.particleCount);
-      return this.read(single ? 'f32' : 'f64', 2 * range.count, into, [Float64Array, Float32Array], (found) => single
-        ? this.pick(range, exports.mspring_network_get_positions_float_at, exports.mspring_network_get_positions_float, [],
-          [found, found + wide, 2])
-        : this.pick(range, exports.mspring_network_get_positions_at, exports.mspring_network_get_positions, [],
-          [found, found + wide, 2]));
+      const which = this.which(where, 'particles');
+      return this.copy('f64', 2 * which[2], into, (found) => this.call('get_positions', ...which, found, found + 8, 2));
     });
   }
 
-  velocities({ into, ...where } = {}) {
-    const { exports } = this.core;
-    return this.core.call(() => {
-      const range = this.range(where, this.particleCount);
-      return this.read('f32', 2 * range.count, into, [Float32Array], (found) => this.pick(range,
-        exports.mspring_network_get_velocities_at, exports.mspring_network_get_velocities, [], [found, found + 4, 2]));
-    });
+  velocities(where, into) {
+    return this.get(['vx', 'vy'], where, into);
   }
 
   setPositions(values, where) {
-    const { exports } = this.core;
-    this.pairs('f64', values, where, exports.mspring_network_set_positions_at, exports.mspring_network_set_positions);
+    this.pairs('f64', values, where, (...given) => this.call('set_positions', ...given));
   }
 
   setVelocities(values, where) {
-    const { exports } = this.core;
-    this.pairs('f32', values, where, exports.mspring_network_set_velocities_at, exports.mspring_network_set_velocities);
+    this.pairs('f32', values, where, (...given) => this.call('set_velocities', ...given));
   }
 
   applyForce(particle, x, y) {
-    this.check(this.core.exports.mspring_network_apply_force(this.pointer, whole(particle, 'particle'), number(x, 'x'),
-      number(y, 'y')));
+    this.call('apply_force', whole(particle, 'particle'), number(x, 'x'), number(y, 'y'));
   }
 
-  applyForces(values, where) {
-    const { exports } = this.core;
-    this.pairs('f32', values, where, exports.mspring_network_apply_forces_at, exports.mspring_network_apply_forces);
-  }
-
-  applyImpulses(values, where) {
-    const { exports } = this.core;
-    this.pairs('f32', values, where, exports.mspring_network_apply_impulses_at, exports.mspring_network_apply_impulses);
+  applyForces(values, where, push = 'step') {
+    const how = choice('push', push);
+    this.pairs('f32', values, where, (...given) => this.call('apply_forces', how, ...given));
   }
 
   applyTorque(torque, where) {
-    this.core.call(() => {
-      const { ids = 0, first = 0, count } = this.range(where, this.particleCount);
-      this.check(this.core.exports.mspring_network_apply_torque(this.pointer, ids, first, count, number(torque, 'torque')));
-    });
-  }
-
-  stateHash() {
-    const { core } = this;
-    this.check(core.exports.mspring_network_state_hash(this.pointer, core.word));
-    return core.data.getBigUint64(core.word, true);
+    this.core.call(() => this.call('apply_torque', ...this.which(where, 'particles'), number(torque, 'torque')));
   }
 
   /* ------------------------------------------------------------------------------------------------ properties */
 
-  #total(property) {
-    return property === 'mass' || property === 'inverseMassScale' ? this.particleCount : this.springCount;
+  // Read properties: place(i, count) is where column i begins.
+  #read(properties, which, stride, place) {
+    const columns = properties.flatMap((property, i) => [ENUMS.property[property], stride, place(i)]);
+    this.call('get_columns', ...which, this.core.copyIn('u32', columns), properties.length);
   }
 
-  get(property, { into, ...where } = {}) {
-    const index = choice('property', property), { exports } = this.core;
+  // One, or several by turns: x, y of one thing after the other.
+  get(property, where, into) {
+    const all = isArray(property) ? property : [property], type = typeOf(all[0]), stride = all.length;
+    for (const one of all) if (typeOf(one) !== type) fail(`${all[0]} and ${one} do not fit into one array: use columns`);
     return this.core.call(() => {
-      const range = this.range(where, this.#total(property));
-      return this.read('f32', range.count, into, [Float32Array], (found) =>
-        this.pick(range, exports.mspring_network_get_at, exports.mspring_network_get, [index], [found, 1]));
+      const which = this.which(where, kindOf(all[0]));
+      return this.copy(type, stride * which[2], into, (found) => this.#read(all, which, stride, (i) => found + 4 * i));
+    });
+  }
+
+  columns(properties, where) {
+    if (!isArray(properties)) fail('properties must be an array');
+    return this.core.call(() => {
+      const which = this.which(where, kindOf(properties[0])), count = which[2];
+      const places = properties.map((property) => this.core.room(typeOf(property), count));
+      this.#read(properties, which, 1, (i) => places[i]);
+      return Object.fromEntries(properties.map((property, i) =>
+        [property, this.core.copyOut(typeOf(property), places[i], count)]));
     });
   }
 
   set(property, values, where) {
-    const index = choice('property', property), single = typeof values === 'number', { exports } = this.core;
+    const index = choice('property', property), type = typeOf(property), single = !isArray(values);
     this.core.call(() => {
-      const list = single ? [values] : array('f32', values, 'values');
-      const all = single || where?.ids !== undefined || where?.count !== undefined ? where : { ...where, count: list.length };
-      const range = this.range(all, this.#total(property));
-      if (!single && list.length !== range.count) fail(`values has ${list.length} numbers, it must have ${range.count}`);
-      this.check(this.pick(range, exports.mspring_network_set_at, exports.mspring_network_set, [index],
-        [this.core.copyIn('f32', list), single ? 0 : 1]));
+      const which = this.which(where, kindOf(property));
+      const list = array(type, single ? [spoken(values, PROPERTY_WORDS[property], property)] : values, property);
+      if (!single && list.length !== which[2]) fail(`values has ${list.length} numbers, it must have ${which[2]}`);
+      const given = [index, ...which, this.core.copyIn(type, list), single ? 0 : 1];
+      if (type === 'u32') this.call('set_integers', ...given);
+      else this.call('set', ...given);
     });
-  }
-
-  strains(where) {
-    return this.get('strain', where);
-  }
-
-  maxStrain() {
-    const { core } = this;
-    this.check(core.exports.mspring_network_max_strain(this.pointer, core.word, core.word + 4));
-    return { strain: core.data.getFloat32(core.word, true), spring: core.data.getUint32(core.word + 4, true) };
-  }
-
-  ends({ numbering = 'ids', into, ...where } = {}) {
-    const index = choice('numbering', numbering), { first, count } = this.span(where, this.springCount);
-    return this.read('u32', 2 * count, into, [Uint32Array], (found) =>
-      this.core.exports.mspring_network_get_ends(this.pointer, first, count, index, found, found + 4, 2));
-  }
-
-  springFlags({ into, ...where } = {}) {
-    const { first, count } = this.span(where, this.springCount);
-    return this.read('u32', count, into, [Uint32Array], (found) =>
-      this.core.exports.mspring_network_get_spring_flags(this.pointer, first, count, found, 1));
   }
 }
