@@ -13,35 +13,32 @@
 
 int main() try {
     const std::uint32_t width = 80, height = 5;
-    std::vector<massspring::material> made(2); // 0 is free, 1 is pinned
-    std::vector<mspring_material> materials;
-    made[1].particle_flags = MSPRING_PARTICLE_PINNED;
-    for (massspring::material &iron : made) {
-        iron.mass = 73.4f;
-        iron.stiffness = 6.76e7f;
-        materials.push_back(iron);
-    }
+    mspring_material materials[2]; // 0 is free, 1 is pinned
+    materials[0] = mspring_material_default();
+    materials[0].mass = 73.4f;
+    materials[0].stiffness = 6.76e7f;
+    materials[1] = materials[0];
+    materials[1].particle_flags = MSPRING_PARTICLE_PINNED;
     std::vector<std::uint16_t> cells(width * height);
     for (std::uint32_t row = 0; row < height; ++row)
         cells[row * width] = 1;
 
-    massspring::lattice_def bar;
+    auto bar = mspring_lattice_def_default();
     bar.width = width;
     bar.height = height;
     bar.cells = cells.data();
-    bar.materials = materials.data();
+    bar.materials = materials;
     bar.material_count = 2;
     massspring::builder builder;
-    const mspring_id free_end = builder.add_lattice(bar)[width - 1];
+    const mspring_id free_end = builder.add(bar)[width - 1];
 
-    massspring::network network(builder);
-    mspring_settings settings = network.settings();
-    settings.global_damping = 1.0f;
-    network.set_settings(settings);
-    const double top = network.position(free_end).y;
+    auto def = mspring_network_def_default();
+    def.settings.global_damping = 1.0f;
+    massspring::network network(builder, &def);
+    const double top = network.positions(free_end)[0].y;
     for (int step = 0; step < 60 * 64 * 30; ++step)
         network.step(1.0 / (64 * 30));
-    std::printf("the free end has dropped by %.2f m, hash %016" PRIx64 "\n", top - network.position(free_end).y,
+    std::printf("the free end has dropped by %.2f m, hash %016" PRIx64 "\n", top - network.positions(free_end)[0].y,
                 network.hash());
     return 0;
 } catch (const std::exception &failure) {

@@ -7,7 +7,7 @@ use std::ffi::{c_char, c_void, CStr};
 use std::ptr::{null, null_mut};
 
 #[repr(C)]
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Material {
     struct_size: u32,
     particle_flags: u32,
@@ -16,7 +16,7 @@ struct Material {
     stiffness: f32,
     damping: f32,
     break_strain: f32,
-    stress_strain: f32,
+    warn_strain: f32,
     relax_strain: f32,
     yield_strain: f32,
     hardening: f32,
@@ -39,10 +39,14 @@ struct LatticeDef {
 }
 
 #[repr(C)]
-#[derive(Default)]
 struct Settings {
     struct_size: u32,
+    solver: i32,
+    integrator: i32,
     guard: i32,
+    substeps: u32,
+    max_substeps: u32,
+    substep_length: f64,
     gravity_x: f32,
     gravity_y: f32,
     global_damping: f32,
@@ -50,14 +54,32 @@ struct Settings {
     sleep_speed: f32,
     sleep_time: f32,
     relax_fraction: f32,
+    residual: f32,
+    iterations: u32,
+    tile_size: u32,
+    coarse_period: u32,
+    most_work: u32,
 }
 
 const PINNED: u32 = 1;
 
+/// Structs that have defaults, with their numbers (mspring_struct).
+trait Struct {
+    const KIND: i32;
+}
+impl Struct for Material {
+    const KIND: i32 = 4;
+}
+impl Struct for LatticeDef {
+    const KIND: i32 = 5;
+}
+impl Struct for Settings {
+    const KIND: i32 = 9;
+}
+
 #[link(name = "massspring")]
 extern "C" {
-    fn mspring_material_init(material: *mut Material, size: usize) -> i32;
-    fn mspring_lattice_def_init(def: *mut LatticeDef, size: usize) -> i32;
+    fn mspring_init(kind: i32, made: *mut c_void, size: usize) -> i32;
     fn mspring_result_string(result: i32) -> *const c_char;
     fn mspring_builder_create(allocator: *const c_void, builder: *mut *mut c_void) -> i32;
     fn mspring_builder_destroy(builder: *mut c_void);
@@ -68,9 +90,9 @@ extern "C" {
     fn mspring_network_set_settings(network: *mut c_void, settings: *const Settings) -> i32;
     fn mspring_network_step(network: *mut c_void, dt: f64) -> i32;
     fn mspring_network_get_positions(
-        network: *const c_void, first: u32, count: u32, x: *mut f64, y: *mut f64, stride: u32,
+        network: *const c_void, ids: *const u32, first: u32, count: u32, x: *mut f64, y: *mut f64, stride: u32,
     ) -> i32;
-    fn mspring_network_state_hash(network: *const c_void, hash: *mut u64) -> i32;
+    fn mspring_network_get_state_hash(network: *const c_void, hash: *mut u64) -> i32;
 }
 
 fn check(result: i32) -> Result<(), String> {
@@ -80,30 +102,33 @@ fn check(result: i32) -> Result<(), String> {
     }
 }
 
+/// A struct with its defaults; an error if the library has another layout of it.
+fn made<T: Struct>() -> Result<T, String> {
+    let mut made = unsafe { std::mem::zeroed::<T>() };
+    check(unsafe { mspring_init(T::KIND, (&raw mut made).cast(), size_of::<T>()) })?;
+    Ok(made)
+}
+
 struct Network(*mut c_void);
 
 impl Network {
     /// The bar, and the particle at the top of its free end.
     fn bar(width: usize, height: usize) -> Result<(Network, u32), String> {
-        let mut materials = [Material::default(); 2]; // 0 is free, 1 is pinned
-        for iron in &mut materials {
-            check(unsafe { mspring_material_init(iron, size_of::<Material>()) })?;
-            iron.mass = 73.4;
-            iron.stiffness = 6.76e7;
-        }
-        materials[1].particle_flags = PINNED;
+        let iron = Material { mass: 73.4, stiffness: 6.76e7, ..made()? };
+        let materials = [iron, Material { particle_flags: PINNED, ..iron }]; // 0 is free, 1 is pinned
         let mut cells = vec![0u16; width * height];
         cells.iter_mut().step_by(width).for_each(|cell| *cell = 1);
         let mut ids = vec![0u32; width * height];
         let (mut builder, mut network) = (null_mut(), null_mut());
         unsafe {
-            let mut def = std::mem::zeroed::<LatticeDef>();
-            check(mspring_lattice_def_init(&mut def, size_of::<LatticeDef>()))?;
-            def.width = width as u32;
-            def.height = height as u32;
-            def.material_count = 2;
-            def.cells = cells.as_ptr();
-            def.materials = materials.as_ptr();
+            let def = LatticeDef {
+                width: width as u32,
+                height: height as u32,
+                material_count: 2,
+                cells: cells.as_ptr(),
+                materials: materials.as_ptr(),
+                ..made()?
+            };
             check(mspring_builder_create(null(), &mut builder))?;
             let made = check(mspring_builder_add_lattice(builder, &def, ids.as_mut_ptr()))
                 .and_then(|_| check(mspring_network_create(builder, null(), &mut network)));
@@ -115,7 +140,7 @@ impl Network {
 
     fn height_of(&self, particle: u32) -> Result<f64, String> {
         let (mut x, mut y) = (0.0, 0.0);
-        check(unsafe { mspring_network_get_positions(self.0, particle, 1, &mut x, &mut y, 1) })?;
+        check(unsafe { mspring_network_get_positions(self.0, null(), particle, 1, &mut x, &mut y, 1) })?;
         Ok(y)
     }
 }
@@ -128,7 +153,7 @@ impl Drop for Network {
 
 fn main() -> Result<(), String> {
     let (network, free_end) = Network::bar(80, 5)?;
-    let mut settings = Settings { struct_size: size_of::<Settings>() as u32, ..Default::default() };
+    let mut settings = made::<Settings>()?;
     check(unsafe { mspring_network_get_settings(network.0, &mut settings) })?;
     settings.global_damping = 1.0;
     check(unsafe { mspring_network_set_settings(network.0, &settings) })?;
@@ -137,7 +162,7 @@ fn main() -> Result<(), String> {
         check(unsafe { mspring_network_step(network.0, 1.0 / (64.0 * 30.0)) })?;
     }
     let mut hash = 0;
-    check(unsafe { mspring_network_state_hash(network.0, &mut hash) })?;
+    check(unsafe { mspring_network_get_state_hash(network.0, &mut hash) })?;
     let drop = top - network.height_of(free_end)?;
     println!("the free end has dropped by {drop:.2} m, hash {hash:016x}");
     Ok(())

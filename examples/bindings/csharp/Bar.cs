@@ -15,6 +15,7 @@ static class Bar {
     static void PrintLayout() {
         foreach (Type type in typeof(Native).Assembly.GetTypes()) {
             if (!type.IsValueType || type.IsEnum || !type.Name.StartsWith("mspring_")) continue;
+            type.GetMethod("Default")?.Invoke(null, null); // the library knows it, and refuses too small a size
             Console.WriteLine("{0} {1}", type.Name, Marshal.SizeOf(type));
             foreach (FieldInfo field in type.GetFields(BindingFlags.Public | BindingFlags.Instance))
                 Console.WriteLine("{0}.{1} {2}", type.Name, field.Name, Marshal.OffsetOf(type, field.Name));
@@ -26,7 +27,10 @@ static class Bar {
             PrintLayout();
             return 0;
         }
-        mspring_material iron = Defaults.Material(73.4f, 6.76e7f), wall = iron;
+        mspring_material iron = mspring_material.Default();
+        iron.mass = 73.4f;
+        iron.stiffness = 6.76e7f;
+        mspring_material wall = iron;
         wall.particle_flags = Native.MSPRING_PARTICLE_PINNED;
         var cells = new ushort[WIDTH * HEIGHT];
         for (int row = 0; row < HEIGHT; row++) cells[row * WIDTH] = 1;
@@ -44,6 +48,12 @@ static class Bar {
                 network.Positions(x, y);
                 FormattableString said = $"the free end has dropped by {top - y[freeEnd]:F2} m, hash {network.StateHash():x16}";
                 Console.WriteLine(FormattableString.Invariant(said));
+
+                var vertices = new float[3 * x.Length];
+                unsafe {
+                    fixed (float* to = vertices) network.Positions(to, 3);
+                }
+                if (vertices[3 * freeEnd + 1] != (float)y[freeEnd]) throw new Exception("a vertex is elsewhere");
 
                 byte[] before = network.Save();
                 network.Step(1.0 / 64);

@@ -10,7 +10,8 @@
 //     }
 //
 // It wraps the calls of most games. Native has all others, under the names of the headers: network.Handle is the pointer
-// for these functions, and MassSpringException.Check throws with the message of a failed call.
+// for these functions, and network.Check throws with the message of a failed call. mspring_grip_def.Default() is a struct
+// with its defaults; it throws if the library has another layout of it.
 //
 // SPDX-License-Identifier: MIT
 using System;
@@ -32,24 +33,6 @@ namespace MassSpring {
         public static unsafe string Text(byte* text) { return Marshal.PtrToStringAnsi((IntPtr)text); }
     }
 
-    /// <summary>Definitions with the library's defaults.</summary>
-    public static unsafe class Defaults {
-        public static mspring_material Material(float mass, float stiffness, float damping = 0) {
-            mspring_material made;
-            MassSpringException.Check(Native.mspring_material_init(&made, (UIntPtr)sizeof(mspring_material)));
-            made.mass = mass;
-            made.stiffness = stiffness;
-            made.damping = damping;
-            return made;
-        }
-
-        public static mspring_network_def Network() {
-            mspring_network_def made;
-            MassSpringException.Check(Native.mspring_network_def_init(&made, (UIntPtr)sizeof(mspring_network_def)));
-            return made;
-        }
-    }
-
     /// <summary>Collects particles and springs.</summary>
     public sealed unsafe class Builder : IDisposable {
         public IntPtr Handle { get; private set; }
@@ -60,29 +43,34 @@ namespace MassSpring {
             Handle = made;
         }
 
-        void Check(mspring_result result) { MassSpringException.Check(result, Native.mspring_builder_error(Handle)); }
+        public void Check(mspring_result result) {
+            if (result == mspring_result.MSPRING_OK) return;
+            try {
+                MassSpringException.Check(result, Native.mspring_builder_error(Handle));
+            } finally {
+                Native.mspring_builder_forget_error(Handle); // it is thrown once, and the builder goes on
+            }
+        }
 
         public int AddParticle(double x, double y, float mass = 1, bool pinned = false) {
-            mspring_particle_def def;
+            mspring_particle_def def = mspring_particle_def.Default();
             uint id;
-            Check(Native.mspring_particle_def_init(&def, (UIntPtr)sizeof(mspring_particle_def)));
             def.x = x;
             def.y = y;
             def.mass = mass;
             def.flags = pinned ? Native.MSPRING_PARTICLE_PINNED : 0;
-            Check(Native.mspring_builder_add_particle(Handle, &def, &id));
+            Check(Native.mspring_builder_add_particles(Handle, &def, 1, &id));
             return (int)id;
         }
 
         public int AddSpring(int a, int b, float stiffness, float damping = 0) {
-            mspring_spring_def def;
+            mspring_spring_def def = mspring_spring_def.Default();
             uint id;
-            Check(Native.mspring_spring_def_init(&def, (UIntPtr)sizeof(mspring_spring_def)));
             def.a = (uint)a;
             def.b = (uint)b;
             def.stiffness = stiffness;
             def.damping = damping;
-            Check(Native.mspring_builder_add_spring(Handle, &def, &id));
+            Check(Native.mspring_builder_add_springs(Handle, &def, 1, &id));
             return (int)id;
         }
 
@@ -90,8 +78,7 @@ namespace MassSpring {
         /// -1 for none.</summary>
         public int[] AddLattice(int width, int height, ushort[] cells, params mspring_material[] materials) {
             if (cells.Length != width * height) throw new ArgumentException("cells must have width * height values");
-            mspring_lattice_def def;
-            Check(Native.mspring_lattice_def_init(&def, (UIntPtr)sizeof(mspring_lattice_def)));
+            mspring_lattice_def def = mspring_lattice_def.Default();
             var ids = new int[cells.Length];
             fixed (ushort* cell = cells)
             fixed (mspring_material* material = materials)
@@ -118,19 +105,28 @@ namespace MassSpring {
     /// <summary>Particles and springs that move. Any thread may call it, but only one at a time.</summary>
     public sealed unsafe class Network : IDisposable {
         public IntPtr Handle { get; private set; }
-        public int ParticleCount { get { return (int)Native.mspring_network_particle_count(Handle); } }
-        public int SpringCount { get { return (int)Native.mspring_network_spring_count(Handle); } }
+        public int ParticleCount { get { return Count(mspring_kind.MSPRING_PARTICLES); } }
+        public int SpringCount { get { return Count(mspring_kind.MSPRING_SPRINGS); } }
 
-        public Network(Builder builder) : this(builder, Defaults.Network()) { }
+        public Network(Builder builder) : this(builder, mspring_network_def.Default()) { }
 
         public Network(Builder builder, mspring_network_def def) {
             IntPtr made;
-            MassSpringException.Check(Native.mspring_network_create(builder.Handle, &def, &made),
-                Native.mspring_builder_error(builder.Handle));
+            builder.Check(Native.mspring_network_create(builder.Handle, &def, &made));
             Handle = made;
         }
 
-        void Check(mspring_result result) { MassSpringException.Check(result, Native.mspring_network_error(Handle)); }
+        public int Count(mspring_kind kind) { return (int)Native.mspring_network_count(Handle, kind); }
+
+        public void Check(mspring_result result) {
+            if (result == mspring_result.MSPRING_OK) return;
+            try {
+                MassSpringException.Check(result, Native.mspring_network_error(Handle));
+            } finally { // what reads and fails keeps its message until a call that may change, such as this one
+                uint count;
+                Native.mspring_network_read_events(Handle, null, 0, &count, null);
+            }
+        }
 
         void CheckRoom(Array array, int values) {
             if (array.Length < values) throw new ArgumentException("the array needs room for " + values + " values");
@@ -140,8 +136,7 @@ namespace MassSpring {
 
         public mspring_settings Settings {
             get {
-                mspring_settings made;
-                made.struct_size = (uint)sizeof(mspring_settings);
+                mspring_settings made = mspring_settings.Default();
                 Check(Native.mspring_network_get_settings(Handle, &made));
                 return made;
             }
@@ -153,21 +148,43 @@ namespace MassSpring {
             CheckRoom(x, ParticleCount);
             CheckRoom(y, ParticleCount);
             fixed (double* toX = x, toY = y)
-                Check(Native.mspring_network_get_positions(Handle, 0, (uint)ParticleCount, toX, toY, 1));
+                Check(Native.mspring_network_get_positions(Handle, null, 0, (uint)ParticleCount, toX, toY, 1));
         }
 
         /// <summary>x, y of one particle after the other, as vertices of a mesh have them. stride: floats from one to
         /// the next, 3 for a Vector3[] that is pinned.</summary>
         public void Positions(float* vertices, int stride) {
-            Check(Native.mspring_network_get_positions_float(
-                Handle, 0, (uint)ParticleCount, vertices, vertices + 1, (uint)stride));
+            mspring_column* both = stackalloc mspring_column[2];
+            both[0].property = mspring_property.MSPRING_X;
+            both[1].property = mspring_property.MSPRING_Y;
+            both[0].stride = both[1].stride = (uint)stride;
+            both[0].values = (IntPtr)vertices;
+            both[1].values = (IntPtr)(vertices + 1);
+            Check(Native.mspring_network_get_columns(Handle, null, 0, (uint)ParticleCount, both, 2));
         }
 
-        public void Strains(float[] values) {
-            CheckRoom(values, SpringCount);
-            fixed (float* to = values)
-                Check(Native.mspring_network_get(
-                    Handle, mspring_property.MSPRING_STRAIN, 0, (uint)SpringCount, to, 1));
+        // The number of things that have a property: bits 8 and up are their kind.
+        uint CountOf(mspring_property property, Array values) {
+            int count = Count((mspring_kind)((int)property >> 8));
+            CheckRoom(values, count);
+            return (uint)count;
+        }
+
+        /// <summary>Reads a property of all things of its kind, as MSPRING_STRAIN of all springs.</summary>
+        public void Get(mspring_property property, float[] values) {
+            uint count = CountOf(property, values);
+            fixed (float* to = values) Check(Native.mspring_network_get(Handle, property, null, 0, count, to, 1));
+        }
+
+        /// <summary>Reads a property of integers, as MSPRING_SPRING_FLAGS.</summary>
+        public void Get(mspring_property property, uint[] values) {
+            uint count = CountOf(property, values);
+            fixed (uint* to = values) Check(Native.mspring_network_get_integers(Handle, property, null, 0, count, to, 1));
+        }
+
+        public void Set(mspring_property property, float[] values) {
+            uint count = CountOf(property, values);
+            fixed (float* from = values) Check(Native.mspring_network_set(Handle, property, null, 0, count, from, 1));
         }
 
         public void ApplyForce(int particle, float x, float y) {
@@ -176,14 +193,13 @@ namespace MassSpring {
 
         public void BreakSprings(params int[] springs) {
             fixed (int* ids = springs)
-                Check(Native.mspring_network_break_springs(Handle, (uint*)ids, (uint)springs.Length));
+                Check(Native.mspring_network_break_springs(Handle, (uint*)ids, 0, (uint)springs.Length));
         }
 
         /// <summary>Holds a particle softly, as a mouse does. Returns the grip.</summary>
         public int AddGrip(int particle, double x, double y, float stiffness, float damping) {
-            mspring_grip_def def;
+            mspring_grip_def def = mspring_grip_def.Default();
             uint id;
-            Check(Native.mspring_grip_def_init(&def, (UIntPtr)sizeof(mspring_grip_def)));
             def.particle = (uint)particle;
             def.x = x;
             def.y = y;
@@ -203,7 +219,7 @@ namespace MassSpring {
         public byte[] Save() {
             UIntPtr size;
             var contents = mspring_snapshot_contents.MSPRING_SNAPSHOT_FRAME;
-            Check(Native.mspring_network_snapshot_size(Handle, contents, &size));
+            Check(Native.mspring_network_get_snapshot_size(Handle, contents, &size));
             var made = new byte[(int)size];
             fixed (byte* to = made)
                 Check(Native.mspring_network_save(Handle, contents, to, size, null));
@@ -218,7 +234,7 @@ namespace MassSpring {
         /// <summary>Equal states have equal hashes on every machine.</summary>
         public ulong StateHash() {
             ulong hash;
-            Check(Native.mspring_network_state_hash(Handle, &hash));
+            Check(Native.mspring_network_get_state_hash(Handle, &hash));
             return hash;
         }
 

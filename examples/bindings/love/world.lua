@@ -24,7 +24,6 @@ local CAR = { -- a row of text is a row of cells
 local WHEEL = { radius = 0.95, rings = 3, columns = { 2, 12 } }
 local TORQUE, FASTEST, JUMP = 3000, 18, 5 -- N m of each wheel, the rad/s at which none is left; m/s
 local LEAN = 0.25 -- of the torque turns the body back; all of it would have cars do somersaults
-local GROUP = { GROUND = 1, BODY = 2, WHEEL = 4 }
 
 -- Metres above 0: hills, the canyon, then a long rise to the crates.
 local function height(x)
@@ -44,20 +43,14 @@ local function cells_of(rows)
   return cells, #rows[1], #rows
 end
 
--- Adds a lattice and remembers it as a body to draw.
+-- Adds a lattice and remembers it as a body to draw. Without cells it is full.
 function World:add(builder, kind, cells, width, rows, x, y, spacing, materials)
-  local first_spring = builder:spring_count()
+  local first_spring = builder:count(ms.SPRINGS)
   local ids = builder:lattice { width = width, height = rows, x = x, y = y, spacing = spacing, cells = cells, materials = materials }
   local body = { kind = kind, ids = ids, width = width, height = rows, spacing = spacing,
-    first_spring = first_spring, last_spring = builder:spring_count() - 1 }
+    first_spring = first_spring, last_spring = builder:count(ms.SPRINGS) - 1 }
   self.bodies[#self.bodies + 1] = body
   return body
-end
-
-function World:add_block(builder, kind, width, rows, x, y, spacing, material)
-  local cells = {}
-  for i = 1, width * rows do cells[i] = 0 end
-  return self:add(builder, kind, cells, width, rows, x, y, spacing, { material })
 end
 
 function World:add_bridge(builder)
@@ -78,12 +71,14 @@ function World:add_car(builder, x, y)
   local cells, width, rows = cells_of(CAR)
   local body = self:add(builder, "car", cells, width, rows, x, y, CAR.spacing, { metal })
   self.car, self.wheels = body, {}
+  self.body_count = builder:count(ms.PARTICLES) -- they are the first
+  local rubber = { damping = 0.25, spring_flags = ms.SPRING_DAMPING_RATIO }
   for _, column in ipairs(WHEEL.columns) do
     local hub_x, hub_y = x + column * CAR.spacing, y - 0.45
     local hub = builder:disc { x = hub_x, y = hub_y, radius = WHEEL.radius, ring_count = WHEEL.rings, area_density = 40,
-      young_modulus = 3e5, damping = 0.25, spring_flags = ms.SPRING_DAMPING_RATIO }
-    local rim = 6 * WHEEL.rings
-    local wheel = { hub = hub, first = hub + 1 + 3 * WHEEL.rings * (WHEEL.rings - 1), count = rim, radius = WHEEL.radius }
+      young_modulus = 3e5, material = rubber }
+    local all, rim = builder:count(ms.PARTICLES) - hub, 6 * WHEEL.rings
+    local wheel = { hub = hub, all = all, first = hub + all - rim, count = rim, radius = WHEEL.radius, speed = 0 }
     -- Two struts hold the hub from the sides and one carries the weight.
     for _, strut in ipairs { { -2, 5, 1.5e5 }, { 2, 5, 1.5e5 }, { 0, 4, 7e4 } } do
       local cell = body.ids[strut[2] * width + column + strut[1]]
@@ -97,50 +92,35 @@ function World.new()
   local self = setmetatable({ bodies = {}, held = nil, time = 0, drive = 0 }, World)
   local builder = ms.builder()
   self:add_car(builder, 8, 3.2)
-  self.car_last = builder:particle_count() - 1
+  self.car_count = builder:count(ms.PARTICLES)
   self.bridge = self:add_bridge(builder)
   local box = { mass = 3, stiffness = 9e4, damping = 0.4, break_strain = 0.5, spring_flags = ms.SPRING_DAMPING_RATIO }
   for row = 0, 3 do
     for column = 0, 3 - row do
       local x = 116 + 1.75 * (column + row / 2)
-      self:add_block(builder, "crate", 5, 5, x, height(118) + 1.2 + 1.75 * row, 0.36, box)
+      self:add(builder, "crate", nil, 5, 5, x, height(118) + 1.2 + 1.75 * row, 0.36, { box })
     end
   end
-  self.network = builder:network { gravity_y = -9.8, substeps = 20, global_damping = 0.02, worker_count = 1 }
+  self.network = builder:network { settings = { gravity_y = -9.8, substeps = 20, global_damping = 0.02 } }
   self.heights = {}
   for i = 0, World.WIDTH / World.SPACING do self.heights[i + 1] = height(i * World.SPACING) end
   self.network:set_floor(ms.def("floor_def", { heights = self.heights, spacing = World.SPACING, friction = 1.1,
     planes = { 1, 0, 1, 0, World.WIDTH - 1, 0, -1, 0 } }))
   self.network:set_contact(ms.def("contact_def", { flags = 0, friction = 0.7, thickness = 0.12 }))
-  self.ends_a, self.ends_b = self.network:ends()
+  self.ends_a, self.ends_b = self.network:property(ms.END_A), self.network:property(ms.END_B)
   self:read()
-  for _, wheel in ipairs(self.wheels) do wheel.angle, wheel.speed = self:angle(wheel), 0 end
   return self
 end
 
 function World:read()
   self.x, self.y = self.network:positions(self.x, self.y)
-  self.strains = self.network:springs(ms.C.MSPRING_STRAIN, self.strains)
+  self.strains = self.network:property(ms.STRAIN, self.strains)
 end
 
--- A wheel turns by forces along its rim; the body feels the opposite turn at its ends.
+-- A torque turns a wheel, and a part of it the body the other way.
 function World:turn(wheel, torque)
-  local network, x, y = self.network, self.x, self.y
-  local push = torque / (wheel.count * wheel.radius)
-  for particle = wheel.first, wheel.first + wheel.count - 1 do
-    local dx, dy = x[particle] - x[wheel.hub], y[particle] - y[wheel.hub]
-    local length = math.sqrt(dx * dx + dy * dy) + 1e-9
-    network:apply_force(particle, push * dy / length, -push * dx / length)
-  end
-  local back, front = self.car.ids[5 * self.car.width], self.car.ids[5 * self.car.width + self.car.width - 1]
-  local dx, dy = x[front] - x[back], y[front] - y[back]
-  local part = LEAN * torque / (dx * dx + dy * dy)
-  network:apply_force(front, -part * dy, part * dx)
-  network:apply_force(back, part * dy, -part * dx)
-end
-
-function World:angle(wheel)
-  return math.atan2(self.y[wheel.first] - self.y[wheel.hub], self.x[wheel.first] - self.x[wheel.hub])
+  self.network:apply_torque(nil, wheel.hub, wheel.all, -torque)
+  self.network:apply_torque(nil, 0, self.body_count, LEAN * torque)
 end
 
 --- drive: -1 back to 1 on.
@@ -149,20 +129,15 @@ function World:step(drive)
   self.network:step(World.DT)
   self.time = self.time + World.DT
   self:read()
-  for _, wheel in ipairs(self.wheels) do
-    local angle = self:angle(wheel)
-    local turned = (angle - wheel.angle + math.pi) % (2 * math.pi) - math.pi
-    wheel.speed, wheel.angle = -turned / World.DT, angle
-  end
+  for _, wheel in ipairs(self.wheels) do wheel.speed = -self.network:body(wheel.hub, wheel.all).spin end
 end
 
 --- All of the car gets a push upwards.
 function World:jump()
-  local count = self.car_last + 1
-  local masses, x, y = ffi.new("float[?]", count), ffi.new("float[?]", count), ffi.new("float[?]", count)
-  self.network:get(ms.C.MSPRING_MASS, 0, count, masses, 1)
-  for i = 0, count - 1 do y[i] = JUMP * masses[i] end
-  self.network:apply_impulses(0, count, x, y, 1)
+  local masses = self.network:property(ms.MASS)
+  local x, y = ffi.new("float[?]", self.car_count), ffi.new("float[?]", self.car_count)
+  for i = 0, self.car_count - 1 do y[i] = JUMP * masses[i] end
+  self.network:apply_forces(ms.PUSH_IMPULSE, nil, 0, self.car_count, x, y, 1)
 end
 
 function World:grab(x, y)
@@ -184,23 +159,18 @@ end
 
 function World:cut(from_x, from_y, to_x, to_y)
   local springs, count = self.network:crossed(from_x, from_y, to_x, to_y)
-  if count > 0 then self.network:break_springs(springs, count) end
+  if count > 0 then self.network:break_springs(springs, 0, count) end
 end
 
 function World:place()
-  local ids, sum_x, sum_y, count = self.car.ids, 0, 0, 0
-  for i = 0, self.car.width * self.car.height - 1 do
-    if ids[i] ~= ms.NONE then sum_x, sum_y, count = sum_x + self.x[ids[i]], sum_y + self.y[ids[i]], count + 1 end
-  end
-  return sum_x / count, sum_y / count
+  local body = self.network:body(0, self.body_count)
+  return body.x, body.y
 end
 
 function World:broken()
-  local springs, count = self.network:spring_count(), 0
-  local flags = ffi.new("uint32_t[?]", springs)
-  self.network:get_spring_flags(0, springs, flags, 1)
-  for i = 0, springs - 1 do
-    if bit.band(flags[i], ms.SPRING_BROKEN) ~= 0 then count = count + 1 end
+  local flags, count = self.network:property(ms.SPRING_FLAGS), 0
+  for spring = 0, self.network:count(ms.SPRINGS) - 1 do
+    if bit.band(flags[spring], ms.SPRING_BROKEN) ~= 0 then count = count + 1 end
   end
   return count
 end
