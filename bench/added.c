@@ -22,12 +22,12 @@ bool bench_added_create(mspring_builder *builder, mspring_simd level, uint32_t w
     mspring_network_def def;
     mspring_network_destroy(out->network);
     out->network = NULL;
-    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def);
     def.simd_level = level;
     def.worker_count = workers;
-    def.substeps = substeps;
-    def.guard = MSPRING_GUARD_GROWTH;
-    def.global_damping = BENCH_GLOBAL_DAMPING;
+    def.settings.substeps = substeps;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
+    def.settings.global_damping = BENCH_GLOBAL_DAMPING;
     def.spare_particles = spare_particles;
     def.spare_springs = spare_springs;
     if (result == MSPRING_OK) {
@@ -45,7 +45,7 @@ bool bench_added_loose(bench_network *network, uint32_t count, double height, do
     mspring_id *ids = bench_allocate(count, sizeof *ids, error);
     bool ok = particles != NULL && ids != NULL;
     for (uint32_t i = 0; ok && i < count; i++) {
-        ok = mspring_particle_def_init(&particles[i], sizeof particles[i]) == MSPRING_OK;
+        ok = mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particles[i], sizeof particles[i]) == MSPRING_OK;
         particles[i].x = 0.02 * i;
         particles[i].y = height;
     }
@@ -104,7 +104,8 @@ bool bench_added_list(const bench_network *network, uint32_t count, mspring_spri
         while (from < particles && find(places, particles, from) == from) {
             from++;
         }
-        if (from == particles || mspring_spring_def_init(&springs[i], sizeof springs[i]) != MSPRING_OK) {
+        if (from == particles ||
+            mspring_init(MSPRING_STRUCT_SPRING_DEF, &springs[i], sizeof springs[i]) != MSPRING_OK) {
             break;
         }
         springs[i].a = places[from].particle;

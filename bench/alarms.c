@@ -8,7 +8,7 @@
 
 #include "modes.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 /// Of the border. A stretched network's is lower than that at rest: by a tenth where iron hangs by its own weight.
 #define SHARE 0.85
 
@@ -71,16 +71,16 @@ static bool graph(scene *out, scene_error *error) {
 
 // Set the velocity of a particle, unless it is pinned.
 static bool push(mspring_network *network, mspring_id particle, float speed) {
-    mspring_view view = {.struct_size = sizeof view};
-    if (mspring_network_view(network, &view) != MSPRING_OK)
+    mspring_view view = mspring_view_default();
+    if (mspring_network_get_view(network, &view) != MSPRING_OK)
         return false;
     return view.inverse_mass[view.slot_of_particle[particle]] == 0.0f ||
-           mspring_network_set_velocities(network, particle, 1, &speed, &speed, 1) == MSPRING_OK;
+           mspring_network_set_velocities(network, NULL, particle, 1, &speed, &speed, 1) == MSPRING_OK;
 }
 
 // Let it fall, swing and come to rest, and push a particle now and then.
 static uint32_t count_refusals(mspring_network *network, const char *name, double h, uint32_t steps) {
-    const uint32_t particles = mspring_network_particle_count(network);
+    const uint32_t particles = mspring_network_count(network, MSPRING_PARTICLES);
     uint32_t refused = 0;
     uint64_t seed = 1;
     for (uint32_t step = 0; step < steps; step++) {
@@ -99,21 +99,20 @@ static uint32_t count_refusals(mspring_network *network, const char *name, doubl
 
 static bool step_scene(const scene *made, bench_format format, uint32_t *steps, uint32_t *refused) {
     mspring_network *network = NULL;
-    mspring_network_def def;
-    (void)mspring_network_def_init(&def, sizeof def);
-    def.global_damping = 0.5f;
-    def.substeps = SUBSTEPS;
-    def.guard = MSPRING_GUARD_GROWTH;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.global_damping = 0.5f;
+    def.settings.substeps = SUBSTEPS;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
     double now = 0, any_shape = 0;
     if (mspring_network_create(made->builder, &def, &network) != MSPRING_OK ||
-        mspring_network_stable_dt(network, &now, &any_shape) != MSPRING_OK) {
+        mspring_network_get_stable_dt(network, &now, &any_shape) != MSPRING_OK) {
         fprintf(stderr, "%s: %s%s\n", made->name, mspring_builder_error(made->builder),
                 mspring_network_error(network));
         mspring_network_destroy(network);
         return false;
     }
     const double h = SHARE * now;
-    const uint32_t springs = mspring_network_spring_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
     const uint32_t of_scene = springs < LARGE ? STEPS_OF_SMALL : STEPS_OF_LARGE;
     const uint32_t refused_here = count_refusals(network, made->name, h, of_scene);
     mspring_network_destroy(network);

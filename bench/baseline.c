@@ -7,21 +7,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "network.h"
 
 static bool fill_particles(const bench_network *from, bench_baseline *baseline, scene_error *error) {
     mspring_view view;
     view.struct_size = sizeof view;
-    mspring_result result = mspring_network_view(from->network, &view);
+    mspring_result result = mspring_network_get_view(from->network, &view);
     uint32_t count = from->particle_count;
     float *mass = bench_allocate(count, sizeof *mass, error);
     if (mass == NULL) {
         return false;
     }
     if (result == MSPRING_OK) {
-        result = mspring_network_get(from->network, MSPRING_MASS, 0, count, mass, 1);
+        result = mspring_network_get(from->network, MSPRING_MASS, NULL, 0, count, mass, 1);
     }
     if (result == MSPRING_OK) {
         baseline->origin_x = view.origin_x;
@@ -45,20 +45,25 @@ static bool fill_particles(const bench_network *from, bench_baseline *baseline, 
 }
 
 static bool fill_springs(const bench_network *from, bench_baseline *baseline, scene_error *error) {
-    mspring_spring_info info;
-    info.struct_size = sizeof info;
+    mspring_id a, b;
+    float stiffness, damping, rest_length;
+    const mspring_column columns[] = {{MSPRING_END_A, 1, &a},
+                                      {MSPRING_END_B, 1, &b},
+                                      {MSPRING_ACTIVE_STIFFNESS, 1, &stiffness},
+                                      {MSPRING_ACTIVE_DAMPING, 1, &damping},
+                                      {MSPRING_ACTIVE_REST_LENGTH, 1, &rest_length}};
     for (uint32_t i = 0; i < from->spring_count; i++) {
-        mspring_result result = mspring_network_get_spring(from->network, i, &info);
+        mspring_result result = mspring_network_get_columns(from->network, NULL, i, 1, columns, 5);
         if (result != MSPRING_OK) {
             bench_library_error(error, "reading springs", result, "");
             return false;
         }
         baseline->network.springs[i] = (naive_spring){
-            .a = info.a,
-            .b = info.b,
-            .stiffness = info.stiffness,
-            .damping = info.damping,
-            .rest_length = info.rest_length,
+            .a = a,
+            .b = b,
+            .stiffness = stiffness,
+            .damping = damping,
+            .rest_length = rest_length,
         };
     }
     return true;
@@ -88,7 +93,7 @@ bool bench_baseline_create(bench_network *from, bench_baseline *out, scene_error
         return false;
     }
     mspring_network_def def;
-    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def);
     if (result != MSPRING_OK) {
         bench_library_error(error, "asking for gravity", result, "");
         return false;
@@ -96,8 +101,8 @@ bool bench_baseline_create(bench_network *from, bench_baseline *out, scene_error
     bench_baseline baseline = {
         .network = {.particle_count = from->particle_count,
                     .spring_count = from->spring_count,
-                    .gravity_x = def.gravity_x,
-                    .gravity_y = def.gravity_y,
+                    .gravity_x = def.settings.gravity_x,
+                    .gravity_y = def.settings.gravity_y,
                     .global_damping = BENCH_GLOBAL_DAMPING,
                     .lag = (float)(BENCH_DT / from->substeps)}, /* as that of the network, which took a step */
         .substeps = from->substeps,

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "session.h"
 
@@ -23,7 +23,8 @@ bool session_create(bench_network *network, session *out, scene_error *error) {
     out->y = bench_allocate(particles, sizeof *out->y, error);
     out->snapshot = NULL;
     out->builder = NULL;
-    if (mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_ALL, &out->snapshot_size) == MSPRING_OK) {
+    if (mspring_network_get_snapshot_size(network->network, MSPRING_SNAPSHOT_ALL, &out->snapshot_size) ==
+        MSPRING_OK) {
         out->snapshot_size += (size_t)64 * (particles + springs); // and what edits bring
         out->snapshot = bench_allocate(out->snapshot_size, 1, error);
     }
@@ -66,7 +67,8 @@ static void prepare_masses(session *with) {
 }
 
 static mspring_result set_masses(session *with) {
-    return mspring_network_set(with->step->network, MSPRING_MASS, 0, with->step->particle_count, with->values, 1);
+    return mspring_network_set(with->step->network, MSPRING_MASS, NULL, 0, with->step->particle_count, with->values,
+                               1);
 }
 
 static void prepare_scales(session *with) {
@@ -77,16 +79,18 @@ static void prepare_scales(session *with) {
 }
 
 static mspring_result set_scales(session *with) {
-    return mspring_network_set(with->step->network, MSPRING_INVERSE_MASS_SCALE, 0, with->step->particle_count,
+    return mspring_network_set(with->step->network, MSPRING_INVERSE_MASS_SCALE, NULL, 0, with->step->particle_count,
                                with->values, 1);
 }
 
 static mspring_result get_positions(session *with) {
-    return mspring_network_get_positions(with->step->network, 0, with->step->particle_count, with->x, with->y, 1);
+    return mspring_network_get_positions(with->step->network, NULL, 0, with->step->particle_count, with->x, with->y,
+                                         1);
 }
 
 static mspring_result set_positions(session *with) {
-    return mspring_network_set_positions(with->step->network, 0, with->step->particle_count, with->x, with->y, 1);
+    return mspring_network_set_positions(with->step->network, NULL, 0, with->step->particle_count, with->x, with->y,
+                                         1);
 }
 
 static void prepare_positions(session *with) {
@@ -96,13 +100,13 @@ static void prepare_positions(session *with) {
 }
 
 static mspring_result get_velocities(session *with) {
-    return mspring_network_get_velocities(with->step->network, 0, with->step->particle_count, with->values,
+    return mspring_network_get_velocities(with->step->network, NULL, 0, with->step->particle_count, with->values,
                                           with->more_values, 1);
 }
 
 static mspring_result apply_forces(session *with) {
-    return mspring_network_apply_forces(with->step->network, 0, with->step->particle_count, with->values,
-                                        with->more_values, 1);
+    return mspring_network_apply_forces(with->step->network, MSPRING_PUSH_STEP, NULL, 0, with->step->particle_count,
+                                        with->values, with->more_values, 1);
 }
 
 static void prepare_forces(session *with) {
@@ -112,15 +116,15 @@ static void prepare_forces(session *with) {
 }
 
 mspring_result session_restore(session *with) {
-    return mspring_network_restore_springs(with->step->network, with->list, with->burst, 0.0);
+    return mspring_network_restore_springs(with->step->network, with->list, 0, with->burst, 0.0);
 }
 
 static mspring_result restore_ramped(session *with) {
-    return mspring_network_restore_springs(with->step->network, with->list, with->burst, 1.0);
+    return mspring_network_restore_springs(with->step->network, with->list, 0, with->burst, 1.0);
 }
 
 static mspring_result break_burst(session *with) {
-    return mspring_network_break_springs(with->step->network, with->list, with->burst);
+    return mspring_network_break_springs(with->step->network, with->list, 0, with->burst);
 }
 
 static void prepare_whole(session *with) {
@@ -132,7 +136,7 @@ static void prepare_broken(session *with) {
 }
 
 static mspring_result set_stiffnesses(session *with) {
-    return mspring_network_set_at(with->step->network, MSPRING_STIFFNESS, with->list, with->burst, with->values, 1);
+    return mspring_network_set(with->step->network, MSPRING_STIFFNESS, with->list, 0, with->burst, with->values, 1);
 }
 
 static void prepare_stiffnesses(session *with) {
@@ -142,7 +146,7 @@ static void prepare_stiffnesses(session *with) {
 }
 
 static mspring_result set_all_stiffnesses(session *with) {
-    return mspring_network_set(with->step->network, MSPRING_STIFFNESS, 0, with->step->spring_count,
+    return mspring_network_set(with->step->network, MSPRING_STIFFNESS, NULL, 0, with->step->spring_count,
                                with->by_spring[0], 1);
 }
 
@@ -171,38 +175,46 @@ static void prepare_burst(session *with) {
 static void prepare_few(session *with) {
     prepare_burst(with);
     (void)!update_components(with);
-    (void)!mspring_network_restore_springs(with->step->network, with->list, with->burst < 20 ? with->burst : 20,
+    (void)!mspring_network_restore_springs(with->step->network, with->list, 0, with->burst < 20 ? with->burst : 20,
                                            0.0);
 }
 
 static mspring_result measure_components(session *with) {
-    mspring_component component = {.struct_size = sizeof component};
+    mspring_body component = mspring_body_default();
     return mspring_network_get_components(with->step->network, 0, 1, &component);
 }
 
-static mspring_result measure_strains(session *with) {
-    return mspring_network_get_extents(with->step->network, NULL, NULL, NULL, with->by_spring[0]);
-}
-
 static mspring_result get_strains(session *with) {
-    return mspring_network_get(with->step->network, MSPRING_STRAIN, 0, with->step->spring_count, with->by_spring[0],
-                               1);
+    return mspring_network_get(with->step->network, MSPRING_STRAIN, NULL, 0, with->step->spring_count,
+                               with->by_spring[0], 1);
 }
 
-static mspring_result find_largest_strain(session *with) {
-    float strain;
-    mspring_id spring;
-    return mspring_network_max_strain(with->step->network, &strain, &spring);
+static mspring_result measure_energy(session *with) {
+    mspring_energy energy = mspring_energy_default();
+    return mspring_network_get_energy(with->step->network, &energy);
 }
 
-static mspring_result measure_extents(session *with) {
-    return mspring_network_get_extents(with->step->network, with->by_spring[0], with->by_spring[1],
-                                       with->by_spring[2], with->by_spring[3]);
+static mspring_result measure_body(session *with) {
+    mspring_body body = mspring_body_default();
+    return mspring_network_get_body(with->step->network, NULL, 0, MSPRING_ALL, &body);
+}
+
+static mspring_result get_report(session *with) {
+    mspring_step_info info = mspring_step_info_default();
+    return mspring_network_get_step_info(with->step->network, &info);
+}
+
+static mspring_result measure_columns(session *with) {
+    const mspring_column columns[] = {{MSPRING_LENGTH, 1, with->by_spring[0]},
+                                      {MSPRING_DIRECTION_X, 1, with->by_spring[1]},
+                                      {MSPRING_DIRECTION_Y, 1, with->by_spring[2]},
+                                      {MSPRING_STRAIN, 1, with->by_spring[3]}};
+    return mspring_network_get_columns(with->step->network, NULL, 0, with->step->spring_count, columns, 4);
 }
 
 static mspring_result hash(session *with) {
     uint64_t sum;
-    return mspring_network_state_hash(with->step->network, &sum);
+    return mspring_network_get_state_hash(with->step->network, &sum);
 }
 
 static mspring_result save_frame(session *with) {
@@ -216,7 +228,7 @@ static void prepare_frame(session *with) {
 
 static mspring_result load_frame(session *with) {
     size_t size;
-    mspring_result result = mspring_network_snapshot_size(with->step->network, MSPRING_SNAPSHOT_FRAME, &size);
+    mspring_result result = mspring_network_get_snapshot_size(with->step->network, MSPRING_SNAPSHOT_FRAME, &size);
     return result == MSPRING_OK ? mspring_network_load(with->step->network, with->snapshot, size) : result;
 }
 
@@ -283,9 +295,10 @@ const session_call session_calls[] = {
     {"components after 20 springs", prepare_few, update_components},
     {"mass, centre of a component", no_preparation, measure_components},
     {"strain of all springs", no_preparation, get_strains},
-    {"largest strain", no_preparation, find_largest_strain},
-    {"strain of all, extents", no_preparation, measure_strains},
-    {"  and length and direction", no_preparation, measure_extents},
+    {"  and length and direction", no_preparation, measure_columns},
+    {"energies and extremes", no_preparation, measure_energy},
+    {"all particles as a body", no_preparation, measure_body},
+    {"report of the last step", no_preparation, get_report},
     {"hash of the state", no_preparation, hash},
     {"save a frame", no_preparation, save_frame},
     {"load a frame", prepare_frame, load_frame},

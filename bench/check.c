@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "modes.h"
 
@@ -51,7 +51,7 @@ static bool compare(bench_network *network, bench_baseline *baseline, double *mo
     double *y = bench_allocate(count, sizeof *y, error);
     bool ok = x != NULL && y != NULL;
     if (ok) {
-        mspring_result result = mspring_network_get_positions(network->network, 0, count, x, y, 1);
+        mspring_result result = mspring_network_get_positions(network->network, NULL, 0, count, x, y, 1);
         ok = result == MSPRING_OK;
         if (!ok) {
             bench_library_error(error, "reading positions", result, "");
@@ -82,7 +82,7 @@ static bool create(const bench_scene *subject, const bench_options *options, msp
         network->start_vx[i] *= CHECK_SPEED_FACTOR;
         network->start_vy[i] *= CHECK_SPEED_FACTOR;
     }
-    mspring_settings settings = {.struct_size = sizeof settings};
+    mspring_settings settings = mspring_settings_default();
     mspring_result result = mspring_network_get_settings(network->network, &settings);
     settings.global_damping = CHECK_GLOBAL_DAMPING;
     if (result == MSPRING_OK) {
@@ -118,7 +118,7 @@ static bool check_level(const bench_scene *subject, const bench_options *options
         bool equal = difference < CHECK_TOLERANCE && moved > CHECK_LEAST_MOVE;
         const bench_cell cells[COLUMN_COUNT] = {
             bench_cell_of("%s", subject->label),
-            bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network.network))),
+            bench_cell_of("%s", mspring_simd_name(bench_level_of(network.network))),
             bench_cell_of("%u", CHECK_SUBSTEPS * CHECK_STEPS),
             bench_cell_of("%.3g", moved),
             bench_cell_of("%.3g", difference),

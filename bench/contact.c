@@ -9,8 +9,7 @@
 
 #include "modes.h"
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #define SUBSTEPS 40
 #define THICKNESS 0.5
@@ -88,14 +87,14 @@ static mspring_result add_bars(mspring_builder *builder, const subject *s) {
     mspring_lattice_def bar;
     mspring_result result = cells ? MSPRING_OK : MSPRING_ERROR_MEMORY;
     for (int i = 0; i < 2 && result == MSPRING_OK; i++) {
-        result = mspring_material_init(&iron[i], sizeof iron[i]);
+        result = mspring_init(MSPRING_STRUCT_MATERIAL, &iron[i], sizeof iron[i]);
         iron[i].mass = SCENE_IRON_MASS;
         iron[i].stiffness = SCENE_IRON_STIFFNESS;
         iron[i].damping = 2000.0f;
     }
     iron[1].particle_flags = MSPRING_PARTICLE_PINNED;
     if (result == MSPRING_OK)
-        result = mspring_lattice_def_init(&bar, sizeof bar);
+        result = mspring_init(MSPRING_STRUCT_LATTICE_DEF, &bar, sizeof bar);
     for (uint32_t body = 0; body < s->bodies && result == MSPRING_OK; body++) {
         for (uint32_t i = 0; i < s->columns; i++)
             cells[(s->rows - 1) * s->columns + i] = body == 0 && s->bodies > 1;
@@ -118,9 +117,9 @@ static mspring_result add_folded_bar(mspring_builder *builder, const subject *s)
     const uint32_t width = s->columns / 2, height = 2 * s->rows;
     mspring_particle_def particle;
     mspring_spring_def spring;
-    mspring_result result = mspring_particle_def_init(&particle, sizeof particle);
+    mspring_result result = mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle);
     if (result == MSPRING_OK)
-        result = mspring_spring_def_init(&spring, sizeof spring);
+        result = mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring);
     particle.mass = SCENE_IRON_MASS;
     spring.stiffness = SCENE_IRON_STIFFNESS;
     spring.damping = 2000.0f;
@@ -128,7 +127,7 @@ static mspring_result add_folded_bar(mspring_builder *builder, const subject *s)
         particle.x = i % width;
         particle.y = i / width - (i / width < s->rows ? 0 : 1 - s->gap);
         particle.flags = i < width ? MSPRING_PARTICLE_PINNED : 0;
-        result = mspring_builder_add_particle(builder, &particle, NULL);
+        result = mspring_builder_add_particles(builder, &particle, 1, NULL);
     }
     for (uint32_t i = 0; i < width * height; i++)
         for (int k = 0; k < 4 && result == MSPRING_OK; k++) {
@@ -138,19 +137,19 @@ static mspring_result add_folded_bar(mspring_builder *builder, const subject *s)
             spring.a = i;
             spring.b = to * width + column;
             if (column < width && to < height && !is_cut)
-                result = mspring_builder_add_spring(builder, &spring, NULL);
+                result = mspring_builder_add_springs(builder, &spring, 1, NULL);
         }
     return result;
 }
 
 static mspring_result add_loose(mspring_builder *builder, uint32_t count) {
     mspring_particle_def def;
-    mspring_result result = mspring_particle_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def);
     def.mass = SCENE_IRON_MASS;
     for (uint32_t i = 0; i < count && result == MSPRING_OK; i++) {
         def.x = -29 + 0.6 * (i % 98) + 0.01 * (i % 7);
         def.y = 0.3 + 0.6 * (i / 98);
-        result = mspring_builder_add_particle(builder, &def, NULL);
+        result = mspring_builder_add_particles(builder, &def, 1, NULL);
     }
     return result;
 }
@@ -158,7 +157,7 @@ static mspring_result add_loose(mspring_builder *builder, uint32_t count) {
 static mspring_result put_into_box(mspring_network *network) {
     static const double planes[3][4] = {{0, 0, 0, 1}, {-31, 0, 1, 0}, {31, 0, -1, 0}};
     mspring_floor_def def;
-    mspring_result result = mspring_floor_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def);
     def.planes = planes[0];
     def.plane_count = 3;
     return result == MSPRING_OK ? mspring_network_set_floor(network, &def) : result;
@@ -166,7 +165,7 @@ static mspring_result put_into_box(mspring_network *network) {
 
 static mspring_result set_contact(mspring_network *network, const subject *s) {
     mspring_contact_def def;
-    mspring_result result = mspring_contact_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_CONTACT_DEF, &def, sizeof def);
     def.flags = s->touches_itself ? MSPRING_CONTACT_SELF : 0;
     def.thickness = THICKNESS;
     def.friction = 0.5f;
@@ -176,7 +175,7 @@ static mspring_result set_contact(mspring_network *network, const subject *s) {
 // A long, flat box, below the body by the gap.
 static mspring_result put_onto_collider(mspring_network *network, const subject *s) {
     mspring_collider_def def;
-    const mspring_result result = mspring_collider_def_init(&def, sizeof def);
+    const mspring_result result = mspring_init(MSPRING_STRUCT_COLLIDER_DEF, &def, sizeof def);
     def.kind = MSPRING_COLLIDER_BOX;
     def.width = 2 * s->columns;
     def.height = 2;
@@ -196,13 +195,13 @@ static mspring_result make_players(const subject *s, mspring_simd level, player 
                  : s->bodies == 0 ? add_folded_bar(builder, s)
                                   : add_bars(builder, s);
     if (result == MSPRING_OK)
-        result = mspring_network_def_init(&def, sizeof def);
+        result = mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def);
     def.simd_level = level;
-    def.solver = s->solver;
-    def.substeps = s->solver != MSPRING_SOLVER_EXPLICIT ? 1 : s->substeps > 0 ? s->substeps : SUBSTEPS;
-    def.guard = MSPRING_GUARD_GROWTH;
-    def.global_damping = BENCH_GLOBAL_DAMPING;
-    def.gravity_y = s->gap > 0 || s->rows == 0 ? -9.8f : 0;
+    def.settings.solver = s->solver;
+    def.settings.substeps = s->solver != MSPRING_SOLVER_EXPLICIT ? 1 : s->substeps > 0 ? s->substeps : SUBSTEPS;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
+    def.settings.global_damping = BENCH_GLOBAL_DAMPING;
+    def.settings.gravity_y = s->gap > 0 || s->rows == 0 ? -9.8f : 0;
     player *const both[] = {without, with};
     for (int i = 0; i < 2 && result == MSPRING_OK; i++)
         result = mspring_network_create(builder, &def, &both[i]->network);
@@ -216,7 +215,7 @@ static mspring_result make_players(const subject *s, mspring_simd level, player 
     for (uint32_t i = 0; i < s->settling && result == MSPRING_OK; i++)
         result = mspring_network_step(with->network, BENCH_DT);
     if (result == MSPRING_OK)
-        result = mspring_network_snapshot_size(with->network, MSPRING_SNAPSHOT_FRAME, &with->size);
+        result = mspring_network_get_snapshot_size(with->network, MSPRING_SNAPSHOT_FRAME, &with->size);
     if (result == MSPRING_OK && !(with->start = malloc(with->size)))
         result = MSPRING_ERROR_MEMORY;
     if (result == MSPRING_OK)
@@ -253,13 +252,13 @@ static bool compare(player *without, player *with, uint32_t steps, uint32_t repe
 
 /// With the colliders.
 static size_t memory_of_contact(const player *without, const player *with) {
-    return mspring_network_memory_used(with->network) - mspring_network_memory_used(without->network);
+    return bench_memory_of(with->network) - bench_memory_of(without->network);
 }
 
 static bool measure(const subject *s, const bench_options *options, mspring_simd level) {
     player without = {0}, with = {0};
     scene_error error;
-    mspring_contact_info info = {.struct_size = sizeof info};
+    mspring_contact_info info = mspring_contact_info_default();
     bench_turns turns;
     mspring_result result = make_players(s, level, &without, &with);
     if (result != MSPRING_OK)
@@ -271,7 +270,7 @@ static bool measure(const subject *s, const bench_options *options, mspring_simd
     if (ok) {
         const bench_cell cells[COLUMN_COUNT] = {
             bench_cell_of("%s", s->name),
-            bench_cell_of("%u", mspring_network_spring_count(with.network)),
+            bench_cell_of("%u", mspring_network_count(with.network, MSPRING_SPRINGS)),
             bench_cell_of("%u", info.points),
             bench_cell_of("%u", info.touching),
             bench_cell_of("%.0f", 1e-3 * (double)memory_of_contact(&without, &with)),

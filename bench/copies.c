@@ -4,7 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "catalogue.h"
 
-#include <massspring/massspring_batch.h>
+#include <massspring/massspring.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -25,7 +25,7 @@ static bool fail_builder(scene_error *error, const scene *of) {
 /// Add springs of a knight's move to a lattice of side x side particles whose ids go row by row.
 static bool add_braces(scene *model, uint32_t side, const scene_options *options, scene_error *error) {
     mspring_spring_def def;
-    bool ok = mspring_spring_def_init(&def, sizeof def) == MSPRING_OK;
+    bool ok = mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def) == MSPRING_OK;
     def.stiffness = options->stiffness / 4;
     def.damping = options->damping;
     def.flags = MSPRING_SPRING_RELATIVE;
@@ -34,7 +34,7 @@ static bool add_braces(scene *model, uint32_t side, const scene_options *options
         for (uint32_t column = 0; ok && column + 2 < side && added < MOST_BRACES; column++, added++) {
             def.a = row * side + column;
             def.b = def.a + side + 2;
-            ok = mspring_builder_add_spring(model->builder, &def, NULL) == MSPRING_OK;
+            ok = mspring_builder_add_springs(model->builder, &def, 1, NULL) == MSPRING_OK;
         }
     }
     return ok || fail_builder(error, model);

@@ -6,18 +6,17 @@
 
 #include <stdlib.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 static mspring_result add_particles(const bench_network *from, mspring_builder *builder, mspring_particle_def *defs,
                                     float *mass) {
-    mspring_view view;
-    view.struct_size = sizeof view;
-    mspring_result result = mspring_network_view(from->network, &view);
+    mspring_view view = mspring_view_default();
+    mspring_result result = mspring_network_get_view(from->network, &view);
     if (result == MSPRING_OK) {
-        result = mspring_network_get(from->network, MSPRING_MASS, 0, from->particle_count, mass, 1);
+        result = mspring_network_get(from->network, MSPRING_MASS, NULL, 0, from->particle_count, mass, 1);
     }
     for (uint32_t i = 0; result == MSPRING_OK && i < from->particle_count; i++) {
-        result = mspring_particle_def_init(&defs[i], sizeof *defs);
+        defs[i] = mspring_particle_def_default();
         defs[i].x = from->start_x[i];
         defs[i].y = from->start_y[i];
         defs[i].mass = mass[i];
@@ -27,19 +26,15 @@ static mspring_result add_particles(const bench_network *from, mspring_builder *
 }
 
 static mspring_result add_springs(const bench_network *from, mspring_builder *builder, mspring_spring_def *defs) {
-    mspring_spring_info info;
-    info.struct_size = sizeof info;
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; result == MSPRING_OK && i < from->spring_count; i++) {
-        result = mspring_network_get_spring(from->network, i, &info);
-        if (result == MSPRING_OK) {
-            result = mspring_spring_def_init(&defs[i], sizeof *defs);
-            defs[i].a = info.a;
-            defs[i].b = info.b;
-            defs[i].stiffness = info.stiffness;
-            defs[i].damping = info.damping;
-            defs[i].rest_length = info.rest_length;
-        }
+        defs[i] = mspring_spring_def_default();
+        const mspring_column columns[] = {{MSPRING_END_A, 1, &defs[i].a},
+                                          {MSPRING_END_B, 1, &defs[i].b},
+                                          {MSPRING_ACTIVE_STIFFNESS, 1, &defs[i].stiffness},
+                                          {MSPRING_ACTIVE_DAMPING, 1, &defs[i].damping},
+                                          {MSPRING_ACTIVE_REST_LENGTH, 1, &defs[i].rest_length}};
+        result = mspring_network_get_columns(from->network, NULL, i, 1, columns, 5);
     }
     return result != MSPRING_OK ? result : mspring_builder_add_springs(builder, defs, from->spring_count, NULL);
 }

@@ -170,8 +170,8 @@ static mspring_network *imagine(const bench_scene *subject, mspring_simd level, 
     mspring_network_def def;
     mspring_tasks tasks;
     mspring_network *network = NULL;
-    if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK ||
-        mspring_tasks_init(&tasks, sizeof tasks) != MSPRING_OK) {
+    if (mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def) != MSPRING_OK ||
+        mspring_init(MSPRING_STRUCT_TASKS, &tasks, sizeof tasks) != MSPRING_OK) {
         return NULL;
     }
     tasks.worker_count = workers;
@@ -179,7 +179,7 @@ static mspring_network *imagine(const bench_scene *subject, mspring_simd level, 
     tasks.run = run_in_turn;
     def.tasks = &tasks;
     def.simd_level = level;
-    def.substeps = substeps;
+    def.settings.substeps = substeps;
     return mspring_network_create(subject->made.builder, &def, &network) == MSPRING_OK ? network : NULL;
 }
 
@@ -201,8 +201,8 @@ static void print_row(const bench_options *options, const char *label, const msp
     const double step = all->workers > 1 ? one->fixed + end : one->step;
     const bench_cell cells[COLUMN_COUNT] = {
         bench_cell_of("%s", label),
-        bench_cell_of("%u", mspring_network_spring_count(network)),
-        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network))),
+        bench_cell_of("%u", mspring_network_count(network, MSPRING_SPRINGS)),
+        bench_cell_of("%s", mspring_simd_name(bench_level_of(network))),
         bench_cell_of("%u", workers),
         bench_cell_of("%u", all->workers),
         bench_cell_of("%u", all->strips),
@@ -302,7 +302,7 @@ static bool measure_single(const bench_scene *subject, mspring_simd level, uint3
 }
 
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
-    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     const uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(springs);
     scene_error error = {"out of memory"};

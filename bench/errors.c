@@ -3,7 +3,8 @@
 /// distance from a fine run over a second, as a share of the motion, and what a step of 1/64 s takes.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_tools.h>
+#define MSPRING_EXPERIMENTAL // for lab.h
+#include <massspring/massspring.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,9 +12,9 @@
 #include "modes.h"
 
 static const bench_column columns[] = {
-    {"scene", "scene", -12},          {"particles", "particles", 9}, {"stiffness", "N/m", 8},
-    {"solver", "solver", -8},         {"substeps", "substeps", 8},   {"residual", "residual", 8},
-    {"us_per_step", "us/step", 10},   {"error_percent", "error %", 9},
+    {"scene", "scene", -12},        {"particles", "particles", 9},   {"stiffness", "N/m", 8},
+    {"solver", "solver", -8},       {"substeps", "substeps", 8},     {"residual", "residual", 8},
+    {"us_per_step", "us/step", 10}, {"error_percent", "error %", 9},
 };
 
 enum { COLUMNS = sizeof columns / sizeof *columns, MOST_CELLS = 544 * 68, MASTS = 4, SETTINGS = 8 };
@@ -39,9 +40,9 @@ static mspring_result add_lattice(mspring_builder *builder, uint32_t width, uint
     static uint16_t cells[MOST_CELLS];
     mspring_material materials[2];
     mspring_lattice_def def;
-    mspring_result result = mspring_lattice_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_LATTICE_DEF, &def, sizeof def);
     for (int i = 0; i < 2 && result == MSPRING_OK; i++) {
-        result = mspring_material_init(&materials[i], sizeof materials[i]);
+        result = mspring_init(MSPRING_STRUCT_MATERIAL, &materials[i], sizeof materials[i]);
         materials[i].mass = 73.4f;
         materials[i].stiffness = stiffness;
     }
@@ -62,23 +63,23 @@ static mspring_result add_lattice(mspring_builder *builder, uint32_t width, uint
 
 static mspring_result add_rope(mspring_builder *builder, mspring_id from, mspring_id to, uint32_t segments,
                                float stiffness) {
-    mspring_rope_def def;
-    const mspring_result result = mspring_rope_def_init(&def, sizeof def);
+    mspring_material line = mspring_material_default();
+    line.mass = 7.34f;
+    line.stiffness = stiffness;
+    mspring_rope_def def = mspring_rope_def_default();
     def.from = from;
     def.to = to;
     def.segment_count = segments;
-    def.mass = 7.34f;
-    def.stiffness = stiffness;
-    return result == MSPRING_OK ? mspring_builder_add_rope(builder, &def, NULL, 0, NULL) : result;
+    def.material = &line;
+    return mspring_builder_add_rope(builder, &def, NULL, NULL);
 }
 
 static mspring_result add_spring(mspring_builder *builder, mspring_id a, mspring_id b, float stiffness) {
-    mspring_spring_def def;
-    const mspring_result result = mspring_spring_def_init(&def, sizeof def);
+    mspring_spring_def def = mspring_spring_def_default();
     def.a = a;
     def.b = b;
     def.stiffness = stiffness;
-    return result == MSPRING_OK ? mspring_builder_add_spring(builder, &def, NULL) : result;
+    return mspring_builder_add_springs(builder, &def, 1, NULL);
 }
 
 /// A hull of 120 x 10 with four masts of 2 x 24; lines join their tops, and each top with the deck.
@@ -109,13 +110,13 @@ static mspring_result add_bridge(mspring_builder *builder, float k) {
         mspring_particle_def def;
         mspring_id knot = MSPRING_NONE;
         const double at = (double)i - 7.5;
-        result = mspring_particle_def_init(&def, sizeof def);
+        result = mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def);
         def.x = 8.0 * i;
         def.y = 5 + 0.35 * at * at;
         def.mass = 73.4f;
         def.flags = i == 0 || i == 15 ? MSPRING_PARTICLE_PINNED : 0;
         if (result == MSPRING_OK)
-            result = mspring_builder_add_particle(builder, &def, &knot);
+            result = mspring_builder_add_particles(builder, &def, 1, &knot);
         if (result == MSPRING_OK)
             result = add_rope(builder, knot, deck[8 * i], 6, k);
         if (result == MSPRING_OK && i > 0)
@@ -143,18 +144,18 @@ static mspring_result add_scene(mspring_builder *builder, int number, float k) {
 }
 
 /// One and two substeps with residuals of 0.1, 0.03 and 0.01, then the direct and the explicit solver.
-static uint32_t list_settings(mspring_network *network, mspring_solver_def settings[SETTINGS]) {
+static uint32_t list_settings(mspring_network *network, mspring_settings settings[SETTINGS]) {
     static const float residuals[] = {0.1f, 0.03f, 0.01f};
     uint32_t count = 0, stable = 0;
     for (uint32_t i = 0; i < 7; i++) {
-        mspring_solver_def *def = &settings[count++];
-        (void)mspring_solver_def_init(def, sizeof *def);
+        mspring_settings *def = &settings[count++];
+        *def = mspring_settings_default();
         def->solver = i < 6 ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_DIRECT;
         def->substeps = i < 6 ? 1 + i / 3 : 1;
         def->residual = residuals[i % 3];
     }
     if (mspring_network_suggest_substeps(network, 1.0 / 64, 0.9, &stable) == MSPRING_OK) {
-        (void)mspring_solver_def_init(&settings[count], sizeof settings[count]);
+        settings[count] = mspring_settings_default();
         settings[count++].substeps = stable;
     }
     return count;
@@ -164,7 +165,7 @@ static bool measure(const bench_options *options, int number, float k) {
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
     mspring_tune_def def;
-    mspring_solver_def settings[SETTINGS];
+    mspring_settings settings[SETTINGS];
     mspring_tune_row rows[SETTINGS];
     uint32_t count = 0;
     mspring_result result = mspring_builder_create(NULL, &builder);
@@ -173,7 +174,7 @@ static bool measure(const bench_options *options, int number, float k) {
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, NULL, &network);
     if (result == MSPRING_OK)
-        result = mspring_tune_def_init(&def, sizeof def);
+        result = mspring_init(MSPRING_STRUCT_TUNE_DEF, &def, sizeof def);
     if (result == MSPRING_OK) {
         def.dt = 1.0 / 64;
         def.duration = 1;
@@ -190,11 +191,11 @@ static bool measure(const bench_options *options, int number, float k) {
         static const char *const solvers[] = {"explicit", "implicit", "direct"};
         const bench_cell cells[COLUMNS] = {
             bench_cell_of("%s", names[number]),
-            bench_cell_of("%u", mspring_network_particle_count(network)),
+            bench_cell_of("%u", mspring_network_count(network, MSPRING_PARTICLES)),
             bench_cell_of("%.0e", (double)k),
-            bench_cell_of("%s", solvers[r->solver]),
-            bench_cell_of("%u", r->substeps),
-            bench_cell_of("%g", r->solver == MSPRING_SOLVER_IMPLICIT ? (double)r->residual : 0.0),
+            bench_cell_of("%s", solvers[r->settings.solver]),
+            bench_cell_of("%u", r->settings.substeps),
+            bench_cell_of("%g", r->settings.solver == MSPRING_SOLVER_IMPLICIT ? (double)r->settings.residual : 0.0),
             bench_cell_of("%.1f", 1e6 * r->min_cost),
             r->flags & MSPRING_TUNE_HAS_TRAJECTORY ? bench_cell_of("%.4f", 100 * r->trajectory_share)
                                                    : bench_cell_of("none"),

@@ -2,11 +2,11 @@
 /// Pay for what the scene has: each feature against the plain scene, measured in turn.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include <math.h>
 #include <stdio.h>
 
-#include <massspring/massspring_laws.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "copy.h"
 #include "modes.h"
@@ -84,8 +84,8 @@ static bool create_absolute(const bench_network *plain, mspring_simd level, uint
 
 /// Add a limit to each spring, soft enough to need no more substeps.
 static bool add_limits(mspring_builder *builder, scene_error *error) {
-    const mspring_result result =
-        mspring_builder_add_strain_limits(builder, 0, mspring_builder_spring_count(builder), 0.1f, 1e-3f, NULL);
+    const mspring_result result = mspring_builder_add_strain_limits(
+        builder, NULL, 0, mspring_builder_count(builder, MSPRING_SPRINGS), 0.1f, 1e-3f, NULL);
     if (result != MSPRING_OK) {
         bench_library_error(error, "adding strain limits", result, mspring_builder_error(builder));
     }
@@ -95,7 +95,7 @@ static bool add_limits(mspring_builder *builder, scene_error *error) {
 /// Add an area to each cell, of a stiffness that is nothing to that of springs.
 static bool add_areas(bench_network *out, scene_error *error) {
     mspring_area_def def;
-    mspring_result result = mspring_area_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_AREA_DEF, &def, sizeof def);
     def.stiffness = 1; // N/m
     if (result == MSPRING_OK) {
         result = mspring_network_add_cell_areas(out->network, &def, NULL, NULL);
@@ -152,8 +152,8 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
         return false;
     }
     if (kind->yield_strain > 0) {
-        const mspring_result result =
-            mspring_network_set(out->network, MSPRING_YIELD_STRAIN, 0, out->spring_count, &kind->yield_strain, 0);
+        const mspring_result result = mspring_network_set(out->network, MSPRING_YIELD_STRAIN, NULL, 0,
+                                                          out->spring_count, &kind->yield_strain, 0);
         if (result != MSPRING_OK) {
             bench_library_error(error, "letting springs yield", result, mspring_network_error(out->network));
             bench_network_free(out);
@@ -172,7 +172,7 @@ static bool create_variant(const variant *kind, const bench_scene *subject, cons
     out->saves_frames = kind->snapshots;
     if (kind->hooked) {
         mspring_hook_def def;
-        mspring_result result = mspring_hook_def_init(&def, sizeof def);
+        mspring_result result = mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def);
         def.phase = kind->hook;
         def.period = kind->period > 0 ? kind->period : 1;
         def.fn = empty_hook;
@@ -196,7 +196,7 @@ static void print_row(const bench_options *options, const bench_scene *subject, 
         bench_cell_of("%s", feature),
         bench_cell_of("%u", network->spring_count),
         bench_cell_of("%u", network->substeps),
-        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network->network))),
+        bench_cell_of("%s", mspring_simd_name(bench_level_of(network->network))),
         bench_cell_of("%.3f", 1e6 * seconds),
         bench_cell_of("%.4f", 1e9 * seconds / springs),
         bench_cell_of("%.3f", ratio),
@@ -228,7 +228,7 @@ static bool measure_variant(const variant *kind, const bench_scene *subject, con
 }
 
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
-    uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     bench_network plain;
     scene_error error;

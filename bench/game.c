@@ -10,7 +10,7 @@
 #include "machine.h"
 #include "modes.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 /// Springs whose stiffness the host compares in each frame, and those of a blast.
 #define COMPARED 11000u
@@ -36,7 +36,7 @@ typedef struct game {
     float *forces, *positions, *velocities; ///< [particles][2]
     float *masses;                          ///< [particles]
     float *thresholds;                      ///< [springs]
-    float *stiffnesses;                     ///< [compared]
+    float *given, *stiffnesses;             ///< [compared] at first, and in a frame
     mspring_id *list;                       ///< [compared] scattered
     mspring_id *near;                       ///< [burst] from the middle id on
     mspring_event *events;                  ///< [EVENTS]
@@ -51,25 +51,25 @@ static mspring_result give_forces(game *g) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; result == MSPRING_OK && i < RANGES; i++) {
         const uint32_t first = count / RANGES * i, end = i + 1 < RANGES ? count / RANGES * (i + 1) : count;
-        result = mspring_network_apply_forces(g->network.network, first, end - first, g->forces + 2 * (size_t)first,
-                                              g->forces + 2 * (size_t)first + 1, 2);
+        result = mspring_network_apply_forces(g->network.network, MSPRING_PUSH_STEP, NULL, first, end - first,
+                                              g->forces + 2 * (size_t)first, g->forces + 2 * (size_t)first + 1, 2);
     }
     return result;
 }
 
 static mspring_result set_masses(game *g) {
-    return mspring_network_set(g->network.network, MSPRING_MASS, 0, g->network.particle_count, g->masses, 1);
+    return mspring_network_set(g->network.network, MSPRING_MASS, NULL, 0, g->network.particle_count, g->masses, 1);
 }
 
 /// Pinned in every other eight frames.
 static mspring_result set_pins(game *g) {
     const float scale = g->frame / 8 % 2 == 0 ? 1.0f : 0.0f;
-    return mspring_network_set(g->network.network, MSPRING_INVERSE_MASS_SCALE, g->network.particle_count / 2, PINS,
-                               &scale, 0);
+    return mspring_network_set(g->network.network, MSPRING_INVERSE_MASS_SCALE, NULL, g->network.particle_count / 2,
+                               PINS, &scale, 0);
 }
 
 static mspring_result set_stiffnesses(game *g) {
-    return mspring_network_set_at(g->network.network, MSPRING_STIFFNESS, g->list, g->compared, g->stiffnesses, 1);
+    return mspring_network_set(g->network.network, MSPRING_STIFFNESS, g->list, 0, g->compared, g->stiffnesses, 1);
 }
 
 static mspring_result step(game *g) {
@@ -82,12 +82,13 @@ static mspring_result read_events(game *g) {
 }
 
 static mspring_result get_positions(game *g) {
-    return mspring_network_get_positions_float(g->network.network, 0, g->network.particle_count, g->positions,
-                                               g->positions + 1, 2);
+    return mspring_network_get_columns(
+        g->network.network, NULL, 0, g->network.particle_count,
+        (const mspring_column[]){{MSPRING_X, 2, g->positions}, {MSPRING_Y, 2, g->positions + 1}}, 2);
 }
 
 static mspring_result get_velocities(game *g) {
-    return mspring_network_get_velocities(g->network.network, 0, g->network.particle_count, g->velocities,
+    return mspring_network_get_velocities(g->network.network, NULL, 0, g->network.particle_count, g->velocities,
                                           g->velocities + 1, 2);
 }
 
@@ -114,7 +115,7 @@ static void prepare(game *g) {
         g->masses[i] = 70.0f + (i / 4 % 4 == 0 ? 0.01f * (float)g->frame : 0.0f);
     }
     for (uint32_t i = 0; i < g->compared; i++) {
-        g->stiffnesses[i] = i % 100 == g->frame % 100 ? 0.499f : 0.5f;
+        g->stiffnesses[i] = i % 100 == g->frame % 100 ? 0.998f * g->given[i] : g->given[i];
     }
 }
 
@@ -139,12 +140,9 @@ static bool take_frame(game *g, double seconds[CALLS], scene_error *error) {
 /// Heights with a material of each part: some smooth, some rough.
 static mspring_result set_floor(mspring_network *network) {
     static float heights[HEIGHTS], frictions[HEIGHTS - 1], restitutions[HEIGHTS - 1];
-    double left, bottom, right, top;
-    mspring_floor_def def;
-    mspring_result result = mspring_network_bounds(network, &left, &bottom, &right, &top);
-    if (result == MSPRING_OK) {
-        result = mspring_floor_def_init(&def, sizeof def);
-    }
+    mspring_body all = mspring_body_default();
+    mspring_floor_def def = mspring_floor_def_default();
+    const mspring_result result = mspring_network_get_body(network, NULL, 0, MSPRING_ALL, &all);
     if (result != MSPRING_OK) {
         return result;
     }
@@ -157,12 +155,40 @@ static mspring_result set_floor(mspring_network *network) {
     }
     def.heights = heights;
     def.height_count = HEIGHTS;
-    def.heights_x = 0.5 * (left + right) - 0.5 * SPACING * HEIGHTS;
-    def.heights_y = bottom - DEPTH;
+    def.heights_x = 0.5 * (all.min_x + all.max_x) - 0.5 * SPACING * HEIGHTS;
+    def.heights_y = all.min_y - DEPTH;
     def.spacing = SPACING;
     def.height_frictions = frictions;
     def.height_restitutions = restitutions;
     return mspring_network_set_floor(network, &def);
+}
+
+/// Copy the ship with the coefficients that the game gives its springs, N/m and N s/m: they do not follow the masses of
+/// the water in it, as those of relative springs would.
+static mspring_result copy_absolute(mspring_builder *from, uint32_t substeps, mspring_builder *to) {
+    const uint32_t particles = mspring_builder_count(from, MSPRING_PARTICLES);
+    const uint32_t springs = mspring_builder_count(from, MSPRING_SPRINGS);
+    const double rate = substeps / BENCH_DT;
+    for (mspring_id p = 0; p < particles; p++) {
+        mspring_particle_def def = mspring_particle_def_default();
+        (void)mspring_builder_get_particles(from, NULL, p, 1, &def);
+        (void)mspring_builder_add_particles(to, &def, 1, NULL);
+    }
+    for (mspring_id s = 0; s < springs; s++) {
+        mspring_spring_def def = mspring_spring_def_default();
+        mspring_particle_def a = mspring_particle_def_default(), b = mspring_particle_def_default();
+        (void)mspring_builder_get_springs(from, NULL, s, 1, &def);
+        (void)mspring_builder_get_particles(from, NULL, def.a, 1, &a);
+        (void)mspring_builder_get_particles(from, NULL, def.b, 1, &b);
+        const double reduced_mass = 1.0 / (1.0 / (double)a.mass + 1.0 / (double)b.mass);
+        if (def.flags & MSPRING_SPRING_RELATIVE) {
+            def.stiffness = (float)((double)def.stiffness * reduced_mass * rate * rate);
+            def.damping = (float)((double)def.damping * reduced_mass * rate);
+            def.flags &= ~(uint32_t)MSPRING_SPRING_RELATIVE;
+        }
+        (void)mspring_builder_add_springs(to, &def, 1, NULL);
+    }
+    return mspring_builder_error(to)[0] != '\0' ? MSPRING_ERROR_MEMORY : MSPRING_OK;
 }
 
 static bool allocate(game *g, scene_error *error) {
@@ -174,12 +200,13 @@ static bool allocate(game *g, scene_error *error) {
     g->velocities = bench_allocate(particles, 2 * sizeof *g->velocities, error);
     g->masses = bench_allocate(particles, sizeof *g->masses, error);
     g->thresholds = bench_allocate(springs, sizeof *g->thresholds, error);
+    g->given = bench_allocate(g->compared, sizeof *g->given, error);
     g->stiffnesses = bench_allocate(g->compared, sizeof *g->stiffnesses, error);
     g->list = bench_allocate(g->compared, sizeof *g->list, error);
     g->near = bench_allocate(g->burst, sizeof *g->near, error);
     g->events = bench_allocate(EVENTS, sizeof *g->events, error);
-    return g->forces && g->positions && g->velocities && g->masses && g->thresholds && g->stiffnesses && g->list &&
-           g->near && g->events;
+    return g->forces && g->positions && g->velocities && g->masses && g->thresholds && g->given && g->stiffnesses &&
+           g->list && g->near && g->events;
 }
 
 static void free_game(game *g) {
@@ -189,6 +216,7 @@ static void free_game(game *g) {
     free(g->masses);
     free(g->thresholds);
     free(g->stiffnesses);
+    free(g->given);
     free(g->list);
     free(g->near);
     free(g->events);
@@ -213,10 +241,13 @@ static bool fill(game *g, scene_error *error) {
     const float never = OUT_OF_REACH;
     mspring_result result = mspring_network_reserve_events(network, EVENTS);
     if (result == MSPRING_OK) {
-        result = mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, springs, &never, 0);
+        result = mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, 0, springs, &never, 0);
     }
     if (result == MSPRING_OK) {
-        result = mspring_network_set(network, MSPRING_STRESS_STRAIN, 0, springs, g->thresholds, 1);
+        result = mspring_network_set(network, MSPRING_WARN_STRAIN, NULL, 0, springs, g->thresholds, 1);
+    }
+    if (result == MSPRING_OK) {
+        result = mspring_network_get(network, MSPRING_STIFFNESS, g->list, 0, g->compared, g->given, 1);
     }
     if (result == MSPRING_OK) {
         result = set_floor(network);
@@ -244,7 +275,7 @@ static void print_row(const bench_options *options, const bench_scene *subject, 
         bench_cell_of("%s", what),
         bench_cell_of("%u", g->network.spring_count),
         bench_cell_of("%u", g->network.substeps),
-        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(g->network.network))),
+        bench_cell_of("%s", mspring_simd_name(bench_level_of(g->network.network))),
         bench_cell_of("%.1f", 1e6 * least),
         bench_cell_of("%.1f", 1e6 * median),
         bench_cell_of("%.2f", 100.0 * median / step_median),
@@ -306,20 +337,21 @@ static mspring_result blast(game *g) {
         g->forces[2 * i] = push * x;
         g->forces[2 * i + 1] = push * y;
     }
-    const mspring_result result = mspring_network_apply_impulses(network, 0, count, g->forces, g->forces + 1, 2);
-    return result == MSPRING_OK ? mspring_network_break_springs(network, g->near, g->burst) : result;
+    const mspring_result result =
+        mspring_network_apply_forces(network, MSPRING_PUSH_IMPULSE, NULL, 0, count, g->forces, g->forces + 1, 2);
+    return result == MSPRING_OK ? mspring_network_break_springs(network, g->near, 0, g->burst) : result;
 }
 
 static mspring_result restore(game *g) {
-    const mspring_result result = mspring_network_restore_springs(g->network.network, g->list, g->burst, 0.0);
-    return result == MSPRING_OK ? mspring_network_restore_springs(g->network.network, g->near, g->burst, 0.0)
+    const mspring_result result = mspring_network_restore_springs(g->network.network, g->list, 0, g->burst, 0.0);
+    return result == MSPRING_OK ? mspring_network_restore_springs(g->network.network, g->near, 0, g->burst, 0.0)
                                 : result;
 }
 
 static mspring_result happen(game *g, uint32_t frame) {
     switch (frame) {
     case BREAK_AT:
-        return mspring_network_break_springs(g->network.network, g->list, g->burst);
+        return mspring_network_break_springs(g->network.network, g->list, 0, g->burst);
     case RESTORE_AT:
         return restore(g);
     case BLAST_AT:
@@ -387,18 +419,25 @@ static bool measure_events(game *g, const bench_options *options, const bench_sc
 }
 
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
-    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     const uint32_t repeat = options->repeat > 0 ? options->repeat : 3 * bench_default_repeat(springs);
     game g = {0};
     bench_network plain = {0};
     scene_error error;
+    mspring_builder *ship = NULL;
     double *times = bench_allocate((4 + CALLS) * (size_t)repeat, sizeof *times, &error);
+    mspring_result result = mspring_builder_create(NULL, &ship);
+    if (result == MSPRING_OK) {
+        result = copy_absolute(subject->made.builder, substeps, ship);
+    }
+    if (result != MSPRING_OK) {
+        bench_library_error(&error, "copying the ship", result, mspring_builder_error(ship));
+    }
     const bool ok =
-        times != NULL &&
-        bench_network_create(subject->made.builder, level, options->workers, substeps, &plain, &error) &&
-        bench_network_create(subject->made.builder, level, options->workers, substeps, &g.network, &error) &&
-        fill(&g, &error) && measure_calls(&g, &plain, options, subject, repeat, times, &error) &&
+        times != NULL && result == MSPRING_OK &&
+        bench_network_create(ship, level, options->workers, substeps, &plain, &error) &&
+        bench_network_create(ship, level, options->workers, substeps, &g.network, &error) && fill(&g, &error) && measure_calls(&g, &plain, options, subject, repeat, times, &error) &&
         measure_events(&g, options, subject, &error);
     if (!ok) {
         bench_complain(subject->label, &error);
@@ -406,6 +445,7 @@ static bool measure_level(const bench_scene *subject, const bench_options *optio
     free(times);
     free_game(&g);
     bench_network_free(&plain);
+    mspring_builder_destroy(ship);
     return ok;
 }
 

@@ -1,6 +1,6 @@
 /// @file gpu.c
-/// Steps of bodies a second: batches of robots of 6x6 particles and 110 springs, 40 substeps, on a device and by one
-/// worker of the processor.
+/// Steps of bodies a second: batches of robots of 6x6 particles and 110 springs, 40 substeps, on a device and by
+/// one worker of the processor.
 ///
 ///     bench_gpu            256, 4,096, 65,536 and 1,048,576 bodies on the first device that suits
 ///     bench_gpu MOST [DEVICE]   at most so many
@@ -34,10 +34,10 @@ static mspring_builder *robot(void) {
     check(mspring_builder_create(NULL, &builder), "no builder");
     for (uint32_t i = 0; i < PARTICLES; i++) {
         mspring_particle_def def;
-        check(mspring_particle_def_init(&def, sizeof def), "definition");
+        check(mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &def, sizeof def), "definition");
         def.x = i % SIDE;
         def.y = 1 + i / SIDE;
-        check(mspring_builder_add_particle(builder, &def, NULL), mspring_builder_error(builder));
+        check(mspring_builder_add_particles(builder, &def, 1, NULL), mspring_builder_error(builder));
     }
     for (uint32_t i = 0; i < PARTICLES; i++) {
         const uint32_t right = i % SIDE + 1 < SIDE, above = i / SIDE + 1 < SIDE, left = i % SIDE > 0;
@@ -45,13 +45,13 @@ static mspring_builder *robot(void) {
         const uint32_t is_there[] = {right, above, above && right, above && left};
         for (int k = 0; k < 4; k++) {
             mspring_spring_def def;
-            check(mspring_spring_def_init(&def, sizeof def), "definition");
+            check(mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def), "definition");
             def.a = i;
             def.b = to[k];
             def.stiffness = 5000;
             def.damping = 5;
             if (is_there[k])
-                check(mspring_builder_add_spring(builder, &def, NULL), mspring_builder_error(builder));
+                check(mspring_builder_add_springs(builder, &def, 1, NULL), mspring_builder_error(builder));
         }
     }
     return builder;
@@ -68,9 +68,9 @@ static mspring_network *make(const mspring_builder *body, uint32_t count) {
         firsts[i] = i * PARTICLES;
     check(mspring_builder_create(NULL, &all), "no builder");
     check(mspring_builder_add_copies(all, body, count, NULL, NULL, 0, NULL, NULL), mspring_builder_error(all));
-    check(mspring_network_def_init(&def, sizeof def), "definition");
-    def.substeps = 40;
-    def.guard = MSPRING_GUARD_BOUNDS;
+    check(mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def), "definition");
+    def.settings.substeps = 40;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
     check(mspring_network_create(all, &def, &network), mspring_builder_error(all));
     check(mspring_network_set_groups(network, firsts, count), mspring_network_error(network));
     mspring_builder_destroy(all);
@@ -94,11 +94,10 @@ static double time_processor(const mspring_builder *body, uint32_t count) {
 static double time_device(const mspring_builder *body, uint32_t count, uint32_t device) {
     mspring_network *network = make(body, TEMPLATES);
     mspring_gpu *gpu = NULL;
-    mspring_gpu_def def;
+    mspring_gpu_def def = mspring_gpu_def_default();
     char message[1024] = "";
     uint32_t steps = 0;
     double rate = 0;
-    check(mspring_gpu_def_init(&def, sizeof def), "definition");
     def.body_count = count;
     def.device = device;
     def.message = message;

@@ -14,7 +14,7 @@
 #include "machine.h"
 #include "modes.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 enum { PAIRS = 9, TURNS = 15 };
 #define TURN_SECONDS 1e-3
 
@@ -60,20 +60,19 @@ typedef struct course {
 
 // A square or bar that goes along, or stays, and trembles a little.
 static bool start(const course *c, mspring_guard guard, walker *out, scene_error *error) {
-    mspring_network_def def;
-    (void)mspring_network_def_init(&def, sizeof def);
+    mspring_network_def def = mspring_network_def_default();
     def.simd_level = c->level;
-    def.guard = guard;
-    def.substeps = c->substeps;
-    def.gravity_y = 0;
+    def.settings.guard = guard;
+    def.settings.substeps = c->substeps;
+    def.settings.gravity_y = 0;
     double border = 0;
     uint64_t seed = 1;
     bool ok = mspring_network_create(c->made->builder, &def, &out->network) == MSPRING_OK &&
-              mspring_network_stable_dt(out->network, &border, NULL) == MSPRING_OK;
-    for (mspring_id p = 0; ok && p < mspring_network_particle_count(out->network); p++) {
+              mspring_network_get_stable_dt(out->network, &border, NULL) == MSPRING_OK;
+    for (mspring_id p = 0; ok && p < mspring_network_count(out->network, MSPRING_PARTICLES); p++) {
         seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
         const float x = c->speed + (float)(seed >> 40) * 1e-9f, y = 0;
-        ok = mspring_network_set_velocities(out->network, p, 1, &x, &y, 1) == MSPRING_OK;
+        ok = mspring_network_set_velocities(out->network, NULL, p, 1, &x, &y, 1) == MSPRING_OK;
     }
     out->dt = c->share * border * c->substeps;
     if (!ok)

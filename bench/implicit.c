@@ -3,9 +3,11 @@
 /// with one worker each; and, with --threads, how much faster several workers are than one.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_tools.h>
+#define MSPRING_EXPERIMENTAL // for mspring_network_describe()
+#include <massspring/massspring.h>
 #include <stdio.h>
 
+#include "common/described.h"
 #include "modes.h"
 
 static const char *const default_scenes[] = {"bar_80x5", "bar_544x68", "ship", "bar_1800x5", NULL};
@@ -33,12 +35,13 @@ static bool create(const bench_scene *subject, mspring_simd level, uint32_t work
     if (!bench_network_create(subject->made.builder, level, workers, 1, out, error)) {
         return false;
     }
-    mspring_solver_def def = {0};
-    mspring_result result = mspring_solver_def_init(&def, sizeof def);
-    def.solver = MSPRING_SOLVER_IMPLICIT;
-    def.residual = 0; // as many iterations in each step
+    mspring_settings settings = mspring_settings_default();
+    mspring_result result = mspring_network_get_settings(out->network, &settings);
+    settings.solver = MSPRING_SOLVER_IMPLICIT;
+    settings.substeps = MSPRING_SUBSTEPS_AUTO;
+    settings.residual = 0; // as many iterations in each step
     if (result == MSPRING_OK) {
-        result = mspring_network_set_solver(out->network, &def);
+        result = mspring_network_set_settings(out->network, &settings);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "setting the solver", result, mspring_network_error(out->network));
@@ -57,8 +60,12 @@ static bool measure(const bench_scene *subject, const bench_options *options, be
         !bench_turns_measure(&several, &one, repeat, &gain, error) || !bench_network_check(shared, error)) {
         return false;
     }
-    mspring_plan plan = {.struct_size = sizeof plan};
-    const mspring_result result = mspring_network_get_plan(alone->network, &plan);
+    char plan[DESCRIBED_SIZE];
+    mspring_network_info info = mspring_network_info_default();
+    mspring_result result = mspring_network_describe(alone->network, plan, sizeof plan, NULL);
+    if (result == MSPRING_OK) {
+        result = mspring_network_get_info(shared->network, &info);
+    }
     if (result != MSPRING_OK) {
         bench_library_error(error, "asking for the plan", result, "");
         return false;
@@ -66,14 +73,14 @@ static bool measure(const bench_scene *subject, const bench_options *options, be
     const bench_cell cells[COLUMN_COUNT] = {
         bench_cell_of("%s", subject->label),
         bench_cell_of("%u", alone->spring_count),
-        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(alone->network))),
-        bench_cell_of("%u", plan.iterations),
-        bench_cell_of("%u", plan.tile_count),
+        bench_cell_of("%s", mspring_simd_name(bench_level_of(alone->network))),
+        bench_cell_of("%.0f", described_number(plan, "iterations")),
+        bench_cell_of("%.0f", described_number(plan, "tile_count")),
         bench_cell_of("%.1f", 1e6 * cost.second_min),
         bench_cell_of("%.1f", 1e6 * cost.second_median),
         bench_cell_of("%.1f", cost.second_min / cost.first_min * by_substeps->substeps),
         bench_cell_of("%.1f", cost.ratio_median * by_substeps->substeps),
-        bench_cell_of("%u", mspring_network_worker_count(shared->network)),
+        bench_cell_of("%u", info.worker_count),
         bench_cell_of("%.2f", gain.second_min / gain.first_min),
         bench_cell_of("%.2f", gain.ratio_median),
     };
@@ -82,7 +89,7 @@ static bool measure(const bench_scene *subject, const bench_options *options, be
 }
 
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
-    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     bench_network networks[3] = {{0}};
     scene_error error;

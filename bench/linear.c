@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "machine.h"
 #include "modes.h"
@@ -91,18 +91,21 @@ static bool reserve(linear_system *s, scene_error *error) {
 }
 
 static bool add_spring(linear_system *s, mspring_network *network, uint32_t spring) {
-    mspring_spring_info info = {.struct_size = sizeof info};
-    if (mspring_network_get_spring(network, spring, &info) != MSPRING_OK) {
+    mspring_id a, b;
+    float stiffness;
+    const mspring_column read[] = {
+        {MSPRING_END_A, 1, &a}, {MSPRING_END_B, 1, &b}, {MSPRING_ACTIVE_STIFFNESS, 1, &stiffness}};
+    if (mspring_network_get_columns(network, NULL, spring, 1, read, 3) != MSPRING_OK) {
         return false;
     }
-    s->a[spring] = info.a;
-    s->b[spring] = info.b;
-    const double dx = s->x[info.b] - s->x[info.a], dy = s->y[info.b] - s->y[info.a], length = hypot(dx, dy);
-    const double k = length > 0 ? 0.5 * BENCH_DT * BENCH_DT * (double)info.stiffness / (length * length) : 0;
+    s->a[spring] = a;
+    s->b[spring] = b;
+    const double dx = s->x[b] - s->x[a], dy = s->y[b] - s->y[a], length = hypot(dx, dy);
+    const double k = length > 0 ? 0.5 * BENCH_DT * BENCH_DT * (double)stiffness / (length * length) : 0;
     const double block[3] = {k * dx * dx, k * dx * dy, k * dy * dy};
     for (size_t i = 0; i < 3; i++) {
-        s->node[i * s->nodes + info.a] += block[i];
-        s->node[i * s->nodes + info.b] += block[i];
+        s->node[i * s->nodes + a] += block[i];
+        s->node[i * s->nodes + b] += block[i];
         s->edge[i * s->edges + spring] = -block[i];
         s->edge_float[i * s->edges + spring] = (float)-block[i];
     }
@@ -111,9 +114,9 @@ static bool add_spring(linear_system *s, mspring_network *network, uint32_t spri
 
 /// The system of the network as it is.
 static bool fill(linear_system *s, mspring_network *network) {
-    mspring_view view = {.struct_size = sizeof view};
-    if (mspring_network_view(network, &view) != MSPRING_OK ||
-        mspring_network_get_positions(network, 0, s->nodes, s->x, s->y, 1) != MSPRING_OK) {
+    mspring_view view = mspring_view_default();
+    if (mspring_network_get_view(network, &view) != MSPRING_OK ||
+        mspring_network_get_positions(network, NULL, 0, s->nodes, s->x, s->y, 1) != MSPRING_OK) {
         return false;
     }
     memset(s->node, 0, 3 * (size_t)s->nodes * sizeof *s->node);
@@ -208,7 +211,7 @@ static bool measure(const bench_scene *subject, const bench_options *options, be
             bench_cell_of("%u", s->plan.size),
             bench_cell_of("%u", s->edges),
             bench_cell_of("%s", in_double ? "double" : "float"),
-            bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network->network))),
+            bench_cell_of("%s", mspring_simd_name(bench_level_of(network->network))),
             bench_cell_of("%.2f", 1e3 * s->plan_seconds),
             bench_cell_of("%.0f", 1e-3 * (double)(s->plan.panel_reals * size)),
             bench_cell_of("%.3f", 1e-6 * s->plan.multiply_adds),
@@ -222,7 +225,7 @@ static bool measure(const bench_scene *subject, const bench_options *options, be
 }
 
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
-    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     bench_network network;
     linear_system system;

@@ -11,7 +11,7 @@
 
 #include "modes.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 static const bench_loop *const loops[] = {
     &bench_rectangle,
@@ -128,7 +128,7 @@ static bool measure_loop(const bench_scene *subject, const bench_options *option
             bench_cell_of("%s", loop->name),
             bench_cell_of("%.3f", 1e9 * turns.second_median / substeps),
             bench_cell_of("%.1e", distance),
-            bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(ours->network))),
+            bench_cell_of("%s", mspring_simd_name(bench_level_of(ours->network))),
             bench_cell_of("%.3f", 1e9 * turns.first_median / substeps),
             bench_cell_of("%.2f", turns.ratio_median),
         };
@@ -144,7 +144,7 @@ static bool measure(const bench_scene *subject, const bench_options *options, ms
     bench_baseline baseline;
     bench_grid grid = {0};
     scene_error error = {"no grid is found in it"};
-    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     if (!bench_network_create(subject->made.builder, level, 1, substeps, &ours, &error)) {
         bench_complain(subject->label, &error);

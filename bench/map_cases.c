@@ -44,7 +44,7 @@ static map_verdict run_case(map_family family, uint32_t index, mspring_solver *s
     map_case drawn;
     char text[MAP_TEXT];
     map_draw_case(&drawn, family, index);
-    *solver = drawn.solver.solver;
+    *solver = drawn.network.settings.solver;
     const map_verdict verdict = map_run_case(&drawn, text);
     if (verdict >= MAP_NOT_FINITE) {
         char what[512];

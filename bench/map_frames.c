@@ -11,7 +11,7 @@
 #include "modes.h"
 #include "table.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 enum { FRAMES = 240, RUNS = 3, BOMB_AT = 80 };
 
 typedef enum happening { CALM, DROP, BOMB, HAPPENINGS } happening;
@@ -45,28 +45,26 @@ static mspring_network *make(const frames_scene *of) {
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
     mspring_material materials[4];
-    mspring_lattice_def lattice;
-    mspring_network_def def;
+    mspring_lattice_def lattice = mspring_lattice_def_default();
+    mspring_network_def def = mspring_network_def_default();
     uint16_t *cells = calloc((size_t)of->columns * of->rows, sizeof *cells);
     for (uint32_t i = 0; i < 4; i++) {
         static const float masses[] = {1, 2, 1, 0.5f}, stiffnesses[] = {1e6f, 5e5f, 2e5f, 1e5f};
-        mspring_material_init(&materials[i], sizeof materials[i]);
+        materials[i] = mspring_material_default();
         materials[i].mass = masses[i];
         materials[i].stiffness = stiffnesses[i];
     }
     for (uint32_t i = 0; cells != NULL && i < of->columns * of->rows; i++)
         cells[i] = cell_of(of, i % of->columns, i / of->columns);
-    mspring_lattice_def_init(&lattice, sizeof lattice);
     lattice.width = of->columns;
     lattice.height = of->rows;
     lattice.cells = cells;
     lattice.materials = materials;
     lattice.material_count = 4;
     lattice.y = 3;
-    mspring_network_def_init(&def, sizeof def);
-    def.gravity_y = of->what == CALM ? 0 : -9.8f;
-    def.substeps = of->substeps;
-    def.guard = MSPRING_GUARD_GROWTH;
+    def.settings.gravity_y = of->what == CALM ? 0 : -9.8f;
+    def.settings.substeps = of->substeps;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
     if (cells == NULL || mspring_builder_create(NULL, &builder) != MSPRING_OK ||
         mspring_builder_add_lattice(builder, &lattice, NULL) != MSPRING_OK ||
         mspring_network_create(builder, &def, &network) != MSPRING_OK)
@@ -78,17 +76,12 @@ static mspring_network *make(const frames_scene *of) {
 
 static bool prepare(const frames_scene *of, mspring_network *network, double *dt) {
     static const double plane[4] = {0, 0, 0, 1};
-    mspring_floor_def floor;
-    mspring_solver_def solver;
+    mspring_floor_def floor = mspring_floor_def_default();
     double now = 0;
-    mspring_floor_def_init(&floor, sizeof floor);
     floor.planes = plane;
     floor.plane_count = 1;
-    mspring_solver_def_init(&solver, sizeof solver);
-    solver.substeps = of->substeps;
-    const bool ok = mspring_network_set_solver(network, &solver) == MSPRING_OK &&
-                    mspring_network_set_floor(network, &floor) == MSPRING_OK &&
-                    mspring_network_stable_dt(network, &now, NULL) == MSPRING_OK;
+    const bool ok = mspring_network_set_floor(network, &floor) == MSPRING_OK &&
+                    mspring_network_get_stable_dt(network, &now, NULL) == MSPRING_OK;
     *dt = of->share * now * of->substeps;
     return ok;
 }
@@ -104,7 +97,7 @@ static bool explode(const frames_scene *of, mspring_network *network) {
             const double x = column - of->columns / 2.0, y = of->rows / 2.0 - row, far = hypot(x, y);
             const float vx = (float)(30 * x / (far + 1)), vy = (float)(30 * y / (far + 1));
             if (far < 6)
-                ok = ok && mspring_network_set_velocities(network, id, 1, &vx, &vy, 1) == MSPRING_OK;
+                ok = ok && mspring_network_set_velocities(network, NULL, id, 1, &vx, &vy, 1) == MSPRING_OK;
             id++;
         }
     }
@@ -123,7 +116,7 @@ static bool take(const frames_scene *of, taken *out) {
     mspring_network *network = make(of);
     bool ok = network != NULL && prepare(of, network, &dt);
     out->rejected = 0;
-    out->springs = ok ? mspring_network_spring_count(network) : 0;
+    out->springs = ok ? mspring_network_count(network, MSPRING_SPRINGS) : 0;
     for (int frame = 0; ok && frame < FRAMES; frame++) {
         if (of->what == BOMB && frame == BOMB_AT)
             ok = explode(of, network);

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "draw/colour_scale.h"
 #include "map.h"
@@ -201,7 +201,7 @@ bool map_draw_borders(const map *drawn, const char *path, draw_error *error) {
     static const char *const dampers[EXTREME_DAMPERS] = {"none", "0.1", "10"};
     const panels p = {17, 5, EXTREME_RATIOS * EXTREME_DAMPERS * ROWS_OF_A_PAIR, 1};
     figure made;
-    begin(&made, &p, "Explicit border: measured over predicted by mspring_network_stable_dt");
+    begin(&made, &p, "Explicit border: measured over predicted by mspring_network_get_stable_dt");
     draw_borders_of(&made, drawn, &p);
     for (uint32_t shape = 0; shape < EXTREME_SHAPES; shape++) {
         figure_text(&made, panel_left(&p, shape), panel_top(&p, 0) - 7, 11, FIGURE_LEFT, ink,

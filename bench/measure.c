@@ -6,7 +6,7 @@
 
 #include "modes.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 void bench_complain(const char *about, const scene_error *error) {
     fprintf(stderr, "massspring-bench: %s: %s\n", about, error->text);
 }
@@ -62,7 +62,7 @@ bool bench_for_each_level(const bench_options *options, const char *const *other
 
 bool bench_measure(const bench_scene *subject, const bench_options *options, mspring_simd level,
                    bench_measurement *out, scene_error *error) {
-    uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     if (springs == 0) {
         snprintf(error->text, sizeof error->text, "the scene has no springs, and speed is measured per spring");
         return false;
@@ -89,13 +89,13 @@ bool bench_measure(const bench_scene *subject, const bench_options *options, msp
         .particles = network.particle_count,
         .springs = network.spring_count,
         .substeps = substeps,
-        .level = mspring_network_simd_level(network.network),
+        .level = bench_level_of(network.network),
     };
     bool ok = bench_turns_measure(&ours, &naive, repeat, &result.turns, error) &&
               bench_network_check(&network, error) && bench_baseline_check(&baseline, error);
     if (ok) {
         result.ns = 1e9 * result.turns.first_median / ((double)springs * substeps);
-        result.bytes_per_particle = (double)mspring_network_memory_used(network.network) / network.particle_count;
+        result.bytes_per_particle = (double)bench_memory_of(network.network) / network.particle_count;
         *out = result;
     }
     bench_baseline_free(&baseline);

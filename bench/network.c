@@ -40,7 +40,7 @@ static float scatter(uint32_t index) {
 
 static bool open_view(const bench_network *network, mspring_view *view, scene_error *error) {
     view->struct_size = sizeof *view;
-    mspring_result result = mspring_network_view(network->network, view);
+    mspring_result result = mspring_network_get_view(network->network, view);
     if (result != MSPRING_OK) {
         bench_library_error(error, "viewing the network", result, "");
     }
@@ -64,15 +64,15 @@ static bool reset(void *self, scene_error *error) {
     bench_network *network = self;
     uint32_t count = network->particle_count;
     mspring_result result =
-        mspring_network_set_positions(network->network, 0, count, network->start_x, network->start_y, 1);
+        mspring_network_set_positions(network->network, NULL, 0, count, network->start_x, network->start_y, 1);
     if (result == MSPRING_OK) {
-        result =
-            mspring_network_set_velocities(network->network, 0, count, network->start_vx, network->start_vy, 1);
+        result = mspring_network_set_velocities(network->network, NULL, 0, count, network->start_vx,
+                                                network->start_vy, 1);
     }
     if (result == MSPRING_OK && network->straightens) {
         const float straight = 0;
-        result =
-            mspring_network_set(network->network, MSPRING_PLASTIC_STRAIN, 0, network->spring_count, &straight, 0);
+        result = mspring_network_set(network->network, MSPRING_PLASTIC_STRAIN, NULL, 0, network->spring_count,
+                                     &straight, 0);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "setting the state", result, mspring_network_error(network->network));
@@ -84,7 +84,7 @@ static bool reset(void *self, scene_error *error) {
 /// Save a frame, into more room if it takes that: forces and edits are saved, too.
 static mspring_result save_frame(bench_network *network) {
     size_t size = 0;
-    mspring_result result = mspring_network_snapshot_size(network->network, MSPRING_SNAPSHOT_FRAME, &size);
+    mspring_result result = mspring_network_get_snapshot_size(network->network, MSPRING_SNAPSHOT_FRAME, &size);
     if (result == MSPRING_OK && size > network->snapshot_size) {
         void *larger = realloc(network->snapshot, size);
         if (larger == NULL) {
@@ -103,8 +103,8 @@ static bool run(void *self, uint32_t steps, scene_error *error) {
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; i < steps && result == MSPRING_OK; i++) {
         if (network->held_x != NULL) {
-            result = mspring_network_apply_forces(network->network, 0, network->particle_count, network->held_x,
-                                                  network->held_y, 1);
+            result = mspring_network_apply_forces(network->network, MSPRING_PUSH_STEP, NULL, 0,
+                                                  network->particle_count, network->held_x, network->held_y, 1);
         }
         if (result == MSPRING_OK && network->saves_frames) {
             result = save_frame(network);
@@ -123,7 +123,7 @@ static bool run(void *self, uint32_t steps, scene_error *error) {
 static bool create(mspring_builder *builder, mspring_simd level, const mspring_network_def *with, uint32_t substeps,
                    bench_network *out, scene_error *error) {
     mspring_network_def def;
-    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def);
     if (result != MSPRING_OK) {
         bench_library_error(error, "preparing the network", result, "");
         return false;
@@ -131,10 +131,10 @@ static bool create(mspring_builder *builder, mspring_simd level, const mspring_n
     def.simd_level = level;
     def.worker_count = with->worker_count;
     def.tasks = with->tasks;
-    def.substeps = substeps;
+    def.settings.substeps = substeps;
     def.flags = with->flags;
-    def.guard = MSPRING_GUARD_GROWTH;
-    def.global_damping = BENCH_GLOBAL_DAMPING;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
+    def.settings.global_damping = BENCH_GLOBAL_DAMPING;
 
     bench_network network = {.substeps = substeps};
     result = mspring_network_create(builder, &def, &network.network);
@@ -142,8 +142,8 @@ static bool create(mspring_builder *builder, mspring_simd level, const mspring_n
         bench_library_error(error, "creating the network", result, mspring_builder_error(builder));
         return false;
     }
-    network.particle_count = mspring_network_particle_count(network.network);
-    network.spring_count = mspring_network_spring_count(network.network);
+    network.particle_count = mspring_network_count(network.network, MSPRING_PARTICLES);
+    network.spring_count = mspring_network_count(network.network, MSPRING_SPRINGS);
 
     uint32_t count = network.particle_count;
     bool ok = (network.start_x = bench_allocate(count, sizeof *network.start_x, error)) != NULL &&
@@ -152,7 +152,8 @@ static bool create(mspring_builder *builder, mspring_simd level, const mspring_n
               (network.start_vy = bench_allocate(count, sizeof *network.start_vy, error)) != NULL &&
               set_start_velocities(&network, error);
     if (ok) {
-        result = mspring_network_get_positions(network.network, 0, count, network.start_x, network.start_y, 1);
+        result =
+            mspring_network_get_positions(network.network, NULL, 0, count, network.start_x, network.start_y, 1);
         if (result != MSPRING_OK) {
             bench_library_error(error, "reading positions", result, "");
             ok = false;
@@ -241,4 +242,16 @@ bool bench_network_check(const bench_network *network, scene_error *error) {
         return false;
     }
     return true;
+}
+
+mspring_simd bench_level_of(const mspring_network *network) {
+    mspring_network_info info = mspring_network_info_default();
+    (void)mspring_network_get_info(network, &info);
+    return info.simd_level;
+}
+
+size_t bench_memory_of(const mspring_network *network) {
+    mspring_network_info info = mspring_network_info_default();
+    (void)mspring_network_get_info(network, &info);
+    return (size_t)info.memory_used;
 }

@@ -49,6 +49,10 @@ bool bench_network_hold_forces(bench_network *network, scene_error *error);
 /// Its timing: see turns.h.
 bench_runner bench_network_runner(bench_network *network);
 
+/// The instruction set that it runs on, and the bytes that it has allocated.
+mspring_simd bench_level_of(const mspring_network *network);
+size_t bench_memory_of(const mspring_network *network);
+
 /// Refuse a state whose timing would mean nothing: numbers that are not finite, or velocities so small (denormal)
 /// that the processor computes with them slowly.
 bool bench_network_check(const bench_network *network, scene_error *error);

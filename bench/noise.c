@@ -24,9 +24,9 @@ static mspring_result add_noise(mspring_builder *builder, uint32_t columns, uint
     }
     mspring_material material;
     mspring_lattice_def def;
-    mspring_result result = mspring_material_init(&material, sizeof material);
+    mspring_result result = mspring_init(MSPRING_STRUCT_MATERIAL, &material, sizeof material);
     if (result == MSPRING_OK) {
-        result = mspring_lattice_def_init(&def, sizeof def);
+        result = mspring_init(MSPRING_STRUCT_LATTICE_DEF, &def, sizeof def);
     }
     if (result != MSPRING_OK) {
         return result;
@@ -40,7 +40,6 @@ static mspring_result add_noise(mspring_builder *builder, uint32_t columns, uint
     def.spacing = options->spacing;
     def.cells = cells;
     def.materials = &material;
-    def.material_count = 1;
     return mspring_builder_add_lattice(builder, &def, NULL);
 }
 

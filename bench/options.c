@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "turns.h"
 
@@ -62,7 +62,8 @@ void bench_options_help(void) {
          "  --out FOLDER         of --map: draw its pictures into this folder\n"
          "\n"
          "The map\n"
-         "  --family NAME        of --map: only the cases of this family; of --spare: only this row; of --errors: only this scene\n"
+         "  --family NAME        of --map: only the cases of this family; of --spare: only this row; of --errors: "
+         "only this scene\n"
          "  --shard I/N          of --map: every N-th part of the cases, the I-th of them, to run N at once\n"
          "  --map-case CASE      run one case, as a fault names it (family:number), and print its energies");
 }
@@ -135,13 +136,13 @@ static bool is_switch(const char *option, bench_options *out) {
         bench_mode mode;
     } modes[] = {{"--features", BENCH_FEATURES}, {"--contact", BENCH_CONTACT},
                  {"--workers", BENCH_WORKERS},   {"--session", BENCH_SESSION},
-                 {"--game", BENCH_GAME}, {"--linear", BENCH_LINEAR},     {"--solvers", BENCH_SOLVERS},
-                 {"--errors", BENCH_ERRORS},     {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
+                 {"--game", BENCH_GAME},         {"--linear", BENCH_LINEAR},
+                 {"--solvers", BENCH_SOLVERS},   {"--errors", BENCH_ERRORS},
+                 {"--roofline", BENCH_ROOFLINE}, {"--map", BENCH_MAP},
                  {"--frames", BENCH_FRAMES},     {"--alarms", BENCH_ALARMS},
                  {"--guard", BENCH_GUARD},       {"--check", BENCH_CHECK},
                  {"--spare", BENCH_SPARE},       {"--loops", BENCH_LOOPS},
-                 {"--cores", BENCH_CORES},
-                 {"--list", BENCH_LIST},
+                 {"--cores", BENCH_CORES},       {"--list", BENCH_LIST},
                  {"--help", BENCH_HELP},         {"-h", BENCH_HELP}};
     for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
         if (strcmp(option, modes[i].name) == 0) {
@@ -271,7 +272,10 @@ bool bench_options_read(int count, char **arguments, bench_options *out, scene_e
 
 /// The best level that a network will run at: the machine's, unless the environment lowers it.
 static mspring_simd best_level(void) {
-    mspring_simd best = mspring_simd_supported();
+    mspring_simd best = MSPRING_SIMD_SCALAR;
+    for (mspring_simd level = MSPRING_SIMD_SCALAR; level <= MSPRING_SIMD_WASM; level++) {
+        best = mspring_simd_available(level) ? level : best;
+    }
     const char *wish = getenv("MSPRING_SIMD");
     for (mspring_simd level = MSPRING_SIMD_SCALAR; wish != NULL && level < best; level++) {
         if (mspring_simd_available(level) && strcmp(wish, mspring_simd_name(level)) == 0) {

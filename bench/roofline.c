@@ -2,11 +2,13 @@
 /// The bounds of this machine, measured, and how near to them each scene comes.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_tools.h>
+#define MSPRING_EXPERIMENTAL // for mspring_network_describe()
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "common/described.h"
 #include "machine.h"
 #include "modes.h"
 #include "roofline_kernels.h"
@@ -192,14 +194,14 @@ typedef struct least_times {
     int place;  ///< of these
 } least_times;
 
-static least_times least_times_of(const bounds *item, const mspring_plan *plan) {
-    double springs = plan->spring_count;
-    double share = plan->particle_count / springs; /* particles for each spring */
-    double record = SPRING_BYTES + (plan->has_damping ? DAMPER_BYTES : 0.0);
-    double operations =
-        SPRING_OPERATIONS + (plan->has_damping ? DAMPER_OPERATIONS : 0.0) + PARTICLE_OPERATIONS * share;
-    double bytes = record * (1 - plan->lattice_springs / springs) + PARTICLE_BYTES * share;
-    double passes = plan->pass_substeps > 1 ? plan->pass_substeps : 1; /* so many substeps share one */
+static least_times least_times_of(const bounds *item, const char *plan) {
+    double springs = described_number(plan, "spring_count");
+    double share = described_number(plan, "particle_count") / springs; /* particles for each spring */
+    const bool has_damping = described_number(plan, "has_damping") > 0;
+    double record = SPRING_BYTES + (has_damping ? DAMPER_BYTES : 0.0);
+    double operations = SPRING_OPERATIONS + (has_damping ? DAMPER_OPERATIONS : 0.0) + PARTICLE_OPERATIONS * share;
+    double bytes = record * (1 - described_number(plan, "lattice_springs") / springs) + PARTICLE_BYTES * share;
+    double passes = fmax(described_number(plan, "pass_substeps"), 1); /* so many substeps share one */
     /* position and velocity are counted twice in what moves */
     least_times out = {.set = springs * (record + (PARTICLE_BYTES - 16.0) * share)};
     while (out.place < PLACE_COUNT - 1 && out.set > (double)bench_cache_size(out.place + 1)) {
@@ -212,7 +214,7 @@ static least_times least_times_of(const bounds *item, const mspring_plan *plan) 
 }
 
 static void print_scene(const bench_options *options, const bench_scene *subject, const bounds *item,
-                        const bench_measurement *result, const mspring_plan *plan) {
+                        const bench_measurement *result, const char *plan) {
     const least_times least = least_times_of(item, plan);
     double bound = fmax(least.memory, fmax(least.arithmetic, least.roots));
     const bench_cell cells[SCENE_COLUMN_COUNT] = {
@@ -235,13 +237,12 @@ static void print_scene(const bench_options *options, const bench_scene *subject
 }
 
 /// How the library lays the scene out at this level.
-static bool get_plan(const bench_scene *subject, mspring_simd level, mspring_plan *plan, scene_error *error) {
+static bool read_plan(const bench_scene *subject, mspring_simd level, char *plan, scene_error *error) {
     bench_network network;
     if (!bench_network_create(subject->made.builder, level, 1, 1, &network, error)) {
         return false;
     }
-    plan->struct_size = sizeof *plan;
-    mspring_result result = mspring_network_get_plan(network.network, plan);
+    mspring_result result = mspring_network_describe(network.network, plan, DESCRIBED_SIZE, NULL);
     if (result != MSPRING_OK) {
         bench_library_error(error, "asking for the plan", result, "");
     }
@@ -254,13 +255,13 @@ static bool visit(const bench_scene *subject, const bench_options *options, void
     scene_error error;
     for (int i = 0; i < all->count; i++) {
         bench_measurement result;
-        mspring_plan plan;
-        if (!get_plan(subject, all->items[i].level, &plan, &error) ||
+        char plan[DESCRIBED_SIZE];
+        if (!read_plan(subject, all->items[i].level, plan, &error) ||
             !bench_measure(subject, options, all->items[i].level, &result, &error)) {
             bench_complain(subject->label, &error);
             return false;
         }
-        print_scene(options, subject, &all->items[i], &result, &plan);
+        print_scene(options, subject, &all->items[i], &result, plan);
     }
     return true;
 }

@@ -4,7 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "modes.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 static const bench_column columns[] = {
     {"scene", "scene", -22},

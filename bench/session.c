@@ -2,7 +2,8 @@
 /// What a game does to its network from step to step, and what that costs: each call next to a step, in turn.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_tools.h>
+#define MSPRING_EXPERIMENTAL // for lab.h
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,7 +40,7 @@ static void print_row(const bench_options *options, const bench_scene *subject, 
         bench_cell_of("%s", name),
         bench_cell_of("%u", network->spring_count),
         bench_cell_of("%u", network->substeps),
-        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network->network))),
+        bench_cell_of("%s", mspring_simd_name(bench_level_of(network->network))),
         bench_cell_of("%.1f", 1e6 * least),
         bench_cell_of("%.1f", 1e6 * median),
         bench_cell_of("%.1f", 1e6 * step),
@@ -89,10 +90,12 @@ static bool create_watched(const bench_scene *subject, mspring_simd level, bool 
     }
     mspring_result result = mspring_network_reserve_events(out->network, SESSION_BURST);
     if (result == MSPRING_OK) {
-        result = mspring_network_set(out->network, MSPRING_BREAK_STRAIN, 0, out->spring_count, with->values, 1);
+        result =
+            mspring_network_set(out->network, MSPRING_BREAK_STRAIN, NULL, 0, out->spring_count, with->values, 1);
     }
     if (result == MSPRING_OK && stress) {
-        result = mspring_network_set(out->network, MSPRING_STRESS_STRAIN, 0, out->spring_count, with->values, 1);
+        result =
+            mspring_network_set(out->network, MSPRING_WARN_STRAIN, NULL, 0, out->spring_count, with->values, 1);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "watching strain", result, mspring_network_error(out->network));
@@ -133,23 +136,25 @@ static bool measure_sleep(session *with, const bench_options *options, const ben
                           mspring_simd level, bool viewed, uint32_t repeat, scene_error *error) {
     bench_network asleep = {.substeps = with->step->substeps};
     mspring_network_def def;
-    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def);
     def.simd_level = level;
-    def.substeps = with->step->substeps;
-    def.sleep_speed = OUT_OF_REACH; // at once
-    def.sleep_time = 0;
-    def.guard = MSPRING_GUARD_GROWTH;
+    def.settings.substeps = with->step->substeps;
+    def.settings.sleep_speed = OUT_OF_REACH; // at once
+    def.settings.sleep_time = 0;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
     if (result == MSPRING_OK) {
         result = mspring_network_create(subject->made.builder, &def, &asleep.network);
     }
-    mspring_view view = {.struct_size = sizeof view};
+    mspring_view view = mspring_view_default();
     if (result == MSPRING_OK && viewed) {
-        result = mspring_network_view(asleep.network, &view);
+        result = mspring_network_get_view(asleep.network, &view);
     }
     if (result == MSPRING_OK) {
         result = mspring_network_step(asleep.network, BENCH_DT);
     }
-    bool ok = result == MSPRING_OK && mspring_network_is_asleep(asleep.network);
+    mspring_step_info info = mspring_step_info_default();
+    bool ok = result == MSPRING_OK && mspring_network_get_step_info(asleep.network, &info) == MSPRING_OK &&
+              info.is_asleep;
     if (!ok) {
         bench_library_error(error, "falling asleep", result, mspring_network_error(asleep.network));
     }
@@ -259,11 +264,12 @@ static bool compact_solver(session *with, const bench_options *options, const be
     const char *const name = solver == MSPRING_SOLVER_DIRECT ? "direct" : "implicit";
     double all[COMPACTIONS], longest[COMPACTIONS], back[COMPACTIONS];
     char text[64];
-    mspring_solver_def def;
-    mspring_result result = mspring_solver_def_init(&def, sizeof def);
-    def.solver = solver;
+    mspring_settings settings = mspring_settings_default();
+    mspring_result result = mspring_network_get_settings(wreck->network, &settings);
+    settings.solver = solver;
+    settings.substeps = MSPRING_SUBSTEPS_AUTO;
     if (result == MSPRING_OK) {
-        result = mspring_network_set_solver(wreck->network, &def);
+        result = mspring_network_set_settings(wreck->network, &settings);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "changing the solver", result, mspring_network_error(wreck->network));
@@ -317,7 +323,6 @@ static bool measure_wreck(session *with, const bench_options *options, const ben
 static bool make_parts(session *with, const bench_scene *subject, mspring_simd level, bool sleeps, bool implicit,
                        bool is_compact, bench_network *parts, scene_error *error) {
     mspring_network_def def;
-    mspring_solver_def solver;
     mspring_id first;
     if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, parts, error)) {
         return false;
@@ -325,22 +330,15 @@ static bool make_parts(session *with, const bench_scene *subject, mspring_simd l
     mspring_network_destroy(parts->network);
     parts->network = NULL;
     const float pinned = 0.0f, none = 0.0f, slowly = 1e-4f;
-    mspring_result result = mspring_network_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def);
     def.simd_level = level;
-    def.sleep_speed = sleeps ? OUT_OF_REACH : 0.0f; // what is awake is so by a pin that moves
-    def.sleep_time = 0;
-    def.guard = MSPRING_GUARD_GROWTH;
-    def.substeps = with->step->substeps;
+    def.settings.sleep_speed = sleeps ? OUT_OF_REACH : 0.0f; // what is awake is so by a pin that moves
+    def.settings.sleep_time = 0;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
+    def.settings.solver = implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
+    def.settings.substeps = implicit ? 1 : with->step->substeps;
     if (result == MSPRING_OK) {
         result = mspring_network_create(subject->made.builder, &def, &parts->network);
-    }
-    if (result == MSPRING_OK) {
-        result = mspring_solver_def_init(&solver, sizeof solver);
-    }
-    solver.solver = implicit ? MSPRING_SOLVER_IMPLICIT : MSPRING_SOLVER_EXPLICIT;
-    solver.substeps = implicit ? 1 : def.substeps;
-    if (result == MSPRING_OK) {
-        result = mspring_network_set_solver(parts->network, &solver);
     }
     if (result == MSPRING_OK && !bench_wreck_slice(parts, PARTS, &first, error)) {
         return false;
@@ -349,10 +347,10 @@ static bool make_parts(session *with, const bench_scene *subject, mspring_simd l
         result = mspring_network_compact(parts->network);
     }
     if (result == MSPRING_OK) {
-        result = mspring_network_set(parts->network, MSPRING_INVERSE_MASS_SCALE, first, 1, &pinned, 1);
+        result = mspring_network_set(parts->network, MSPRING_INVERSE_MASS_SCALE, NULL, first, 1, &pinned, 1);
     }
     if (result == MSPRING_OK) {
-        result = mspring_network_set_velocities(parts->network, first, 1, &none, &slowly, 1);
+        result = mspring_network_set_velocities(parts->network, NULL, first, 1, &none, &slowly, 1);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "making parts", result, mspring_network_error(parts->network));
@@ -400,10 +398,10 @@ static bool add(mspring_network *network, const mspring_spring_def *springs, msp
         result = mspring_network_add_springs(network, springs, count, ids);
         seconds[i] = bench_thread_seconds() - start;
         if (result == MSPRING_OK && i + 1 < repeat) {
-            result = mspring_network_remove_springs(network, ids, count);
+            result = mspring_network_remove_springs(network, ids, 0, count);
         }
         if (result == MSPRING_OK) {
-            result = mspring_network_recycle(network);
+            result = mspring_network_reuse_ids(network);
         }
     }
     if (result != MSPRING_OK) {
@@ -464,7 +462,8 @@ static bool measure_loose(const session *with, const bench_options *options, con
     static const char *const names[GROUNDS] = {"  in a step", "  all of them on a floor",
                                                "  high above one more on it"};
     const bool floored = on != WITHOUT_FLOOR;
-    double left, bottom, right, top, seconds = 0;
+    double seconds = 0;
+    mspring_body all = mspring_body_default();
     bench_network loose, plain;
     mspring_floor_def def;
     if (!bench_added_create(subject->made.builder, level, 1, with->step->substeps, LOOSE + 1, 0, &loose, error)) {
@@ -474,10 +473,10 @@ static bool measure_loose(const session *with, const bench_options *options, con
         bench_network_free(&loose);
         return false;
     }
-    mspring_result result = mspring_network_bounds(plain.network, &left, &bottom, &right, &top);
-    const double plane[4] = {0, bottom - 100.0, 0, 1};
+    mspring_result result = mspring_network_get_body(plain.network, NULL, 0, MSPRING_ALL, &all);
+    const double plane[4] = {0, all.min_y - 100.0, 0, 1};
     if (result == MSPRING_OK) {
-        result = mspring_floor_def_init(&def, sizeof def);
+        result = mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def);
     }
     def.planes = plane;
     def.plane_count = 1;
@@ -520,12 +519,12 @@ static bool measure_floor(session *with, const bench_options *options, const ben
         bench_network_free(&floored);
         return false;
     }
-    double left = 0, bottom = 0, right = 0, top = 0;
+    mspring_body all = mspring_body_default();
     mspring_floor_def def;
-    mspring_result result = mspring_network_bounds(plain.network, &left, &bottom, &right, &top);
-    const double plane[4] = {0, bottom - drop, 0, 1};
+    mspring_result result = mspring_network_get_body(plain.network, NULL, 0, MSPRING_ALL, &all);
+    const double plane[4] = {0, all.min_y - drop, 0, 1};
     if (result == MSPRING_OK) {
-        result = mspring_floor_def_init(&def, sizeof def);
+        result = mspring_init(MSPRING_STRUCT_FLOOR_DEF, &def, sizeof def);
     }
     def.planes = plane;
     def.plane_count = 1;
@@ -569,7 +568,7 @@ static void sea_floor(const mspring_hook_args *args, void *user) {
 /// costs.
 static bool measure_hook(session *with, const bench_options *options, const bench_scene *subject,
                          mspring_simd level, bool is_empty, uint32_t flags, uint32_t repeat, scene_error *error) {
-    double left, bottom, right, top;
+    mspring_body all = mspring_body_default();
     bench_network hooked, plain;
     if (!bench_network_create(subject->made.builder, level, 1, with->step->substeps, &hooked, error)) {
         return false;
@@ -579,15 +578,15 @@ static bool measure_hook(session *with, const bench_options *options, const benc
         return false;
     }
     mspring_hook_def def;
-    mspring_result result = mspring_hook_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_HOOK_DEF, &def, sizeof def);
     def.phase = MSPRING_PHASE_AFTER_SUBSTEP;
     def.fn = is_empty ? empty_hook : sea_floor;
     if (result == MSPRING_OK) {
-        result = mspring_network_bounds(plain.network, &left, &bottom, &right, &top);
+        result = mspring_network_get_body(plain.network, NULL, 0, MSPRING_ALL, &all);
     }
     if (result == MSPRING_OK) {
         def.flags = flags;
-        def.below_y = bottom - 1000.0;
+        def.below_y = all.min_y - 1000.0;
         def.user = &def.below_y;
         result = mspring_network_add_hook(hooked.network, &def, NULL);
     }
@@ -612,7 +611,7 @@ static bool measure_hook(session *with, const bench_options *options, const benc
 }
 
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
-    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     const uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(springs);
     bench_network network;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "machine.h"
 #include "modes.h"
@@ -67,9 +67,9 @@ static bool make_bar(const solvers_bar *bar, double stiffness, mspring_builder *
     mspring_material iron[2];
     mspring_lattice_def def;
     uint16_t *cells = calloc((size_t)bar->columns * bar->rows, sizeof *cells);
-    mspring_result result = mspring_lattice_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_LATTICE_DEF, &def, sizeof def);
     for (int i = 0; i < 2 && result == MSPRING_OK; i++) {
-        result = mspring_material_init(&iron[i], sizeof iron[i]);
+        result = mspring_init(MSPRING_STRUCT_MATERIAL, &iron[i], sizeof iron[i]);
         iron[i].mass = (float)BAR_MASS;
         iron[i].stiffness = (float)stiffness;
     }
@@ -109,12 +109,12 @@ static bool make_network(const solvers_bar *bar, double stiffness, mspring_simd 
     if (!made) {
         return false;
     }
-    mspring_solver_def def;
-    mspring_result result = mspring_solver_def_init(&def, sizeof def);
-    def.solver = solver;
-    def.substeps = substeps;
+    mspring_settings settings = mspring_settings_default();
+    mspring_result result = mspring_network_get_settings(out->network, &settings);
+    settings.solver = solver;
+    settings.substeps = substeps;
     if (result == MSPRING_OK) {
-        result = mspring_network_set_solver(out->network, &def);
+        result = mspring_network_set_settings(out->network, &settings);
     }
     if (result != MSPRING_OK) {
         bench_library_error(error, "choosing the solver", result, mspring_network_error(out->network));
@@ -144,7 +144,7 @@ static bool print_step(const solvers_bar *bar, const bench_options *options, siz
             bench_cell_of("%.0e", bar->stiffness),
             bench_cell_of("%.5g", bar->bending),
             bench_cell_of("%s", solvers[solver].name),
-            bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network.network))),
+            bench_cell_of("%s", mspring_simd_name(bench_level_of(network.network))),
             bench_cell_of("%.2f", 1e6 * turns.second_min),
             bench_cell_of("%.2f", 1e6 * turns.second_median),
             bench_cell_of("%.1f", cost),
@@ -196,9 +196,9 @@ static bool time_breaks(bench_network *network, uint32_t repeat, double *plain, 
             springs[n] = (mspring_id)((seed >> 33) % network->spring_count);
         }
         if (!timed_step(network, &plain[i], error) ||
-            mspring_network_break_springs(network->network, springs, BREAKS) != MSPRING_OK ||
+            mspring_network_break_springs(network->network, springs, 0, BREAKS) != MSPRING_OK ||
             !timed_step(network, &after[i], error) ||
-            mspring_network_restore_springs(network->network, springs, BREAKS, 0) != MSPRING_OK ||
+            mspring_network_restore_springs(network->network, springs, 0, BREAKS, 0) != MSPRING_OK ||
             !timed_step(network, &ignored, error)) {
             return false;
         }
@@ -220,7 +220,7 @@ static bool print_breaks(const solvers_bar *bar, const bench_options *options, m
         const double usual = bench_median(plain, repeat), then = bench_median(after, repeat);
         const bench_cell cells[] = {
             bench_cell_of("%s", bar->name),
-            bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(network.network))),
+            bench_cell_of("%s", mspring_simd_name(bench_level_of(network.network))),
             bench_cell_of("%.1f", 1e6 * usual),
             bench_cell_of("%.1f", 1e6 * then),
             bench_cell_of("%.1f", 1e6 * (then - usual)),

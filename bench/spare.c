@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "machine.h"
 #include "modes.h"
@@ -84,7 +84,7 @@ static void MSPRING_CALL empty_hook(const mspring_hook_args *args, void *user) {
 static mspring_result lay_floor(mspring_network *network, floor_kind kind) {
     const double plane[] = {0, kind == FAR_BELOW ? -1000 : 0, 0, 1};
     mspring_floor_def floor;
-    mspring_result result = mspring_floor_def_init(&floor, sizeof floor);
+    mspring_result result = mspring_init(MSPRING_STRUCT_FLOOR_DEF, &floor, sizeof floor);
     floor.planes = plane;
     floor.plane_count = 1;
     return kind == NO_FLOOR || result != MSPRING_OK ? result : mspring_network_set_floor(network, &floor);
@@ -93,10 +93,8 @@ static mspring_result lay_floor(mspring_network *network, floor_kind kind) {
 static mspring_result describe(const row *r, mspring_builder *builder) {
     enum { MOST_CELLS = 72 * 70 };
     static const uint16_t cells[MOST_CELLS];
-    mspring_material material;
-    mspring_lattice_def lattice;
-    (void)mspring_material_init(&material, sizeof material);
-    (void)mspring_lattice_def_init(&lattice, sizeof lattice);
+    mspring_material material = mspring_material_default();
+    mspring_lattice_def lattice = mspring_lattice_def_default();
     material.spring_flags = MSPRING_SPRING_RELATIVE;
     material.stiffness = 0.5f;
     material.damping = 0.05f;
@@ -104,19 +102,16 @@ static mspring_result describe(const row *r, mspring_builder *builder) {
     lattice.height = r->height;
     lattice.cells = cells;
     lattice.materials = &material;
-    lattice.material_count = 1;
     return mspring_builder_add_lattice(builder, &lattice, NULL);
 }
 
 static mspring_result make(const row *r, mspring_builder *builder, mspring_simd level, bool is_second,
                            mspring_network **out) {
-    mspring_network_def def;
-    mspring_hook_def hook;
-    (void)mspring_network_def_init(&def, sizeof def);
-    (void)mspring_hook_def_init(&hook, sizeof hook);
+    mspring_network_def def = mspring_network_def_default();
+    mspring_hook_def hook = mspring_hook_def_default();
     def.simd_level = level;
-    def.solver = r->solver;
-    def.substeps = r->substeps;
+    def.settings.solver = r->solver;
+    def.settings.substeps = r->substeps;
     def.spare_particles = is_second ? r->more_spare : 0;
     hook.phase = MSPRING_PHASE_AFTER_SUBSTEP;
     hook.fn = empty_hook;
@@ -151,7 +146,7 @@ typedef struct sampler {
 } sampler;
 
 static bool begin(sampler *s) {
-    if (mspring_network_snapshot_size(s->network, MSPRING_SNAPSHOT_ALL, &s->size) != MSPRING_OK) {
+    if (mspring_network_get_snapshot_size(s->network, MSPRING_SNAPSHOT_ALL, &s->size) != MSPRING_OK) {
         return false;
     }
     s->start = malloc(s->size);
@@ -184,7 +179,7 @@ static bool measure(const row *r, const bench_options *options, sampler two[2]) 
         bench_cell_of("%s", r->name),
         bench_cell_of("%u", r->width * r->height),
         bench_cell_of("%u", r->substeps),
-        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(two[0].network))),
+        bench_cell_of("%s", mspring_simd_name(bench_level_of(two[0].network))),
         bench_cell_of("%.2f", 1e6 * bench_median(plain, repeat)),
         bench_cell_of("%.2f", 1e6 * bench_median(other, repeat)),
         bench_cell_of("%.3f", bench_median(ratios, repeat)),

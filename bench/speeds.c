@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "loaders/lines.h"
 

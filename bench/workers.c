@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "modes.h"
 #include "tasks/pool.h"
@@ -131,7 +131,7 @@ static void MSPRING_CALL run_tasks(uint32_t count, mspring_task_fn fn, void *arg
 }
 
 static bool create_host(uint32_t workers, host *out, scene_error *error) {
-    if (mspring_tasks_init(&out->tasks, sizeof out->tasks) != MSPRING_OK ||
+    if (mspring_init(MSPRING_STRUCT_TASKS, &out->tasks, sizeof out->tasks) != MSPRING_OK ||
         mspringi_memory_init(&out->memory, NULL, &out->message) != MSPRING_OK ||
         mspringi_pool_create(workers, &out->memory, &out->message, &out->pool) != MSPRING_OK) {
         snprintf(error->text, sizeof error->text, "no threads for %u workers", workers);
@@ -184,7 +184,7 @@ static void print_row(const bench_options *options, const bench_scene *subject, 
         bench_cell_of("%s", subject->label),
         bench_cell_of("%u", c->one.spring_count),
         bench_cell_of("%u", c->one.substeps),
-        bench_cell_of("%s", mspring_simd_name(mspring_network_simd_level(c->one.network))),
+        bench_cell_of("%s", mspring_simd_name(bench_level_of(c->one.network))),
         bench_cell_of("%u", c->apart.count),
         bench_cell_of("%.3f", 1e6 * c->one_median),
         bench_cell_of("%.2f", c->gain_median),
@@ -200,7 +200,7 @@ static void print_row(const bench_options *options, const bench_scene *subject, 
 }
 
 static bool measure_level(const bench_scene *subject, const bench_options *options, mspring_simd level) {
-    const uint32_t springs = mspring_builder_spring_count(subject->made.builder);
+    const uint32_t springs = mspring_builder_count(subject->made.builder, MSPRING_SPRINGS);
     const uint32_t substeps = options->substeps > 0 ? options->substeps : bench_default_substeps(springs);
     const uint32_t repeat = options->repeat > 0 ? options->repeat : bench_default_repeat(springs);
     const uint32_t workers = options->workers > 1 ? options->workers : 2;

@@ -96,12 +96,13 @@ static bool list_ends(const bench_network *n, wreckage *all, scene_error *error)
         return false;
     }
     memset(all->is_broken, 0, n->spring_count * sizeof *all->is_broken);
-    return mspring_network_get_ends(n->network, 0, n->spring_count, MSPRING_ENDS_IDS, all->a, all->b, 1) ==
-           MSPRING_OK;
+    return mspring_network_get_columns(
+               n->network, NULL, 0, n->spring_count,
+               (const mspring_column[]){{MSPRING_END_A, 1, all->a}, {MSPRING_END_B, 1, all->b}}, 2) == MSPRING_OK;
 }
 
 static bool break_all(const bench_network *network, const wreckage *all, scene_error *error) {
-    mspring_result result = mspring_network_break_springs(network->network, all->broken, all->count);
+    mspring_result result = mspring_network_break_springs(network->network, all->broken, 0, all->count);
     if (result != MSPRING_OK) {
         bench_library_error(error, "making a wreck", result, mspring_network_error(network->network));
     }

@@ -2,6 +2,7 @@
 /// Networks as plain arrays, and their motion in double precision.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include "board/model.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 static bool fail(const char *what) {
     fprintf(stderr, "massspring-board: %s\n", what);
@@ -20,7 +21,7 @@ static bool fail(const char *what) {
 static bool read_property(const mspring_network *network, mspring_property property, uint32_t count, double *to) {
     float value = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (mspring_network_get(network, property, i, 1, &value, 1) != MSPRING_OK)
+        if (mspring_network_get(network, property, NULL, i, 1, &value, 1) != MSPRING_OK)
             return false;
         to[i] = (double)value;
     }
@@ -38,16 +39,20 @@ static bool read_network(model *m, const mspring_network *network) {
     m->stiffness = malloc(s * sizeof *m->stiffness);
     if (!m->x || !m->y || !m->inverse_mass || !m->a || !m->b || !m->rest || !m->stiffness)
         return fail("out of memory");
-    bool good = mspring_network_get_positions(network, 0, n, m->x, m->y, 1) == MSPRING_OK &&
-                mspring_network_get_ends(network, 0, s, MSPRING_ENDS_IDS, m->a, m->b, 1) == MSPRING_OK &&
-                read_property(network, MSPRING_REST_LENGTH, s, m->rest) &&
-                read_property(network, MSPRING_STIFFNESS, s, m->stiffness);
+    bool good =
+        mspring_network_get_positions(network, NULL, 0, n, m->x, m->y, 1) == MSPRING_OK &&
+        mspring_network_get_columns(network, NULL, 0, s,
+                                    (const mspring_column[]){{MSPRING_END_A, 1, m->a}, {MSPRING_END_B, 1, m->b}},
+                                    2) == MSPRING_OK &&
+        read_property(network, MSPRING_REST_LENGTH, s, m->rest) &&
+        read_property(network, MSPRING_STIFFNESS, s, m->stiffness);
     for (uint32_t i = 0; good && i < n; i++) {
         double mass = 1, scale = 0;
         float value = 0;
-        good = mspring_network_get(network, MSPRING_MASS, i, 1, &value, 1) == MSPRING_OK;
+        good = mspring_network_get(network, MSPRING_MASS, NULL, i, 1, &value, 1) == MSPRING_OK;
         mass = (double)value;
-        good = good && mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, i, 1, &value, 1) == MSPRING_OK;
+        good =
+            good && mspring_network_get(network, MSPRING_INVERSE_MASS_SCALE, NULL, i, 1, &value, 1) == MSPRING_OK;
         scale = (double)value;
         m->inverse_mass[i] = scale / mass;
     }
@@ -56,8 +61,8 @@ static bool read_network(model *m, const mspring_network *network) {
 
 bool model_read(model *made, mspring_builder *builder, uint32_t probe) {
     mspring_network *network = NULL;
-    *made = (model){.particle_count = mspring_builder_particle_count(builder),
-                    .spring_count = mspring_builder_spring_count(builder),
+    *made = (model){.particle_count = mspring_builder_count(builder, MSPRING_PARTICLES),
+                    .spring_count = mspring_builder_count(builder, MSPRING_SPRINGS),
                     .probe = probe,
                     .gravity = (double)9.8f};
     if (mspring_network_create(builder, NULL, &network) != MSPRING_OK)
@@ -84,21 +89,21 @@ mspring_network *model_network(const model *m, const mspring_network_def *def) {
     mspring_result result = mspring_builder_create(NULL, &builder);
     for (uint32_t i = 0; result == MSPRING_OK && i < m->particle_count; i++) {
         mspring_particle_def particle;
-        result = mspring_particle_def_init(&particle, sizeof particle);
+        result = mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &particle, sizeof particle);
         particle.flags = m->inverse_mass[i] > 0 ? 0 : MSPRING_PARTICLE_PINNED;
         particle.mass = m->inverse_mass[i] > 0 ? (float)(1 / m->inverse_mass[i]) : 1;
         particle.x = m->x[i];
         particle.y = m->y[i];
-        result = result == MSPRING_OK ? mspring_builder_add_particle(builder, &particle, NULL) : result;
+        result = result == MSPRING_OK ? mspring_builder_add_particles(builder, &particle, 1, NULL) : result;
     }
     for (uint32_t i = 0; result == MSPRING_OK && i < m->spring_count; i++) {
         mspring_spring_def spring;
-        result = mspring_spring_def_init(&spring, sizeof spring);
+        result = mspring_init(MSPRING_STRUCT_SPRING_DEF, &spring, sizeof spring);
         spring.a = m->a[i];
         spring.b = m->b[i];
         spring.rest_length = (float)m->rest[i];
         spring.stiffness = (float)m->stiffness[i];
-        result = result == MSPRING_OK ? mspring_builder_add_spring(builder, &spring, NULL) : result;
+        result = result == MSPRING_OK ? mspring_builder_add_springs(builder, &spring, 1, NULL) : result;
     }
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, def, &network);
@@ -111,7 +116,7 @@ mspring_network *model_network(const model *m, const mspring_network_def *def) {
 double model_stable_substep(const model *m) {
     mspring_network *network = model_network(m, NULL);
     double least = 0;
-    if (!network || mspring_network_stable_dt(network, &least, NULL) != MSPRING_OK)
+    if (!network || mspring_network_get_stable_dt(network, &least, NULL) != MSPRING_OK)
         least = 0;
     mspring_network_destroy(network);
     return least;
@@ -120,7 +125,7 @@ double model_stable_substep(const model *m) {
 bool model_settle(const model *m, double *x, double *y) {
     mspring_network *network = model_network(m, NULL);
     const bool good = network && mspring_network_settle(network, NULL, NULL) == MSPRING_OK &&
-                      mspring_network_get_positions(network, 0, m->particle_count, x, y, 1) == MSPRING_OK;
+                      mspring_network_get_positions(network, NULL, 0, m->particle_count, x, y, 1) == MSPRING_OK;
     mspring_network_destroy(network);
     return good || fail("cannot settle");
 }

@@ -9,13 +9,13 @@
 
 static bool begin(motion *r, mspring_solver solver, uint32_t flags) {
     mspring_network_def def;
-    if (mspring_network_def_init(&def, sizeof def) != MSPRING_OK)
+    if (mspring_init(MSPRING_STRUCT_NETWORK_DEF, &def, sizeof def) != MSPRING_OK)
         return false;
-    def.solver = solver;
+    def.settings.solver = solver;
     def.flags |= flags;
-    def.substeps = r->effort;
-    def.gravity_y = -(float)r->m->gravity;
-    def.global_damping = (float)r->damping;
+    def.settings.substeps = r->effort;
+    def.settings.gravity_y = -(float)r->m->gravity;
+    def.settings.global_damping = (float)r->damping;
     r->own = model_network(r->m, &def);
     return r->own != NULL;
 }
@@ -49,11 +49,11 @@ static void frame(motion *r, double dt) {
 static void state(const motion *r, model_state *to) {
     const mspring_network *network = r->own;
     const uint32_t n = r->m->particle_count;
-    mspring_result result = mspring_network_get_positions(network, 0, n, to->x, to->y, 1);
+    mspring_result result = mspring_network_get_positions(network, NULL, 0, n, to->x, to->y, 1);
     float *vx = malloc(2 * (size_t)n * sizeof *vx), *vy = vx + n;
     if (!vx)
         return;
-    result = result ? result : mspring_network_get_velocities(network, 0, n, vx, vy, 1);
+    result = result ? result : mspring_network_get_velocities(network, NULL, 0, n, vx, vy, 1);
     for (uint32_t i = 0; i < n; i++) {
         to->vx[i] = (double)vx[i];
         to->vy[i] = (double)vy[i];
@@ -65,7 +65,7 @@ static void state(const motion *r, model_state *to) {
 
 static bool cut(motion *r, const uint32_t *springs, uint32_t count, double dt) {
     (void)dt;
-    return mspring_network_break_springs(r->own, springs, count) == MSPRING_OK;
+    return mspring_network_break_springs(r->own, springs, 0, count) == MSPRING_OK;
 }
 
 static void end(motion *r) {

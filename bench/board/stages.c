@@ -50,22 +50,22 @@ static bool make_ship(const stage *s, mspring_builder **builder, mspring_id *pro
 
 static mspring_result add_bar(const stage *s, mspring_builder *builder, mspring_id a, mspring_id b, double length) {
     mspring_spring_def def;
-    mspring_result result = mspring_spring_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_SPRING_DEF, &def, sizeof def);
     def.a = a, def.b = b;
     def.stiffness = (float)(s->stiffness * s->spacing / length);
-    return result ? result : mspring_builder_add_spring(builder, &def, NULL);
+    return result ? result : mspring_builder_add_springs(builder, &def, 1, NULL);
 }
 
 // Bays of a chord below, one above, a post and a diagonal, all of one section.
 static bool make_truss(const stage *s, mspring_builder **builder, mspring_id *probe) {
     mspring_particle_def joint;
-    mspring_result result = mspring_particle_def_init(&joint, sizeof joint);
+    mspring_result result = mspring_init(MSPRING_STRUCT_PARTICLE_DEF, &joint, sizeof joint);
     result = result ? result : mspring_builder_create(NULL, builder);
     joint.mass = s->mass;
     for (uint32_t i = 0; !result && i < 2 * s->columns; i++) {
         joint.flags = i < 2 ? MSPRING_PARTICLE_PINNED : 0;
         joint.x = i / 2 * s->spacing, joint.y = i % 2 * s->spacing;
-        result = mspring_builder_add_particle(*builder, &joint, probe);
+        result = mspring_builder_add_particles(*builder, &joint, 1, probe);
     }
     for (mspring_id i = 2; !result && i < 2 * s->columns; i += 2) {
         result = add_bar(s, *builder, i - 2, i, s->spacing);

@@ -38,7 +38,7 @@ static uint32_t count_between(const drawing *d, uint32_t low, uint32_t high) {
 static mspring_id add_particle(const drawing *d, double column, double row) {
     map_body *body = d->body;
     mspring_particle_def *def = &body->particles[body->particle_count];
-    mspring_particle_def_init(def, sizeof *def);
+    mspring_init(MSPRING_STRUCT_PARTICLE_DEF, def, sizeof *def);
     def->x = d->stuff->spacing * column;
     def->y = d->stuff->spacing * row;
     def->mass = (float)map_decades(d->seed, 1, d->stuff->mass_ratio);
@@ -60,7 +60,7 @@ static void add_spring(const drawing *d, mspring_id a, mspring_id b) {
     mspring_spring_def *def = &body->springs[body->spring_count++];
     const double stiffness = d->stuff->stiffness * map_decades(d->seed, 1, d->stuff->spread);
     const double first = (double)body->particles[a].mass, second = (double)body->particles[b].mass;
-    mspring_spring_def_init(def, sizeof *def);
+    mspring_init(MSPRING_STRUCT_SPRING_DEF, def, sizeof *def);
     def->a = a;
     def->b = b;
     def->stiffness = (float)stiffness;

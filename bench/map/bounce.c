@@ -13,7 +13,7 @@ static const double kept = 0.01;
 
 /// Energy of one particle: of its motion across a level floor alone where there is friction, J / kg.
 static double energy_of(const map_watch *watch, uint32_t i, bool across_only) {
-    const double gravity = (double)watch->what->network.gravity_y;
+    const double gravity = (double)watch->what->network.settings.gravity_y;
     double vx = (double)watch->vx[i], vy = (double)watch->vy[i];
     vy += 0.5 * watch->lag * gravity; // explicit substeps leave the velocity of half a substep ago
     return 0.5 * ((across_only ? 0 : vx * vx) + vy * vy) - gravity * watch->y[i];
@@ -24,7 +24,7 @@ static bool is_level(const map_case *what) {
 }
 
 static bool is_judged(const map_case *what) {
-    return what->shape == MAP_LOOSE && what->has_floor && what->network.global_damping == 0;
+    return what->shape == MAP_LOOSE && what->has_floor && what->network.settings.global_damping == 0;
 }
 
 /// Whether energy is kept: all of it or, with friction on a level floor, that of the motion across it.
@@ -34,7 +34,7 @@ static bool is_perfect(const map_case *what) {
 
 /// What of gravity acts across the one plane that there is, m/s^2.
 static double gravity_across(const map_case *what) {
-    return -(double)what->network.gravity_y / hypot(what->planes[0][2], what->planes[0][3]);
+    return -(double)what->network.settings.gravity_y / hypot(what->planes[0][2], what->planes[0][3]);
 }
 
 /// Speed at which a particle meets the one plane that there is, m/s: bounces without friction keep it.
@@ -52,8 +52,8 @@ void map_bounce_begin(map_judge *judge) {
     for (uint32_t i = 0; is_judged(what) && i < judge->watch->count; i++) {
         const double height = map_height_over_floor(what, judge->watch->x[i], judge->watch->y[i]);
         judge->particle_start[i] = energy_of(judge->watch, i, !is_perfect(what) || what->floor.friction > 0);
-        judge->particle_fallen[i] =
-            energy_of(judge->watch, i, false) + (double)what->network.gravity_y * (judge->watch->y[i] - height);
+        judge->particle_fallen[i] = energy_of(judge->watch, i, false) +
+                                    (double)what->network.settings.gravity_y * (judge->watch->y[i] - height);
         judge->particle_across[i] = speed_across(judge->watch, i, height);
     }
 }
@@ -61,7 +61,7 @@ void map_bounce_begin(map_judge *judge) {
 /// Height of the parabola's top over the floor at a time, of one that falls onto a level floor, m.
 static double top_at(const map_judge *judge, uint32_t i, double time) {
     const map_case *what = judge->watch->what;
-    const double gravity = -(double)what->network.gravity_y, e = (double)what->floor.restitution;
+    const double gravity = -(double)what->network.settings.gravity_y, e = (double)what->floor.restitution;
     double speed = sqrt(2 * judge->particle_start[i]); // of the first impact
     time -= ((double)what->body.particles[i].vy + speed) / gravity;
     while (time > 0 && speed > 0) {
@@ -78,7 +78,8 @@ static double top_at(const map_judge *judge, uint32_t i, double time) {
 static map_verdict judge_level(map_judge *judge, uint32_t i) {
     const map_watch *watch = judge->watch;
     // Times of bounces may be off by a hundredth, and speeds below about 0.02 m/s end them.
-    const double within = 0.01 * watch->time + watch->substep, gravity = -(double)watch->what->network.gravity_y;
+    const double within = 0.01 * watch->time + watch->substep,
+                 gravity = -(double)watch->what->network.settings.gravity_y;
     const double most = top_at(judge, i, watch->time - within), least = top_at(judge, i, watch->time + within);
     const double top = energy_of(watch, i, true) / gravity;
     // At rest an explicit substep leaves no velocity rather than that of half a substep ago.
@@ -117,10 +118,10 @@ map_verdict map_bounce_judge(map_judge *judge) {
         const double start = judge->particle_start[i], now = energy_of(watch, i, what->floor.friction > 0);
         // What it has over the lowest place where it was.
         judge->particle_fallen[i] =
-            fmax(judge->particle_fallen[i], start + (double)what->network.gravity_y * watch->y[i]);
+            fmax(judge->particle_fallen[i], start + (double)what->network.settings.gravity_y * watch->y[i]);
         // At rest across a surface an explicit substep leaves no velocity rather than that of half a substep ago.
-        const double at_rest = 0.5 * watch->substep * (double)what->network.gravity_y;
-        const double room = what->solver.solver == MSPRING_SOLVER_EXPLICIT ? 0.5 * at_rest * at_rest : 0;
+        const double at_rest = 0.5 * watch->substep * (double)what->network.settings.gravity_y;
+        const double room = what->network.settings.solver == MSPRING_SOLVER_EXPLICIT ? 0.5 * at_rest * at_rest : 0;
         if (fabs(now - start) > kept * judge->particle_fallen[i] + room) {
             snprintf(judge->text, sizeof judge->text, "particle %u has %.4g J/kg after %.4g s, at the start %.4g",
                      i, now, watch->time, start);

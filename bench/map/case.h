@@ -7,8 +7,7 @@
 
 #include "map/body.h"
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
+#include <massspring/massspring.h>
 
 typedef enum map_family {
     MAP_BLAST,    ///< velocities at random
@@ -50,8 +49,7 @@ typedef struct map_case {
     uint32_t index;
     map_shape shape;
     map_body body;
-    mspring_network_def network; ///< its solver is that of solver
-    mspring_solver_def solver;
+    mspring_network_def network;
     double share;   ///< explicit: length of a substep over what is stable in any shape; 0: dt is as it stands
     double dt;      ///< s; explicit with a share: the most
     uint32_t steps; ///< at most

@@ -35,9 +35,8 @@ enum { LENGTHS = sizeof lengths / sizeof *lengths };
 static void draw_solver(map_case *drawn, uint64_t *seed) {
     static const double shares[] = {0.05, 0.1, 0.3, 0.5, 0.7, 0.86, 0.95};
     static const uint32_t substeps[] = {1, 1, 2, 4, 8, 16, 64, 256, 1024}, few[] = {1, 1, 1, 1, 2, 4, 16};
-    mspring_solver_def *solver = &drawn->solver;
+    mspring_settings *solver = &drawn->network.settings;
     const uint32_t turn = drawn->index % 8;
-    mspring_solver_def_init(solver, sizeof *solver);
     drawn->dt = lengths[random_below(seed, LENGTHS)];
     drawn->steps = 20 + random_below(seed, 181);
     if (turn < 2) {
@@ -65,9 +64,9 @@ static map_stuff draw_stuff(uint64_t *seed) {
 }
 
 map_stuff map_draw_begin(map_case *drawn, uint64_t *seed) {
-    mspring_network_def_init(&drawn->network, sizeof drawn->network);
-    drawn->network.gravity_y = 0;
-    drawn->network.guard = MSPRING_GUARD_GROWTH;
+    drawn->network = mspring_network_def_default();
+    drawn->network.settings.gravity_y = 0;
+    drawn->network.settings.guard = MSPRING_GUARD_GROWTH;
     draw_solver(drawn, seed);
     drawn->shape = (map_shape)random_below(seed, MAP_SHAPES);
     const map_stuff stuff = draw_stuff(seed);
@@ -94,14 +93,14 @@ static void draw_pins(map_case *drawn, uint32_t most, uint64_t *seed) {
 }
 
 static void draw_gravity(map_case *drawn, uint64_t *seed) {
-    drawn->network.gravity_y = map_one_in(seed, 8) ? -50.0f : -9.8f;
+    drawn->network.settings.gravity_y = map_one_in(seed, 8) ? -50.0f : -9.8f;
     if (map_one_in(seed, 8))
-        drawn->network.gravity_x = (float)map_between(seed, -5, 5);
+        drawn->network.settings.gravity_x = (float)map_between(seed, -5, 5);
 }
 
 static void draw_global_damping(map_case *drawn, uint64_t *seed) {
     if (map_one_in(seed, 8))
-        drawn->network.global_damping = (float)map_decades(seed, 0.1, 10);
+        drawn->network.settings.global_damping = (float)map_decades(seed, 0.1, 10);
 }
 
 /* ------------------------------------------------------------------------------------------------------ floors */
@@ -117,7 +116,7 @@ static void add_plane(map_case *drawn, double x, double y, double across_x, doub
 /// A plane (often a slope), a box that is open above, or heights below 0.
 static void draw_floor(map_case *drawn, uint64_t *seed) {
     static const float restitutions[] = {0, 0, 0.3f, 0.6f, 0.94f, 1, 1}, frictions[] = {0, 0, 0.3f, 0.8f, 5};
-    mspring_floor_def_init(&drawn->floor, sizeof drawn->floor);
+    drawn->floor = mspring_floor_def_default();
     drawn->has_floor = true;
     drawn->floor.restitution = restitutions[random_below(seed, 7)];
     drawn->floor.friction = frictions[random_below(seed, 5)];
@@ -209,7 +208,7 @@ static void draw_bounce(map_case *drawn, uint64_t *seed) {
     drawn->shape = MAP_LOOSE;
     drawn->share = 0;
     map_draw_body(&drawn->body, MAP_LOOSE, &stuff, seed);
-    drawn->network.gravity_y = -9.8f;
+    drawn->network.settings.gravity_y = -9.8f;
     draw_floor(drawn, seed);
     if (map_one_in(seed, 2))
         drawn->floor.restitution = 1;
@@ -219,13 +218,13 @@ static void draw_bounce(map_case *drawn, uint64_t *seed) {
     lift_body(drawn, height);
     if (map_one_in(seed, 2))
         map_draw_velocities(drawn, map_between(seed, 0, 5), seed);
-    if (drawn->solver.substeps > 16)
-        drawn->solver.substeps = 16;
+    if (drawn->network.settings.substeps > 16)
+        drawn->network.settings.substeps = 16;
     // A hundred bounces of the lowest.
     const double period = 2 * sqrt(2 * height / 9.8);
     drawn->steps = (uint32_t)fmin(20000, fmax(100, 110 * period / drawn->dt));
     if (drawn->index >= DAMPED_BOUNCES)
-        drawn->network.global_damping = (float)map_decades(seed, 0.1, 10);
+        drawn->network.settings.global_damping = (float)map_decades(seed, 0.1, 10);
 }
 
 static void draw_hang(map_case *drawn, uint64_t *seed) {
@@ -263,15 +262,15 @@ static void draw_wreck(map_case *drawn, uint64_t *seed) {
     drawn->break_at = 2 + random_below(seed, 10);
     drawn->break_every = 1 + random_below(seed, 6);
     if (map_one_in(seed, 3)) {
-        drawn->network.sleep_speed = (float)map_decades(seed, 0.001, 1);
-        drawn->network.sleep_time = 0.1f;
+        drawn->network.settings.sleep_speed = (float)map_decades(seed, 0.001, 1);
+        drawn->network.settings.sleep_time = 0.1f;
     }
 }
 
 /// Something far away, so that the local origin is not near the body.
 static void add_distant_pin(map_case *drawn, double distance) {
     mspring_particle_def *def = &drawn->body.particles[drawn->body.particle_count++];
-    mspring_particle_def_init(def, sizeof *def);
+    mspring_init(MSPRING_STRUCT_PARTICLE_DEF, def, sizeof *def);
     def->flags = MSPRING_PARTICLE_PINNED;
     def->x = drawn->body.particles[0].x + distance;
     def->y = drawn->body.particles[0].y;
@@ -296,12 +295,12 @@ static void draw_substeps(map_case *drawn, uint64_t *seed) {
     const map_stuff stuff = map_draw_begin(drawn, seed);
     drawn->index /= 8;
     drawn->share = 0.4;
-    drawn->solver.substeps = 1;
+    drawn->network.settings.substeps = 1;
     drawn->steps = MAP_STEPS;
     if (map_one_in(seed, 2))
         draw_pins(drawn, 2, seed);
     if (map_one_in(seed, 3))
-        drawn->network.gravity_y = -9.8f;
+        drawn->network.settings.gravity_y = -9.8f;
     double lightest = INFINITY;
     for (uint32_t i = 0; i < drawn->body.particle_count; i++)
         lightest = fmin(lightest, (double)drawn->body.particles[i].mass);
@@ -325,7 +324,7 @@ static double draw_second(map_case *drawn, const map_stuff *stuff, uint64_t *see
     map_draw_body(&second, shape, stuff, seed);
     for (uint32_t i = 0; i < second.particle_count && shape == MAP_LOOSE; i++) // none overlap at first
         second.particles[i].x = i * stuff->spacing;
-    mspring_contact_def_init(&drawn->contact, sizeof drawn->contact);
+    drawn->contact = mspring_contact_def_default();
     drawn->contact.thickness = 0.4 * stuff->spacing;
     drawn->contact.flags = 0;
     drawn->contact.friction = map_one_in(seed, 2) ? 0 : (float)map_decades(seed, 0.1, 3);
@@ -355,7 +354,7 @@ static void draw_meet(map_case *drawn, uint64_t *seed) {
     const double heaviest = stuff.mass_ratio, time = sqrt(heaviest / stuff.stiffness);
     const double speed = stuff.spacing / time * map_decades(seed, 1e-3, 0.1);
     let_first_fly(drawn, speed, seed);
-    const double step = drawn->share * drawn->solver.substeps * 0.5 * time / sqrt(heaviest);
+    const double step = drawn->share * drawn->network.settings.substeps * 0.5 * time / sqrt(heaviest);
     drawn->steps = (uint32_t)fmin(2000, fmax(20, 4 * gap / (speed * fmin(step, 0.25))));
 }
 
@@ -368,7 +367,7 @@ static void draw_press(map_case *drawn, uint64_t *seed) {
     // Up to two springs' length in a substep, and not so fast that springs are crushed.
     const double heaviest = stuff.mass_ratio, time = sqrt(heaviest / stuff.stiffness);
     const double speed =
-        stuff.spacing * fmin(drawn->solver.substeps / drawn->dt * map_decades(seed, 1e-3, 2), 0.1 / time);
+        stuff.spacing * fmin(drawn->network.settings.substeps / drawn->dt * map_decades(seed, 1e-3, 2), 0.1 / time);
     let_first_fly(drawn, speed, seed);
     drawn->steps = (uint32_t)fmin(400, fmax(20, 4 * gap / (speed * drawn->dt)));
 }
@@ -454,13 +453,14 @@ static void draw_wall(map_case *drawn, uint64_t *seed) {
     map_hold_place_wedge(drawn, stuff.spacing * map_decades(seed, 0.01, 2));
     // As in press, and slow enough that the light body is not crushed.
     const double time = sqrt(stuff.mass_ratio / stuff.stiffness), light = 0.1 / (time * sqrt(ratio));
-    const bool is_explicit = drawn->solver.solver == MSPRING_SOLVER_EXPLICIT;
-    const double step =
-        is_explicit ? drawn->share * drawn->solver.substeps * 0.5 * time / sqrt(stuff.mass_ratio) : drawn->dt;
+    const bool is_explicit = drawn->network.settings.solver == MSPRING_SOLVER_EXPLICIT;
+    const double step = is_explicit
+                            ? drawn->share * drawn->network.settings.substeps * 0.5 * time / sqrt(stuff.mass_ratio)
+                            : drawn->dt;
     const double speed =
-        stuff.spacing * (is_explicit
-                             ? light * map_decades(seed, 0.01, 1)
-                             : fmin(drawn->solver.substeps / drawn->dt * map_decades(seed, 1e-3, 2), light));
+        stuff.spacing *
+        (is_explicit ? light * map_decades(seed, 0.01, 1)
+                     : fmin(drawn->network.settings.substeps / drawn->dt * map_decades(seed, 1e-3, 2), light));
     let_first_fly(drawn, speed, seed);
     if (map_one_in(seed, 2)) // it comes
         drawn->drift_x = -speed * map_between(seed, 0.05, 1);
@@ -486,7 +486,7 @@ static void draw_grip(map_case *drawn, uint64_t *seed) {
     drawn->grip_count = 1 + random_below(seed, MAP_GRIPS);
     for (uint32_t i = 0; i < drawn->grip_count; i++) {
         mspring_grip_def *grip = &drawn->grips[i];
-        mspring_grip_def_init(grip, sizeof *grip);
+        mspring_init(MSPRING_STRUCT_GRIP_DEF, grip, sizeof *grip);
         grip->particle = particle;
         grip->x = at->x + stuff.spacing * map_between(seed, -1, 1);
         grip->y = at->y + stuff.spacing * map_between(seed, -1, 1);
@@ -541,17 +541,17 @@ mspring_floor_def map_case_floor(const map_case *what) {
 void map_describe_case(const map_case *what, char *text, size_t size) {
     static const char *const integrators[] = {"ga0", "bdf2", "euler"}, *const solvers[] = {"explicit", "implicit",
                                                                                            "direct"};
-    const mspring_solver solver = what->solver.solver;
+    const mspring_solver solver = what->network.settings.solver;
     snprintf(
         text, size,
         "%s%s%s, %u x %.4g s of %u substeps%s, %s of %u particles, %.3g N/m, gravity %g, damping %g, floor %s, "
         "restitution %g, friction %g%s%s%s%s%s",
         solvers[solver], solver == MSPRING_SOLVER_EXPLICIT ? "" : " ",
-        solver == MSPRING_SOLVER_EXPLICIT ? "" : integrators[what->solver.integrator], what->steps, what->dt,
-        what->solver.substeps, what->share > 0 ? " (explicit: a share of what is stable)" : "",
+        solver == MSPRING_SOLVER_EXPLICIT ? "" : integrators[what->network.settings.integrator], what->steps,
+        what->dt, what->network.settings.substeps, what->share > 0 ? " (explicit: a share of what is stable)" : "",
         map_shape_name(what->shape), what->body.particle_count,
-        what->body.spring_count > 0 ? (double)what->body.springs[0].stiffness : 0, (double)what->network.gravity_y,
-        (double)what->network.global_damping,
+        what->body.spring_count > 0 ? (double)what->body.springs[0].stiffness : 0,
+        (double)what->network.settings.gravity_y, (double)what->network.settings.global_damping,
         !what->has_floor               ? "none"
         : what->floor.height_count > 0 ? "heights"
         : what->floor.plane_count > 1  ? "box"

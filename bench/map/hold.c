@@ -33,8 +33,7 @@ static mspring_result add_wedge(map_watch *watch) {
     const double x = what->apex_x - side_length * cos(what->wedge_angle);
     const double y = side_length * sin(what->wedge_angle);
     const double points[] = {x, what->apex_y - y, what->apex_x, what->apex_y, x, what->apex_y + y};
-    mspring_collider_def def;
-    mspring_collider_def_init(&def, sizeof def);
+    mspring_collider_def def = mspring_collider_def_default();
     def.points = points;
     def.point_count = 3;
     def.radius = what->wedge_radius;

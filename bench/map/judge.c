@@ -47,7 +47,7 @@ void map_judge_begin(map_judge *judge, const map_watch *watch) {
 
 void map_judge_broken(map_judge *judge, double elastic_before) {
     // What explicit substeps keep is another sum from now on.
-    if (judge->watch->what->solver.solver == MSPRING_SOLVER_EXPLICIT)
+    if (judge->watch->what->network.settings.solver == MSPRING_SOLVER_EXPLICIT)
         judge->start = map_watch_energy(judge->watch);
     else
         judge->start -= elastic_before - judge->watch->elastic;
@@ -61,11 +61,11 @@ void map_judge_broken(map_judge *judge, double elastic_before) {
 // and those that global damping stops have none, but not that of half a substep ago, with which w would be 0.
 static double shown_at_rest(const map_watch *watch) {
     const map_case *what = watch->what;
-    const double speed =
-        0.5 * watch->substep * hypot((double)what->network.gravity_x, (double)what->network.gravity_y);
+    const double speed = 0.5 * watch->substep *
+                         hypot((double)what->network.settings.gravity_x, (double)what->network.settings.gravity_y);
     double sum = 0;
-    for (uint32_t i = 0; i < watch->count && what->solver.solver == MSPRING_SOLVER_EXPLICIT; i++)
-        if ((watch->floor_x[i] != 0 || watch->floor_y[i] != 0 || what->network.global_damping > 0) &&
+    for (uint32_t i = 0; i < watch->count && what->network.settings.solver == MSPRING_SOLVER_EXPLICIT; i++)
+        if ((watch->floor_x[i] != 0 || watch->floor_y[i] != 0 || what->network.settings.global_damping > 0) &&
             watch->components[watch->component[i]].particle_count == 1 && !isinf(watch->mass[i]))
             sum += 0.5 * watch->mass[i] * speed * speed;
     return sum;
@@ -77,7 +77,7 @@ static double shown_at_rest(const map_watch *watch) {
 // gained: see STABILITY.md.
 static map_verdict judge_energy(map_judge *judge, uint32_t substeps) {
     const map_watch *watch = judge->watch;
-    const bool is_explicit = watch->what->solver.solver == MSPRING_SOLVER_EXPLICIT;
+    const bool is_explicit = watch->what->network.settings.solver == MSPRING_SOLVER_EXPLICIT;
     judge->fallen = fmax(judge->fallen, judge->potential - watch->potential);
     judge->rounding_squares += is_explicit ? substeps * watch->rounding_squares : 0;
     const double energy = map_watch_energy(watch), gain = energy - judge->start;
@@ -158,7 +158,7 @@ static map_verdict judge_flights(map_judge *judge) {
     judge->angle_squares += watch->what->dt * watch->what->dt * watch->rounding_squares;
     for (uint32_t i = 0; i < watch->component_count; i++) {
         // What sleeps is stopped, and global damping stops all that moves.
-        if (watch->components[i].is_held || def->sleep_speed > 0 || def->global_damping > 0) {
+        if (watch->components[i].is_held || def->settings.sleep_speed > 0 || def->settings.global_damping > 0) {
             start_flight(judge, i);
             continue;
         }

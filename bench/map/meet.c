@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include <massspring/massspring_contact.h>
+#include <massspring/massspring.h>
 
 /// A quarter of the spacing, of which the thickness is 0.4.
 static const double deepest_share = 0.25 / 0.4;
@@ -45,7 +45,7 @@ static bool cross(const map_watch *watch, const map_spring *one, const map_sprin
 map_verdict map_meet_judge(map_judge *judge) {
     const map_watch *watch = judge->watch;
     const uint32_t first = watch->what->first_count;
-    mspring_contact_info info = {.struct_size = sizeof info};
+    mspring_contact_info info = mspring_contact_info_default();
     if (first == 0)
         return MAP_HOLDS;
     if (mspring_network_get_contact_info(watch->network, &info) != MSPRING_OK)

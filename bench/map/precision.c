@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "map/draw.h"
 #include "map/run.h"
@@ -58,13 +58,13 @@ void map_draw_fall(map_case *drawn, uint64_t *seed) {
     remove_damping(drawn);
     drawn->share = 0;
     drawn->dt = 1.0 / 60;
-    drawn->solver.substeps = (uint32_t)1 << random_below(seed, 14);
-    drawn->solver.iterations = 0;
-    drawn->network.gravity_y = (float)map_between(seed, -20, 20);
+    drawn->network.settings.substeps = (uint32_t)1 << random_below(seed, 14);
+    drawn->network.settings.iterations = 0;
+    drawn->network.settings.gravity_y = (float)map_between(seed, -20, 20);
     drawn->network.flags = map_one_in(seed, 2) ? MSPRING_NETWORK_PRECISE : 0;
-    drawn->steps = (uint32_t)fmax(1, fmin(300, most_substeps / drawn->solver.substeps));
-    if (drawn->solver.solver == MSPRING_SOLVER_EXPLICIT)
-        soften(drawn, drawn->solver.substeps / drawn->dt);
+    drawn->steps = (uint32_t)fmax(1, fmin(300, most_substeps / drawn->network.settings.substeps));
+    if (drawn->network.settings.solver == MSPRING_SOLVER_EXPLICIT)
+        soften(drawn, drawn->network.settings.substeps / drawn->dt);
 }
 
 /// As in the family substeps: fast enough to stretch a spring by a thousandth to a fiftieth.
@@ -77,14 +77,14 @@ void map_draw_order(map_case *drawn, uint64_t *seed) {
     const map_stuff stuff = draw_explicit(drawn, seed);
     drawn->network.flags = MSPRING_NETWORK_PRECISE;
     drawn->share = 0.4;
-    drawn->solver.substeps = 1;
+    drawn->network.settings.substeps = 1;
     drawn->steps = MAP_STEPS;
     remove_damping(drawn);
     draw_vibration(drawn, &stuff, seed);
     if (map_one_in(seed, 3))
-        drawn->network.gravity_y = -9.8f;
+        drawn->network.settings.gravity_y = -9.8f;
     if (map_one_in(seed, 2)) // of the order of the vibration's times
-        drawn->network.global_damping =
+        drawn->network.settings.global_damping =
             (float)(sqrt(stuff.stiffness / lightest(&drawn->body)) * map_decades(seed, 1e-3, 0.03));
 }
 
@@ -117,7 +117,7 @@ void map_draw_uneven(map_case *drawn, uint64_t *seed) {
     // With few substeps in a step, no number makes two lengths close.
     const bool is_auto = drawn->shape == MAP_LATTICE && map_one_in(seed, 2);
     soften(drawn, 60 * map_decades(seed, is_auto ? 5 : 1, 20));
-    drawn->solver.substeps = is_auto ? MSPRING_SUBSTEPS_AUTO : MSPRING_SUBSTEPS_EVEN;
+    drawn->network.settings.substeps = is_auto ? MSPRING_SUBSTEPS_AUTO : MSPRING_SUBSTEPS_EVEN;
     map_draw_velocities(drawn, map_decades(seed, 0.01, 0.5), seed);
 }
 
@@ -128,7 +128,7 @@ void map_draw_burst(map_case *drawn, uint64_t *seed) {
     drawn->steps = 300;
     remove_damping(drawn);
     soften(drawn, 60 * map_decades(seed, 8, 40));
-    drawn->solver.substeps = MSPRING_SUBSTEPS_AUTO;
+    drawn->network.settings.substeps = MSPRING_SUBSTEPS_AUTO;
     drawn->way = map_decades(seed, 0.02, 2);
     map_draw_velocities(drawn, 1, seed); // times way over the substep, once that is known
 }
@@ -137,8 +137,8 @@ void map_draw_rest(map_case *drawn, uint64_t *seed) {
     map_stuff stuff = draw_explicit(drawn, seed);
     drawn->network.flags = MSPRING_NETWORK_PRECISE;
     drawn->share = map_between(seed, 0.5, 0.95);
-    drawn->solver.substeps = 64;
-    drawn->steps = (uint32_t)(most_substeps / drawn->solver.substeps);
+    drawn->network.settings.substeps = 64;
+    drawn->steps = (uint32_t)(most_substeps / drawn->network.settings.substeps);
     remove_damping(drawn);
     stuff.stiffness = fmin(stuff.stiffness, 1e9);
     draw_vibration(drawn, &stuff, seed);
@@ -163,8 +163,8 @@ static bool read_motion(const map_case *what, mspring_network *network, body_mot
     float vx[MAP_PARTICLES], vy[MAP_PARTICLES];
     const uint32_t count = what->body.particle_count;
     *read = (body_motion){0, 0, 0};
-    if (mspring_network_get_positions(network, 0, count, x, y, 1) != MSPRING_OK ||
-        mspring_network_get_velocities(network, 0, count, vx, vy, 1) != MSPRING_OK)
+    if (mspring_network_get_positions(network, NULL, 0, count, x, y, 1) != MSPRING_OK ||
+        mspring_network_get_velocities(network, NULL, 0, count, vx, vy, 1) != MSPRING_OK)
         return false;
     for (uint32_t i = 0; i < count; i++) {
         const double m = (double)what->body.particles[i].mass;
@@ -182,13 +182,13 @@ static bool read_motion(const map_case *what, mspring_network *network, body_mot
 /// may round the speed, and the coordinate, by half a last place, always the same way, but that explicit steps
 /// dither: 5e-5 at most.
 static map_verdict run_fall(const map_case *what, mspring_network *network, char text[MAP_TEXT]) {
-    const bool is_explicit = what->solver.solver == MSPRING_SOLVER_EXPLICIT;
-    const double g = (double)what->network.gravity_y, h = what->dt / what->solver.substeps;
+    const bool is_explicit = what->network.settings.solver == MSPRING_SOLVER_EXPLICIT;
+    const double g = (double)what->network.settings.gravity_y, h = what->dt / what->network.settings.substeps;
     body_motion start, now;
     bool ok = read_motion(what, network, &start);
     for (uint32_t step = 1; ok && step <= what->steps; step++) {
         ok = mspring_network_step(network, what->dt) == MSPRING_OK && read_motion(what, network, &now);
-        const double t = step * what->dt, count = (double)step * what->solver.substeps;
+        const double t = step * what->dt, count = (double)step * what->network.settings.substeps;
         const double way = g * t * t / 2, speed = g * (is_explicit ? t - h / 2 : t);
         const bool is_precise = what->network.flags != 0;
         const double rounded = is_precise ? 0 : fmin(count * 0x1p-24, is_explicit ? 5e-5 : 1);
@@ -209,8 +209,8 @@ static map_verdict run_fall(const map_case *what, mspring_network *network, char
 }
 
 static double energy_of(const mspring_network *network) {
-    double kinetic = 0, elastic = 0;
-    return mspring_network_energy(network, &kinetic, &elastic, NULL) == MSPRING_OK ? kinetic + elastic : NAN;
+    mspring_energy energy = mspring_energy_default();
+    return mspring_network_get_energy(network, &energy) == MSPRING_OK ? energy.kinetic + energy.elastic : NAN;
 }
 
 /// Largest energy over that at first; NAN if a step was rejected, INFINITY if one had fewer substeps than it needs.
@@ -220,7 +220,7 @@ static double growth_in(const map_case *what, mspring_network *network, bool is_
     uint64_t seed = what->index;
     for (uint32_t n = 0; n < what->steps && time < 60; n++) {
         const double dt = what->family == MAP_UNEVEN && !is_even ? length_of(what->pattern, n, &seed) : what->dt;
-        mspring_step_info info = {.struct_size = sizeof info};
+        mspring_step_info info = mspring_step_info_default();
         if (mspring_network_step(network, dt) != MSPRING_OK ||
             mspring_network_get_step_info(network, &info) != MSPRING_OK)
             return NAN;
@@ -238,7 +238,7 @@ static bool blow_up(const map_case *what, mspring_network *network, double speed
         vx[i] = (float)(speed * (double)what->body.particles[i].vx);
         vy[i] = (float)(speed * (double)what->body.particles[i].vy);
     }
-    return mspring_network_set_velocities(network, 0, what->body.particle_count, vx, vy, 1) == MSPRING_OK;
+    return mspring_network_set_velocities(network, NULL, 0, what->body.particle_count, vx, vy, 1) == MSPRING_OK;
 }
 
 /// Growth that leapfrog's swings about the true energy account for. What folds swings most.
@@ -247,7 +247,7 @@ static double may_grow(const map_case *what, char text[MAP_TEXT]) {
         return 2;
     if (what->family == MAP_BURST)
         return what->shape == MAP_ROPE || what->shape == MAP_MESH ? 40 : 5;
-    if (what->solver.substeps == MSPRING_SUBSTEPS_AUTO)
+    if (what->network.settings.substeps == MSPRING_SUBSTEPS_AUTO)
         return 3;
     mspring_network *even = map_make_network(what, text);
     const double growth = even ? growth_in(what, even, true) : NAN;
@@ -257,7 +257,7 @@ static double may_grow(const map_case *what, char text[MAP_TEXT]) {
 
 static map_verdict run_energy(const map_case *what, mspring_network *network, char text[MAP_TEXT]) {
     double any = 0, spacing = INFINITY;
-    if (mspring_network_stable_dt(network, NULL, &any) != MSPRING_OK)
+    if (mspring_network_get_stable_dt(network, NULL, &any) != MSPRING_OK)
         return MAP_REJECTED;
     for (uint32_t i = 0; i < what->body.spring_count; i++) {
         const mspring_particle_def *a = &what->body.particles[what->body.springs[i].a],

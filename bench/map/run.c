@@ -2,9 +2,10 @@
 /// Running a case.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include "map/run.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -40,20 +41,20 @@ static void push(const mspring_hook_args *args, void *user) {
 static mspring_result add_limits(const map_case *what, mspring_builder *builder) {
     if (!(what->limit_strain > 0) || what->body.spring_count == 0)
         return MSPRING_OK;
-    return mspring_builder_add_strain_limits(builder, 0, what->body.spring_count, (float)what->limit_strain,
+    return mspring_builder_add_strain_limits(builder, NULL, 0, what->body.spring_count, (float)what->limit_strain,
                                              (float)what->limit_stiffening, NULL);
 }
 
 /// An angle where a spring follows another, with the angle that there is.
 static mspring_result add_angles(const map_case *what, mspring_network *network) {
     mspring_angle_def def;
-    mspring_result result = mspring_angle_def_init(&def, sizeof def);
+    mspring_result result = mspring_init(MSPRING_STRUCT_ANGLE_DEF, &def, sizeof def);
     const mspring_spring_def *springs = what->body.springs;
     def.stiffness = what->angle_stiffness;
     for (uint32_t i = 0; result == MSPRING_OK && i + 1 < what->body.spring_count; i++) {
         const mspring_id three[] = {springs[i].a, springs[i].b, springs[i + 1].b};
         if (springs[i].b == springs[i + 1].a && three[0] != three[2])
-            result = mspring_network_add_angles(network, &def, three, 1, NULL);
+            result = mspring_network_add_angles(network, &def, three, 1, 3, NULL);
     }
     return result;
 }
@@ -62,7 +63,7 @@ static mspring_result add_laws(const map_case *what, mspring_network *network) {
     mspring_result result = MSPRING_OK;
     if (what->area_stiffness > 0) {
         mspring_area_def def;
-        result = mspring_area_def_init(&def, sizeof def);
+        result = mspring_init(MSPRING_STRUCT_AREA_DEF, &def, sizeof def);
         def.stiffness = what->area_stiffness;
         if (result == MSPRING_OK)
             result = mspring_network_add_cell_areas(network, &def, NULL, NULL);
@@ -72,8 +73,6 @@ static mspring_result add_laws(const map_case *what, mspring_network *network) {
 
 static mspring_result set_up(const map_case *what, mspring_network *network) {
     mspring_result result = add_laws(what, network);
-    if (result == MSPRING_OK)
-        result = mspring_network_set_solver(network, &what->solver);
     if (result == MSPRING_OK && what->has_floor) {
         const mspring_floor_def floor = map_case_floor(what);
         result = mspring_network_set_floor(network, &floor);
@@ -81,8 +80,7 @@ static mspring_result set_up(const map_case *what, mspring_network *network) {
     if (result == MSPRING_OK && what->first_count > 0)
         result = mspring_network_set_contact(network, &what->contact);
     if (result == MSPRING_OK && what->by_hook) {
-        mspring_hook_def hook;
-        mspring_hook_def_init(&hook, sizeof hook);
+        mspring_hook_def hook = mspring_hook_def_default();
         hook.fn = push;
         hook.user = (void *)what;
         result = mspring_network_add_hook(network, &hook, NULL);
@@ -116,17 +114,17 @@ mspring_network *map_make_network(const map_case *what, char text[MAP_TEXT]) {
 
 bool map_choose_step(map_case *what, mspring_network *network) {
     double any = INFINITY;
-    if (what->share > 0 && mspring_network_stable_dt(network, NULL, &any) != MSPRING_OK)
+    if (what->share > 0 && mspring_network_get_stable_dt(network, NULL, &any) != MSPRING_OK)
         return false;
     if (any < INFINITY) {
         const double substep = what->share * any;
-        while (what->solver.substeps > 1 && what->solver.substeps * substep > 0.25)
-            what->solver.substeps /= 2;
-        what->dt = fmin(0.25, what->solver.substeps * substep);
-        if (mspring_network_set_solver(network, &what->solver) != MSPRING_OK)
+        while (what->network.settings.substeps > 1 && what->network.settings.substeps * substep > 0.25)
+            what->network.settings.substeps /= 2;
+        what->dt = fmin(0.25, what->network.settings.substeps * substep);
+        if (mspring_network_set_settings(network, &what->network.settings) != MSPRING_OK)
             return false;
     }
-    const double work = (double)what->solver.substeps * (what->body.spring_count + 10);
+    const double work = (double)what->network.settings.substeps * (what->body.spring_count + 10);
     if (work * what->steps > most_work && what->family < MAP_FALL)
         what->steps = (uint32_t)fmax(8, most_work / work);
     return true;
@@ -140,7 +138,7 @@ static bool break_springs(const map_case *what, mspring_network *network, map_wa
     for (mspring_id id = 0; id < what->body.spring_count; id += what->break_every)
         broken[count++] = id;
     const double before = watch->elastic;
-    if ((count > 0 && mspring_network_break_springs(network, broken, count) != MSPRING_OK) ||
+    if ((count > 0 && mspring_network_break_springs(network, broken, 0, count) != MSPRING_OK) ||
         !map_watch_springs(watch) || !map_watch_read(watch))
         return false;
     map_judge_broken(judge, before);
@@ -150,7 +148,8 @@ static bool break_springs(const map_case *what, mspring_network *network, map_wa
 /// A step that is rejected has to be one that may be: not of explicit substeps that are stable in any shape.
 static map_verdict judge_rejection(const map_case *what, mspring_result result, const char *reason,
                                    char text[MAP_TEXT]) {
-    const bool may_be = what->solver.solver != MSPRING_SOLVER_EXPLICIT && result == MSPRING_ERROR_UNSTABLE;
+    const bool may_be =
+        what->network.settings.solver != MSPRING_SOLVER_EXPLICIT && result == MSPRING_ERROR_UNSTABLE;
     snprintf(text, MAP_TEXT, "%s: %s", mspring_result_string(result), reason);
     return may_be && strlen(reason) > 0 ? MAP_GUARDED : MAP_REJECTED;
 }
@@ -159,8 +158,8 @@ static map_verdict take_step(const map_case *what, mspring_network *network, map
                              char text[MAP_TEXT]) {
     mspring_result result = MSPRING_OK;
     if (what->has_forces && !what->by_hook)
-        result =
-            mspring_network_apply_forces(network, 0, what->body.particle_count, what->force_x, what->force_y, 1);
+        result = mspring_network_apply_forces(network, MSPRING_PUSH_STEP, NULL, 0, what->body.particle_count,
+                                              what->force_x, what->force_y, 1);
     if (result == MSPRING_OK)
         result = map_hold_move(watch);
     if (result == MSPRING_OK)
@@ -168,12 +167,12 @@ static map_verdict take_step(const map_case *what, mspring_network *network, map
     if (result != MSPRING_OK)
         return judge_rejection(what, result, mspring_network_error(network), text);
     watch->time += what->dt;
-    watch->lag = what->solver.solver == MSPRING_SOLVER_EXPLICIT ? watch->substep : 0;
+    watch->lag = what->network.settings.solver == MSPRING_SOLVER_EXPLICIT ? watch->substep : 0;
     if (!map_watch_read(watch)) {
         snprintf(text, MAP_TEXT, "something is not finite");
         return MAP_NOT_FINITE;
     }
-    const map_verdict verdict = map_judge_step(judge, what->solver.substeps);
+    const map_verdict verdict = map_judge_step(judge, what->network.settings.substeps);
     if (verdict != MAP_HOLDS)
         snprintf(text, MAP_TEXT, "%s", judge->text);
     return verdict;
@@ -183,7 +182,7 @@ static map_verdict take_step(const map_case *what, mspring_network *network, map
 static map_verdict take_steps(const map_case *what, mspring_network *network, map_judge *judge, bool to_the_end,
                               char text[MAP_TEXT]) {
     map_watch watch;
-    if (!map_watch_begin(&watch, what, network, what->dt / what->solver.substeps)) {
+    if (!map_watch_begin(&watch, what, network, what->dt / what->network.settings.substeps)) {
         snprintf(text, MAP_TEXT, "cannot be watched: %s", mspring_network_error(network));
         return MAP_REJECTED;
     }
@@ -252,7 +251,7 @@ static double take_watched_step(const map_case *what, mspring_network *network, 
     memcpy(from_vy, watch->vy, sizeof from_vy);
     if (mspring_network_clone(network, NULL, &twin) == MSPRING_OK &&
         mspring_network_set_floor(twin, NULL) == MSPRING_OK && mspring_network_step(twin, what->dt) == MSPRING_OK &&
-        mspring_network_get_velocities(twin, 0, watch->count, free_vx, free_vy, 1) == MSPRING_OK) {
+        mspring_network_get_velocities(twin, NULL, 0, watch->count, free_vx, free_vy, 1) == MSPRING_OK) {
         const map_verdict verdict = take_step(what, network, watch, judge, text);
         if (verdict != MAP_GUARDED && verdict != MAP_NOT_FINITE && verdict != MAP_REJECTED)
             given = given_by_floor(watch, part, from_vx, from_vy, free_vx, free_vy);
@@ -268,10 +267,10 @@ static bool gains_by_itself(const map_case *run) {
     map_watch watch;
     map_judge judge;
     double given = 0;
-    slow.dt /= run->solver.substeps;
-    slow.steps *= run->solver.substeps;
-    slow.break_at = run->break_at > 0 ? (run->break_at - 1) * run->solver.substeps + 1 : 0;
-    slow.solver.substeps = 1;
+    slow.dt /= run->network.settings.substeps;
+    slow.steps *= run->network.settings.substeps;
+    slow.break_at = run->break_at > 0 ? (run->break_at - 1) * run->network.settings.substeps + 1 : 0;
+    slow.network.settings.substeps = 1;
     mspring_network *network = map_make_network(&slow, text);
     bool ok = network != NULL && map_watch_begin(&watch, &slow, network, slow.dt);
     if (ok)
@@ -298,7 +297,7 @@ static bool holds_with_shorter(const map_case *run) {
 // any floor as well, by anything: how much differs by a factor of ten from one start to another of the same energy,
 // so that no free swing tells how much a case may gain. But the floor must have given nothing of it.
 static map_verdict judge_gain(const map_case *run, const map_judge *judge) {
-    if (run->solver.solver != MSPRING_SOLVER_EXPLICIT || judge->quickest <= calm_way)
+    if (run->network.settings.solver != MSPRING_SOLVER_EXPLICIT || judge->quickest <= calm_way)
         return MAP_GAINED;
     if (run->share <= calm_share)
         return growth_of(run) <= calm_growth || holds_with_shorter(run) ? MAP_VIOLENT : MAP_GAINED;
@@ -337,11 +336,11 @@ void map_print_course(const map_case *what, FILE *out) {
     char text[MAP_TEXT];
     mspring_network *network = map_make_network(&run, text);
     bool ok = network != NULL && map_choose_step(&run, network) &&
-              map_watch_begin(&watch, &run, network, run.dt / run.solver.substeps);
+              map_watch_begin(&watch, &run, network, run.dt / run.network.settings.substeps);
     if (ok) {
         map_judge_begin(&judge, &watch);
         fprintf(out, "%u steps of %.6g s, %u substeps\n%6s %12s %12s %12s %12s %12s\n", run.steps, run.dt,
-                run.solver.substeps, "step", "kinetic", "elastic", "potential", "shadow", "sum");
+                run.network.settings.substeps, "step", "kinetic", "elastic", "potential", "shadow", "sum");
     }
     for (uint32_t step = 0; ok && step <= run.steps; step++) {
         if (step > 0 && step == run.break_at)

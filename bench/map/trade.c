@@ -36,8 +36,12 @@ static void rate_of(const map_watch *watch, const motion *at, motion *rate) {
         rate->x[i] = at->vx[i];
         rate->y[i] = at->vy[i];
         const mspring_network_def *def = &watch->what->network;
-        rate->vx[i] = isinf(watch->mass[i]) ? 0 : (double)def->gravity_x - (double)def->global_damping * at->vx[i];
-        rate->vy[i] = isinf(watch->mass[i]) ? 0 : (double)def->gravity_y - (double)def->global_damping * at->vy[i];
+        rate->vx[i] = isinf(watch->mass[i])
+                          ? 0
+                          : (double)def->settings.gravity_x - (double)def->settings.global_damping * at->vx[i];
+        rate->vy[i] = isinf(watch->mass[i])
+                          ? 0
+                          : (double)def->settings.gravity_y - (double)def->settings.global_damping * at->vy[i];
     }
     for (uint32_t i = 0; i < watch->spring_count; i++) {
         const map_spring *s = &watch->springs[i];
@@ -134,7 +138,7 @@ static double error_of(const map_case *what, const map_watch *watch, const cours
     bool ok = network != NULL;
     for (uint32_t step = 0; step < what->steps && ok; step++) {
         ok = mspring_network_step(network, what->dt) == MSPRING_OK &&
-             mspring_network_get_positions(network, 0, watch->count, x, y, 1) == MSPRING_OK;
+             mspring_network_get_positions(network, NULL, 0, watch->count, x, y, 1) == MSPRING_OK;
         if (ok) {
             const double off = mean_distance(watch, x, y, right->x[step], right->y[step]);
             sum += off * off;
@@ -154,27 +158,28 @@ map_verdict map_run_trade(const map_case *what, mspring_network *first, char tex
     find_course(&watch, &right);
     const double least = 1e-6 * right.motion + 4 * watch.last_place, time = what->steps * what->dt;
     for (int doubling = 0; doubling <= DOUBLINGS; doubling++) {
-        run.solver.substeps = (uint32_t)1 << doubling;
+        run.network.settings.substeps = (uint32_t)1 << doubling;
         const double error = error_of(&run, &watch, &right);
         if (!(error >= 0)) {
-            snprintf(text, MAP_TEXT, "a step of %u substeps was rejected", run.solver.substeps);
+            snprintf(text, MAP_TEXT, "a step of %u substeps was rejected", run.network.settings.substeps);
             return MAP_REJECTED;
         }
         // From where a substep is a tenth of what is stable: before, the fastest modes are right by chance only.
         // Velocities are rounded in each substep: what that comes to grows as a random walk, and in each the same
         // way of what gravity adds, up to all of it.
-        const double count = (double)what->steps * run.solver.substeps, gravity = (double)what->network.gravity_y;
+        const double count = (double)what->steps * run.network.settings.substeps,
+                     gravity = (double)what->network.settings.gravity_y;
         const double walk = 8 * sqrt(count) * 0x1p-24 * right.speed * time;
         const double steady = fmin(count * 0x1p-25 * right.speed, fabs(gravity) * time) * time / 2;
         if (doubling > 2 && error > 1.05 * last && error > least + walk + steady) {
             snprintf(text, MAP_TEXT,
                      "%u substeps: error %.4g m, with half as many %.4g m, the motion is %.4g m, last place %.2g m",
-                     run.solver.substeps, error, last, right.motion, watch.last_place);
+                     run.network.settings.substeps, error, last, right.motion, watch.last_place);
             return MAP_WORSE;
         }
         if (what->family == MAP_ORDER && doubling > 2 && error > last / 3.5 && error > until * right.motion) {
             snprintf(text, MAP_TEXT, "%u substeps: error %.4g m, with half as many %.4g m, the motion is %.4g m",
-                     run.solver.substeps, error, last, right.motion);
+                     run.network.settings.substeps, error, last, right.motion);
             return MAP_WORSE;
         }
         last = error;

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "map/hold.h"
 
@@ -41,15 +41,23 @@ static void find_components(map_watch *watch) {
 bool map_watch_springs(map_watch *watch) {
     watch->spring_count = 0;
     watch->shortest = INFINITY;
-    for (mspring_id id = 0; id < mspring_network_spring_count(watch->network); id++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (mspring_network_get_spring(watch->network, id, &info) != MSPRING_OK)
+    for (mspring_id id = 0; id < mspring_network_count(watch->network, MSPRING_SPRINGS); id++) {
+        mspring_id a, b;
+        uint32_t flags;
+        float stiffness, damping, rest_length;
+        const mspring_column columns[] = {{MSPRING_END_A, 1, &a},
+                                          {MSPRING_END_B, 1, &b},
+                                          {MSPRING_SPRING_FLAGS, 1, &flags},
+                                          {MSPRING_ACTIVE_STIFFNESS, 1, &stiffness},
+                                          {MSPRING_ACTIVE_DAMPING, 1, &damping},
+                                          {MSPRING_ACTIVE_REST_LENGTH, 1, &rest_length}};
+        if (mspring_network_get_columns(watch->network, NULL, id, 1, columns, 6) != MSPRING_OK)
             return false;
-        if ((info.flags & MSPRING_SPRING_BROKEN) != 0)
+        if ((flags & MSPRING_SPRING_BROKEN) != 0)
             continue;
-        watch->shortest = fmin(watch->shortest, (double)info.rest_length);
+        watch->shortest = fmin(watch->shortest, (double)rest_length);
         watch->springs[watch->spring_count++] =
-            (map_spring){info.a, info.b, (double)info.stiffness, (double)info.damping, (double)info.rest_length};
+            (map_spring){a, b, (double)stiffness, (double)damping, (double)rest_length};
     }
     find_components(watch);
     return true;
@@ -64,8 +72,8 @@ static void add_outside_forces(map_watch *watch) {
         watch->force_x[i] = watch->force_y[i] = 0;
         if (pinned)
             continue;
-        const double weight_x = watch->mass[i] * (double)what->network.gravity_x;
-        const double weight_y = watch->mass[i] * (double)what->network.gravity_y;
+        const double weight_x = watch->mass[i] * (double)what->network.settings.gravity_x;
+        const double weight_y = watch->mass[i] * (double)what->network.settings.gravity_y;
         const double held_x = (double)what->force_x[i], held_y = (double)what->force_y[i];
         const double x = watch->x[i] - what->drift_x * watch->time, y = watch->y[i] - what->drift_y * watch->time;
         watch->force_x[i] = weight_x + held_x;
@@ -140,7 +148,7 @@ static void add_particle(map_watch *watch, uint32_t i) {
     watch->kinetic += 0.5 * mass * (vx * vx + vy * vy);
     // What leapfrog keeps: T(w) + V - h^2/8 F'M^-1 F with w = v + (lag/2) F/m, which with a lag of h is
     // T(v) + V + h/2 v.F.
-    if (what->solver.solver == MSPRING_SOLVER_EXPLICIT) {
+    if (what->network.settings.solver == MSPRING_SOLVER_EXPLICIT) {
         const double fx = watch->force_x[i], fy = watch->force_y[i], h = watch->substep, lag = watch->lag;
         watch->shadow += 0.5 * lag * (vx * fx + vy * fy) + (lag * lag - h * h) / 8 * (fx * fx + fy * fy) / mass;
     }
@@ -169,10 +177,13 @@ static void add_spins(map_watch *watch) {
 /* ------------------------------------------------------------------------------------------------------- state */
 
 static bool read_state(map_watch *watch) {
-    if (mspring_network_get_positions(watch->network, 0, watch->count, watch->x, watch->y, 1) != MSPRING_OK ||
-        mspring_network_get_velocities(watch->network, 0, watch->count, watch->vx, watch->vy, 1) != MSPRING_OK ||
-        mspring_network_get_floor_impulses(watch->network, 0, watch->count, watch->floor_x, watch->floor_y, 1) !=
-            MSPRING_OK)
+    if (mspring_network_get_positions(watch->network, NULL, 0, watch->count, watch->x, watch->y, 1) != MSPRING_OK ||
+        mspring_network_get_velocities(watch->network, NULL, 0, watch->count, watch->vx, watch->vy, 1) !=
+            MSPRING_OK ||
+        mspring_network_get_columns(watch->network, NULL, 0, watch->count,
+                                    (const mspring_column[]){{MSPRING_FLOOR_IMPULSE_X, 1, watch->floor_x},
+                                                             {MSPRING_FLOOR_IMPULSE_Y, 1, watch->floor_y}},
+                                    2) != MSPRING_OK)
         return false;
     bool all = true;
     for (uint32_t i = 0; i < watch->count; i++)
@@ -197,8 +208,12 @@ bool map_watch_read(map_watch *watch) {
     add_spins(watch);
     // Of laws the library knows the energy; its tests see to it that forces are its slope.
     watch->shadow = watch->what->laws != 0 || watch->what->grip_count > 0 ? 0 : watch->shadow;
-    return watch->what->laws == 0 ||
-           mspring_network_energy(watch->network, NULL, &watch->elastic, NULL) == MSPRING_OK;
+    if (watch->what->laws == 0)
+        return true;
+    mspring_energy energy = mspring_energy_default();
+    const bool ok = mspring_network_get_energy(watch->network, &energy) == MSPRING_OK;
+    watch->elastic = energy.elastic;
+    return ok;
 }
 
 double map_watch_energy(const map_watch *watch) {
