@@ -22,35 +22,30 @@ static const double pulled_length = 1.5; // m
 
 enum { STEPS = 3 * 64 };
 
-// Two particles and a spring. Returns NULL, with a message on stderr, if that fails.
+// Two particles and a spring. Returns NULL, with a message on stderr, if that fails: the builder keeps its first
+// failure, and mspring_network_create() returns it.
 static mspring_network *make_spring(float spring_damping) {
     mspring_builder *builder = NULL;
     mspring_result result = mspring_builder_create(NULL, &builder);
-    mspring_particle_def particle;
-    mspring_particle_def_init(&particle, sizeof particle);
+    mspring_particle_def particle = mspring_particle_def_default();
     particle.mass = mass;
     particle.flags = MSPRING_PARTICLE_PINNED;
-    if (result == MSPRING_OK)
-        result = mspring_builder_add_particle(builder, &particle, NULL);
+    mspring_builder_add_particles(builder, &particle, 1, NULL);
     particle.flags = 0;
     particle.x = pulled_length;
-    if (result == MSPRING_OK)
-        result = mspring_builder_add_particle(builder, &particle, NULL);
+    mspring_builder_add_particles(builder, &particle, 1, NULL);
 
-    mspring_spring_def spring;
-    mspring_spring_def_init(&spring, sizeof spring);
+    mspring_spring_def spring = mspring_spring_def_default();
     spring.a = 0;
     spring.b = 1;
     spring.stiffness = stiffness;
     spring.damping = spring_damping;
     spring.rest_length = (float)rest_length;
-    if (result == MSPRING_OK)
-        result = mspring_builder_add_spring(builder, &spring, NULL);
+    mspring_builder_add_springs(builder, &spring, 1, NULL);
 
-    mspring_network_def def;
-    mspring_network_def_init(&def, sizeof def);
-    def.gravity_y = 0;
-    def.substeps = 1;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.gravity_y = 0;
+    def.settings.substeps = 1;
     mspring_network *network = NULL;
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, &def, &network);
@@ -65,7 +60,7 @@ static bool swing(float spring_damping, double *positions) {
     bool ok = network != NULL;
     for (int i = 0; ok && i <= STEPS; i++) {
         double y = 0;
-        mspring_result result = mspring_network_get_positions(network, 1, 1, &positions[i], &y, 1);
+        mspring_result result = mspring_network_get_positions(network, NULL, 1, 1, &positions[i], &y, 1);
         if (result == MSPRING_OK)
             result = mspring_network_step(network, dt);
         ok = check(result, "step", mspring_network_error(network));

@@ -22,27 +22,20 @@ enum { SIDE = 4, CORNER = SIDE - 1, OPPOSITE = (SIDE - 1) * SIDE, STEPS = 4 * 64
 static mspring_network *make_square(float spring_damping) {
     mspring_builder *builder = NULL;
     mspring_result result = mspring_builder_create(NULL, &builder);
-    mspring_material material;
-    mspring_material_init(&material, sizeof material);
+    mspring_material material = mspring_material_default();
     material.mass = 73.3975f;
     material.stiffness = 36700;
     material.damping = spring_damping;
-    const uint16_t cells[SIDE * SIDE] = {0};
 
-    mspring_lattice_def lattice;
-    mspring_lattice_def_init(&lattice, sizeof lattice);
+    mspring_lattice_def lattice = mspring_lattice_def_default();
     lattice.width = lattice.height = SIDE;
-    lattice.cells = cells;
     lattice.materials = &material;
-    lattice.material_count = 1;
+    mspring_builder_add_lattice(builder, &lattice, NULL);
 
-    mspring_network_def def;
-    mspring_network_def_init(&def, sizeof def);
-    def.gravity_y = 0;
-    def.substeps = 1;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.gravity_y = 0;
+    def.settings.substeps = 1;
     mspring_network *network = NULL;
-    if (result == MSPRING_OK)
-        result = mspring_builder_add_lattice(builder, &lattice, NULL);
     if (result == MSPRING_OK)
         result = mspring_network_create(builder, &def, &network);
     check(result, "make the square", mspring_builder_error(builder));
@@ -53,7 +46,7 @@ static mspring_network *make_square(float spring_damping) {
 // From the corner at the top right to the one at the bottom left.
 static mspring_result measure_diagonal(const mspring_network *network, double *length) {
     double x[SIDE * SIDE], y[SIDE * SIDE];
-    const mspring_result result = mspring_network_get_positions(network, 0, SIDE * SIDE, x, y, 1);
+    const mspring_result result = mspring_network_get_positions(network, NULL, 0, SIDE * SIDE, x, y, 1);
     if (result == MSPRING_OK)
         *length = hypot(x[CORNER] - x[OPPOSITE], y[CORNER] - y[OPPOSITE]);
     return result;
@@ -61,7 +54,7 @@ static mspring_result measure_diagonal(const mspring_network *network, double *l
 
 static mspring_result wobble(mspring_network *network, film *filmed, double *diagonals) {
     const double pulled_to = SIDE - 1 + 0.6;
-    mspring_result result = mspring_network_set_positions(network, CORNER, 1, &pulled_to, &pulled_to, 1);
+    mspring_result result = mspring_network_set_positions(network, NULL, CORNER, 1, &pulled_to, &pulled_to, 1);
     for (int i = 0; result == MSPRING_OK && i <= STEPS; i++) {
         if (i <= FILM_STEPS)
             film_step(filmed, network);

@@ -30,7 +30,7 @@ static mspring_result run(mspring_network *network, mspring_id probe, film *film
     for (int i = 0; result == MSPRING_OK && i <= STEPS; i++) {
         double x = 0, y = 0;
         film_step(filmed, network);
-        result = mspring_network_get_positions(network, probe, 1, &x, &y, 1);
+        result = mspring_network_get_positions(network, NULL, probe, 1, &x, &y, 1);
         if (result == MSPRING_OK)
             result = mspring_network_step(network, dt);
         *lowest = y < *lowest ? y : *lowest;
@@ -85,9 +85,8 @@ static bool bend(const bar *bent, const char *folder, double *lowest) {
         fprintf(stderr, "%s\n", error.text);
         return false;
     }
-    mspring_network_def def;
-    mspring_network_def_init(&def, sizeof def);
-    def.substeps = bent->substeps;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = bent->substeps;
     mspring_network *network = NULL;
     const mspring_result result = mspring_network_create(made.builder, &def, &network);
     const bool ok = check(result, "make the bar", mspring_builder_error(made.builder)) &&

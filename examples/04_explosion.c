@@ -33,17 +33,17 @@ typedef struct observation {
 } observation;
 
 static mspring_result keep_positions(const mspring_network *network, observation *seen) {
-    double min_x, min_y, max_x, max_y;
-    const mspring_result result = mspring_network_bounds(network, &min_x, &min_y, &max_x, &max_y);
-    if (result != MSPRING_OK || max_y - min_y > drawn_height || max_x - min_x > 2 * drawn_height)
+    mspring_body body = mspring_body_default();
+    const mspring_result result = mspring_network_get_body(network, NULL, 0, MSPRING_ALL, &body);
+    if (result || body.max_y - body.min_y > drawn_height || body.max_x - body.min_x > 2 * drawn_height)
         return result;
-    return mspring_network_get_positions(network, 0, PARTICLES, seen->x, seen->y, 1);
+    return mspring_network_get_positions(network, NULL, 0, PARTICLES, seen->x, seen->y, 1);
 }
 
 // Steps until the library rejects a step, or for MOST_FRAMES.
 static mspring_result observe(mspring_network *network, double dt, observation *seen) {
     mspring_result result = MSPRING_OK;
-    mspring_step_info info = {.struct_size = sizeof info};
+    mspring_energy energy = mspring_energy_default();
     while (result == MSPRING_OK && seen->count < MOST_FRAMES) {
         result = mspring_network_step(network, dt);
         if (result == MSPRING_ERROR_UNSTABLE) {
@@ -53,10 +53,10 @@ static mspring_result observe(mspring_network *network, double dt, observation *
             return MSPRING_OK;
         }
         if (result == MSPRING_OK)
-            result = mspring_network_get_step_info(network, &info);
+            result = mspring_network_get_energy(network, &energy);
         if (result == MSPRING_OK)
             result = keep_positions(network, seen);
-        seen->speeds[seen->count] = info.largest_speed;
+        seen->speeds[seen->count] = energy.largest_speed;
         seen->times[seen->count] = (double)(seen->count + 1) * dt;
         seen->count++;
     }
@@ -92,12 +92,11 @@ static bool run(const experiment *tried, observation *seen, const char *folder) 
     }
     mspring_network *network = NULL;
     network_shape shape = {0};
-    mspring_network_def settings;
+    mspring_network_def def = mspring_network_def_default();
     // The guard would reject the first step that is too long, and there would be nothing to see.
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.guard = MSPRING_GUARD_BOUNDS;
-    settings.substeps = 1;
-    mspring_result result = mspring_network_create(bar.builder, &settings, &network);
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.substeps = 1;
+    mspring_result result = mspring_network_create(bar.builder, &def, &network);
     bool ok = check(result, "make the bar", mspring_builder_error(bar.builder));
     if (ok && !(ok = network_shape_make(&shape, network, MSPRING_NONE, &drawing_error)))
         fprintf(stderr, "%s\n", drawing_error.text);

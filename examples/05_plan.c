@@ -2,10 +2,12 @@
 /// How the library lays networks out: which springs it sweeps without any index, and which are left over.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for mspring_network_describe()
 #include "common/check.h"
+#include "common/described.h"
 #include "scenes/scene.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,18 +20,23 @@ static void print_header(void) {
 
 static bool print_plan(const scene *planned) {
     mspring_network *network = NULL;
-    mspring_plan plan = {.struct_size = sizeof plan};
+    mspring_network_info info = mspring_network_info_default();
+    char text[DESCRIBED_SIZE];
     mspring_result result = mspring_network_create(planned->builder, NULL, &network);
     if (!check(result, "make the network", mspring_builder_error(planned->builder)))
         return false;
-    result = mspring_network_get_plan(network, &plan);
+    result = mspring_network_get_info(network, &info);
+    result = result ? result : mspring_network_describe(network, text, sizeof text, NULL);
     const bool ok = check(result, "read the plan", mspring_network_error(network));
     if (ok)
-        printf("%-16s %9u %9u | %8u %9u | %6u %8u | %9u %8u %6u | %5u %4u %5u | %7s %7s\n", planned->name,
-               plan.particle_count, plan.spring_count, plan.lattice_count, plan.lattice_springs, plan.chain_count,
-               plan.chain_springs, plan.irregular_particles, plan.irregular_springs, plan.irregular_layers, plan.pass_rows,
-               plan.pass_lag, plan.pass_substeps, plan.has_damping ? "yes" : "no",
-               mspring_simd_name(plan.simd_level));
+        printf("%-16s %9.0f %9.0f | %8.0f %9u | %6.0f %8u | %9.0f %8u %6.0f | %5.0f %4.0f %5.0f | %7s %7s\n",
+               planned->name, described_number(text, "particle_count"), described_number(text, "spring_count"),
+               described_number(text, "lattice_count"), (unsigned)info.lattice_springs,
+               described_number(text, "chain_count"), (unsigned)info.chain_springs,
+               described_number(text, "irregular_particles"), (unsigned)info.irregular_springs,
+               described_number(text, "irregular_layers"), described_number(text, "pass_rows"),
+               described_number(text, "pass_lag"), described_number(text, "pass_substeps"),
+               described_number(text, "has_damping") > 0 ? "yes" : "no", mspring_simd_name(info.simd_level));
     mspring_network_destroy(network);
     return ok;
 }

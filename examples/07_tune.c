@@ -7,6 +7,7 @@
 /// settings break as many springs as a fine run?
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include "common/check.h"
 #include "common/clock.h"
 #include "common/output.h"
@@ -14,7 +15,7 @@
 #include "draw/scatter.h"
 #include "scenes/scene.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -126,10 +127,12 @@ static void find_front(cloud *of) {
 
 static void print_row(const mspring_tune_row *row) {
     char iterations[16] = "";
-    const bool steps_back = row->solver != MSPRING_SOLVER_EXPLICIT && row->integrator == MSPRING_INTEGRATOR_BDF2;
-    if (row->solver == MSPRING_SOLVER_IMPLICIT)
-        snprintf(iterations, sizeof iterations, "%u", row->iterations);
-    printf("%-9s %-5s %8u %10s", solver_names[row->solver], steps_back ? "BDF2" : "", row->substeps, iterations);
+    const bool steps_back =
+        row->settings.solver != MSPRING_SOLVER_EXPLICIT && row->settings.integrator == MSPRING_INTEGRATOR_BDF2;
+    if (row->settings.solver == MSPRING_SOLVER_IMPLICIT)
+        snprintf(iterations, sizeof iterations, "%u", row->settings.iterations);
+    printf("%-9s %-5s %8u %10s", solver_names[row->settings.solver], steps_back ? "BDF2" : "",
+           row->settings.substeps, iterations);
     if (row->flags & MSPRING_TUNE_REJECTED) {
         printf("   rejected as unstable\n");
         return;
@@ -171,11 +174,12 @@ static void print_rows(const subject *about, const mspring_tune_row *rows, uint3
 
 // How a setting is called in a plot.
 static void print_label(char *label, size_t size, const mspring_tune_row *row) {
-    const bool ga0 = row->solver != MSPRING_SOLVER_EXPLICIT && row->integrator == MSPRING_INTEGRATOR_GA0;
-    if (row->solver == MSPRING_SOLVER_IMPLICIT)
-        snprintf(label, size, "%u x %u%s", row->substeps, row->iterations, ga0 ? " GA0" : "");
+    const bool ga0 =
+        row->settings.solver != MSPRING_SOLVER_EXPLICIT && row->settings.integrator == MSPRING_INTEGRATOR_ALPHA;
+    if (row->settings.solver == MSPRING_SOLVER_IMPLICIT)
+        snprintf(label, size, "%u x %u%s", row->settings.substeps, row->settings.iterations, ga0 ? " GA0" : "");
     else
-        snprintf(label, size, "%u%s", row->substeps, ga0 ? " GA0" : "");
+        snprintf(label, size, "%u%s", row->settings.substeps, ga0 ? " GA0" : "");
 }
 
 static void collect_errors(const mspring_tune_row *rows, uint32_t count, cloud *to) {
@@ -185,7 +189,7 @@ static void collect_errors(const mspring_tune_row *rows, uint32_t count, cloud *
         if (!(row->flags & MSPRING_TUNE_HAS_TRAJECTORY))
             continue;
         print_label(label, sizeof label, row);
-        add_point(to, row->solver, 1e6 * row->median_cost, row->trajectory_share, label,
+        add_point(to, row->settings.solver, 1e6 * row->median_cost, row->trajectory_share, label,
                   row->flags & MSPRING_TUNE_RECOMMENDED);
     }
     find_front(to);
@@ -199,13 +203,10 @@ static int compare_double(const void *a, const void *b) {
 // Run the recommended setting on a clone, for longer than it was measured, and compare costs.
 static bool check_promise(mspring_network *network, const options *how, const mspring_tune_row *row) {
     double seconds[STEPS_OF_THE_PROMISE];
-    mspring_solver_def solver = {.struct_size = sizeof solver};
     mspring_network *clone = NULL;
-    mspring_result result = mspring_tune_row_solver(row, &solver);
+    mspring_result result = mspring_network_clone(network, NULL, &clone);
     if (result == MSPRING_OK)
-        result = mspring_network_clone(network, NULL, &clone);
-    if (result == MSPRING_OK)
-        result = mspring_network_set_solver(clone, &solver);
+        result = mspring_network_set_settings(clone, &row->settings);
     for (int i = 0; result == MSPRING_OK && i < STEPS_OF_THE_PROMISE; i++) {
         const double before = how->clock();
         result = mspring_network_step(clone, dt);
@@ -226,10 +227,9 @@ static bool check_promise(mspring_network *network, const options *how, const ms
 }
 
 static bool measure_errors(const subject *about, const options *how, mspring_network *network, cloud *errors) {
-    mspring_tune_def def;
+    mspring_tune_def def = mspring_tune_def_default();
     mspring_tune_row rows[MOST_ROWS];
     uint32_t count = 0;
-    mspring_tune_def_init(&def, sizeof def);
     def.dt = dt;
     def.budget = how->budget;
     def.flags = about->stiffer > 0 ? 0 : MSPRING_TUNE_NOTHING_ELSE;
@@ -249,39 +249,39 @@ static bool measure_errors(const subject *about, const options *how, mspring_net
 
 // One setting of each solver: explicit with the least substeps, implicit with eight iterations, direct where it
 // pays.
-static uint32_t list_solvers(mspring_network *network, mspring_solver_def *settings) {
+static uint32_t list_solvers(mspring_network *network, mspring_settings *settings) {
     uint32_t count = 0, substeps = 0;
     if (mspring_network_suggest_substeps(network, dt, 0.9, &substeps) == MSPRING_OK && substeps <= 2000) {
-        mspring_solver_def_init(&settings[count], sizeof *settings);
+        settings[count] = mspring_settings_default();
         settings[count++].substeps = substeps;
     }
-    mspring_solver_def_init(&settings[count], sizeof *settings);
+    settings[count] = mspring_settings_default();
     settings[count].iterations = 8;
     settings[count].residual = 0;
     settings[count++].solver = MSPRING_SOLVER_IMPLICIT;
-    if (mspring_network_particle_count(network) <= 20000) {
-        mspring_solver_def_init(&settings[count], sizeof *settings);
+    if (mspring_network_count(network, MSPRING_PARTICLES) <= 20000) {
+        settings[count] = mspring_settings_default();
         settings[count++].solver = MSPRING_SOLVER_DIRECT;
     }
     return count;
 }
 
 static bool make_stiffer(mspring_network *network) {
-    const uint32_t springs = mspring_network_spring_count(network);
+    const uint32_t springs = mspring_network_count(network, MSPRING_SPRINGS);
     float *stiffness = malloc((springs + 1) * sizeof *stiffness);
-    bool ok = stiffness && mspring_network_get(network, MSPRING_STIFFNESS, 0, springs, stiffness, 1) == MSPRING_OK;
+    bool ok =
+        stiffness && mspring_network_get(network, MSPRING_STIFFNESS, NULL, 0, springs, stiffness, 1) == MSPRING_OK;
     for (uint32_t s = 0; ok && s < springs; s++)
         stiffness[s] *= 4;
-    ok = ok && mspring_network_set(network, MSPRING_STIFFNESS, 0, springs, stiffness, 1) == MSPRING_OK;
+    ok = ok && mspring_network_set(network, MSPRING_STIFFNESS, NULL, 0, springs, stiffness, 1) == MSPRING_OK;
     free(stiffness);
     return ok;
 }
 
 static bool measure_bending(const subject *about, const options *how, mspring_network *network, cloud *bending) {
-    mspring_solver_def settings[SOLVERS];
+    mspring_settings settings[SOLVERS];
     mspring_tune_row rows[MOST_ROWS];
-    mspring_tune_def def;
-    mspring_tune_def_init(&def, sizeof def);
+    mspring_tune_def def = mspring_tune_def_default();
     def.dt = dt;
     def.budget = how->budget;
     def.measure = MSPRING_TUNE_BY_BENDING;
@@ -296,11 +296,11 @@ static bool measure_bending(const subject *about, const options *how, mspring_ne
             char label[16] = "";
             if (!(rows[r].flags & MSPRING_TUNE_HAS_REST))
                 continue;
-            printf("%12.0f %12.4g %-9s %8u %11.1f\n", pow(4, i), rows[r].bending, solver_names[rows[r].solver],
-                   rows[r].substeps, 1e6 * rows[r].median_cost);
-            if (rows[r].solver == MSPRING_SOLVER_EXPLICIT)
-                snprintf(label, sizeof label, "%u", rows[r].substeps);
-            add_point(bending, rows[r].solver, 1e6 * rows[r].median_cost, rows[r].bending, label, false);
+            printf("%12.0f %12.4g %-9s %8u %11.1f\n", pow(4, i), rows[r].bending,
+                   solver_names[rows[r].settings.solver], rows[r].settings.substeps, 1e6 * rows[r].median_cost);
+            if (rows[r].settings.solver == MSPRING_SOLVER_EXPLICIT)
+                snprintf(label, sizeof label, "%u", rows[r].settings.substeps);
+            add_point(bending, rows[r].settings.solver, 1e6 * rows[r].median_cost, rows[r].bending, label, false);
         }
         if (!make_stiffer(network))
             return false;
@@ -315,17 +315,16 @@ static bool measure_bending(const subject *about, const options *how, mspring_ne
 static bool throw_at_slope(mspring_network *network, uint32_t columns, uint32_t rows) {
     const double slope[4] = {0, -3, 0.1, 1};
     const float one = 1, still = 0, down = -10, strain = 0.01f;
-    mspring_floor_def floor;
-    mspring_floor_def_init(&floor, sizeof floor);
+    mspring_floor_def floor = mspring_floor_def_default();
     floor.planes = slope, floor.plane_count = 1, floor.friction = 0.3f, floor.restitution = 0.2f;
-    const uint32_t particles = columns * rows, springs = mspring_network_spring_count(network);
+    const uint32_t particles = columns * rows, springs = mspring_network_count(network, MSPRING_SPRINGS);
     mspring_result result = mspring_network_set_floor(network, &floor);
     if (result == MSPRING_OK)
-        result = mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, 0, particles, &one, 0);
+        result = mspring_network_set(network, MSPRING_INVERSE_MASS_SCALE, NULL, 0, particles, &one, 0);
     if (result == MSPRING_OK)
-        result = mspring_network_set_velocities(network, 0, particles, &still, &down, 0);
+        result = mspring_network_set_velocities(network, NULL, 0, particles, &still, &down, 0);
     if (result == MSPRING_OK)
-        result = mspring_network_set(network, MSPRING_BREAK_STRAIN, 0, springs, &strain, 0);
+        result = mspring_network_set(network, MSPRING_BREAK_STRAIN, NULL, 0, springs, &strain, 0);
     return check(result, "throw the lattice", mspring_network_error(network));
 }
 
@@ -346,17 +345,20 @@ static void print_crash(const subject *about, const mspring_tune_scene *crash, c
         const mspring_tune_row *row = &rows[i];
         if (!(row->flags & MSPRING_TUNE_HAS_SCENE))
             continue;
-        if (row->solver == MSPRING_SOLVER_IMPLICIT)
-            snprintf(iterations, sizeof iterations, "%u", row->iterations);
+        if (row->settings.solver == MSPRING_SOLVER_IMPLICIT)
+            snprintf(iterations, sizeof iterations, "%u", row->settings.iterations);
         if (!told) {
             told = true;
             printf("%-15s %8u %10s %11s %6u", "the fine run", row->fine_substeps, "", "", row->scene_starts);
             print_quantities(row->fine_mean, row->fine_spread);
             printf("\n");
         }
-        printf("%-9s %-5s %8u %10s %11.1f %6u", solver_names[row->solver],
-               row->solver != MSPRING_SOLVER_EXPLICIT && row->integrator == MSPRING_INTEGRATOR_BDF2 ? "BDF2" : "",
-               row->substeps, iterations, 1e6 * row->scene_cost, row->scene_starts);
+        printf("%-9s %-5s %8u %10s %11.1f %6u", solver_names[row->settings.solver],
+               row->settings.solver != MSPRING_SOLVER_EXPLICIT &&
+                       row->settings.integrator == MSPRING_INTEGRATOR_BDF2
+                   ? "BDF2"
+                   : "",
+               row->settings.substeps, iterations, 1e6 * row->scene_cost, row->scene_starts);
         print_quantities(row->scene_mean, row->scene_spread);
         printf(" %9.2f  %s%s\n", row->scene_distance, row->flags & MSPRING_TUNE_PARETO ? "front" : "",
                row->flags & MSPRING_TUNE_RECOMMENDED ? ", recommended" : "");
@@ -365,12 +367,10 @@ static void print_crash(const subject *about, const mspring_tune_scene *crash, c
 
 static bool measure_crash(const subject *about, const options *how, mspring_network *network, cloud *distances) {
     char label[16];
-    mspring_tune_scene crash;
-    mspring_tune_def def;
+    mspring_tune_scene crash = mspring_tune_scene_default();
+    mspring_tune_def def = mspring_tune_def_default();
     mspring_tune_row rows[MOST_ROWS];
     uint32_t count = 0;
-    mspring_tune_scene_init(&crash, sizeof crash);
-    mspring_tune_def_init(&def, sizeof def);
     def.dt = dt;
     def.budget = how->budget;
     def.scene = &crash;
@@ -383,7 +383,7 @@ static bool measure_crash(const subject *about, const options *how, mspring_netw
         if (!(rows[i].flags & MSPRING_TUNE_HAS_SCENE))
             continue;
         print_label(label, sizeof label, &rows[i]);
-        add_point(distances, rows[i].solver, 1e6 * rows[i].scene_cost, rows[i].scene_distance, label,
+        add_point(distances, rows[i].settings.solver, 1e6 * rows[i].scene_cost, rows[i].scene_distance, label,
                   rows[i].flags & MSPRING_TUNE_RECOMMENDED);
     }
     find_front(distances);

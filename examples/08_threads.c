@@ -14,11 +14,11 @@
 enum { COLUMNS = 400, ROWS = 100, STEPS = 64, MOST_THREADS = 4 };
 
 // A bar that hangs on its left end, 79,000 springs: enough for a step to be worth dividing.
-static mspring_result add_bar(mspring_builder *builder) {
+static void add_bar(mspring_builder *builder) {
     static uint16_t cells[ROWS][COLUMNS];
     mspring_material iron[2]; // 0 is free, 1 is pinned
     for (int i = 0; i < 2; i++) {
-        mspring_material_init(&iron[i], sizeof iron[i]);
+        iron[i] = mspring_material_default();
         iron[i].mass = 70.0f;
         iron[i].stiffness = 3e7f;
         iron[i].damping = 500.0f;
@@ -26,25 +26,23 @@ static mspring_result add_bar(mspring_builder *builder) {
     iron[1].particle_flags = MSPRING_PARTICLE_PINNED;
     for (int row = 0; row < ROWS; row++)
         cells[row][0] = 1;
-    mspring_lattice_def bar;
-    mspring_lattice_def_init(&bar, sizeof bar);
+    mspring_lattice_def bar = mspring_lattice_def_default();
     bar.width = COLUMNS;
     bar.height = ROWS;
     bar.cells = cells[0];
     bar.materials = iron;
     bar.material_count = 2;
-    return mspring_builder_add_lattice(builder, &bar, NULL);
+    mspring_builder_add_lattice(builder, &bar, NULL);
 }
 
 // A second of it, with the threads of a pool: milliseconds for a step, and the hash of what comes out.
 static bool run(mspring_builder *builder, thread_pool *pool, double *milliseconds, uint64_t *hash) {
     const mspring_tasks tasks = thread_pool_tasks(pool);
-    mspring_network_def settings;
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.substeps = 20;
-    settings.tasks = &tasks; // without it, worker_count gives the network threads of the library's
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = 20;
+    def.tasks = &tasks; // without it, worker_count gives the network threads of the library's
     mspring_network *network = NULL;
-    mspring_result result = mspring_network_create(builder, &settings, &network);
+    mspring_result result = mspring_network_create(builder, &def, &network);
     if (!check(result, "make the network", mspring_builder_error(builder)))
         return false;
     const double begun = clock_seconds();
@@ -52,7 +50,7 @@ static bool run(mspring_builder *builder, thread_pool *pool, double *millisecond
         result = mspring_network_step(network, 1.0 / 64);
     *milliseconds = (clock_seconds() - begun) * 1e3 / STEPS;
     if (result == MSPRING_OK)
-        result = mspring_network_state_hash(network, hash);
+        result = mspring_network_get_state_hash(network, hash);
     const bool ok = check(result, "step", mspring_network_error(network));
     mspring_network_destroy(network);
     return ok;
@@ -60,13 +58,10 @@ static bool run(mspring_builder *builder, thread_pool *pool, double *millisecond
 
 int main(void) {
     mspring_builder *builder = NULL;
-    mspring_result result = mspring_builder_create(NULL, &builder);
-    if (result == MSPRING_OK)
-        result = add_bar(builder);
-    if (!check(result, "build the bar", mspring_builder_error(builder))) {
-        mspring_builder_destroy(builder);
+    const mspring_result result = mspring_builder_create(NULL, &builder);
+    if (!check(result, "make a builder", ""))
         return EXIT_FAILURE;
-    }
+    add_bar(builder); // if this failed, no network could be made
     uint64_t first_hash = 0;
     bool ok = true, same = true;
     for (uint32_t threads = 1; ok && threads <= MOST_THREADS; threads++) {

@@ -2,34 +2,35 @@
 /// A rope bridge gives way under somebody who walks across: ropes, a state of rest, and a force that moves.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for mspring_network_settle()
 #include "common/show.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 enum { PLANKS = 24, STEPS = 16 * 63 };
 
 int main(int count, char **arguments) {
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
-    mspring_particle_def post;
-    mspring_particle_def_init(&post, sizeof post);
+    mspring_particle_def post = mspring_particle_def_default();
     post.flags = MSPRING_PARTICLE_PINNED;
-    mspring_rope_def rope;
-    mspring_rope_def_init(&rope, sizeof rope);
-    rope.segment_count = PLANKS, rope.mass = 6, rope.stiffness = 2e5f, rope.damping = 200, rope.slack = 1.02f;
+    mspring_material hemp = mspring_material_default();
+    hemp.mass = 6, hemp.stiffness = 2e5f, hemp.damping = 200;
+    mspring_rope_def rope = mspring_rope_def_default();
+    rope.segment_count = PLANKS, rope.length_ratio = 1.02f, rope.material = &hemp;
     mspring_id ids[2][PLANKS + 1]; // of deck and rail
     mspring_result result = mspring_builder_create(NULL, &builder);
-    for (int i = 0; !result && i < 2; i++) {
+    for (int i = 0; i < 2; i++) {
         post.x = 0, post.y = 1.2 * i; // m
-        result = mspring_builder_add_particle(builder, &post, &rope.from);
+        mspring_builder_add_particles(builder, &post, 1, &rope.from);
         post.x = PLANKS;
-        result = result ? result : mspring_builder_add_particle(builder, &post, &rope.to);
-        result = result ? result : mspring_builder_add_rope(builder, &rope, ids[i], PLANKS + 1, NULL);
+        mspring_builder_add_particles(builder, &post, 1, &rope.to);
+        mspring_builder_add_rope(builder, &rope, ids[i], NULL);
     }
-    rope.segment_count = 1, rope.slack = 1; // what hangs between
-    for (int i = 1; !result && i < PLANKS; i++) {
+    rope.segment_count = 1, rope.length_ratio = 1; // what hangs between
+    for (int i = 1; i < PLANKS; i++) {
         rope.from = ids[0][i], rope.to = ids[1][i];
-        result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
+        mspring_builder_add_rope(builder, &rope, NULL, NULL);
     }
     result = result ? result : mspring_network_create(builder, NULL, &network);
     result = result ? result : mspring_network_settle(network, NULL, NULL);

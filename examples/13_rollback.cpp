@@ -5,7 +5,7 @@
 /// C++11 or later. The game has threads of its own and lends them to the library.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include <algorithm>
 #include <array>
@@ -50,8 +50,7 @@ class task_pool {
 
     /// What a network's definition needs. The pool must outlive the network.
     mspring_tasks tasks() noexcept {
-        mspring_tasks lent;
-        mspring_tasks_init(&lent, sizeof lent);
+        mspring_tasks lent = mspring_tasks_default();
         lent.worker_count = lent.concurrent_count = static_cast<std::uint32_t>(others.size() + 1);
         lent.run = [](std::uint32_t count, mspring_task_fn fn, void *argument, void *user) {
             static_cast<task_pool *>(user)->run(count, fn, argument);
@@ -147,8 +146,7 @@ class world {
     /// @param pool  nullptr: the calling thread alone
     explicit world(task_pool *pool) : network(make(pool)) {
         const double ground[4] = {0, -1, 0, 1}; // a point, and the way up from it
-        mspring_floor_def floor;
-        mspring_floor_def_init(&floor, sizeof floor);
+        mspring_floor_def floor = mspring_floor_def_default();
         floor.plane_count = 1;
         floor.planes = ground;
         floor.friction = 0.5f;
@@ -169,7 +167,7 @@ class world {
 
     void save(snapshot &to) const {
         std::size_t size = 0;
-        check(mspring_network_snapshot_size(network.get(), MSPRING_SNAPSHOT_FRAME, &size));
+        check(mspring_network_get_snapshot_size(network.get(), MSPRING_SNAPSHOT_FRAME, &size));
         to.resize(size); // allocates in the first frames only
         check(mspring_network_save(network.get(), MSPRING_SNAPSHOT_FRAME, to.data(), to.size(), nullptr));
     }
@@ -179,13 +177,13 @@ class world {
 
     std::uint64_t hash() const {
         std::uint64_t bits = 0;
-        check(mspring_network_state_hash(network.get(), &bits));
+        check(mspring_network_get_state_hash(network.get(), &bits));
         return bits;
     }
     std::size_t broken_springs() const {
-        std::vector<std::uint32_t> flags(mspring_network_spring_count(network.get()));
-        check(mspring_network_get_spring_flags(network.get(), 0, static_cast<std::uint32_t>(flags.size()),
-                                               flags.data(), 1));
+        std::vector<std::uint32_t> flags(mspring_network_count(network.get(), MSPRING_SPRINGS));
+        check(mspring_network_get_integers(network.get(), MSPRING_SPRING_FLAGS, nullptr, 0,
+                                           static_cast<std::uint32_t>(flags.size()), flags.data(), 1));
         return static_cast<std::size_t>(std::count_if(
             flags.begin(), flags.end(), [](std::uint32_t f) { return (f & MSPRING_SPRING_BROKEN) != 0; }));
     }
@@ -195,33 +193,26 @@ class world {
         mspring_builder *built = nullptr;
         mspring_result result = mspring_builder_create(nullptr, &built);
         const builder_ptr builder(built);
-        mspring_material wood;
-        mspring_material_init(&wood, sizeof wood);
+        mspring_material wood = mspring_material_default();
         wood.mass = 10.0f;
         wood.stiffness = 1e6f;
         wood.damping = 300.0f;
         wood.break_strain = 0.02f;
-        const std::vector<std::uint16_t> cells(std::size_t(columns) * rows, 0);
-        mspring_lattice_def bar;
-        mspring_lattice_def_init(&bar, sizeof bar);
+        mspring_lattice_def bar = mspring_lattice_def_default();
         bar.width = columns;
         bar.height = rows;
-        bar.cells = cells.data();
         bar.materials = &wood;
-        bar.material_count = 1;
-        if (result == MSPRING_OK)
-            result = mspring_builder_add_lattice(builder.get(), &bar, nullptr);
+        mspring_builder_add_lattice(builder.get(), &bar, nullptr); // create returns it if this fails
         mspring_tasks tasks;
-        mspring_network_def settings;
-        mspring_network_def_init(&settings, sizeof settings);
-        settings.substeps = 16;
+        mspring_network_def def = mspring_network_def_default();
+        def.settings.substeps = 16;
         if (pool) {
             tasks = pool->tasks();
-            settings.tasks = &tasks;
+            def.tasks = &tasks;
         }
         mspring_network *network = nullptr;
         if (result == MSPRING_OK)
-            result = mspring_network_create(builder.get(), &settings, &network);
+            result = mspring_network_create(builder.get(), &def, &network);
         if (result != MSPRING_OK)
             fail(result, mspring_builder_error(builder.get()));
         return network_ptr(network);
@@ -231,12 +222,13 @@ class world {
     void blast(mspring_id centre) {
         double x = 0, y = 0;
         std::uint32_t count = 0;
-        check(mspring_network_get_positions(network.get(), centre, 1, &x, &y, 1));
+        check(mspring_network_get_positions(network.get(), nullptr, centre, 1, &x, &y, 1));
         check(mspring_network_particles_in_circle(network.get(), x, y, 6.0, nullptr, 0, &count));
         hit.resize(count);
         check(mspring_network_particles_in_circle(network.get(), x, y, 6.0, hit.data(), count, &count));
         const float sideways = 0.0f, upwards = 150.0f; // N s
-        check(mspring_network_apply_impulses_at(network.get(), hit.data(), count, &sideways, &upwards, 0));
+        check(mspring_network_apply_forces(network.get(), MSPRING_PUSH_IMPULSE, hit.data(), 0, count, &sideways,
+                                           &upwards, 0));
     }
     void check(mspring_result result) const {
         if (result != MSPRING_OK)

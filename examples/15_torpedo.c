@@ -4,8 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "common/show.h"
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -31,32 +30,27 @@ int main(int count, char **arguments) {
     static uint16_t cells[ROWS][COLUMNS];
     static const double hull[] = {-5, -1, 4, -1, 6, 0, 4, 1, -5, 1}; // its nose is on the right
     const double dt = 1.0 / 512; // s, short: in a step nothing slows the torpedo down
-    mspring_material rubber;
-    mspring_result result = mspring_material_preset(&rubber, sizeof rubber, MSPRING_PRESET_RUBBER, 1.0, dt / 5);
+    mspring_material rubber = mspring_material_default();
+    mspring_material_preset(&rubber, MSPRING_PRESET_RUBBER, 1.0, dt / 5);
     for (int row = 0; row < ROWS; row++) // bow and stern
         for (int i = 0; i < 3 * (row - ROWS / 2) * (row - ROWS / 2) / 4; i++)
             cells[row][COLUMNS - 1 - i] = cells[row][i / 4] = MSPRING_CELL_EMPTY;
-    mspring_lattice_def ship;
-    mspring_lattice_def_init(&ship, sizeof ship);
-    ship.width = COLUMNS, ship.height = ROWS, ship.cells = cells[0], ship.materials = &rubber,
-    ship.material_count = 1;
-    mspring_network_def settings;
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.substeps = 5, settings.gravity_y = 0;
+    mspring_lattice_def ship = mspring_lattice_def_default();
+    ship.width = COLUMNS, ship.height = ROWS, ship.cells = cells[0], ship.materials = &rubber;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = 5, def.settings.gravity_y = 0;
     mspring_builder *builder = NULL;
     mspring_network *network = NULL;
-    result = result ? result : mspring_builder_create(NULL, &builder);
-    result = result ? result : mspring_builder_add_lattice(builder, &ship, NULL);
-    result = result ? result : mspring_network_create(builder, &settings, &network);
-    mspring_contact_def contact;
-    mspring_contact_def_init(&contact, sizeof contact);
+    mspring_result result = mspring_builder_create(NULL, &builder);
+    mspring_builder_add_lattice(builder, &ship, NULL);
+    result = result ? result : mspring_network_create(builder, &def, &network);
+    mspring_contact_def contact = mspring_contact_def_default();
     result = result ? result : mspring_network_set_contact(network, &contact);
     torpedo t = {.mass = 20e3, .inertia = 100e3, .x = 11, .y = -14, .angle = 1.28, .vx = 7, .vy = 24};
-    mspring_collider_def def;
-    mspring_collider_def_init(&def, sizeof def);
-    def.points = hull, def.point_count = 5, def.flags = MSPRING_COLLIDER_CLOSED;
-    def.x = t.x, def.y = t.y, def.angle = t.angle, def.friction = 0.3f;
-    result = result ? result : mspring_network_add_collider(network, &def, &t.collider);
+    mspring_collider_def shape = mspring_collider_def_default();
+    shape.points = hull, shape.point_count = 5, shape.flags = MSPRING_COLLIDER_CLOSED;
+    shape.x = t.x, shape.y = t.y, shape.angle = t.angle, shape.friction = 0.3f;
+    result = result ? result : mspring_network_add_collider(network, &shape, &t.collider);
     show shown;
     show_begin(&shown, count, arguments, "15_torpedo", "A torpedo bounces off a ship.", network, 0.03);
     shown.film.corners = hull, shown.film.corner_count = 5;

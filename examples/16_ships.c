@@ -5,29 +5,28 @@
 #include "common/show.h"
 #include "scenes/scene.h"
 
-#include <massspring/massspring_contact.h>
+#include <massspring/massspring.h>
 #include <stdio.h>
 
 enum { STEPS = 384 };
 
 static mspring_result launch(const scene *ships, mspring_network **network) {
-    mspring_network_def settings;
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.substeps = 40, settings.gravity_y = 0; // the water bears them
-    settings.global_damping = 0.1f;                 // 1/s
-    mspring_result result = mspring_network_create(ships->builder, &settings, network);
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = 40, def.settings.gravity_y = 0; // the water bears them
+    def.settings.global_damping = 0.1f;                     // 1/s
+    mspring_result result = mspring_network_create(ships->builder, &def, network);
     if (result)
         return result;
-    const uint32_t particles = mspring_network_particle_count(*network);
-    const uint32_t springs = mspring_network_spring_count(*network);
-    mspring_contact_def contact;
-    mspring_contact_def_init(&contact, sizeof contact);
+    const uint32_t particles = mspring_network_count(*network, MSPRING_PARTICLES);
+    const uint32_t springs = mspring_network_count(*network, MSPRING_SPRINGS);
+    mspring_contact_def contact = mspring_contact_def_default();
     contact.friction = 0.4f;
     result = mspring_network_set_contact(*network, &contact);
-    result =
-        result ? result : mspring_network_set(*network, MSPRING_BREAK_STRAIN, 0, springs, ships->break_strain, 1);
+    result = result ? result
+                    : mspring_network_set(*network, MSPRING_BREAK_STRAIN, NULL, 0, springs, ships->break_strain, 1);
     return result ? result
-                  : mspring_network_set_velocities(*network, 0, particles, ships->velocity, ships->velocity + 1, 2);
+                  : mspring_network_set_velocities(*network, NULL, 0, particles, ships->velocity,
+                                                   ships->velocity + 1, 2);
 }
 
 int main(int count, char **arguments) {

@@ -6,7 +6,7 @@
 #include "common/show.h"
 #include "scenes/scene.h"
 
-#include <massspring/massspring_contact.h>
+#include <massspring/massspring.h>
 #include <stdio.h>
 
 enum { FRAGMENTS = 500, STEPS = 64 * 40, FILMED = 64 * 8 };
@@ -21,14 +21,12 @@ int main(int count, char **arguments) {
         fprintf(stderr, "17_pile: %s\n", error.text);
         return 1;
     }
-    mspring_network_def settings;
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.substeps = 40, settings.global_damping = 0.5f;  // 1/s
-    settings.sleep_speed = 0.1f, settings.sleep_time = 0.5f; // m/s, s
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = 40, def.settings.global_damping = 0.5f;  // 1/s
+    def.settings.sleep_speed = 0.1f, def.settings.sleep_time = 0.5f; // m/s, s
     mspring_network *network = NULL;
-    mspring_result result = mspring_network_create(pile.builder, &settings, &network);
-    mspring_contact_def contact;
-    mspring_contact_def_init(&contact, sizeof contact);
+    mspring_result result = mspring_network_create(pile.builder, &def, &network);
+    mspring_contact_def contact = mspring_contact_def_default();
     contact.flags = 0; // a fragment is too firm to meet itself
     contact.friction = 0.5f;
     result = result ? result : mspring_network_set_contact(network, &contact);
@@ -37,8 +35,10 @@ int main(int count, char **arguments) {
     progress line;
     progress_start(&line);
     int step = 0;
-    for (; !result && step < STEPS && !mspring_network_is_asleep(network); step++) {
+    mspring_step_info info = mspring_step_info_default();
+    for (; !result && step < STEPS && !info.is_asleep; step++) {
         result = mspring_network_step(network, dt);
+        mspring_network_get_step_info(network, &info);
         if (step < FILMED)
             show_step(&shown, network);
         if (progress_due(&line)) {

@@ -6,8 +6,7 @@
 #include "common/show.h"
 #include "scenes/scene.h"
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_laws.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -46,23 +45,19 @@ int main(int count, char **arguments) {
         fprintf(stderr, "18_jellies: %s\n", error.text);
         return 1;
     }
-    mspring_network_def settings;
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.substeps = 20;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = 20;
     mspring_network *network = NULL;
-    mspring_result result = mspring_network_create(jellies.builder, &settings, &network);
-    mspring_area_def area;
-    mspring_area_def_init(&area, sizeof area);
+    mspring_result result = mspring_network_create(jellies.builder, &def, &network);
+    mspring_area_def area = mspring_area_def_default();
     area.stiffness = 4e5f; // N/m, half of the springs'
-    const uint32_t particles = result ? 0 : mspring_network_particle_count(network);
+    const uint32_t particles = result ? 0 : mspring_network_count(network, MSPRING_PARTICLES);
     for (uint32_t i = 1; !result && i <= JELLIES; i++) // the pit is made first
         result = add_areas(network, particles - i * PARTICLES, &area);
-    mspring_contact_def contact;
-    mspring_contact_def_init(&contact, sizeof contact);
+    mspring_contact_def contact = mspring_contact_def_default();
     contact.friction = 0.2f;
     result = result ? result : mspring_network_set_contact(network, &contact);
-    mspring_collider_def stirrer;
-    mspring_collider_def_init(&stirrer, sizeof stirrer);
+    mspring_collider_def stirrer = mspring_collider_def_default();
     stirrer.points = bar, stirrer.point_count = 4, stirrer.flags = MSPRING_COLLIDER_CLOSED;
     stirrer.x = 28, stirrer.y = 50; // m
     mspring_id collider = MSPRING_NONE;

@@ -4,8 +4,7 @@
 /// It needs Box2D 2.4 (Debian, Ubuntu: libbox2d-dev). 15_torpedo.c does the same with a body of its own.
 ///
 /// SPDX-License-Identifier: MIT
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include <box2d/box2d.h>
 
@@ -42,30 +41,24 @@ b2Body *hang_ball(b2World &world) {
 
 mspring_result build_tower(mspring_builder *builder) {
     static std::uint16_t cells[rows][columns]; // 0 is wood, 1 is pinned wood
-    mspring_material wood[2];
-    for (mspring_material &one : wood) {
-        const mspring_result result = mspring_material_preset(&one, sizeof one, MSPRING_PRESET_WOOD, 1.0, dt / 5);
-        if (result != MSPRING_OK)
-            return result;
-        one.break_strain = 0.02f;
-    }
+    mspring_material wood[2] = {mspring_material_default()};
+    const mspring_result result = mspring_material_preset(wood, MSPRING_PRESET_WOOD, 1.0, dt / 5);
+    wood[0].break_strain = 0.02f;
+    wood[1] = wood[0];
     wood[1].particle_flags = MSPRING_PARTICLE_PINNED;
     for (int column = 0; column < columns; column++)
         cells[rows - 1][column] = 1;
-    mspring_lattice_def tower;
-    const mspring_result result = mspring_lattice_def_init(&tower, sizeof tower);
+    mspring_lattice_def tower = mspring_lattice_def_default();
     tower.width = columns, tower.height = rows, tower.cells = cells[0];
     tower.materials = wood, tower.material_count = 2;
     return result == MSPRING_OK ? mspring_builder_add_lattice(builder, &tower, nullptr) : result;
 }
 
 mspring_result let_meet(mspring_network *network, mspring_id *collider) {
-    mspring_contact_def contact;
-    mspring_contact_def_init(&contact, sizeof contact);
+    mspring_contact_def contact = mspring_contact_def_default();
     contact.friction = 0.4f;
     mspring_result result = mspring_network_set_contact(network, &contact);
-    mspring_collider_def def;
-    mspring_collider_def_init(&def, sizeof def);
+    mspring_collider_def def = mspring_collider_def_default();
     def.kind = MSPRING_COLLIDER_BOX, def.width = def.height = 2 * half;
     def.x = ball.x, def.y = ball.y, def.friction = 0.4f;
     return result == MSPRING_OK ? mspring_network_add_collider(network, &def, collider) : result;
@@ -94,12 +87,11 @@ int main(int count, char **arguments) {
     mspring_builder *builder = nullptr;
     mspring_network *network = nullptr;
     mspring_id collider = MSPRING_NONE;
-    mspring_network_def settings;
-    mspring_network_def_init(&settings, sizeof settings);
-    settings.substeps = 5;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = 5;
     mspring_result result = mspring_builder_create(nullptr, &builder);
     result = result != MSPRING_OK ? result : build_tower(builder);
-    result = result != MSPRING_OK ? result : mspring_network_create(builder, &settings, &network);
+    result = result != MSPRING_OK ? result : mspring_network_create(builder, &def, &network);
     result = result != MSPRING_OK ? result : let_meet(network, &collider);
     show shown;
     show_begin(&shown, count, arguments, "19_box2d", "A ball of Box2D hits a tower of springs.", network, 0.02);

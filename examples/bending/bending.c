@@ -80,22 +80,22 @@ static bool load_scene(bending_run *run) {
 
 static bool choose_solver(bending_run *run) {
     const bending_options *options = run->options;
-    mspring_solver_def def;
-    mspring_solver_def_init(&def, sizeof def);
-    def.solver = options->solver;
-    def.substeps = options->substeps;
-    def.iterations = options->iterations;
-    const mspring_result result = mspring_network_set_solver(run->network, &def);
+    mspring_settings settings = mspring_settings_default();
+    mspring_result result = mspring_network_get_settings(run->network, &settings);
+    settings.solver = options->solver;
+    settings.substeps = options->substeps;
+    settings.iterations = options->iterations;
+    if (result == MSPRING_OK)
+        result = mspring_network_set_settings(run->network, &settings);
     return check(result, "choose the solver", mspring_network_error(run->network));
 }
 
 static bool make_network(bending_run *run) {
     const bending_options *options = run->options;
-    mspring_network_def def;
-    mspring_network_def_init(&def, sizeof def);
-    def.substeps = options->substeps;
-    def.guard = MSPRING_GUARD_GROWTH; // what is too stiff is not to be measured softened
-    def.gravity_y = -options->gravity;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = options->substeps;
+    def.settings.guard = MSPRING_GUARD_GROWTH; // what is too stiff is not to be measured softened
+    def.settings.gravity_y = -options->gravity;
     def.simd_level = options->level;
     mspring_result result = mspring_network_create(run->scene.builder, &def, &run->network);
     if (!check(result, "make the network", mspring_builder_error(run->scene.builder)))
@@ -108,7 +108,7 @@ static bool make_network(bending_run *run) {
         return choose_solver(run);
     double x = 0;
     double y = 0;
-    if (mspring_network_get_positions(run->network, loose, 1, &x, &y, 1) != MSPRING_OK)
+    if (mspring_network_get_positions(run->network, NULL, loose, 1, &x, &y, 1) != MSPRING_OK)
         return false; // it is one of the network's
     fprintf(
         stderr,
@@ -232,7 +232,7 @@ static bool draw_final(const bending_run *run, const char *title, draw_error *er
     bool ok = false;
     if (!x || !y)
         snprintf(error->text, sizeof error->text, "out of memory for a picture of %u particles", count);
-    else if (mspring_network_get_positions(run->network, 0, count, x, y, 1) == MSPRING_OK)
+    else if (mspring_network_get_positions(run->network, NULL, 0, count, x, y, 1) == MSPRING_OK)
         ok = draw_network(run, title, x, y, error);
     free(x);
     free(y);

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 static const char help[] =
     "bending: let a network settle under gravity and measure how far its probe comes down\n"
@@ -82,13 +82,20 @@ static bool read_count(const char *option, const char *value, uint64_t least, ui
     return true;
 }
 
+// The widest of this kind of CPU: levels of other kinds are not available.
+static mspring_simd best_level(void) {
+    mspring_simd best = MSPRING_SIMD_SCALAR;
+    for (mspring_simd i = MSPRING_SIMD_SCALAR; i <= MSPRING_SIMD_WASM; i++)
+        best = mspring_simd_available(i) ? i : best;
+    return best;
+}
+
 static bool read_level(const char *value, mspring_simd *level) {
     for (mspring_simd i = MSPRING_SIMD_SCALAR; i <= MSPRING_SIMD_NEON; i++) {
         if (strcmp(value, mspring_simd_name(i)) != 0)
             continue;
         if (!mspring_simd_available(i))
-            return wrong("--level %s: this CPU lacks it; its best is %s", value,
-                         mspring_simd_name(mspring_simd_supported()));
+            return wrong("--level %s: this CPU lacks it; its best is %s", value, mspring_simd_name(best_level()));
         *level = i;
         return true;
     }

@@ -2,52 +2,67 @@
 /// Measures, table and CSV line.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include "bending/report.h"
+#include "common/described.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-static void measure_spring(const mspring_spring_info *info, const float *masses, double substep,
+// What is read of a spring.
+typedef struct spring_state {
+    mspring_id a, b;
+    float stiffness, damping, strain;
+} spring_state;
+
+static void measure_spring(const spring_state *spring, const float *masses, double substep,
                            spring_measures *measures) {
-    double reduced_mass = 1 / (1 / (double)masses[info->a] + 1 / (double)masses[info->b]);
-    double fraction = info->stiffness * substep * substep / reduced_mass;
-    measures->least_stiffness = fminf(measures->least_stiffness, info->stiffness);
-    measures->most_stiffness = fmaxf(measures->most_stiffness, info->stiffness);
-    measures->most_damping = fmaxf(measures->most_damping, info->damping);
+    double reduced_mass = 1 / (1 / (double)masses[spring->a] + 1 / (double)masses[spring->b]);
+    double fraction = spring->stiffness * substep * substep / reduced_mass;
+    measures->least_stiffness = fminf(measures->least_stiffness, spring->stiffness);
+    measures->most_stiffness = fmaxf(measures->most_stiffness, spring->stiffness);
+    measures->most_damping = fmaxf(measures->most_damping, spring->damping);
     measures->least_fraction = fmin(measures->least_fraction, fraction);
     measures->most_fraction = fmax(measures->most_fraction, fraction);
 }
 
 static bool measure_springs(mspring_network *network, const scene *measured, const float *masses, double substep,
                             spring_measures *measures) {
-    for (mspring_id i = 0; i < mspring_network_spring_count(network); i++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (mspring_network_get_spring(network, i, &info) != MSPRING_OK)
+    for (mspring_id i = 0; i < mspring_network_count(network, MSPRING_SPRINGS); i++) {
+        spring_state spring;
+        const mspring_column columns[] = {{MSPRING_END_A, 1, &spring.a},
+                                          {MSPRING_END_B, 1, &spring.b},
+                                          {MSPRING_ACTIVE_STIFFNESS, 1, &spring.stiffness},
+                                          {MSPRING_ACTIVE_DAMPING, 1, &spring.damping},
+                                          {MSPRING_STRAIN, 1, &spring.strain}};
+        if (mspring_network_get_columns(network, NULL, i, 1, columns, 5) != MSPRING_OK)
             return false;
-        measure_spring(&info, masses, substep, measures);
+        measure_spring(&spring, masses, substep, measures);
         if (i == measures->strained) {
-            measures->strain = info.strain;
-            measures->strained_a = info.a;
-            measures->strained_b = info.b;
+            measures->strain = spring.strain;
+            measures->strained_a = spring.a;
+            measures->strained_b = spring.b;
         }
         if (!measured->break_strain || measured->break_strain[i] == 0)
             continue;
         measures->can_break = true;
-        measures->broken += fabsf(info.strain) > measured->break_strain[i];
+        measures->broken += fabsf(spring.strain) > measured->break_strain[i];
     }
     return true;
 }
 
 bool report_measure(mspring_network *network, const scene *measured, double substep, spring_measures *measures) {
-    uint32_t particles = mspring_network_particle_count(network);
+    uint32_t particles = mspring_network_count(network, MSPRING_PARTICLES);
     *measures =
         (spring_measures){.least_stiffness = INFINITY, .least_fraction = INFINITY, .strained = MSPRING_NONE};
+    mspring_energy energy = mspring_energy_default();
     float *masses = malloc(particles * sizeof *masses);
-    bool ok = masses && mspring_network_get(network, MSPRING_MASS, 0, particles, masses, 1) == MSPRING_OK &&
-              mspring_network_max_strain(network, NULL, &measures->strained) == MSPRING_OK &&
-              measure_springs(network, measured, masses, substep, measures);
+    bool ok = masses && mspring_network_get(network, MSPRING_MASS, NULL, 0, particles, masses, 1) == MSPRING_OK &&
+              mspring_network_get_energy(network, &energy) == MSPRING_OK;
+    measures->strained = energy.strained;
+    ok = ok && measure_springs(network, measured, masses, substep, measures);
     free(masses);
     if (measures->least_stiffness > measures->most_stiffness) {
         measures->least_stiffness = 0;
@@ -57,17 +72,23 @@ bool report_measure(mspring_network *network, const scene *measured, double subs
 }
 
 static void print_layout(mspring_network *network) {
-    mspring_plan plan = {.struct_size = sizeof plan};
-    if (mspring_network_get_plan(network, &plan) != MSPRING_OK)
+    char text[DESCRIBED_SIZE];
+    if (mspring_network_describe(network, text, sizeof text, NULL) != MSPRING_OK)
         return;
     printf("  layout        ");
-    if (plan.lattice_count)
-        printf("%u lattice%s with %u springs, ", plan.lattice_count, plan.lattice_count == 1 ? "" : "s",
-               plan.lattice_springs);
-    if (plan.chain_count)
-        printf("%u chain%s with %u springs, ", plan.chain_count, plan.chain_count == 1 ? "" : "s",
-               plan.chain_springs);
-    printf("%u other springs\n", plan.irregular_springs);
+    const double lattices = described_number(text, "lattice_count"), chains = described_number(text, "chain_count");
+    if (lattices > 0)
+        printf("%.0f lattice%s with %.0f springs, ", lattices, lattices == 1 ? "" : "s",
+               described_number(text, "lattice_springs"));
+    if (chains > 0)
+        printf("%.0f chain%s with %.0f springs, ", chains, chains == 1 ? "" : "s",
+               described_number(text, "chain_springs"));
+    printf("%.0f other springs\n", described_number(text, "irregular_springs"));
+}
+
+static const char *level_of(const mspring_network *network) {
+    mspring_network_info info = mspring_network_info_default();
+    return mspring_network_get_info(network, &info) == MSPRING_OK ? mspring_simd_name(info.simd_level) : "unknown";
 }
 
 static void print_stiffness(const spring_measures *measures) {
@@ -99,10 +120,10 @@ static const char *solver_name(const bending_options *options) {
 void report_print_table(mspring_network *network, const scene *measured, const bending_options *options,
                         const settle_result *settled, const spring_measures *measures) {
     printf("%s\n", measured->name);
-    printf("  network       %u particles, %u springs\n", mspring_network_particle_count(network),
-           mspring_network_spring_count(network));
+    printf("  network       %u particles, %u springs\n", mspring_network_count(network, MSPRING_PARTICLES),
+           mspring_network_count(network, MSPRING_SPRINGS));
     print_layout(network);
-    const char *level = mspring_simd_name(mspring_network_simd_level(network));
+    const char *level = level_of(network);
     if (options->at_once)
         printf("  solver        static equilibrium, %llu iterations, level %s\n",
                (unsigned long long)settled->steps, level);
@@ -132,14 +153,13 @@ void report_print_csv_header(void) {
 
 void report_print_csv(mspring_network *network, const scene *measured, const bending_options *options,
                       const settle_result *settled, const spring_measures *measures) {
-    printf("%s,%u,%u,%s,%u,%.9g,%.9g,%.9g,", measured->name, mspring_network_particle_count(network),
-           mspring_network_spring_count(network), solver_name(options), options->substeps, measures->most_stiffness,
-           measures->most_damping, options->dt);
+    printf("%s,%u,%u,%s,%u,%.9g,%.9g,%.9g,", measured->name, mspring_network_count(network, MSPRING_PARTICLES),
+           mspring_network_count(network, MSPRING_SPRINGS), solver_name(options), options->substeps,
+           measures->most_stiffness, measures->most_damping, options->dt);
     // Not printf's nan, whose spelling differs from system to system.
     if (settled->end == SETTLE_AT_REST)
         printf("%.9g,%.9g,", settled->drop, settled->time);
     else
         printf("nan,nan,");
-    printf("%.4g,%s,%d\n", settled->median_step_s * 1e6, mspring_simd_name(mspring_network_simd_level(network)),
-           settled->end != SETTLE_UNSTABLE);
+    printf("%.4g,%s,%d\n", settled->median_step_s * 1e6, level_of(network), settled->end != SETTLE_UNSTABLE);
 }

@@ -11,10 +11,11 @@
 /// that single precision leaves, of about stiffness times the last place of a coordinate.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include "bending/settle.h"
 #include "common/clock.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,10 +77,11 @@ static bool note_duration(settling *state, double seconds) {
 // Height of the probe, or the mean height of all particles. Returns false when out of memory.
 static bool measure_height(const mspring_network *network, mspring_id probe, double *height) {
     const bool has_probe = probe != MSPRING_NONE;
-    const uint32_t count = has_probe ? 1 : mspring_network_particle_count(network);
+    const uint32_t count = has_probe ? 1 : mspring_network_count(network, MSPRING_PARTICLES);
     double *x = malloc(count * sizeof *x);
     double *y = malloc(count * sizeof *y);
-    bool ok = x && y && mspring_network_get_positions(network, has_probe ? probe : 0, count, x, y, 1) == MSPRING_OK;
+    bool ok =
+        x && y && mspring_network_get_positions(network, NULL, has_probe ? probe : 0, count, x, y, 1) == MSPRING_OK;
     double sum = 0;
     for (uint32_t i = 0; ok && i < count; i++)
         sum += y[i];
@@ -96,11 +98,13 @@ static bool make_step(settling *state) {
         state->end = SETTLE_OUT_OF_STEPS;
         return false;
     }
+    mspring_energy energy = mspring_energy_default();
     double start = clock_seconds();
     mspring_result result = mspring_network_step(state->network, state->request->dt);
     double seconds = clock_seconds() - start;
     if (result == MSPRING_OK)
-        result = mspring_network_energy(state->network, &state->energy, NULL, NULL);
+        result = mspring_network_get_energy(state->network, &energy);
+    state->energy = energy.kinetic;
     if (result != MSPRING_OK) {
         state->end = SETTLE_UNSTABLE;
         state->result = result;
@@ -125,11 +129,8 @@ static bool make_step(settling *state) {
 }
 
 static void stop_motion(mspring_network *network) {
-    mspring_mutable_view view = {.struct_size = sizeof view};
-    if (mspring_network_view_mutable(network, &view) != MSPRING_OK)
-        return;
-    memset(view.vx, 0, view.slot_count * sizeof *view.vx);
-    memset(view.vy, 0, view.slot_count * sizeof *view.vy);
+    const float none = 0;
+    (void)!mspring_network_set_velocities(network, NULL, 0, MSPRING_ALL, &none, &none, 0);
 }
 
 // Swings from rest until the kinetic energy has passed its peak, then stops all motion.
@@ -187,7 +188,7 @@ static bool is_calm(const settling *state, const window_means *means) {
 // Sets the global damping that is critical for the slowest motion.
 static bool damp(settling *state) {
     double rate = pi / (state->quarter * state->request->dt);
-    mspring_settings settings = {.struct_size = sizeof settings};
+    mspring_settings settings = mspring_settings_default();
     mspring_result result = mspring_network_get_settings(state->network, &settings);
     settings.global_damping = (float)fmin(rate, 1e6);
     if (result == MSPRING_OK)
@@ -222,16 +223,16 @@ static void let_down(settling *state) {
 
 // Swings a few times and puts everything back.
 static bool measure_period(settling *state) {
-    uint32_t count = mspring_network_particle_count(state->network);
+    uint32_t count = mspring_network_count(state->network, MSPRING_PARTICLES);
     double *x = malloc(count * sizeof *x);
     double *y = malloc(count * sizeof *y);
     bool ok = x && y;
     if (!ok)
         state->end = SETTLE_NO_MEMORY;
-    ok = ok && mspring_network_get_positions(state->network, 0, count, x, y, 1) == MSPRING_OK;
+    ok = ok && mspring_network_get_positions(state->network, NULL, 0, count, x, y, 1) == MSPRING_OK;
     for (int i = 0; ok && i < SWINGS; i++)
         ok = swing(state);
-    ok = ok && mspring_network_set_positions(state->network, 0, count, x, y, 1) == MSPRING_OK;
+    ok = ok && mspring_network_set_positions(state->network, NULL, 0, count, x, y, 1) == MSPRING_OK;
     free(x);
     free(y);
     state->quarter = fmax(state->quarter, LEAST_QUARTER);
@@ -254,16 +255,16 @@ static double median(double *values, size_t count) {
 
 // Mass of what moves, and the larger side of the box around the network.
 static bool measure_mass(settling *state) {
-    mspring_view view = {.struct_size = sizeof view};
-    double min_x, min_y, max_x, max_y;
-    if (mspring_network_view(state->network, &view) != MSPRING_OK ||
-        mspring_network_bounds(state->network, &min_x, &min_y, &max_x, &max_y) != MSPRING_OK ||
+    mspring_view view = mspring_view_default();
+    mspring_body body = mspring_body_default();
+    if (mspring_network_get_view(state->network, &view) != MSPRING_OK ||
+        mspring_network_get_body(state->network, NULL, 0, MSPRING_ALL, &body) != MSPRING_OK ||
         !measure_height(state->network, state->request->probe, &state->start_y))
         return false;
     for (uint32_t i = 0; i < view.slot_count; i++)
         if (view.inverse_mass[i] > 0)
             state->mass += 1 / (double)view.inverse_mass[i];
-    state->size = fmax(max_x - min_x, max_y - min_y);
+    state->size = fmax(body.max_x - body.min_x, body.max_y - body.min_y);
     return true;
 }
 
@@ -285,11 +286,10 @@ settle_result settle_network(mspring_network *network, const settle_request *req
 
 settle_result settle_at_once(mspring_network *network, const settle_request *request, double substep) {
     settle_result result = {.end = SETTLE_NO_MEMORY};
-    mspring_settle_def def;
-    mspring_settle_result found = {.struct_size = sizeof found};
+    mspring_settle_def def = mspring_settle_def_default();
+    mspring_settle_result found = mspring_settle_result_default();
     double before = 0;
     double after = 0;
-    mspring_settle_def_init(&def, sizeof def);
     def.relative_substep = substep;
     double start = clock_seconds();
     if (!measure_height(network, request->probe, &before))

@@ -174,8 +174,7 @@ static void run(uint32_t count, mspring_task_fn fn, void *argument, void *user) 
 
 mspring_tasks thread_pool_tasks(thread_pool *pool) {
     // Every thread that is free takes the next index at once, so as many as there are threads run at the same time.
-    mspring_tasks tasks;
-    mspring_tasks_init(&tasks, sizeof tasks);
+    mspring_tasks tasks = mspring_tasks_default();
     tasks.worker_count = tasks.concurrent_count = pool->thread_count;
     tasks.run = run;
     tasks.user = pool;

@@ -96,9 +96,10 @@ void film_step(film *target, const mspring_network *network) {
     }
     const network_shape *shape = target->shape;
     uint32_t frame = target->frame_count;
-    if (mspring_network_get_positions(network, 0, shape->particle_count, frame_of(target, target->x, frame),
+    if (mspring_network_get_positions(network, NULL, 0, shape->particle_count, frame_of(target, target->x, frame),
                                       frame_of(target, target->y, frame), 1) != MSPRING_OK ||
-        mspring_network_get_spring_flags(network, 0, shape->spring_count, flags_of(target, frame), 1) != MSPRING_OK)
+        mspring_network_get_integers(network, MSPRING_SPRING_FLAGS, NULL, 0, shape->spring_count,
+                                     flags_of(target, frame), 1) != MSPRING_OK)
         return;
     target->probes[frame] = target->probe;
     memcpy(target->places[frame], target->place, sizeof target->place);

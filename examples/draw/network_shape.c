@@ -58,32 +58,35 @@ static void read_floor(network_shape *made, const mspring_floor_def *floor) {
 }
 
 static mspring_result read_network(network_shape *made, const mspring_network *network) {
-    mspring_view view = {.struct_size = sizeof view};
-    mspring_result result = mspring_network_view(network, &view);
+    mspring_view view = mspring_view_default();
+    mspring_result result = mspring_network_get_view(network, &view);
     for (uint32_t i = 0; result == MSPRING_OK && i < made->particle_count; i++)
         made->pinned[i] = view.inverse_mass[view.slot_of_particle[i]] == 0;
     const uint32_t springs = made->spring_count;
     if (result == MSPRING_OK)
-        result = mspring_network_get_ends(network, 0, springs, MSPRING_ENDS_IDS, made->a, made->b, 1);
+        result = mspring_network_get_columns(
+            network, NULL, 0, springs,
+            (const mspring_column[]){{MSPRING_END_A, 1, made->a}, {MSPRING_END_B, 1, made->b}}, 2);
     if (result == MSPRING_OK)
-        result = mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, 0, springs, made->rest_length, 1);
+        result = mspring_network_get(network, MSPRING_ACTIVE_REST_LENGTH, NULL, 0, springs, made->rest_length, 1);
     if (result == MSPRING_OK)
-        result = mspring_network_get_spring_flags(network, 0, springs, made->flags, 1);
+        result = mspring_network_get_integers(network, MSPRING_SPRING_FLAGS, NULL, 0, springs, made->flags, 1);
     return result == MSPRING_OK
-               ? mspring_network_get_positions(network, 0, made->particle_count, made->x, made->y, 1)
+               ? mspring_network_get_positions(network, NULL, 0, made->particle_count, made->x, made->y, 1)
                : result;
 }
 
 bool network_shape_make(network_shape *made, const mspring_network *network, mspring_id probe, draw_error *error) {
     memset(made, 0, sizeof *made);
-    made->particle_count = mspring_network_particle_count(network);
-    made->spring_count = mspring_network_spring_count(network);
+    made->particle_count = mspring_network_count(network, MSPRING_PARTICLES);
+    made->spring_count = mspring_network_count(network, MSPRING_SPRINGS);
     made->probe = probe;
-    mspring_floor_def floor = {.struct_size = sizeof floor};
+    mspring_floor_def floor = mspring_floor_def_default();
     mspring_result result = mspring_network_get_floor(network, &floor);
     if (result == MSPRING_OK && !allocate(made, &floor)) {
         network_shape_free(made);
-        return draw_fail(error, "out of memory for a picture of %u springs", mspring_network_spring_count(network));
+        return draw_fail(error, "out of memory for a picture of %u springs",
+                         mspring_network_count(network, MSPRING_SPRINGS));
     }
     if (result == MSPRING_OK)
         result = read_network(made, network);

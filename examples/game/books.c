@@ -9,14 +9,14 @@
 #include <stdlib.h>
 
 static account account_of(const mspring_network *network) {
-    double kinetic, elastic, potential;
-    account made;
-    if (mspring_network_energy(network, &kinetic, &elastic, &potential) != MSPRING_OK ||
-        mspring_network_momentum(network, &made.momentum[0], &made.momentum[1], &made.angular_momentum) !=
-            MSPRING_OK)
+    mspring_energy energy = mspring_energy_default();
+    mspring_body all = mspring_body_default();
+    if (mspring_network_get_energy(network, &energy) != MSPRING_OK ||
+        mspring_network_get_body(network, NULL, 0, MSPRING_ALL, &all) != MSPRING_OK)
         abort(); // only NULL is refused
-    made.energy = kinetic + elastic + potential;
-    return made;
+    return (account){.momentum = {all.px, all.py},
+                     .angular_momentum = all.angular,
+                     .energy = energy.kinetic + energy.elastic + energy.potential};
 }
 
 void books_open(books *opened, const mspring_network *network) {

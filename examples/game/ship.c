@@ -4,7 +4,7 @@
 /// SPDX-License-Identifier: MIT
 #include "game/ship.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 const ship_material ship_materials[SHIP_PARTS] = {
     [SHIP_HULL] = {.mass = 350, .displaced = 1000, .drag = 300, .room = 1000},
@@ -36,13 +36,10 @@ static void measure_spring(const ship_choice *choice, float mass, uint32_t *flag
     *damping = choice->implicit ? (float)((double)toughness * half_mass / h) : toughness;
 }
 
-static mspring_result add_hull(ship *made, mspring_builder *builder, const ship_choice *choice, mspring_id *ids) {
+static void add_hull(ship *made, mspring_builder *builder, const ship_choice *choice, mspring_id *ids) {
     static uint16_t cells[SHIP_HEIGHT * SHIP_WIDTH];
-    mspring_material material;
-    mspring_lattice_def def;
-    mspring_result result = mspring_material_init(&material, sizeof material);
-    if (result != MSPRING_OK || (result = mspring_lattice_def_init(&def, sizeof def)) != MSPRING_OK)
-        return result;
+    mspring_material material = mspring_material_default();
+    mspring_lattice_def def = mspring_lattice_def_default();
     for (int row = 0; row < SHIP_HEIGHT; row++)
         for (int column = 0; column < SHIP_WIDTH; column++)
             cells[row * SHIP_WIDTH + column] = is_ship(column, row) ? 0 : MSPRING_CELL_EMPTY;
@@ -53,55 +50,47 @@ static mspring_result add_hull(ship *made, mspring_builder *builder, const ship_
     def.y = -2;
     def.cells = cells;
     def.materials = &material;
-    def.material_count = 1;
-    result = mspring_builder_add_lattice(builder, &def, ids);
-    for (int cell = 0; cell < SHIP_WIDTH * SHIP_HEIGHT && result == MSPRING_OK; cell++)
+    if (mspring_builder_add_lattice(builder, &def, ids) != MSPRING_OK)
+        return;
+    for (int cell = 0; cell < SHIP_WIDTH * SHIP_HEIGHT; cell++)
         if (ids[cell] != MSPRING_NONE) {
             made->part_of[ids[cell]] = is_mast(cell % SHIP_WIDTH, cell / SHIP_WIDTH) ? SHIP_MAST : SHIP_HULL;
             made->particles++;
         }
-    return result;
 }
 
-static mspring_result add_anchor(ship *made, mspring_builder *builder, const ship_choice *choice) {
-    mspring_particle_def def;
-    mspring_result result = mspring_particle_def_init(&def, sizeof def);
+static void add_anchor(ship *made, mspring_builder *builder, const ship_choice *choice) {
+    mspring_particle_def def = mspring_particle_def_default();
     def.x = choice->anchor_x;
     def.y = choice->anchor_y;
     def.mass = ship_materials[SHIP_ANCHOR].mass;
-    if (result == MSPRING_OK)
-        result = mspring_builder_add_particle(builder, &def, &made->anchor);
+    mspring_builder_add_particles(builder, &def, 1, &made->anchor);
     made->part_of[made->particles++] = SHIP_ANCHOR;
-    return result;
 }
 
-static mspring_result add_rope(ship *made, mspring_builder *builder, const ship_choice *choice, mspring_id from,
-                               mspring_id to, uint32_t segments) {
-    mspring_rope_def def;
-    mspring_id first;
-    mspring_result result = mspring_rope_def_init(&def, sizeof def);
+static void add_rope(ship *made, mspring_builder *builder, const ship_choice *choice, mspring_id from,
+                     mspring_id to, uint32_t segments) {
+    mspring_material line = mspring_material_default();
+    line.mass = ship_materials[SHIP_ROPE].mass;
+    measure_spring(choice, line.mass, &line.spring_flags, &line.stiffness, &line.damping);
+    mspring_rope_def def = mspring_rope_def_default();
+    mspring_id first = MSPRING_NONE;
     def.from = from;
     def.to = to;
     def.segment_count = segments;
-    def.mass = ship_materials[SHIP_ROPE].mass;
-    measure_spring(choice, def.mass, &def.spring_flags, &def.stiffness, &def.damping);
-    if (result == MSPRING_OK)
-        result = mspring_builder_add_rope(builder, &def, NULL, 0, &first);
-    if (result != MSPRING_OK)
-        return result;
+    def.material = &line;
+    mspring_builder_add_rope(builder, &def, NULL, &first);
     made->first_rope = made->rope_springs == 0 ? first : made->first_rope;
     made->rope_springs += segments;
     for (uint32_t i = 1; i < segments; i++)
         made->part_of[made->particles++] = SHIP_ROPE;
-    return MSPRING_OK;
 }
 
-mspring_result ship_build(ship *made, mspring_builder *builder, const ship_choice *choice) {
+void ship_build(ship *made, mspring_builder *builder, const ship_choice *choice) {
     static mspring_id ids[SHIP_HEIGHT][SHIP_WIDTH];
     *made = (ship){0};
-    mspring_result result = add_hull(made, builder, choice, ids[0]);
-    if (result == MSPRING_OK)
-        result = add_anchor(made, builder, choice);
+    add_hull(made, builder, choice, ids[0]);
+    add_anchor(made, builder, choice);
     made->mast_top = ids[0][40];
     made->brace_feet[0] = ids[6][31];
     made->brace_feet[1] = ids[6][49];
@@ -114,21 +103,18 @@ mspring_result ship_build(ship *made, mspring_builder *builder, const ship_choic
         {ids[0][41], ids[6][62], 10},   // the forestay, to the bow
         {ids[6][63], made->anchor, 12}, // the anchor's line
     };
-    for (int i = 0; i < SHIP_ROPES && result == MSPRING_OK; i++)
-        result = add_rope(made, builder, choice, ropes[i].from, ropes[i].to, ropes[i].segments);
-    return result;
+    for (int i = 0; i < SHIP_ROPES; i++)
+        add_rope(made, builder, choice, ropes[i].from, ropes[i].to, ropes[i].segments);
 }
 
-mspring_result ship_braces(const ship *of, const ship_choice *choice, mspring_spring_def *defs) {
-    mspring_result result = MSPRING_OK;
-    for (int i = 0; i < SHIP_BRACES && result == MSPRING_OK; i++) {
-        result = mspring_spring_def_init(&defs[i], sizeof defs[i]);
+void ship_braces(const ship *of, const ship_choice *choice, mspring_spring_def *defs) {
+    for (int i = 0; i < SHIP_BRACES; i++) {
+        defs[i] = mspring_spring_def_default();
         measure_spring(choice, ship_materials[SHIP_HULL].mass, &defs[i].flags, &defs[i].stiffness,
                        &defs[i].damping);
         defs[i].a = of->mast_top;
         defs[i].b = of->brace_feet[i];
     }
-    return result;
 }
 
 ship_part ship_part_of_spring(const ship *of, mspring_id a, mspring_id b) {

@@ -49,11 +49,12 @@ typedef struct ship {
     mspring_id mast_top, brace_feet[SHIP_BRACES]; ///< where braces are to be
 } ship;
 
-/// Add the ship to the builder, which is empty: its keel lies at y = -2 m, its masts end at 9 m.
-mspring_result ship_build(ship *made, mspring_builder *builder, const ship_choice *choice);
+/// Add the ship to the builder, which is empty and keeps its first failure: the keel lies at y = -2 m, its masts
+/// end at 9 m.
+void ship_build(ship *made, mspring_builder *builder, const ship_choice *choice);
 
 /// The springs that brace the fore mast, for mspring_network_add_springs().
-mspring_result ship_braces(const ship *of, const ship_choice *choice, mspring_spring_def *defs);
+void ship_braces(const ship *of, const ship_choice *choice, mspring_spring_def *defs);
 
 /// The part that a spring between particles a and b is of.
 ship_part ship_part_of_spring(const ship *of, mspring_id a, mspring_id b);

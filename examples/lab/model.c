@@ -2,10 +2,11 @@
 /// Actions on the model, and its frames.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include "lab/model.h"
 #include "scenes/internal.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -296,7 +297,7 @@ static bool settle(lab_model *model, scene_error *error) {
         const mspring_result result = mspring_network_settle(side->network, NULL, NULL);
         if (result != MSPRING_OK)
             return scene_fail(error, "%s", mspring_network_error(side->network));
-        (void)!mspring_network_view(side->network, &side->view);
+        (void)!mspring_network_get_view(side->network, &side->view);
         side->complaint[0] = 0;
     }
     return true;
@@ -483,7 +484,7 @@ uint64_t model_hash(const lab_model *model) {
     uint64_t all = 0;
     for (int i = 0; i < model->side_count; i++) {
         uint64_t hash = 0;
-        (void)!mspring_network_state_hash(model->sides[i].network, &hash);
+        (void)!mspring_network_get_state_hash(model->sides[i].network, &hash);
         all = (all ^ hash) * 0x9e3779b97f4a7c15u;
         all ^= all >> 32;
     }

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 scene_options ready_options(bool relative, bool from_file) {
     scene_options options = from_file ? scene_options_from_file() : scene_options_default();
@@ -62,7 +62,7 @@ static bool make_bridge(lab_stage *made, bool relative, scene_error *error) {
     uint16_t cells[ROWS][COLUMNS] = {{0}};
     mspring_material materials[2];
     for (int i = 0; i < 2; i++) {
-        mspring_material_init(&materials[i], sizeof materials[i]);
+        materials[i] = mspring_material_default();
         materials[i].mass = 60;
         materials[i].stiffness = relative ? READY_RELATIVE_STIFFNESS : 3e7f;
         materials[i].damping = relative ? READY_RELATIVE_DAMPING : 3000;
@@ -72,8 +72,7 @@ static bool make_bridge(lab_stage *made, bool relative, scene_error *error) {
     for (int row = 0; row < ROWS; row++)
         cells[row][0] = cells[row][COLUMNS - 1] = 1;
     mspring_id ids[ROWS][COLUMNS];
-    mspring_lattice_def deck;
-    mspring_lattice_def_init(&deck, sizeof deck);
+    mspring_lattice_def deck = mspring_lattice_def_default();
     deck.width = COLUMNS, deck.height = ROWS, deck.cells = cells[0], deck.materials = materials;
     deck.material_count = 2;
     if (!scene_start(&made->made, error))
@@ -84,33 +83,33 @@ static bool make_bridge(lab_stage *made, bool relative, scene_error *error) {
     mspring_id knot = MSPRING_NONE;
     for (int i = 0; result == MSPRING_OK && i <= ROPES + 1; i++) {
         const double place = 2.0 * i / (ROPES + 1) - 1;
-        mspring_particle_def particle;
-        mspring_particle_def_init(&particle, sizeof particle);
+        mspring_particle_def particle = mspring_particle_def_default();
         particle.x = i * PITCH;
         particle.y = ROWS - 1 + 4 + (RISE - 4) * place * place;
         particle.mass = 60;
         particle.flags = i == 0 || i == ROPES + 1 ? MSPRING_PARTICLE_PINNED : 0;
         mspring_id here = MSPRING_NONE;
-        result = mspring_builder_add_particle(builder, &particle, &here);
-        mspring_rope_def rope;
-        mspring_rope_def_init(&rope, sizeof rope);
-        rope.mass = 12, rope.stiffness = relative ? READY_RELATIVE_STIFFNESS : 1.2e7f;
-        rope.damping = relative ? READY_RELATIVE_DAMPING : 800;
-        rope.spring_flags = relative ? MSPRING_SPRING_RELATIVE : 0;
+        result = mspring_builder_add_particles(builder, &particle, 1, &here);
+        mspring_material rope_material = mspring_material_default();
+        mspring_rope_def rope = mspring_rope_def_default();
+        rope.material = &rope_material;
+        rope_material.mass = 12, rope_material.stiffness = relative ? READY_RELATIVE_STIFFNESS : 1.2e7f;
+        rope_material.damping = relative ? READY_RELATIVE_DAMPING : 800;
+        rope_material.spring_flags = relative ? MSPRING_SPRING_RELATIVE : 0;
         if (result == MSPRING_OK && i > 0) {
             rope.from = knot, rope.to = here, rope.segment_count = 6;
-            result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
+            result = mspring_builder_add_rope(builder, &rope, NULL, NULL);
         }
         if (result == MSPRING_OK && i > 0 && i <= ROPES) {
             rope.from = here, rope.to = ids[0][i * PITCH];
             rope.segment_count = 2 + (uint32_t)(particle.y / 3);
-            result = mspring_builder_add_rope(builder, &rope, NULL, 0, NULL);
+            result = mspring_builder_add_rope(builder, &rope, NULL, NULL);
         }
         knot = here;
     }
     snprintf(made->made.name, sizeof made->made.name, "bridge");
     made->made.probe = ids[ROWS - 1][COLUMNS / 2];
-    const uint32_t springs = mspring_builder_spring_count(builder);
+    const uint32_t springs = mspring_builder_count(builder, MSPRING_SPRINGS);
     made->made.break_strain = malloc(springs * sizeof(float));
     for (uint32_t i = 0; made->made.break_strain && i < springs; i++)
         made->made.break_strain[i] = 0.12f;
@@ -177,10 +176,10 @@ static bool make_jellies(lab_stage *made, bool relative, scene_error *error) {
     return scene_jellies(24, &options, &made->made, error);
 }
 
-const ready_scene ready_scenes[READY_COUNT] = {{"ship", make_ship},      {"bar", make_bar},     {"beam", make_beam},
-                                               {"bridge", make_bridge},  {"net", make_net},     {"rope", make_rope},
-                                               {"graph", make_graph},    {"ships", make_ships}, {"pile", make_pile},
-                                               {"jellies", make_jellies}, {"car", ready_car}};
+const ready_scene ready_scenes[READY_COUNT] = {
+    {"ship", make_ship}, {"bar", make_bar},         {"beam", make_beam},   {"bridge", make_bridge},
+    {"net", make_net},   {"rope", make_rope},       {"graph", make_graph}, {"ships", make_ships},
+    {"pile", make_pile}, {"jellies", make_jellies}, {"car", ready_car}};
 
 const ready_scene *ready_find(const char *name) {
     for (int i = 0; i < READY_COUNT; i++)

@@ -8,7 +8,7 @@
 #include "lab/ready.h"
 #include "scenes/internal.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 enum { WIDTH = 44, HEIGHT = 14, SUBSTEPS = 40 };
 
@@ -20,11 +20,10 @@ static const float speed = 7;                 // m/s
 
 static mspring_result add_car(mspring_builder *builder, bool relative) {
     uint16_t cells[HEIGHT][WIDTH];
-    mspring_material metal;
-    mspring_lattice_def car;
+    mspring_material metal = mspring_material_default();
+    mspring_lattice_def car = mspring_lattice_def_default();
     const float substep = 1.0f / 64 / SUBSTEPS; // s
-    const mspring_result result =
-        mspring_material_preset(&metal, sizeof metal, MSPRING_PRESET_RUBBER, spacing, substep);
+    const mspring_result result = mspring_material_preset(&metal, MSPRING_PRESET_RUBBER, spacing, substep);
     if (result != MSPRING_OK)
         return result;
     metal.yield_strain = 0.03f;
@@ -38,8 +37,7 @@ static mspring_result add_car(mspring_builder *builder, bool relative) {
         for (int column = 0; column < WIDTH; column++)
             cells[row][column] =
                 column >= rows[row][0] && column <= rows[row][1] ? 0 : (uint16_t)MSPRING_CELL_EMPTY;
-    mspring_lattice_def_init(&car, sizeof car);
-    car.width = WIDTH, car.height = HEIGHT, car.cells = cells[0], car.materials = &metal, car.material_count = 1;
+    car.width = WIDTH, car.height = HEIGHT, car.cells = cells[0], car.materials = &metal;
     car.spacing = spacing;
     return mspring_builder_add_lattice(builder, &car, NULL);
 }
@@ -55,7 +53,7 @@ bool ready_car(lab_stage *made, bool relative, scene_error *error) {
         return false;
     }
     snprintf(made->made.name, sizeof made->made.name, "car");
-    const uint32_t count = mspring_builder_particle_count(builder);
+    const uint32_t count = mspring_builder_count(builder, MSPRING_PARTICLES);
     made->made.velocity = calloc(2 * (size_t)count, sizeof *made->made.velocity);
     if (!made->made.velocity) {
         scene_free(&made->made);

@@ -6,8 +6,7 @@
 #include "common/clock.h"
 #include "scenes/internal.h"
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,20 +31,20 @@ static bool accepted(lab_side *side, mspring_result result) {
 
 /* --------------------------------------------------------------------------------------------------- settings */
 
-static mspring_solver_def solver_def(const lab_solver *solver) {
-    mspring_solver_def def;
-    mspring_solver_def_init(&def, sizeof def);
-    def.solver = solver->solver;
-    def.integrator = solver->integrator;
-    def.substeps = solver->substeps ? solver->substeps : MSPRING_SUBSTEPS_AUTO;
-    def.iterations = solver->iterations;
-    def.residual = 0; // exactly these: the slider shows what they do
-    return def;
+static void choose(mspring_settings *settings, const lab_solver *solver) {
+    settings->solver = solver->solver;
+    settings->integrator = solver->integrator;
+    settings->substeps = solver->substeps ? solver->substeps : MSPRING_SUBSTEPS_AUTO;
+    settings->iterations = solver->iterations;
+    settings->residual = 0; // exactly these: the slider shows what they do
 }
 
 bool side_set_solver(lab_side *side, const lab_solver *solver) {
-    const mspring_solver_def def = solver_def(solver);
-    if (!accepted(side, mspring_network_set_solver(side->network, &def)))
+    mspring_settings settings = mspring_settings_default();
+    if (!accepted(side, mspring_network_get_settings(side->network, &settings)))
+        return false;
+    choose(&settings, solver);
+    if (!accepted(side, mspring_network_set_settings(side->network, &settings)))
         return false;
     side->solver = *solver;
     side->substeps = solver->substeps ? solver->substeps : 1;
@@ -77,19 +76,17 @@ static mspring_result set_masses(lab_side *side, double factor) {
     float *values = scaled(side->stage->mass, side->stage->particle_count, factor);
     if (!values)
         return MSPRING_ERROR_MEMORY;
-    mspring_result result =
-        mspring_network_set(side->network, MSPRING_MASS, 0, side->stage->particle_count, values, 1);
+    const mspring_result result =
+        mspring_network_set(side->network, MSPRING_MASS, NULL, 0, side->stage->particle_count, values, 1);
     free(values);
-    if (result == MSPRING_OK && side->stage->relative)
-        result = mspring_network_renew_relative_springs(side->network);
     return result;
 }
 
 static mspring_result set_stiffnesses(lab_side *side, double factor) {
     float *values = scaled(side->stage->stiffness, side->stage->spring_count, factor);
-    const mspring_result result =
-        values ? mspring_network_set(side->network, MSPRING_STIFFNESS, 0, side->stage->spring_count, values, 1)
-               : MSPRING_ERROR_MEMORY;
+    const mspring_result result = values ? mspring_network_set(side->network, MSPRING_STIFFNESS, NULL, 0,
+                                                               side->stage->spring_count, values, 1)
+                                         : MSPRING_ERROR_MEMORY;
     free(values);
     return result;
 }
@@ -97,7 +94,7 @@ static mspring_result set_stiffnesses(lab_side *side, double factor) {
 static mspring_result set_dampings(lab_side *side, double factor) {
     float *values = scaled(side->stage->damping, side->stage->spring_count, factor);
     const mspring_result result =
-        values ? mspring_network_set(side->network, MSPRING_DAMPING, 0, side->stage->spring_count, values, 1)
+        values ? mspring_network_set(side->network, MSPRING_DAMPING, NULL, 0, side->stage->spring_count, values, 1)
                : MSPRING_ERROR_MEMORY;
     free(values);
     return result;
@@ -113,15 +110,15 @@ static mspring_result set_breaking(lab_side *side, bool breaking) {
         const float strain = given ? given[i] : usual_break_strain;
         values[i] = breaking && strain > 0 ? strain : INFINITY;
     }
-    const mspring_result result = mspring_network_set(side->network, MSPRING_BREAK_STRAIN, 0, count, values, 1);
+    const mspring_result result =
+        mspring_network_set(side->network, MSPRING_BREAK_STRAIN, NULL, 0, count, values, 1);
     free(values);
     return result;
 }
 
 static mspring_result set_floor(lab_side *side, bool has_floor) {
     const double planes[2][4] = {{0, side->stage->floor_y, 0, 1}, {side->stage->wall_x, 0, -1, 0}};
-    mspring_floor_def def;
-    mspring_floor_def_init(&def, sizeof def);
+    mspring_floor_def def = mspring_floor_def_default();
     def.plane_count = side->stage->has_wall ? 2 : 1;
     def.planes = planes[0];
     def.friction = 0.6f;
@@ -129,8 +126,7 @@ static mspring_result set_floor(lab_side *side, bool has_floor) {
 }
 
 static mspring_result set_contact(lab_side *side, bool collides) {
-    mspring_contact_def def;
-    mspring_contact_def_init(&def, sizeof def);
+    mspring_contact_def def = mspring_contact_def_default();
     def.friction = 0.4f;
     return mspring_network_set_contact(side->network, collides ? &def : NULL);
 }
@@ -145,7 +141,7 @@ bool side_set_obstacles(lab_side *side, const lab_settings *settings, const lab_
 }
 
 static mspring_result set_surroundings(lab_side *side, const lab_settings *settings) {
-    mspring_settings now = {.struct_size = sizeof now};
+    mspring_settings now = mspring_settings_default();
     const mspring_result result = mspring_network_get_settings(side->network, &now);
     now.gravity_y = (float)-settings->gravity;
     now.global_damping = (float)settings->drag;
@@ -188,26 +184,25 @@ bool side_make(lab_side *made, const lab_stage *stage, const lab_settings *setti
         side_free(made);
         return scene_fail_memory(error, "cannot make the network");
     }
-    mspring_network_def def;
-    mspring_network_def_init(&def, sizeof def);
+    mspring_network_def def = mspring_network_def_default();
     def.flags = MSPRING_NETWORK_RESERVE_DAMPING;
-    def.gravity_y = (float)-settings->gravity;
-    def.guard = MSPRING_GUARD_GROWTH; // a side that cannot go on says why
+    def.settings.gravity_y = (float)-settings->gravity;
+    def.settings.guard = MSPRING_GUARD_GROWTH; // a side that cannot go on says why
     const mspring_result result = mspring_network_create(stage->made.builder, &def, &made->network);
     if (result != MSPRING_OK) {
         side_free(made);
         return scene_fail_builder(error, stage->made.name, stage->made.builder, result);
     }
-    made->view.struct_size = sizeof made->view;
+    made->view = mspring_view_default();
     const float *velocity = stage->made.velocity;
     const lab_settings fresh = {.gravity = settings->gravity,
                                 .mass = 1,
                                 .stiffness = 1,
                                 .damping = stage->has_damping ? 1 : 0,
                                 .yielding = stage->yields};
-    if ((!velocity || accepted(made, mspring_network_set_velocities(made->network, 0, stage->particle_count,
+    if ((!velocity || accepted(made, mspring_network_set_velocities(made->network, NULL, 0, stage->particle_count,
                                                                     velocity, velocity + 1, 2))) &&
-        accepted(made, mspring_network_view(made->network, &made->view)) &&
+        accepted(made, mspring_network_get_view(made->network, &made->view)) &&
         accepted(made, mspring_network_reserve_events(made->network, EVENTS)) && side_set_solver(made, solver) &&
         side_set_settings(made, settings, &fresh))
         return true;
@@ -261,13 +256,13 @@ void side_step(lab_side *side, const lab_settings *settings) {
     }
     side->complaint[0] = 0;
     side->cure = 0;
-    mspring_step_info info = {.struct_size = sizeof info};
+    mspring_step_info info = mspring_step_info_default();
     if (mspring_network_get_step_info(side->network, &info) == MSPRING_OK)
         side->substeps = info.substeps;
     side->last_dt = settings->dt;
     side->steps++;
     // The origin may have moved along.
-    (void)!mspring_network_view(side->network, &side->view);
+    (void)!mspring_network_get_view(side->network, &side->view);
     // The first step is not like the others: it is the first to touch the solver's memory.
     double *mean = &side->measured.seconds;
     if (side->timed_steps++ > 0)
@@ -283,7 +278,8 @@ void side_find_broken(lab_side *side) {
     for (uint32_t i = 0; i < side->stage->spring_count; i++) {
         const uint32_t left = side->stage->spring_count - i;
         if (i % AT_ONCE == 0)
-            (void)!mspring_network_get_spring_flags(side->network, i, left < AT_ONCE ? left : AT_ONCE, flags, 1);
+            (void)!mspring_network_get_integers(side->network, MSPRING_SPRING_FLAGS, NULL, i,
+                                                left < AT_ONCE ? left : AT_ONCE, flags, 1);
         side->broken[i] = (flags[i % AT_ONCE] & MSPRING_SPRING_BROKEN) != 0;
         side->broken_count += side->broken[i];
     }
@@ -322,7 +318,8 @@ static void measure_springs(lab_side *side, const lab_settings *settings) {
     const lab_stage *stage = side->stage;
     double elastic = 0, squares = 0;
     float most = 0;
-    if (mspring_network_get_extents(side->network, NULL, NULL, NULL, side->strain) != MSPRING_OK)
+    if (mspring_network_get(side->network, MSPRING_STRAIN, NULL, 0, stage->spring_count, side->strain, 1) !=
+        MSPRING_OK)
         return;
     for (uint32_t i = 0; i < stage->spring_count; i++) {
         const float strain = side->strain[i];

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 static bool accepted(lab_side *side, mspring_result result) {
     if (result != MSPRING_OK)
@@ -50,16 +50,16 @@ bool side_pin(lab_side *side, double x, double y, double radius, bool pin) {
     const float scale = pin ? 0 : 1, still = 0;
     for (uint32_t i = 0; i < count; i++) {
         const mspring_id particle = side->held[i];
-        if (!accepted(side,
-                      mspring_network_set(side->network, MSPRING_INVERSE_MASS_SCALE, particle, 1, &scale, 1)) ||
-            !accepted(side, mspring_network_set_velocities(side->network, particle, 1, &still, &still, 1)))
+        if (!accepted(side, mspring_network_set(side->network, MSPRING_INVERSE_MASS_SCALE, NULL, particle, 1,
+                                                &scale, 1)) ||
+            !accepted(side, mspring_network_set_velocities(side->network, NULL, particle, 1, &still, &still, 1)))
             return false;
     }
     return true;
 }
 
 static bool break_listed(lab_side *side, const mspring_id *springs, uint32_t count) {
-    return count == 0 || accepted(side, mspring_network_break_springs(side->network, springs, count));
+    return count == 0 || accepted(side, mspring_network_break_springs(side->network, springs, 0, count));
 }
 
 bool side_cut(lab_side *side, double x, double y, double x2, double y2) {
@@ -100,7 +100,7 @@ bool side_blast(lab_side *side, double x, double y, double radius, double speed)
         const double kick = distance > 0 ? speed * (1 - distance / radius) / distance : 0;
         const float vx = (float)(side->view.vx[slot] + kick * (px - x));
         const float vy = (float)(side->view.vy[slot] + kick * (py - y));
-        if (!accepted(side, mspring_network_set_velocities(side->network, i, 1, &vx, &vy, 1)))
+        if (!accepted(side, mspring_network_set_velocities(side->network, NULL, i, 1, &vx, &vy, 1)))
             return false;
     }
     return ok;
@@ -117,18 +117,18 @@ bool side_copy_state(lab_side *side, const lab_side *from) {
         for (uint32_t i = 0; i < springs; i++)
             if (from->broken[i])
                 list[count++] = i;
-        ok = accepted(side, mspring_network_get_positions(from->network, 0, particles, x, y, 1)) &&
-             accepted(side, mspring_network_get_velocities(from->network, 0, particles, vx, vy, 1)) &&
-             accepted(side, mspring_network_set_positions(side->network, 0, particles, x, y, 1)) &&
-             accepted(side, mspring_network_set_velocities(side->network, 0, particles, vx, vy, 1)) &&
+        ok = accepted(side, mspring_network_get_positions(from->network, NULL, 0, particles, x, y, 1)) &&
+             accepted(side, mspring_network_get_velocities(from->network, NULL, 0, particles, vx, vy, 1)) &&
+             accepted(side, mspring_network_set_positions(side->network, NULL, 0, particles, x, y, 1)) &&
+             accepted(side, mspring_network_set_velocities(side->network, NULL, 0, particles, vx, vy, 1)) &&
              break_listed(side, list, count) && side_copy_bent(side, from);
         for (uint32_t i = 0; ok && i < particles; i++) {
             const float scale = side_is_pinned(from, i) ? 0 : 1;
             if (side_is_pinned(from, i) != side_is_pinned(side, i))
-                ok =
-                    accepted(side, mspring_network_set(side->network, MSPRING_INVERSE_MASS_SCALE, i, 1, &scale, 1));
+                ok = accepted(
+                    side, mspring_network_set(side->network, MSPRING_INVERSE_MASS_SCALE, NULL, i, 1, &scale, 1));
         }
-        ok = ok && accepted(side, mspring_network_view(side->network, &side->view));
+        ok = ok && accepted(side, mspring_network_get_view(side->network, &side->view));
     }
     free(x);
     free(y);

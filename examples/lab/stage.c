@@ -35,7 +35,7 @@ static bool read_image(lab_stage *made, const char *path, bool relative, scene_e
         ok = scene_image_parse(bytes, length, path, &tables[1], &options, &made->made, error);
     if (ok && image_decode(bytes, length, path, &image, error)) {
         const size_t pixels = (size_t)image.width * image.height;
-        const uint32_t most = mspring_builder_particle_count(made->made.builder);
+        const uint32_t most = mspring_builder_count(made->made.builder, MSPRING_PARTICLES);
         made->material = malloc(most * sizeof *made->material);
         uint32_t id = 0;
         for (size_t i = 0; made->material && i < pixels && id < most; i++) {
@@ -94,8 +94,7 @@ static bool allocate(lab_stage *made) {
     made->yield_strain = malloc(springs * sizeof *made->yield_strain);
     made->long_springs = malloc(springs * sizeof *made->long_springs);
     return made->x && made->y && made->mass && made->pinned && made->a && made->b && made->rest &&
-           made->stiffness && made->damping && made->yield_strain &&
-           made->long_springs;
+           made->stiffness && made->damping && made->yield_strain && made->long_springs;
 }
 
 static int compare_floats(const void *a, const void *b) {
@@ -148,20 +147,23 @@ static mspring_id far_from_pins(const lab_stage *made) {
 
 static bool read_network(lab_stage *made, const mspring_network *network) {
     const uint32_t particles = made->particle_count, springs = made->spring_count;
-    mspring_view view = {.struct_size = sizeof view};
+    mspring_view view = mspring_view_default();
     const bool ok =
-        mspring_network_view(network, &view) == MSPRING_OK &&
-        mspring_network_get_positions(network, 0, particles, made->x, made->y, 1) == MSPRING_OK &&
-        mspring_network_get(network, MSPRING_MASS, 0, particles, made->mass, 1) == MSPRING_OK &&
-        mspring_network_get_ends(network, 0, springs, MSPRING_ENDS_IDS, made->a, made->b, 1) == MSPRING_OK &&
-        mspring_network_get(network, MSPRING_REST_LENGTH, 0, springs, made->rest, 1) == MSPRING_OK &&
-        mspring_network_get(network, MSPRING_STIFFNESS, 0, springs, made->stiffness, 1) == MSPRING_OK &&
-        mspring_network_get(network, MSPRING_DAMPING, 0, springs, made->damping, 1) == MSPRING_OK &&
-        mspring_network_get(network, MSPRING_YIELD_STRAIN, 0, springs, made->yield_strain, 1) == MSPRING_OK;
+        mspring_network_get_view(network, &view) == MSPRING_OK &&
+        mspring_network_get_positions(network, NULL, 0, particles, made->x, made->y, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_MASS, NULL, 0, particles, made->mass, 1) == MSPRING_OK &&
+        mspring_network_get_columns(
+            network, NULL, 0, springs,
+            (const mspring_column[]){{MSPRING_END_A, 1, made->a}, {MSPRING_END_B, 1, made->b}}, 2) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_REST_LENGTH, NULL, 0, springs, made->rest, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_STIFFNESS, NULL, 0, springs, made->stiffness, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_DAMPING, NULL, 0, springs, made->damping, 1) == MSPRING_OK &&
+        mspring_network_get(network, MSPRING_YIELD_STRAIN, NULL, 0, springs, made->yield_strain, 1) == MSPRING_OK;
     for (uint32_t i = 0; ok && i < particles; i++)
         made->pinned[i] = view.inverse_mass[view.slot_of_particle[i]] == 0;
     uint32_t flags = 0;
-    if (ok && springs > 0 && mspring_network_get_spring_flags(network, 0, 1, &flags, 1) == MSPRING_OK)
+    if (ok && springs > 0 &&
+        mspring_network_get_integers(network, MSPRING_SPRING_FLAGS, NULL, 0, 1, &flags, 1) == MSPRING_OK)
         made->relative = made->relative || (flags & MSPRING_SPRING_RELATIVE) != 0;
     for (uint32_t i = 0; ok && i < springs; i++)
         made->has_damping = made->has_damping || made->damping[i] > 0;
@@ -184,8 +186,8 @@ static bool read_scene(lab_stage *made, scene_error *error) {
     const mspring_result result = mspring_network_create(builder, NULL, &network);
     if (result != MSPRING_OK)
         return scene_fail_builder(error, made->made.name, builder, result);
-    made->particle_count = mspring_network_particle_count(network);
-    made->spring_count = mspring_network_spring_count(network);
+    made->particle_count = mspring_network_count(network, MSPRING_PARTICLES);
+    made->spring_count = mspring_network_count(network, MSPRING_SPRINGS);
     const bool ok = allocate(made) && read_network(made, network);
     mspring_network_destroy(network);
     if (!ok)

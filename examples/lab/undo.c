@@ -26,7 +26,7 @@ void undo_clear(lab_undo *undo) {
 }
 
 static bool save(const lab_side *side, void **snapshot, size_t *size) {
-    if (mspring_network_snapshot_size(side->network, MSPRING_SNAPSHOT_ALL, size) != MSPRING_OK)
+    if (mspring_network_get_snapshot_size(side->network, MSPRING_SNAPSHOT_ALL, size) != MSPRING_OK)
         return false;
     *snapshot = malloc(*size);
     return *snapshot &&
@@ -73,7 +73,7 @@ bool undo_pop(lab_undo *undo, lab_side *sides, const lab_settings *now, lab_mome
             ok = false;
         }
         side_drop(&sides[i]);
-        (void)!mspring_network_view(sides[i].network, &sides[i].view);
+        (void)!mspring_network_get_view(sides[i].network, &sides[i].view);
         side_find_broken(&sides[i]);
     }
     *state = *last;

@@ -81,8 +81,8 @@ static void find_rows(view_side *kept, const lab_side *side) {
 static void find_islands(view_side *kept, const lab_side *side) {
     kept->numbered = NULL;
     if (mspring_network_update_components(side->network, NULL, NULL) != MSPRING_OK ||
-        mspring_network_get_component_numbers(side->network, 0, side->stage->particle_count, kept->number, 1) !=
-            MSPRING_OK)
+        mspring_network_get_integers(side->network, MSPRING_COMPONENT, NULL, 0, side->stage->particle_count,
+                                     kept->number, 1) != MSPRING_OK)
         for (uint32_t i = 0; i < side->stage->particle_count; i++)
             kept->number[i] = 0;
 }

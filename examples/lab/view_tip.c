@@ -47,7 +47,7 @@ void view_draw_spring(lab_view *view, const lab_model *model, int index, const l
     camera_to_pixel(camera, bx, by, &qx, &qy);
     snprintf(lines[0], TIP_TEXT, "spring %u of particles %u and %u", spring, a, b);
     if (side->broken[spring] ||
-        mspring_network_get(side->network, MSPRING_FORCE, spring, 1, &force, 1) != MSPRING_OK)
+        mspring_network_get(side->network, MSPRING_TENSION, NULL, spring, 1, &force, 1) != MSPRING_OK)
         snprintf(lines[1], TIP_TEXT, "broken");
     else
         snprintf(lines[1], TIP_TEXT, "%.4g m, strain %.3g %%, %s %sN", hypot(bx - ax, by - ay),

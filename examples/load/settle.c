@@ -7,7 +7,7 @@
 #include "draw/network_picture.h"
 #include "scenes/internal.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +34,8 @@ static bool draw(const network_shape *shape, mspring_network *network, const cha
     draw_error problem = {""};
     double *x = malloc(shape->particle_count * sizeof *x);
     double *y = malloc(shape->particle_count * sizeof *y);
-    bool ok = x && y && mspring_network_get_positions(network, 0, shape->particle_count, x, y, 1) == MSPRING_OK;
+    bool ok =
+        x && y && mspring_network_get_positions(network, NULL, 0, shape->particle_count, x, y, 1) == MSPRING_OK;
     if (ok) {
         world_box box = world_box_add(network_shape_bounds(shape), x, y, shape->particle_count);
         double limit = network_strain_limit(shape, x, y);
@@ -84,76 +85,70 @@ static void picture_path(const char *path, const char *solver, char made[1024]) 
              dot ? path + length : ".png");
 }
 
-typedef struct box {
-    double left, bottom, right, top;
-} box;
-
-static box bounds_of(const mspring_network *network) {
-    box b = {0, 0, 0, 0};
-    if (mspring_network_bounds(network, &b.left, &b.bottom, &b.right, &b.top) != MSPRING_OK)
-        b.left = b.bottom = b.right = b.top = NAN;
-    return b;
+static mspring_body body_of(const mspring_network *network) {
+    mspring_body all = mspring_body_default();
+    if (mspring_network_get_body(network, NULL, 0, MSPRING_ALL, &all) != MSPRING_OK)
+        all.min_x = all.min_y = all.max_x = all.max_y = NAN;
+    return all;
 }
 
 static bool start(mspring_network *network, mspring_solver solver, uint32_t substeps, scene_error *error) {
-    const double plane[4] = {0, bounds_of(network).bottom, 0, 1};
-    mspring_floor_def ground;
-    mspring_solver_def def;
-    mspring_floor_def_init(&ground, sizeof ground);
-    mspring_solver_def_init(&def, sizeof def);
-    ground.plane_count = 1;
-    ground.planes = plane;
+    mspring_floor_def ground = mspring_floor_def_default();
+    mspring_settings settings = mspring_settings_default();
+    ground.height_count = 1;
+    ground.heights_y = body_of(network).min_y;
     ground.friction = friction;
-    def.solver = solver;
-    def.substeps = IMPLICIT_SUBSTEPS;
     mspring_result result = mspring_network_set_floor(network, &ground);
-    if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT && substeps > 0)
-        def.substeps = substeps;
-    else if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT)
-        result = mspring_network_suggest_substeps(network, frame, safety, &def.substeps);
     if (result == MSPRING_OK)
-        result = mspring_network_set_solver(network, &def);
+        result = mspring_network_get_settings(network, &settings);
+    settings.solver = solver;
+    settings.substeps = IMPLICIT_SUBSTEPS;
+    if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT && substeps > 0)
+        settings.substeps = substeps;
+    else if (result == MSPRING_OK && solver == MSPRING_SOLVER_EXPLICIT)
+        result = mspring_network_suggest_substeps(network, frame, safety, &settings.substeps);
+    if (result == MSPRING_OK)
+        result = mspring_network_set_settings(network, &settings);
     return result == MSPRING_OK || fail(network, result, "cannot set the solver", error);
 }
 
 static bool let_down(mspring_network *network, const char *name, const settle_request *request,
                      scene_error *error) {
-    const box first = bounds_of(network);
+    const mspring_body first = body_of(network);
+    const double width = first.max_x - first.min_x, height = first.max_y - first.min_y;
     const int frames = (int)ceil(request->seconds / frame);
     const double began = clock_seconds();
     double most_energy = 0;
-    double energy = 0;
+    mspring_energy energy = mspring_energy_default();
     for (int i = 0; i < frames; i++) {
         mspring_result result = mspring_network_step(network, frame);
         if (result != MSPRING_OK)
             return fail(network, result, name, error);
-        if (mspring_network_energy(network, &energy, NULL, NULL) == MSPRING_OK && energy > most_energy)
-            most_energy = energy;
+        if (mspring_network_get_energy(network, &energy) == MSPRING_OK && energy.kinetic > most_energy)
+            most_energy = energy.kinetic;
     }
     const double spent = clock_seconds() - began;
-    const box last = bounds_of(network);
-    float strain = 0;
-    mspring_step_info info = {.struct_size = sizeof info};
+    const mspring_body last = body_of(network);
+    const double last_width = last.max_x - last.min_x;
+    mspring_step_info info = mspring_step_info_default();
     (void)!mspring_network_get_step_info(network, &info);
-    const bool measured = mspring_network_max_strain(network, &strain, NULL) == MSPRING_OK;
     printf("%-10s %u substeps, %d frames of 1/64 s, %.3g ms each: top %.4g m lower, %.4g m wider, kinetic energy "
            "%.3g J (most %.3g), strain %.3g\n",
-           name, info.substeps, frames, 1e3 * spent / frames, first.top - last.top,
-           (last.right - last.left) - (first.right - first.left), energy, most_energy, measured ? strain : NAN);
-    const double size = fmax(first.right - first.left, first.top - first.bottom);
-    if (!(last.right - last.left <= burst * size && last.top - last.bottom <= burst * size))
+           name, info.substeps, frames, 1e3 * spent / frames, first.max_y - last.max_y, last_width - width,
+           energy.kinetic, most_energy, fabs(energy.largest_strain));
+    const double size = fmax(width, height);
+    if (!(last_width <= burst * size && last.max_y - last.min_y <= burst * size))
         return scene_fail(error, "%s: it has flown apart", name);
     return true;
 }
 
 bool settle_run(scene *settled, mspring_solver solver, const settle_request *request, scene_error *error) {
     const char *name = solver == MSPRING_SOLVER_EXPLICIT ? "explicit" : "implicit";
-    mspring_network_def def;
+    mspring_network_def def = mspring_network_def_default();
     mspring_network *network = NULL;
     network_shape shape;
-    mspring_network_def_init(&def, sizeof def);
-    def.global_damping = drag;
-    def.guard = MSPRING_GUARD_GROWTH;
+    def.settings.global_damping = drag;
+    def.settings.guard = MSPRING_GUARD_GROWTH;
     mspring_result result = mspring_network_create(settled->builder, &def, &network);
     if (result != MSPRING_OK)
         return scene_fail_builder(error, "cannot make the network", settled->builder, result);

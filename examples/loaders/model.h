@@ -5,7 +5,7 @@
 #ifndef LOADERS_MODEL_H
 #define LOADERS_MODEL_H
 
-#include <massspring/massspring_laws.h>
+#include <massspring/massspring.h>
 
 #include "loaders/structure.h"
 #include "scenes/internal.h"

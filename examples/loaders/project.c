@@ -59,7 +59,7 @@ static void merge_nodes(const model *from, const int axes[2], place_table *table
         if (particle == MSPRING_NONE) {
             particle = made->particle_count++;
             mspring_particle_def *def = &made->particles[particle];
-            mspring_particle_def_init(def, sizeof *def);
+            *def = mspring_particle_def_default();
             def->x = x;
             def->y = y;
             def->mass = 0;
@@ -93,7 +93,7 @@ static bool flatten_beam(const model *from, const model_beam *beam, mspring_id a
         rest = rest < least_rest ? least_rest : most_rest;
         tally_add_text(&made->report.notes, "springs whose tension was limited", 1);
     }
-    mspring_spring_def_init(def, sizeof *def);
+    *def = mspring_spring_def_default();
     def->a = a;
     def->b = b;
     def->flags = (from->relative ? MSPRING_SPRING_RELATIVE : 0u) | beam->side;

@@ -5,7 +5,7 @@
 #include "scenes/extremes.h"
 #include "scenes/internal.h"
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,8 +91,7 @@ static double between(maker *m, double low, double high) {
 // A particle somewhere on the grid of the spacing, of 1 kg to the ratio: as many of each third of its powers of
 // ten.
 static mspring_id add_particle(maker *m, double column, double row, uint32_t flags) {
-    mspring_particle_def def;
-    mspring_particle_def_init(&def, sizeof def);
+    mspring_particle_def def = mspring_particle_def_default();
     const double spacing = spacings[m->what->spacing], root = ratio_roots[m->what->ratio];
     double mass = 1;
     for (uint32_t power = random_below(&m->seed, 4); power > 0; power--)
@@ -103,22 +102,21 @@ static mspring_id add_particle(maker *m, double column, double row, uint32_t fla
     def.flags = flags;
     mspring_id id = MSPRING_NONE;
     if (m->result == MSPRING_OK)
-        m->result = mspring_builder_add_particle(m->builder, &def, &id);
+        m->result = mspring_builder_add_particles(m->builder, &def, 1, &id);
     m->masses[m->particles++] = mass;
     m->mass += mass;
     return id;
 }
 
 static void add_spring(maker *m, mspring_id a, mspring_id b) {
-    mspring_spring_def def;
-    mspring_spring_def_init(&def, sizeof def);
+    mspring_spring_def def = mspring_spring_def_default();
     const double stiffness = powers[m->what->stiffness];
     def.a = a;
     def.b = b;
     def.stiffness = (float)stiffness;
     def.damping = (float)(dampers[m->what->damper] * 2 * sqrt(stiffness));
     if (m->result == MSPRING_OK)
-        m->result = mspring_builder_add_spring(m->builder, &def, NULL);
+        m->result = mspring_builder_add_springs(m->builder, &def, 1, NULL);
     m->springs++;
 }
 
@@ -196,9 +194,9 @@ typedef struct motion {
 } motion;
 
 static bool read_motion(const mspring_network *network, motion *now) {
-    now->count = mspring_network_particle_count(network);
-    return mspring_network_get_positions(network, 0, now->count, now->x, now->y, 1) == MSPRING_OK &&
-           mspring_network_get_velocities(network, 0, now->count, now->vx, now->vy, 1) == MSPRING_OK;
+    now->count = mspring_network_count(network, MSPRING_PARTICLES);
+    return mspring_network_get_positions(network, NULL, 0, now->count, now->x, now->y, 1) == MSPRING_OK &&
+           mspring_network_get_velocities(network, NULL, 0, now->count, now->vx, now->vy, 1) == MSPRING_OK;
 }
 
 static bool is_finite(const motion *now) {
@@ -209,10 +207,10 @@ static bool is_finite(const motion *now) {
 }
 
 static double energy_of(const mspring_network *network) {
-    double kinetic = 0, elastic = 0;
-    if (mspring_network_energy(network, &kinetic, &elastic, NULL) != MSPRING_OK)
+    mspring_energy energy = mspring_energy_default();
+    if (mspring_network_get_energy(network, &energy) != MSPRING_OK)
         return INFINITY;
-    return kinetic + elastic;
+    return energy.kinetic + energy.elastic;
 }
 
 /* ----------------------------------------------------------------------------------------------- what they do */
@@ -228,7 +226,7 @@ static mspring_result disturb(mspring_network *network, const maker *m) {
         now.x[i] += distance * (2 * random_unit(&seed) - 1);
         now.y[i] += distance * (2 * random_unit(&seed) - 1);
     }
-    return mspring_network_set_positions(network, 0, now.count, now.x, now.y, 1);
+    return mspring_network_set_positions(network, NULL, 0, now.count, now.x, now.y, 1);
 }
 
 // Whether a refusal is what it should be.
@@ -256,19 +254,26 @@ static measure measure_of(const maker *m, extreme_way way, double dt) {
 }
 
 static double measured_energy(const mspring_network *network, const maker *m, const measure *by) {
-    double sum = 0, kinetic = 0;
+    double sum = 0;
     if (!(by->softened_by > 0))
         return energy_of(network);
     for (mspring_id s = 0; s < m->springs; s++) {
-        mspring_spring_info info = {.struct_size = sizeof info};
-        if (mspring_network_get_spring(network, s, &info) != MSPRING_OK)
+        mspring_id a, b;
+        float length, rest, k;
+        const mspring_column columns[] = {{MSPRING_END_A, 1, &a},
+                                          {MSPRING_END_B, 1, &b},
+                                          {MSPRING_LENGTH, 1, &length},
+                                          {MSPRING_ACTIVE_REST_LENGTH, 1, &rest},
+                                          {MSPRING_ACTIVE_STIFFNESS, 1, &k}};
+        if (mspring_network_get_columns(network, NULL, s, 1, columns, 5) != MSPRING_OK)
             return INFINITY;
-        const double extension = (double)info.length - (double)info.rest_length, stiffness = (double)info.stiffness;
-        const double inverse_mass = 1 / m->masses[info.a] + 1 / m->masses[info.b];
+        const double extension = (double)length - (double)rest, stiffness = (double)k;
+        const double inverse_mass = 1 / m->masses[a] + 1 / m->masses[b];
         sum += 0.5 * stiffness / (1 + stiffness * by->softened_by * by->softened_by * inverse_mass) * extension *
                extension;
     }
-    return mspring_network_energy(network, &kinetic, NULL, NULL) == MSPRING_OK ? sum + kinetic : INFINITY;
+    mspring_energy energy = mspring_energy_default();
+    return mspring_network_get_energy(network, &energy) == MSPRING_OK ? sum + energy.kinetic : INFINITY;
 }
 
 static extreme_outcome take_steps(mspring_network *network, const maker *m, extreme_way way, double dt, char *text,
@@ -289,14 +294,16 @@ static extreme_outcome take_steps(mspring_network *network, const maker *m, extr
             return judge_refusal(EXTREME_GUARDED, result == MSPRING_ERROR_UNSTABLE, result,
                                  mspring_network_error(network), text, size);
         const double root = sqrt(first + noise) + 9.8 * step * dt * sqrt(m->mass / 2);
-        // Near the border the energy of a mode swings by a factor of a hundred. Clamped springs are as stiff as the shape
-        // allows at the time, so that their energy is not that of a function of the shape: motion has the bound.
-        mspring_step_info info = {.struct_size = sizeof info};
+        // Near the border the energy of a mode swings by a factor of a hundred. Clamped springs are as stiff as the
+        // shape allows at the time, so that their energy is not that of a function of the shape: motion has the
+        // bound.
+        mspring_step_info info = mspring_step_info_default();
         const bool loses =
             mspring_network_get_step_info(network, &info) == MSPRING_OK && info.fallback_count == info.step_count;
-        double energy = loses ? 0 : measured_energy(network, m, &by);
-        if (loses && mspring_network_energy(network, &energy, NULL, NULL) != MSPRING_OK)
+        mspring_energy all = mspring_energy_default();
+        if (loses && mspring_network_get_energy(network, &all) != MSPRING_OK)
             return EXTREME_FAILED;
+        const double energy = loses ? all.kinetic : measured_energy(network, m, &by);
         if (!(energy <= (loses ? 1.001 : 400) * root * root)) {
             snprintf(text, size, "%g J of at most %g J in step %d", energy, root * root, step);
             return EXTREME_DIVERGED;
@@ -306,11 +313,10 @@ static extreme_outcome take_steps(mspring_network *network, const maker *m, extr
 }
 
 extreme_outcome extreme_run(const extreme_network *what, extreme_way way, double dt, char *text, size_t size) {
-    mspring_network_def def;
-    mspring_network_def_init(&def, sizeof def);
-    def.substeps = 1;
-    def.solver = way.solver;
-    def.guard = way.guard;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = 1;
+    def.settings.solver = way.solver;
+    def.settings.guard = way.guard;
     mspring_network *network = NULL;
     maker m = start(what);
     extreme_outcome outcome;
@@ -334,12 +340,11 @@ extreme_outcome extreme_run(const extreme_network *what, extreme_way way, double
 // Whether small motion grows in substeps of h. At first each particle has as much energy as a particle of 1 kg that
 // goes up to a ten-thousandth of the spacing in a substep: what goes mad is the light ones.
 static bool grows(maker *m, double h) {
-    mspring_network_def def;
-    mspring_network_def_init(&def, sizeof def);
-    def.substeps = 1;
-    def.gravity_y = 0;
-    def.guard = MSPRING_GUARD_BOUNDS;
-    def.max_speed = 1e15f;
+    mspring_network_def def = mspring_network_def_default();
+    def.settings.substeps = 1;
+    def.settings.gravity_y = 0;
+    def.settings.guard = MSPRING_GUARD_BOUNDS;
+    def.settings.max_speed = 1e15f;
     mspring_network *network = NULL;
     if (mspring_network_create(m->builder, &def, &network) != MSPRING_OK)
         return false;
@@ -353,7 +358,7 @@ static bool grows(maker *m, double h) {
     }
     if (m->what->shape == EXTREME_ROPE)
         now.vx[0] = now.vy[0] = 0; // pinned
-    grew = grew || mspring_network_set_velocities(network, 0, now.count, now.vx, now.vy, 1) != MSPRING_OK;
+    grew = grew || mspring_network_set_velocities(network, NULL, 0, now.count, now.vx, now.vy, 1) != MSPRING_OK;
     double first = 0;
     for (int i = 0; i < TRIED_SUBSTEPS && !grew; i++) {
         grew = mspring_network_step(network, h) != MSPRING_OK;
@@ -373,7 +378,7 @@ double extreme_border(const extreme_network *what) {
     maker m = start(what);
     double predicted = 0, low = 0.95, high = 1.05;
     bool known = m.result == MSPRING_OK && mspring_network_create(m.builder, NULL, &network) == MSPRING_OK &&
-                 mspring_network_stable_dt(network, &predicted, NULL) == MSPRING_OK && predicted > 0 &&
+                 mspring_network_get_stable_dt(network, &predicted, NULL) == MSPRING_OK && predicted > 0 &&
                  predicted < INFINITY;
     mspring_network_destroy(network);
     // From inside outwards: most are near 1.

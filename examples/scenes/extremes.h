@@ -65,7 +65,7 @@ typedef enum extreme_outcome {
 extreme_outcome extreme_run(const extreme_network *network, extreme_way way, double dt, char *text, size_t size);
 
 /// Find the explicit border by trying: the longest substep in which small motion does not grow, within 5 % of what
-/// mspring_network_stable_dt() says.
+/// mspring_network_get_stable_dt() says.
 /// @return measured border over the one that is predicted, to 0.1 %; 0 if the network cannot be made; 0.95 or 1.05
 ///         if it is that or further off
 double extreme_border(const extreme_network *network);

@@ -114,7 +114,7 @@ static mspring_material *make_materials(const scene_materials *materials, const 
         return NULL;
     for (size_t i = 0; i < materials->count; i++) {
         const scene_material *given = &materials->items[i];
-        mspring_material_init(&made[i], sizeof made[i]);
+        made[i] = mspring_material_default();
         made[i].mass = given->mass;
         made[i].stiffness = options->stiffness >= 0 ? options->stiffness : given->stiffness;
         made[i].damping = options->damping >= 0                          ? options->damping
@@ -161,7 +161,7 @@ static bool add_break_strains(const pixel_image *image, const uint16_t *cells, c
     bool any = false;
     for (size_t i = 0; i < materials->count; i++)
         any = any || materials->items[i].break_strain > 0;
-    uint32_t springs = mspring_builder_spring_count(out->builder);
+    uint32_t springs = mspring_builder_count(out->builder, MSPRING_SPRINGS);
     if (!any || springs == 0)
         return true;
     out->break_strain = malloc(springs * sizeof *out->break_strain);
@@ -176,8 +176,7 @@ static bool add_lattice(const pixel_image *image, const uint16_t *cells, const s
     mspring_material *made = make_materials(materials, options);
     if (!made)
         return scene_fail_memory(error, "cannot make the network");
-    mspring_lattice_def lattice;
-    mspring_lattice_def_init(&lattice, sizeof lattice);
+    mspring_lattice_def lattice = mspring_lattice_def_default();
     lattice.width = image->width;
     lattice.height = image->height;
     lattice.spacing = options->spacing;

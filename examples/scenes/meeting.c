@@ -8,12 +8,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 // Particles of this mass are stable in 30 explicit substeps of 1/64 s with a margin.
 static mspring_material material_of(float mass, const scene_options *options) {
-    mspring_material made;
-    mspring_material_init(&made, sizeof made);
+    mspring_material made = mspring_material_default();
     made.mass = mass;
     made.stiffness = options->relative ? options->stiffness : options->stiffness * mass / options->mass;
     made.damping = options->relative ? options->damping : options->damping * mass / options->mass;
@@ -52,8 +51,7 @@ static bool add_ship(scene *out, bool faces_left, double x, double y, const mspr
             const int along = faces_left ? HULL_LENGTH - 1 - column : column;
             cells[HULL_HEIGHT - 1 - row][column] = is_hull(along, row) ? 0 : MSPRING_CELL_EMPTY;
         }
-    mspring_lattice_def hull;
-    mspring_lattice_def_init(&hull, sizeof hull);
+    mspring_lattice_def hull = mspring_lattice_def_default();
     hull.width = HULL_LENGTH, hull.height = HULL_HEIGHT, hull.cells = cells[0];
     hull.materials = steel, hull.material_count = 1, hull.x = x, hull.y = y;
     return add_lattice(out, &hull, error);
@@ -64,11 +62,11 @@ static bool fill_ships(scene *out, const scene_options *options, scene_error *er
     const mspring_material steel = material_of(options->mass, options);
     if (!add_ship(out, false, 0, 0, &steel, error))
         return false;
-    const uint32_t first = mspring_builder_particle_count(out->builder);
+    const uint32_t first = mspring_builder_count(out->builder, MSPRING_PARTICLES);
     if (!add_ship(out, true, HULL_LENGTH + 8, -9, &steel, error))
         return false;
-    const uint32_t particles = mspring_builder_particle_count(out->builder);
-    const uint32_t springs = mspring_builder_spring_count(out->builder);
+    const uint32_t particles = mspring_builder_count(out->builder, MSPRING_PARTICLES);
+    const uint32_t springs = mspring_builder_count(out->builder, MSPRING_SPRINGS);
     out->velocity = calloc(2 * (size_t)particles, sizeof *out->velocity);
     out->break_strain = malloc(springs * sizeof *out->break_strain);
     if (!out->velocity || !out->break_strain)
@@ -94,10 +92,9 @@ static bool add_pit(scene *out, int width, int height, const scene_options *opti
         for (int column = 0; column < width; column++)
             cells[row * width + column] =
                 column == 0 || column == width - 1 || row == height - 1 ? 0 : MSPRING_CELL_EMPTY;
-    mspring_lattice_def pit;
-    mspring_lattice_def_init(&pit, sizeof pit);
+    mspring_lattice_def pit = mspring_lattice_def_default();
     pit.width = (uint32_t)width, pit.height = (uint32_t)height, pit.cells = cells;
-    pit.materials = &wall, pit.material_count = 1;
+    pit.materials = &wall;
     const bool ok = add_lattice(out, &pit, error);
     free(cells);
     return ok;
@@ -114,10 +111,9 @@ static bool add_fragment(scene *out, uint64_t *seed, double x, double y, const s
         cells[corners[i]] = random_below(seed, 2) ? MSPRING_CELL_EMPTY : 0;
     const float heavier = (float)pow(30, random_unit(seed) - 0.5); // 1:30
     const mspring_material material = material_of(heavier * options->mass, options);
-    mspring_lattice_def fragment;
-    mspring_lattice_def_init(&fragment, sizeof fragment);
+    mspring_lattice_def fragment = mspring_lattice_def_default();
     fragment.width = width, fragment.height = height, fragment.cells = cells;
-    fragment.materials = &material, fragment.material_count = 1;
+    fragment.materials = &material;
     fragment.x = x + random_unit(seed), fragment.y = y;
     return add_lattice(out, &fragment, error);
 }
@@ -138,13 +134,15 @@ static bool fill_jellies(scene *out, uint32_t count, const scene_options *option
     const uint32_t rows = (count + ACROSS - 1) / ACROSS;
     bool ok = add_pit(out, WIDTH, 8 + (int)rows * 8, options, error);
     for (uint32_t i = 0; ok && i < count; i++) {
-        mspring_disc_def jelly;
-        mspring_disc_def_init(&jelly, sizeof jelly);
+        mspring_material jelly_material = mspring_material_default();
+        mspring_disc_def jelly = mspring_disc_def_default();
+        jelly.material = &jelly_material;
+        jelly.area_density = 1.0f;
         jelly.x = 5 + PITCH * (i % ACROSS) + 0.7 * (i / ACROSS % 2), jelly.y = 6 + PITCH * (double)(i / ACROSS);
         jelly.radius = 3.6, jelly.ring_count = 3;
         jelly.area_density = 60;
-        jelly.spring_flags = MSPRING_SPRING_DAMPING_RATIO;
-        jelly.young_modulus = 1e6f, jelly.damping = 0.1f;
+        jelly_material.spring_flags = MSPRING_SPRING_DAMPING_RATIO;
+        jelly.young_modulus = 1e6f, jelly_material.damping = 0.1f;
         const mspring_result result = mspring_builder_add_disc(out->builder, &jelly, NULL, NULL);
         ok = result == MSPRING_OK || scene_fail_builder(error, "cannot make a jelly", out->builder, result);
     }

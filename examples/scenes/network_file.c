@@ -152,16 +152,15 @@ static bool read_particle(line_reader *reader, mspring_particle_def *def, bool *
 static bool read_particles(line_reader *reader, uint32_t count, scene *out, scene_error *error) {
     unsigned long probe_line = 0;
     for (uint32_t i = 0; i < count; i++) {
-        mspring_particle_def def;
+        mspring_particle_def def = mspring_particle_def_default();
         bool probe = false;
-        mspring_particle_def_init(&def, sizeof def);
         if (!read_record(reader, "particles", i, count, "x y mass pinned probe", error) ||
             !read_particle(reader, &def, &probe, error))
             return false;
         if (probe && probe_line)
             return scene_fail(error, "%.200s:%lu: a second probe, the first is on line %lu: leave one",
                               reader->name, reader->line, probe_line);
-        mspring_result result = mspring_builder_add_particle(out->builder, &def, NULL);
+        mspring_result result = mspring_builder_add_particles(out->builder, &def, 1, NULL);
         if (result != MSPRING_OK)
             return scene_fail_builder(error, "cannot add a particle of the file", out->builder, result);
         if (probe) {
@@ -197,9 +196,8 @@ static bool read_spring(line_reader *reader, uint32_t particles, const scene_opt
 static bool read_springs(line_reader *reader, uint32_t count, uint32_t particles, const scene_options *options,
                          pair_set *joined, scene *out, scene_error *error) {
     for (uint32_t i = 0; i < count; i++) {
-        mspring_spring_def def;
+        mspring_spring_def def = mspring_spring_def_default();
         uint64_t first_line = 0;
-        mspring_spring_def_init(&def, sizeof def);
         if (!read_record(reader, "springs", i, count, "a b rest stiffness damping", error) ||
             !read_spring(reader, particles, options, &def, error))
             return false;
@@ -213,7 +211,7 @@ static bool read_springs(line_reader *reader, uint32_t count, uint32_t particles
         case PAIR_NO_MEMORY:
             return scene_fail_memory(error, "cannot read the springs");
         }
-        mspring_result result = mspring_builder_add_spring(out->builder, &def, NULL);
+        mspring_result result = mspring_builder_add_springs(out->builder, &def, 1, NULL);
         if (result != MSPRING_OK)
             return scene_fail_builder(error, "cannot add a spring of the file", out->builder, result);
     }

@@ -97,13 +97,12 @@ static uint32_t find_nearest(const cell_grid *grid, const place_list *places, ms
 
 static bool add_particles(scene *out, const place_list *places, const scene_options *options, scene_error *error) {
     for (uint32_t i = 0; i < places->count; i++) {
-        mspring_particle_def def;
-        mspring_particle_def_init(&def, sizeof def);
+        mspring_particle_def def = mspring_particle_def_default();
         def.x = places->x[i] * options->spacing;
         def.y = places->y[i] * options->spacing;
         def.mass = options->mass;
         def.flags = i == 0 ? MSPRING_PARTICLE_PINNED : 0;
-        mspring_result result = mspring_builder_add_particle(out->builder, &def, NULL);
+        mspring_result result = mspring_builder_add_particles(out->builder, &def, 1, NULL);
         if (result != MSPRING_OK)
             return scene_fail_builder(error, "cannot make the graph's particles", out->builder, result);
     }
@@ -116,8 +115,7 @@ static bool add_springs(scene *out, const place_list *places, const cell_grid *g
     // A circle that holds about three times the neighbours: those with low ids find enough nearer by, those with
     // high ids take what is left instead of reaching across the whole square.
     uint32_t reach = (uint32_t)ceil(sqrt(neighbours)) + 1;
-    mspring_spring_def def;
-    mspring_spring_def_init(&def, sizeof def);
+    mspring_spring_def def = mspring_spring_def_default();
     def.stiffness = options->stiffness;
     def.damping = options->damping;
     def.flags = options->relative ? MSPRING_SPRING_RELATIVE : 0;
@@ -127,7 +125,7 @@ static bool add_springs(scene *out, const place_list *places, const cell_grid *g
         for (uint32_t j = 0; j < found; j++) {
             def.a = i;
             def.b = nearest[j].id;
-            mspring_result result = mspring_builder_add_spring(out->builder, &def, NULL);
+            mspring_result result = mspring_builder_add_springs(out->builder, &def, 1, NULL);
             if (result != MSPRING_OK)
                 return scene_fail_builder(error, "cannot make the graph's springs", out->builder, result);
         }

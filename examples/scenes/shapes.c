@@ -7,14 +7,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 static bool add_bar(scene *out, uint32_t columns, uint32_t rows, const scene_options *options, uint16_t *cells,
                     scene_error *error) {
     enum { FREE, PINNED, KINDS };
     mspring_material materials[KINDS];
     for (int i = 0; i < KINDS; i++) {
-        mspring_material_init(&materials[i], sizeof materials[i]);
+        materials[i] = mspring_material_default();
         materials[i].mass = options->mass;
         materials[i].stiffness = options->stiffness;
         materials[i].damping = options->damping;
@@ -25,8 +25,7 @@ static bool add_bar(scene *out, uint32_t columns, uint32_t rows, const scene_opt
         for (uint32_t column = 0; column < columns; column++)
             cells[(size_t)row * columns + column] = column == 0 ? PINNED : FREE;
 
-    mspring_lattice_def lattice;
-    mspring_lattice_def_init(&lattice, sizeof lattice);
+    mspring_lattice_def lattice = mspring_lattice_def_default();
     lattice.width = columns;
     lattice.height = rows;
     lattice.spacing = options->spacing;
@@ -63,25 +62,25 @@ bool scene_bar(uint32_t columns, uint32_t rows, const scene_options *options, sc
 }
 
 static bool add_hanging_rope(scene *out, uint32_t particles, const scene_options *options, scene_error *error) {
-    mspring_rope_def rope;
-    mspring_rope_def_init(&rope, sizeof rope);
+    mspring_material rope_material = mspring_material_default();
+    mspring_rope_def rope = mspring_rope_def_default();
+    rope.material = &rope_material;
     mspring_id *ends[2] = {&rope.from, &rope.to};
     for (int i = 0; i < 2; i++) {
-        mspring_particle_def end;
-        mspring_particle_def_init(&end, sizeof end);
+        mspring_particle_def end = mspring_particle_def_default();
         end.flags = MSPRING_PARTICLE_PINNED;
         end.mass = options->mass;
         end.x = i * options->spacing * (particles - 1);
-        mspring_result result = mspring_builder_add_particle(out->builder, &end, ends[i]);
+        mspring_result result = mspring_builder_add_particles(out->builder, &end, 1, ends[i]);
         if (result != MSPRING_OK)
             return scene_fail_builder(error, "cannot make the rope's ends", out->builder, result);
     }
     rope.segment_count = particles - 1;
-    rope.mass = options->mass;
-    rope.stiffness = options->stiffness;
-    rope.damping = options->damping;
-    rope.spring_flags = options->relative ? MSPRING_SPRING_RELATIVE : 0;
-    mspring_result result = mspring_builder_add_rope(out->builder, &rope, NULL, 0, NULL);
+    rope_material.mass = options->mass;
+    rope_material.stiffness = options->stiffness;
+    rope_material.damping = options->damping;
+    rope_material.spring_flags = options->relative ? MSPRING_SPRING_RELATIVE : 0;
+    mspring_result result = mspring_builder_add_rope(out->builder, &rope, NULL, NULL);
     if (result != MSPRING_OK)
         return scene_fail_builder(error, "cannot make the rope", out->builder, result);
     out->probe = particles / 2 + 1; // behind the two ends

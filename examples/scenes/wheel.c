@@ -10,8 +10,7 @@
 static const double turn = 6.283185307179586;
 
 static mspring_result add_particles(scene *out, uint32_t columns, uint32_t rows, const scene_options *options) {
-    mspring_particle_def def;
-    mspring_particle_def_init(&def, sizeof def);
+    mspring_particle_def def = mspring_particle_def_default();
     def.mass = options->mass;
     mspring_result result = MSPRING_OK;
     for (uint32_t i = 0; result == MSPRING_OK && i < columns * rows; i++) {
@@ -20,14 +19,13 @@ static mspring_result add_particles(scene *out, uint32_t columns, uint32_t rows,
         def.x = radius * cos(angle);
         def.y = radius * sin(angle);
         def.flags = i < columns ? MSPRING_PARTICLE_PINNED : 0;
-        result = mspring_builder_add_particle(out->builder, &def, NULL);
+        result = mspring_builder_add_particles(out->builder, &def, 1, NULL);
     }
     return result;
 }
 
 static mspring_result add_springs(scene *out, uint32_t columns, uint32_t rows, const scene_options *options) {
-    mspring_spring_def def;
-    mspring_spring_def_init(&def, sizeof def);
+    mspring_spring_def def = mspring_spring_def_default();
     def.stiffness = options->stiffness;
     def.damping = options->damping;
     def.flags = options->relative ? MSPRING_SPRING_RELATIVE : 0;
@@ -39,7 +37,7 @@ static mspring_result add_springs(scene *out, uint32_t columns, uint32_t rows, c
         for (int k = 0; result == MSPRING_OK && k < count; k++) {
             def.a = ends[k][0];
             def.b = ends[k][1];
-            result = mspring_builder_add_spring(out->builder, &def, NULL);
+            result = mspring_builder_add_springs(out->builder, &def, 1, NULL);
         }
     }
     return result;

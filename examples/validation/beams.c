@@ -5,9 +5,10 @@
 /// the modulus E = 4 k / 3 (N/m), Poisson's ratio 1/3 and the shear modulus G = k / 2.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include <math.h>
 
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "validation/cases.h"
 
@@ -52,14 +53,14 @@ static void halve_end(world *w, const plate *bar) {
     const mspring_id first = bar->pinned_column ? bar->columns - 1 : 0;
     const uint32_t count = bar->pinned_column ? bar->rows : bar->columns;
     for (uint32_t i = 0; w->result == MSPRING_OK && i < count; i++)
-        world_note(w, mspring_network_set(w->network, MSPRING_MASS, first + i * step, 1, &half, 0));
+        world_note(w, mspring_network_set(w->network, MSPRING_MASS, NULL, first + i * step, 1, &half, 0));
 }
 
 // Of the middle of a lying bar's end.
 static double end_height(world *w, const plate *bar) {
     double x = 0, y = 0, sum = 0;
     for (uint32_t row = 0; w->result == MSPRING_OK && row < bar->rows; row++) {
-        world_note(w, mspring_network_get_positions(w->network, (row + 1) * bar->columns - 1, 1, &x, &y, 1));
+        world_note(w, mspring_network_get_positions(w->network, NULL, (row + 1) * bar->columns - 1, 1, &x, &y, 1));
         sum += y;
     }
     return sum / bar->rows;
@@ -105,7 +106,7 @@ static double projection(world *w, const plate *bar, double root, const double *
     const mspring_id first = bar->rows / 2 * bar->columns;
     for (uint32_t i = 1; w->result == MSPRING_OK && i < bar->columns; i++) {
         double x = 0, y = 0;
-        world_note(w, mspring_network_get_positions(w->network, first + i, 1, &x, &y, 1));
+        world_note(w, mspring_network_get_positions(w->network, NULL, first + i, 1, &x, &y, 1));
         sum += (i + 1 == bar->columns ? 0.5 : 1) * mode(root, i / (bar->columns - 1.0)) * (y - places[0]);
     }
     return sum;
@@ -150,7 +151,7 @@ static outcome period(uint32_t cells, double root) {
     for (uint32_t i = 0; w.result == MSPRING_OK && i < bar.columns * bar.rows; i++) {
         const float vx = 0, vy = (float)(-swing * omega * mode(root, i % bar.columns / (bar.columns - 1.0)));
         if (i % bar.columns > 0)
-            world_note(&w, mspring_network_set_velocities(w.network, i, 1, &vx, &vy, 0));
+            world_note(&w, mspring_network_set_velocities(w.network, NULL, i, 1, &vx, &vy, 0));
     }
     turn_counter turns = {.before = 1};
     for (uint32_t i = 1; w.result == MSPRING_OK && i <= 3 * SAMPLES + SAMPLES / 4; i++) {
@@ -188,7 +189,7 @@ static double resistance(uint32_t cells, double g) {
     double sum = 0;
     for (uint32_t i = 0; w.result == MSPRING_OK && i < column.columns; i++) {
         double x = 0, y = 0;
-        world_note(&w, mspring_network_get_positions(w.network, i, 1, &x, &y, 1));
+        world_note(&w, mspring_network_get_positions(w.network, NULL, i, 1, &x, &y, 1));
         sum += (x - i * column.spacing) / column.columns;
     }
     return world_end(&w, push / sum);

@@ -2,10 +2,10 @@
 /// Oscillations, a wave, a hanging cable and impacts, against closed forms.
 ///
 /// SPDX-License-Identifier: MIT
+#define MSPRING_EXPERIMENTAL // for lab.h
 #include <math.h>
 
-#include <massspring/massspring_contact.h>
-#include <massspring/massspring_tools.h>
+#include <massspring/massspring.h>
 
 #include "validation/cases.h"
 
@@ -13,11 +13,8 @@ static const double pi = 3.14159265358979323846;
 
 // A spring with both ends where they belong: the first pinned at the origin.
 static void add_pair(world *to, double x, double y, double stiffness, double rest_length) {
-    mspring_particle_def ends[2];
-    mspring_spring_def spring;
-    for (int i = 0; i < 2; i++)
-        world_note(to, mspring_particle_def_init(&ends[i], sizeof ends[i]));
-    world_note(to, mspring_spring_def_init(&spring, sizeof spring));
+    mspring_particle_def ends[2] = {mspring_particle_def_default(), mspring_particle_def_default()};
+    mspring_spring_def spring = mspring_spring_def_default();
     ends[0].flags = MSPRING_PARTICLE_PINNED;
     ends[1].x = x;
     ends[1].y = y;
@@ -25,10 +22,8 @@ static void add_pair(world *to, double x, double y, double stiffness, double res
     spring.b = 1;
     spring.stiffness = (float)stiffness;
     spring.rest_length = (float)rest_length;
-    if (to->result == MSPRING_OK)
-        world_note(to, mspring_builder_add_particles(to->builder, ends, 2, NULL));
-    if (to->result == MSPRING_OK)
-        world_note(to, mspring_builder_add_spring(to->builder, &spring, NULL));
+    mspring_builder_add_particles(to->builder, ends, 2, NULL);
+    mspring_builder_add_springs(to->builder, &spring, 1, NULL);
 }
 
 /* ------------------------------------------------------------------------------------------------- oscillations */
@@ -44,7 +39,7 @@ outcome oscillator_period(uint32_t substeps_per_period) {
         double x = 0, y = 0;
         world_note(&w, mspring_network_step(w.network, dt));
         if (w.result == MSPRING_OK)
-            world_note(&w, mspring_network_get_positions(w.network, 1, 1, &x, &y, 1));
+            world_note(&w, mspring_network_get_positions(w.network, NULL, 1, 1, &x, &y, 1));
         turn_counter_add(&turns, i * dt, dt, x - 1);
     }
     return (outcome){world_end(&w, turn_counter_period(&turns)), 1};
@@ -70,7 +65,7 @@ outcome pendulum_period(uint32_t steps_per_second) {
         double x = 0, y = 0;
         world_note(&w, mspring_network_step(w.network, dt));
         if (w.result == MSPRING_OK)
-            world_note(&w, mspring_network_get_positions(w.network, 1, 1, &x, &y, 1));
+            world_note(&w, mspring_network_get_positions(w.network, NULL, 1, 1, &x, &y, 1));
         turn_counter_add(&turns, i * dt, dt, x);
     }
     const double exact = 2 * pi * sqrt(1 / g) / mean_of(1, cos(pi / 4));
@@ -81,23 +76,21 @@ outcome pendulum_period(uint32_t steps_per_second) {
 outcome wave_period(uint32_t springs) {
     const double dt = 0.05 / springs;
     world w = world_begin();
-    for (uint32_t i = 0; w.result == MSPRING_OK && i <= springs; i++) {
+    for (uint32_t i = 0; i <= springs; i++) {
         const double at = (double)i / springs;
-        mspring_particle_def def;
-        world_note(&w, mspring_particle_def_init(&def, sizeof def));
+        mspring_particle_def def = mspring_particle_def_default();
         def.flags = i == 0 || i == springs ? MSPRING_PARTICLE_PINNED : 0;
         def.x = at + 0.01 * sin(pi * at);
         def.mass = (float)(1.0 / springs);
-        world_note(&w, mspring_builder_add_particle(w.builder, &def, NULL));
+        mspring_builder_add_particles(w.builder, &def, 1, NULL);
     }
-    for (uint32_t i = 0; w.result == MSPRING_OK && i < springs; i++) {
-        mspring_spring_def def;
-        world_note(&w, mspring_spring_def_init(&def, sizeof def));
+    for (uint32_t i = 0; i < springs; i++) {
+        mspring_spring_def def = mspring_spring_def_default();
         def.a = i;
         def.b = i + 1;
         def.stiffness = (float)springs;
         def.rest_length = (float)(1.0 / springs);
-        world_note(&w, mspring_builder_add_spring(w.builder, &def, NULL));
+        mspring_builder_add_springs(w.builder, &def, 1, NULL);
     }
     world_make(&w, 0, 0, 1);
     turn_counter turns = {.before = 1};
@@ -106,7 +99,7 @@ outcome wave_period(uint32_t springs) {
         world_note(&w, mspring_network_step(w.network, dt));
         for (uint32_t p = 1; w.result == MSPRING_OK && p < springs; p++) {
             double x = 0, y = 0;
-            world_note(&w, mspring_network_get_positions(w.network, p, 1, &x, &y, 1));
+            world_note(&w, mspring_network_get_positions(w.network, NULL, p, 1, &x, &y, 1));
             sum += (x - (double)p / springs) * sin(pi * p / springs);
         }
         turn_counter_add(&turns, i * dt, dt, sum);
@@ -134,30 +127,28 @@ static double catenary_exact(double span, double length, double weight, double m
 outcome catenary_sag(uint32_t links) {
     const double span = 10, length = 12, weight = 10, modulus = 1e5, g = (double)9.8f; // m, m, N/m, N, m/s^2
     world w = world_begin();
-    mspring_particle_def ends[2];
-    mspring_rope_def rope;
+    mspring_particle_def ends[2] = {mspring_particle_def_default(), mspring_particle_def_default()};
     for (int i = 0; i < 2; i++) {
-        world_note(&w, mspring_particle_def_init(&ends[i], sizeof ends[i]));
         ends[i].flags = MSPRING_PARTICLE_PINNED;
         ends[i].x = i * span;
     }
-    world_note(&w, mspring_rope_def_init(&rope, sizeof rope));
+    mspring_material link = mspring_material_default();
+    link.mass = (float)(weight * length / links / g);
+    link.stiffness = (float)(modulus * links / length);
+    mspring_rope_def rope = mspring_rope_def_default();
     rope.from = 0;
     rope.to = 1;
     rope.segment_count = links;
-    rope.mass = (float)(weight * length / links / g);
-    rope.stiffness = (float)(modulus * links / length);
-    rope.slack = (float)(length / span);
-    if (w.result == MSPRING_OK)
-        world_note(&w, mspring_builder_add_particles(w.builder, ends, 2, NULL));
-    if (w.result == MSPRING_OK)
-        world_note(&w, mspring_builder_add_rope(w.builder, &rope, NULL, 0, NULL));
+    rope.material = &link;
+    rope.length_ratio = (float)(length / span);
+    mspring_builder_add_particles(w.builder, ends, 2, NULL);
+    mspring_builder_add_rope(w.builder, &rope, NULL, NULL);
     world_make(&w, 0, -g, 1);
     double x = 0, y = 0;
     if (w.result == MSPRING_OK)
         world_note(&w, mspring_network_settle(w.network, NULL, NULL));
     if (w.result == MSPRING_OK)
-        world_note(&w, mspring_network_get_positions(w.network, 1 + links / 2, 1, &x, &y, 1));
+        world_note(&w, mspring_network_get_positions(w.network, NULL, 1 + links / 2, 1, &x, &y, 1));
     return (outcome){world_end(&w, -y), catenary_exact(span, length, weight, modulus)};
 }
 
@@ -167,7 +158,7 @@ static double mean_velocity(world *w, mspring_id first, uint32_t count) {
     double sum = 0;
     for (uint32_t i = 0; w->result == MSPRING_OK && i < count; i++) {
         float vx = 0, vy = 0;
-        world_note(w, mspring_network_get_velocities(w->network, first + i, 1, &vx, &vy, 1));
+        world_note(w, mspring_network_get_velocities(w->network, NULL, first + i, 1, &vx, &vy, 1));
         sum += (double)vx;
     }
     return sum / count;
@@ -188,13 +179,12 @@ static double restitution(uint32_t columns, uint32_t times) {
                                  .stiffness = 1,
                                  .mass = mass});
     world_make(&w, 0, 0, 8);
-    mspring_contact_def contact;
+    const mspring_contact_def contact = mspring_contact_def_default();
     const float along = (float)speed, across = 0;
-    world_note(&w, mspring_contact_def_init(&contact, sizeof contact));
     if (w.result == MSPRING_OK)
         world_note(&w, mspring_network_set_contact(w.network, &contact));
     if (w.result == MSPRING_OK)
-        world_note(&w, mspring_network_set_velocities(w.network, 0, columns * ROWS, &along, &across, 0));
+        world_note(&w, mspring_network_set_velocities(w.network, NULL, 0, columns * ROWS, &along, &across, 0));
     // The gap closes, and waves run to and fro through both.
     const double dt = spacing, end = 0.05 * spacing / speed + 6 * times;
     for (uint32_t i = 0; w.result == MSPRING_OK && i * dt < end; i++)

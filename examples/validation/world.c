@@ -23,13 +23,13 @@ world world_begin(void) {
 }
 
 void world_make(world *made, double gravity_x, double gravity_y, uint32_t substeps) {
-    mspring_network_def def;
-    if (!world_note(made, mspring_network_def_init(&def, sizeof def)))
+    mspring_network_def def = mspring_network_def_default();
+    if (made->result != MSPRING_OK)
         return;
-    def.gravity_x = (float)gravity_x;
-    def.gravity_y = (float)gravity_y;
-    def.substeps = substeps;
-    def.max_speed = 1e9f;
+    def.settings.gravity_x = (float)gravity_x;
+    def.settings.gravity_y = (float)gravity_y;
+    def.settings.substeps = substeps;
+    def.settings.max_speed = 1e9f;
     world_note(made, mspring_network_create(made->builder, &def, &made->network));
 }
 
@@ -44,8 +44,8 @@ double world_end(world *ended, double value) {
 
 void world_add_plate(world *to, const plate *added) {
     uint16_t *cells = calloc((size_t)added->columns * added->rows, sizeof *cells);
-    mspring_material materials[2];
-    mspring_lattice_def def;
+    mspring_material materials[2] = {mspring_material_default(), mspring_material_default()};
+    mspring_lattice_def def = mspring_lattice_def_default();
     if (!world_note(to, cells ? MSPRING_OK : MSPRING_ERROR_MEMORY))
         return;
     for (uint32_t row = 0; row < added->rows; row++)
@@ -53,12 +53,10 @@ void world_add_plate(world *to, const plate *added) {
             cells[row * added->columns + column] =
                 (added->pinned_column && column == 0) || (added->pinned_row && row == added->rows - 1);
     for (int i = 0; i < 2; i++) {
-        world_note(to, mspring_material_init(&materials[i], sizeof materials[i]));
         materials[i].mass = (float)added->mass;
         materials[i].stiffness = (float)added->stiffness;
         materials[i].particle_flags = i == 1 ? MSPRING_PARTICLE_PINNED : 0;
     }
-    world_note(to, mspring_lattice_def_init(&def, sizeof def));
     def.width = added->columns;
     def.height = added->rows;
     def.x = added->x;
@@ -68,8 +66,7 @@ void world_add_plate(world *to, const plate *added) {
     def.materials = materials;
     def.material_count = 2;
     def.shear_share = 0.5f;
-    if (to->result == MSPRING_OK)
-        world_note(to, mspring_builder_add_lattice(to->builder, &def, NULL));
+    mspring_builder_add_lattice(to->builder, &def, NULL);
     free(cells);
 }
 
