@@ -99,10 +99,6 @@ mspring_result mspring_builder_add_strain_limits(mspring_builder *builder, const
     if (!builder)
         return MSPRING_ERROR_ARGUMENT;
     mspringi_message_clear(&builder->message);
-    if (ids && count == MSPRING_ALL)
-        return mspringi_builder_end(builder, mspringi_fail(&builder->message, MSPRING_ERROR_ARGUMENT,
-                                                           "the count is MSPRING_ALL, but there is a list of ids: "
-                                                           "give its length"));
     const bool is_open = !ids && count == MSPRING_ALL && first <= builder->spring_count;
     const springs of = {ids, first, is_open ? (uint32_t)builder->spring_count - first : count};
     const mspringi_fp_state before = mspringi_fp_enter();
