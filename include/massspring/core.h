@@ -150,7 +150,7 @@ typedef uint32_t mspring_id;
 /// Largest speed in x or y that you can give to a particle, m/s.
 #define MSPRING_MAX_SPEED 1e15
 
-/// What a network consists of.
+/// Kinds of things in a network.
 typedef enum mspring_kind {
     MSPRING_PARTICLES = 0,
     MSPRING_SPRINGS = 1,
@@ -274,7 +274,7 @@ typedef struct mspring_spring_def {
 } mspring_spring_def;
 MSPRING_DEFAULT(mspring_spring_def, MSPRING_STRUCT_SPRING_DEF);
 
-/// What lattices, ropes, meshes and discs are made of: their particles and their springs.
+/// Material of lattices, ropes, meshes and discs: values of their particles and their springs.
 typedef struct mspring_material {
     uint32_t struct_size;
     uint32_t particle_flags; ///< MSPRING_PARTICLE_PINNED or 0; default 0
@@ -405,7 +405,7 @@ typedef enum mspring_integrator {
     MSPRING_INTEGRATOR_INT = MSPRING_ENUM_INT ///< no value
 } mspring_integrator;
 
-/// What a step does to keep motion bounded. A step always rejects coordinates and speeds that are not finite or out
+/// Ways in which a step keeps motion bounded. A step always rejects coordinates and speeds that are not finite or out
 /// of bounds. With the implicit and the direct solver, most guards keep an energy budget instead. Energy then grows
 /// by no more than the work of gravity, forces and moving pins. The guide solvers.md has the details.
 typedef enum mspring_guard {
@@ -743,7 +743,7 @@ MSPRING_API const char *MSPRING_CALL mspring_network_error(const mspring_network
 /// Threads: shared. Allocates: never.
 MSPRING_API uint32_t MSPRING_CALL mspring_network_count(const mspring_network *network, mspring_kind kind);
 
-/// What a clone has of its own.
+/// Differences of a clone from its original.
 typedef struct mspring_clone_def {
     uint32_t struct_size;
     uint32_t copy_hooks;                ///< 1: the clone has the original's hooks, see mspring_hook_def; default 0
@@ -1303,8 +1303,8 @@ typedef struct mspring_energy {
 } mspring_energy;
 MSPRING_DEFAULT(mspring_energy, MSPRING_STRUCT_ENERGY);
 
-/// Compute the energies and extremes, in double precision. Takes as long as some tens of explicit substeps: for the
-/// largest strain alone, get MSPRING_STRAIN.
+/// Compute the energies and extremes, in double precision. Takes as long as about a hundred explicit substeps: for
+/// the largest strain alone, get MSPRING_STRAIN.
 /// Snapshots and clones have dissipated and yield_count.
 /// Threads: shared. Allocates: never. Errors: ARGUMENT, STRUCT.
 MSPRING_API mspring_result MSPRING_CALL mspring_network_get_energy(

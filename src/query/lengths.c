@@ -10,7 +10,7 @@
 
 enum { LANES = 32 };
 
-/// What is gathered of some springs.
+/// Values gathered of some springs.
 typedef struct batch {
     float dx[LANES], dy[LANES]; ///< from base to tip, m
     float rest[LANES];          ///< m

@@ -10,7 +10,7 @@
 
 /// Force along a spring: > 0 pulls its ends together.
 float mspringi_spring_force(const mspring_network *network, mspring_id spring);
-/// The same of a spring whose values were read, with the way from its base to its tip.
+/// Force along a spring whose values were read, with the way from its base to its tip.
 float mspringi_force_of(const mspring_network *network, mspring_id spring, const mspringi_spring_values *r,
                         double *dx, double *dy, double *length);
 

@@ -128,7 +128,7 @@ const mspringi_thing_ops mspringi_things_springs = {.kind = MSPRING_SPRINGS,
 
 /* ----------------------------------------------------------------------------------------------------- reading */
 
-// What a property of integers reads for a removed thing.
+// Value that a property of integers reads for a removed thing.
 static uint32_t removed_integer(mspring_property property) {
     switch (property) {
     case MSPRING_PARTICLE_FLAGS:

@@ -1,7 +1,7 @@
 /// Forces of the host in the first substep of a step, and in no other.
 ///
-/// They cut the step after that substep. (As an impulse at the start they would not: but integrators of higher
-/// order make something else of a force.)
+/// They cut the step after that substep. An impulse at the start would not, but integrators of higher order spread
+/// a force over the next substeps.
 #include "store/stages.h"
 
 static bool is_used(const mspring_network *network) {

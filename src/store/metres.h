@@ -1,7 +1,7 @@
 /// @file metres.h
 /// Springs whose limits are elongations in metres (MSPRING_SPRING_METRES).
 ///
-/// What happens to a spring depends on strains, of these springs, too: those of the rest length that the host gave.
+/// Breaking, warning and yielding go by strains of the rest length that the host gave, for these springs, too.
 /// Beside them lie the metres as they were given. They are read back, and the strains are renewed from them if the
 /// rest length is set.
 ///

@@ -14,7 +14,7 @@ typedef struct mspringi_values {
     size_t stride; ///< stride in floats
 } mspringi_values;
 
-/// What a kind of thing can do. The state of a network without such things is all zeros: totals are 0.
+/// Functions of a kind of thing. The state of a network without such things is all zeros: totals are 0.
 typedef struct mspringi_thing_ops {
     mspring_kind kind;
     const char *name;

@@ -337,7 +337,7 @@ static double energy_of(const mspring_network *network, const mspringi_area *a) 
     return mspringi_area_element(network, a).law->energy(a, mspringi_area_size(network, a));
 }
 
-// What an area has and an angle has not reads as 0, and the reverse.
+// Numbers that an area has and an angle lacks read as 0, and the reverse.
 static double get(const mspring_network *network, mspring_property property, mspring_id id) {
     const mspringi_area *a = find(network, id);
     const bool is_open = mspringi_area_is_open(network, a);

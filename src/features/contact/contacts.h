@@ -237,7 +237,7 @@ void mspringi_contact_events_take(mspring_network *network, bool is_used, msprin
 mspring_result mspringi_contact_events_resize(mspring_network *network, uint32_t capacity);
 
 /* contact_materials.c */
-/// What a particle has of its own, or the defaults.
+/// A particle's own friction and restitution, or the defaults.
 mspringi_contact_material mspringi_contact_material_of(const mspring_network *network, mspring_id particle);
 uint32_t mspringi_contact_layers_of(const mspring_network *network, mspring_id particle);
 uint32_t mspringi_contact_masks_of(const mspring_network *network, mspring_id particle);

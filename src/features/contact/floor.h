@@ -100,7 +100,7 @@ void mspringi_floor_clear_slot(const mspringi_floor *floor, uint32_t slot);
 
 /* contact_materials.c */
 
-/// What a particle has of its own; NULL if no particle has anything.
+/// A particle's own friction and restitution; NULL if no particle has any.
 const mspringi_contact_material *mspringi_contact_own(const mspring_network *network, size_t slot);
 static inline const mspringi_contact_material *mspringi_own_of(const mspring_network *network, size_t slot) {
     return network->contacts ? mspringi_contact_own(network, slot) : NULL;

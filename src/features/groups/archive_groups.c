@@ -15,7 +15,7 @@ static bool has_removed(const mspring_network *network) {
     return any;
 }
 
-// What a mark has of a spring that was removed since counts no more.
+// A mark's values of a spring that was removed since count no more.
 static void put_mark(const mspring_network *network, const mspringi_mark *mark, mspringi_io *io) {
     static const float no_lengths[2] = {1.0f, 1.0f};
     static const uint8_t no_life = 0;

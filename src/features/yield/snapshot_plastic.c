@@ -18,7 +18,7 @@ typedef struct yielding {
 } yielding;
 enum { VALUES = 4 };
 
-// What a slot holds of a removed spring depends on when it was removed.
+// Values in the slot of a removed spring depend on when it was removed.
 static const yielding of_no_spring = {INFINITY, MSPRING_HARDENING_DEFAULT, MSPRING_PLASTIC_LIMIT_DEFAULT, 1.0f};
 
 static size_t yielding_size(const mspring_network *network) {

@@ -299,7 +299,7 @@ static void refused_steps_leave_impulses(void **state) {
     }
 }
 
-/// Whether the coarse matrix has contacts in it goes by the snapshot, and not by what came after it.
+/// The coarse matrix has contacts in it if the snapshot says so, whatever came after it.
 static void snapshots_do_not_see_later_contacts(void **state) {
     (void)state;
     mspring_network *network = bar(3, 1, MSPRING_SIMD_AUTO);

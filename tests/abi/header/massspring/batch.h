@@ -61,7 +61,7 @@ MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_set_gr
 MSPRING_NODISCARD MSPRING_API mspring_result MSPRING_CALL mspring_network_mark_groups(
     mspring_network *network, const mspring_id *ids, mspring_id first, uint32_t count);
 
-/// What a group is put back to.
+/// States to which a group is put back.
 typedef enum mspring_reset {
     MSPRING_RESET_START = 0,             ///< the state at mspring_network_set_groups()
     MSPRING_RESET_MARK = 1,              ///< its mark

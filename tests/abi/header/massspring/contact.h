@@ -1,5 +1,5 @@
 /// @file contact.h
-/// What bodies meet: floors, other bodies, colliders of the host, and grips. Include massspring.h.
+/// Contact of bodies: with floors, each other and colliders of the host; and grips. Include massspring.h.
 ///
 ///     floor       network_set_floor, _get_floor
 ///     contact     network_set_contact, _get_contact, _get_contact_info, _read_contact_events
