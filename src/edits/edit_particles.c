@@ -81,13 +81,16 @@ static bool are_few(const mspring_network *network, const mspringi_selection *at
     return at->count - first < network->topology.spring_count / SPRINGS_OF_PARTICLE;
 }
 
-// Have relative springs follow new masses.
+// Have relative springs follow new masses. A list may name a hub many times: walks end where they would take longer
+// than the pass.
 static void renew_springs(mspring_network *network, const mspringi_selection *at, uint32_t first) {
-    if (!are_few(network, at, first))
+    const uint32_t all = network->topology.spring_count;
+    uint32_t next = are_few(network, at, first) ? first : at->count, visited = 0;
+    const bool by_walks = next < at->count;
+    while (next < at->count && visited < all)
+        visited += mspringi_renew_relative_around(network, mspringi_selected(at, next++));
+    if (!by_walks || next < at->count)
         mspringi_renew_relative(network);
-    else
-        for (uint32_t i = first; i < at->count; ++i)
-            mspringi_renew_relative_around(network, mspringi_selected(at, i));
     mspringi_notify_change(network, MSPRINGI_CHANGED_SPRING_MASSES, 0);
 }
 

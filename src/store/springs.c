@@ -277,13 +277,15 @@ void mspringi_renew_relative(mspring_network *network) {
     }
 }
 
-void mspringi_renew_relative_around(mspring_network *network, mspring_id particle) {
+uint32_t mspringi_renew_relative_around(mspring_network *network, mspring_id particle) {
+    uint32_t count = 0;
     mspringi_incident_springs around = mspringi_incident_springs_begin(network, particle);
-    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE;) {
+    for (mspring_id s; (s = mspringi_incident_springs_next(network, &around)) != MSPRING_NONE; ++count) {
         const mspringi_spring_slot spring_slot = network->topology.slot_of_spring[s];
         if (mspringi_spring_is_relative(network, s) && mspringi_spring_slot_is_live(network, spring_slot))
             mspringi_spring_set_nominal(network, s, spring_slot, mspringi_fractions_of(&network->fractions, s));
     }
+    return count;
 }
 
 void mspringi_derive_relative(mspring_network *network, float h) {

@@ -132,8 +132,9 @@ void mspringi_spring_slot_give_length(mspring_network *network, mspringi_spring_
 void mspringi_derive_relative(mspring_network *network, float h);
 /// Derive them again, with other masses.
 void mspringi_renew_relative(mspring_network *network);
-/// Those of a particle; its lists of springs are there (mspringi_incidence_reserve()).
-void mspringi_renew_relative_around(mspring_network *network, mspring_id particle);
+/// Those of a particle; its lists of springs are there (mspringi_incidence_reserve()). Return how many springs it
+/// has.
+uint32_t mspringi_renew_relative_around(mspring_network *network, mspring_id particle);
 
 /// Values of a spring outside lattices and chains: as mspringi_spring_slot_get(), without a search for its record.
 static inline mspringi_spring_values mspringi_irregular_spring(const mspring_network *network, uint32_t irregular) {

@@ -246,6 +246,33 @@ static void grow_star(costs *c, uint32_t n, const hostile_case *of) {
 }
 
 // One by one: all that has a value a particle or a spring.
+static mspring_builder *relative_star(costs *c, uint32_t n) {
+    mspring_builder *builder = shape_circle(c, n);
+    mspring_spring_def spring = mspring_spring_def_default();
+    spring.a = 0, spring.stiffness = 0.1f, spring.flags = MSPRING_SPRING_RELATIVE;
+    for (spring.b = 1; spring.b <= n; spring.b++)
+        check_ok(mspring_builder_add_springs(builder, &spring, 1, NULL));
+    return builder;
+}
+
+// A list that names the hub again and again, each time with another mass.
+static void weigh_star(costs *c, uint32_t n, const hostile_case *of) {
+    mspring_network *network = shapes_network_of(of->make(c, n), c, 0);
+    const uint32_t count = n / 9; // fewer than would be given up for one pass
+    mspring_id *hub = test_calloc(count, sizeof *hub);
+    float *masses = test_calloc(count, sizeof *masses), mass;
+    for (uint32_t i = 0; i < count; i++)
+        masses[i] = 2 + (float)(i % 7);
+    costs_begin(c);
+    check_ok(mspring_network_set(network, MSPRING_MASS, hub, 0, count, masses, 1));
+    costs_end(c);
+    check_ok(mspring_network_get(network, MSPRING_MASS, NULL, 0, 1, &mass, 1));
+    assert_true(mass == masses[count - 1]);
+    test_free(masses);
+    test_free(hub);
+    mspring_network_destroy(network);
+}
+
 static void set_one_by_one(costs *c, uint32_t n, const hostile_case *of) {
     mspring_network *network = shapes_network_of(of->make(c, n), c, 0);
     costs_begin(c);
@@ -492,6 +519,7 @@ static const hostile_case cases[] = {{"build_star", build_star, shape_star, 0},
                                      {"tear_star", tear_star, shape_star, 0},
                                      {"remove_star", remove_star, shape_star, 0},
                                      {"grow_star", grow_star, shape_circle, 0},
+                                     {"weigh_star", weigh_star, relative_star, 0},
                                      {"set_one_by_one", set_one_by_one, shape_star, 0},
                                      {"set_actuators", set_actuators, shape_star, 0},
                                      {"areas_of_wheel", areas_of_wheel, shape_wheel, 0},
