@@ -37,6 +37,8 @@ MSPRINGI_ALWAYS_INLINE double value_of_particle(const mspring_network *network, 
         return (double)mspringi_floor_impulse_of(network, slot, 0);
     case MSPRING_FLOOR_IMPULSE_Y:
         return (double)mspringi_floor_impulse_of(network, slot, 1);
+    case MSPRING_TOUCH:
+        return (double)mspringi_contact_touch_of(network, p);
     default:
         return (double)mspringi_particle_property(network, property, p);
     }

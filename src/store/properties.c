@@ -18,6 +18,7 @@ static const mspringi_property list[] = {
     {MSPRING_RESTITUTION, "restitution", "", "0 to 1, or -1 for the contact's", true},
     {MSPRING_FLOOR_IMPULSE_X, "impulse of the floor in x", " N s", "", false},
     {MSPRING_FLOOR_IMPULSE_Y, "impulse of the floor in y", " N s", "", false},
+    {MSPRING_TOUCH, "impulse of touch", " N s", "", false},
     {MSPRING_RELATIVE_X, "relative x", " m", "", false},
     {MSPRING_RELATIVE_Y, "relative y", " m", "", false},
     {MSPRING_RELATIVE_VX, "relative vx", " m/s", "", false},

@@ -82,6 +82,18 @@ static mspringi_interval_end solve_interval(const mspring_network *network, mspr
     }
 }
 
+void mspringi_contact_add_touch(mspringi_contacts *contacts, const mspringi_contact_constraint *t, double impulse) {
+    const uint32_t nodes[3] = {t->p, t->a, t->b};
+    const double shares[3] = {1.0, t->bary_a, t->bary_b};
+    float *const touch = contacts->touch + (size_t)contacts->touch_now * contacts->particles;
+    for (int i = 0; i < 3; ++i) {
+        const mspring_id node = contacts->nodes.particles[nodes[i]];
+        if (!mspringi_is_collider_point(contacts, node))
+            touch[node] += (float)(shares[i] * impulse);
+    }
+    contacts->has_touch[contacts->touch_now] = true;
+}
+
 void mspringi_contact_count_impulses(const mspring_network *network, mspringi_contacts *contacts) {
     uint32_t count = 0;
     for (uint32_t i = 0; i < contacts->constraint_count && contacts->events.capacity > 0; ++i)
@@ -92,6 +104,8 @@ void mspringi_contact_count_impulses(const mspring_network *network, mspringi_co
         const mspringi_contact_constraint *t = &contacts->constraints[i];
         if (t->collider != MSPRING_NONE)
             mspringi_colliders_add_impulse(contacts, t, t->normal_impulse, t->tangent_impulse);
+        if (t->normal_impulse > 0.0)
+            mspringi_contact_add_touch(contacts, t, t->normal_impulse);
         count += t->normal_impulse > 0.0;
         contacts->deepest = -t->gap > contacts->deepest ? -t->gap : contacts->deepest;
     }

@@ -134,6 +134,13 @@ static void share_stillness(mspring_network *network, const mspringi_contacts *c
 
 /* ------------------------------------------------------------------------------------------------------ stage */
 
+static void clear_touch(mspringi_contacts *contacts) {
+    const uint32_t now = contacts->touch_now;
+    if (contacts->has_touch[now])
+        memset(contacts->touch + (size_t)now * contacts->particles, 0, contacts->particles * sizeof *contacts->touch);
+    contacts->has_touch[now] = false;
+}
+
 // Begin the substeps of an attempt, or their repetition. Return true if all pairs have room.
 static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     mspringi_contacts *contacts = network->contacts;
@@ -142,6 +149,7 @@ static bool begin_substeps(mspring_network *network, uint32_t substeps) {
     contacts->substeps_done = contacts->touching = 0;
     contacts->substeps_since_scan = 0;
     contacts->deepest = 0.0;
+    clear_touch(contacts);
     contacts->work = 0; // also of a repetition: more workers have more of these
     contacts->most_work = MOST_WORK;
     mspringi_colliders_begin(network, contacts, substeps);
@@ -291,6 +299,7 @@ static void after_step(mspring_network *network, double dt) {
     contacts->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
     mspringi_colliders_move_points(network, contacts, contacts->colliders.substeps);
     share_stillness(network, contacts);
+    contacts->touch_now = 1 - contacts->touch_now;
     mspringi_contact_events_finish_step(network, contacts);
     mspringi_colliders_finish_step(network, contacts);
 }

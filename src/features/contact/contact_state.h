@@ -247,6 +247,9 @@ struct mspringi_contacts {
     bool touches_itself;
     uint32_t *layers, *masks;             ///< [nodes]
     mspringi_contact_material *materials; ///< [particles]; NULL without values of single particles
+    float *touch;                         ///< [2][particles] impulses across, N s: of the last step, and of this one
+    uint32_t touch_now;                   ///< which of the two are those of this step
+    bool has_touch[2];                    ///< not all of them are 0
     mspringi_colliders colliders;
 
     // Until edits change the shape of the bodies.

@@ -93,6 +93,7 @@ static const mspringi_array_entry members[] = {
     ARRAY(layers),
     VIEW(masks),
     ARRAY(materials),
+    ARRAY(touch),
     ARRAY(outline.is_edge),
     ARRAY(outline.is_known),
     ARRAY(outline.shape_x),
@@ -186,6 +187,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     double **const motion[] = {&k->x,       &k->y,        &k->inverse_mass, &k->shift_x,
                                &k->shift_y, &k->extra_vx, &k->extra_vy};
     made->layers = mspringi_alloc(memory, 2 * nodes, sizeof *made->layers);
+    made->touch = mspringi_alloc(memory, 2 * particles, sizeof *made->touch);
     made->stamp = mspringi_alloc(memory, 3 * particles, sizeof *made->stamp);
     made->excluded_edges =
         mspringi_alloc(memory, MSPRINGI_EXCLUDED_EDGES * particles, sizeof *made->excluded_edges);
@@ -195,7 +197,7 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     k->v = mspringi_alloc(memory, 3 * nodes, sizeof *k->v);
     made->colours = mspringi_alloc(memory, 2 * nodes, sizeof *made->colours);
     made->supports = mspringi_alloc(memory, MSPRINGI_MAX_SUPPORTS * nodes, sizeof *made->supports);
-    if (!made->layers || !made->stamp || !made->excluded_edges || !o->is_known || !k->particles || !k->is_fast ||
+    if (!made->layers || !made->touch || !made->stamp || !made->excluded_edges || !o->is_known || !k->particles || !k->is_fast ||
         !k->v || !made->colours || !made->supports)
         return false;
     made->due.first = made->colours + nodes;
@@ -280,6 +282,9 @@ static void take_over(mspringi_contacts *made, const mspringi_contacts *had, siz
     c->is_placed = false;
     c->are_new = true;
     made->materials = had->materials;
+    memcpy(made->touch, had->touch, 2 * particles * sizeof *made->touch);
+    made->touch_now = had->touch_now;
+    memcpy(made->has_touch, had->has_touch, sizeof made->has_touch);
     made->events = had->events;
     made->touching = had->touching;
     made->deepest = had->deepest;

@@ -250,6 +250,13 @@ mspring_result mspringi_contact_set_layers(mspring_network *network, mspring_pro
                                            const mspringi_selection *at, const uint32_t *values, size_t stride);
 /// Take in a particle that was added, with the defaults: its id may have been another's.
 void mspringi_contact_take_in(mspring_network *network, mspring_id particle);
+/// Impulse across that a particle was given in the last step, N s.
+static inline float mspringi_contact_touch_of(const mspring_network *network, mspring_id particle) {
+    const mspringi_contacts *c = network->contacts;
+    return c ? c->touch[(size_t)(1 - c->touch_now) * c->particles + particle] : 0.0f;
+}
+/// Add an impulse across to the particles of a constraint.
+void mspringi_contact_add_touch(mspringi_contacts *contacts, const mspringi_contact_constraint *t, double impulse);
 /// Material of a pair, if particles have their own. collider: that of the pair, or NULL.
 mspringi_contact_material mspringi_contact_material_mix(const mspringi_contacts *contacts,
                                                         const mspringi_pair *pair,

@@ -81,6 +81,7 @@ void mspringi_relaxation_finish(mspringi_contacts *contacts) {
             continue;
         if (t->collider != MSPRING_NONE)
             mspringi_colliders_add_impulse(contacts, t, -taken, 0.0);
+        mspringi_contact_add_touch(contacts, t, -taken);
         if (contacts->events.capacity > 0)
             mspringi_contact_events_subtract(contacts, t, taken);
     }

@@ -1,0 +1,116 @@
+/// @file test_touch.c
+/// What bodies and colliders give each particle in a step: as much as holds up what lies on them.
+///
+/// SPDX-License-Identifier: MIT
+#include <math.h>
+
+#include "bodies.h"
+
+#include <massspring/massspring.h>
+
+#define THICKNESS 0.2
+#define DT (1.0 / 64)
+#define GRAVITY 9.8f
+
+/// Two blocks on each other, on a box.
+typedef struct stack {
+    bodies *b;
+    mspring_network *network;
+    uint32_t upper; ///< first particle of the upper one
+} stack;
+
+static stack make_stack(mspring_solver solver) {
+    stack s = {.b = bodies_begin(DT / 40)};
+    s.b->damping = 0.3;
+    (void)bodies_add(s.b,
+                     &(bodies_lattice){.width = 6, .height = 3, .y = THICKNESS, .spacing = 1, .mass = 2, .f = 0.5});
+    s.upper = bodies_add(
+        s.b, &(bodies_lattice){
+                 .width = 4, .height = 2, .x = 1.3, .y = 2 + 2 * THICKNESS, .spacing = 1, .mass = 2, .f = 0.5});
+    mspring_network_def def = support_def(0, solver == MSPRING_SOLVER_EXPLICIT ? 40 : 4);
+    def.settings.solver = solver;
+    def.settings.gravity_y = -GRAVITY;
+    s.network = bodies_network(s.b, &def);
+    check_ok(bodies_touch(s.network, THICKNESS, 0.5f, 0));
+    mspring_collider_def box = mspring_collider_def_default();
+    box.kind = MSPRING_COLLIDER_BOX, box.width = 40, box.y = -0.5;
+    check_ok(mspring_network_add_collider(s.network, &box, NULL));
+    return s;
+}
+
+static void free_stack(stack *s) {
+    mspring_network_destroy(s->network);
+    bodies_free(s->b);
+}
+
+static double touch_of(const mspring_network *network, mspring_id first, uint32_t count) {
+    double sum = 0;
+    for (mspring_id p = first; p < first + count; p++) {
+        float touch = -1;
+        check_ok(mspring_network_get(network, MSPRING_TOUCH, NULL, p, 1, &touch, 1));
+        assert_true(touch >= -1e-6f);
+        sum += (double)touch;
+    }
+    return sum;
+}
+
+/// At rest each body is given what it carries and its own weight from below, and from above what lies on it. Over
+/// half a second, as single steps differ.
+static void touch_carries_weights(void **state) {
+    (void)state;
+    const mspring_solver solvers[] = {MSPRING_SOLVER_EXPLICIT, MSPRING_SOLVER_IMPLICIT, MSPRING_SOLVER_DIRECT};
+    for (int i = 0; i < 3; i++) {
+        stack s = make_stack(solvers[i]);
+        enum { STEPS = 32 };
+        const uint32_t upper = s.b->count - s.upper, lower = s.upper;
+        double on_upper = 0, on_lower = 0;
+        support_steps(s.network, 400, DT);
+        for (int step = 0; step < STEPS; step++) {
+            support_steps(s.network, 1, DT);
+            on_upper += touch_of(s.network, s.upper, upper);
+            on_lower += touch_of(s.network, 0, lower);
+        }
+        const double second = STEPS * DT, weight = 2 * (double)GRAVITY * second;
+        check_near(on_upper, weight * upper, 0.03 * weight * upper);
+        check_near(on_lower, weight * (lower + 2 * upper), 0.03 * weight * (lower + 2 * upper));
+        free_stack(&s);
+    }
+}
+
+/// A step that fails leaves what the last one gave; one in which nothing touches leaves zeros.
+static void touch_is_of_the_last_step(void **state) {
+    (void)state;
+    stack s = make_stack(MSPRING_SOLVER_EXPLICIT);
+    assert_true(touch_of(s.network, 0, s.b->count) == 0);
+    support_steps(s.network, 200, DT);
+    const double last = touch_of(s.network, 0, s.b->count);
+    assert_true(last > 0);
+    const float fast = 2e6f; // beyond max_speed
+    float vx, vy;
+    check_ok(mspring_network_get_velocities(s.network, NULL, 0, 1, &vx, &vy, 1));
+    mspring_settings settings = mspring_settings_default();
+    check_ok(mspring_network_get_settings(s.network, &settings));
+    settings.guard = MSPRING_GUARD_BOUNDS;
+    check_ok(mspring_network_set_settings(s.network, &settings));
+    check_ok(mspring_network_set_velocities(s.network, NULL, 0, 1, &fast, &fast, 0));
+    check_error(mspring_network_step(s.network, DT), MSPRING_ERROR_UNSTABLE);
+    assert_true(touch_of(s.network, 0, s.b->count) == last);
+    check_ok(mspring_network_set_velocities(s.network, NULL, 0, 1, &vx, &vy, 0));
+    for (uint32_t p = 0; p < s.b->count; p++) { // all fly up, the lower ones more slowly
+        const float up = p < s.upper ? 20 : 60, none = 0;
+        check_ok(mspring_network_set_velocities(s.network, NULL, p, 1, &none, &up, 0));
+    }
+    support_steps(s.network, 4, DT);
+    assert_true(touch_of(s.network, 0, s.b->count) == 0);
+    check_ok(mspring_network_set_contact(s.network, NULL));
+    assert_true(touch_of(s.network, 0, s.b->count) == 0);
+    free_stack(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(touch_carries_weights),
+        cmocka_unit_test(touch_is_of_the_last_step),
+    };
+    return cmocka_run_group_tests_name("touch", tests, NULL, NULL);
+}
