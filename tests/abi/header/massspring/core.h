@@ -1000,6 +1000,9 @@ typedef enum mspring_property {
     /// own. [read]
     MSPRING_FLOOR_IMPULSE_X = 0x008,
     MSPRING_FLOOR_IMPULSE_Y = 0x009,  ///< [read]
+    /// N s across surfaces from bodies and colliders in the last step, sum of sizes; a spring's ends have their shares.
+    /// 0 without contact. With the explicit solver without what pushed an overlap apart, else with it. [read]
+    MSPRING_TOUCH = 0x00a,
     MSPRING_RELATIVE_X = 0x00b,       ///< m from the centre of mass of its group (batch.h), or world's origin [read]
     MSPRING_RELATIVE_Y = 0x00c,       ///< [read]
     MSPRING_RELATIVE_VX = 0x00d,      ///< m/s against the velocity of its group's centre of mass [read]
