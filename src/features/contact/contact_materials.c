@@ -132,7 +132,7 @@ void mspringi_contact_take_in(mspring_network *network, mspring_id particle) {
         return;
     contacts->layers[particle] = 1;
     contacts->masks[particle] = UINT32_MAX;
-    contacts->touch[particle] = contacts->touch[contacts->particles + (size_t)particle] = 0.0f;
+    mspringi_contact_forget_impulses_of(network, particle);
     if (contacts->materials)
         contacts->materials[particle] = (mspringi_contact_material){-1.0f, -1.0f};
     mspringi_outline_take_in(network, &contacts->outline, particle);

@@ -137,8 +137,21 @@ static void share_stillness(mspring_network *network, const mspringi_contacts *c
 static void clear_touch(mspringi_contacts *contacts) {
     const uint32_t now = contacts->touch_now;
     if (contacts->has_touch[now])
-        memset(contacts->touch + (size_t)now * contacts->particles, 0, contacts->particles * sizeof *contacts->touch);
+        memset(contacts->touch + (size_t)now * contacts->particles, 0,
+               contacts->particles * sizeof *contacts->touch);
     contacts->has_touch[now] = false;
+}
+
+// Sleepers keep what they were given when they were last awake. Particles fall asleep after this stage, so that
+// those that sleep now did so in the whole step.
+static void keep_touch(const mspring_network *network, mspringi_contacts *contacts) {
+    const size_t last = 1 - contacts->touch_now;
+    float *const now = contacts->touch + (size_t)contacts->touch_now * contacts->particles;
+    for (mspring_id p = 0; p < network->topology.particle_count; ++p)
+        if (mspringi_particle_exists(network, p) &&
+            mspringi_slot_is_asleep(network, network->topology.slot_of_particle[p]))
+            now[p] = contacts->touch[last * contacts->particles + p];
+    contacts->has_touch[contacts->touch_now] = true;
 }
 
 // Begin the substeps of an attempt, or their repetition. Return true if all pairs have room.
@@ -299,6 +312,8 @@ static void after_step(mspring_network *network, double dt) {
     contacts->is_fresh &= !(network->outcome.flags & MSPRING_STEP_PUT_BACK);
     mspringi_colliders_move_points(network, contacts, contacts->colliders.substeps);
     share_stillness(network, contacts);
+    if (network->sleep.sleeping > 0 && contacts->has_touch[1 - contacts->touch_now])
+        keep_touch(network, contacts);
     contacts->touch_now = 1 - contacts->touch_now;
     mspringi_contact_events_finish_step(network, contacts);
     mspringi_colliders_finish_step(network, contacts);

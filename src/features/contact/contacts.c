@@ -197,8 +197,8 @@ static bool reserve_nodes(mspringi_contacts *made, mspringi_memory *memory, size
     k->v = mspringi_alloc(memory, 3 * nodes, sizeof *k->v);
     made->colours = mspringi_alloc(memory, 2 * nodes, sizeof *made->colours);
     made->supports = mspringi_alloc(memory, MSPRINGI_MAX_SUPPORTS * nodes, sizeof *made->supports);
-    if (!made->layers || !made->touch || !made->stamp || !made->excluded_edges || !o->is_known || !k->particles || !k->is_fast ||
-        !k->v || !made->colours || !made->supports)
+    if (!made->layers || !made->touch || !made->stamp || !made->excluded_edges || !o->is_known || !k->particles ||
+        !k->is_fast || !k->v || !made->colours || !made->supports)
         return false;
     made->due.first = made->colours + nodes;
     k->v_start = k->v + nodes;
@@ -483,6 +483,24 @@ void mspringi_contact_react(mspring_network *network, mspringi_change change, ui
         mspringi_floor_clear_slot(network->floor, index);
     if (network->contacts)
         mspringi_outline_clear_slot(network, index);
+}
+
+void mspringi_contact_forget_impulses_of(const mspring_network *network, mspring_id particle) {
+    const mspringi_contacts *contacts = network->contacts;
+    if (network->floor)
+        mspringi_floor_clear_slot(network->floor, network->topology.slot_of_particle[particle]);
+    if (contacts)
+        contacts->touch[particle] = contacts->touch[contacts->particles + (size_t)particle] = 0.0f;
+}
+
+void mspringi_contact_forget_impulses(mspring_network *network) {
+    mspringi_contacts *contacts = network->contacts;
+    for (uint32_t slot = 0; network->floor && slot < network->floor->slot_count; ++slot)
+        mspringi_floor_clear_slot(network->floor, slot);
+    if (contacts) {
+        memset(contacts->touch, 0, 2 * (size_t)contacts->particles * sizeof *contacts->touch);
+        contacts->has_touch[0] = contacts->has_touch[1] = false;
+    }
 }
 
 void mspringi_contact_discard_step(mspring_network *network) {

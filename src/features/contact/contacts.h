@@ -250,6 +250,11 @@ mspring_result mspringi_contact_set_layers(mspring_network *network, mspring_pro
                                            const mspringi_selection *at, const uint32_t *values, size_t stride);
 /// Take in a particle that was added, with the defaults: its id may have been another's.
 void mspringi_contact_take_in(mspring_network *network, mspring_id particle);
+/// Forget what floor, bodies and colliders gave a particle in the last step: it is put where it was at another
+/// time.
+void mspringi_contact_forget_impulses_of(const mspring_network *network, mspring_id particle);
+/// Forget that of all particles: a snapshot is loaded.
+void mspringi_contact_forget_impulses(mspring_network *network);
 /// Impulse across that a particle was given in the last step, N s.
 static inline float mspringi_contact_touch_of(const mspring_network *network, mspring_id particle) {
     const mspringi_contacts *c = network->contacts;

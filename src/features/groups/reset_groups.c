@@ -3,6 +3,7 @@
 
 #include "base/cpu.h"
 #include "features/actuators/actuators.h"
+#include "features/contact/contacts.h"
 #include "features/groups/edit_groups.h"
 #include "features/ramps/ramps.h"
 #include "store/changed.h"
@@ -104,6 +105,7 @@ static void restore_motion(mspring_network *network, const mspringi_mark *mark, 
             mspringi_set_x(s, slot, mspringi_x_of(s, slot) + dx);
             mspringi_set_y(s, slot, mspringi_y_of(s, slot) + dy);
         }
+        mspringi_contact_forget_impulses_of(network, p);
     }
 }
 

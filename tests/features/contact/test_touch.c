@@ -3,6 +3,7 @@
 ///
 /// SPDX-License-Identifier: MIT
 #include <math.h>
+#include <stdlib.h>
 
 #include "bodies.h"
 
@@ -88,8 +89,7 @@ static void touch_is_of_the_last_step(void **state) {
     const float fast = 2e6f; // beyond max_speed
     float vx, vy;
     check_ok(mspring_network_get_velocities(s.network, NULL, 0, 1, &vx, &vy, 1));
-    mspring_settings settings = mspring_settings_default();
-    check_ok(mspring_network_get_settings(s.network, &settings));
+    mspring_settings settings = support_settings(s.network);
     settings.guard = MSPRING_GUARD_BOUNDS;
     check_ok(mspring_network_set_settings(s.network, &settings));
     check_ok(mspring_network_set_velocities(s.network, NULL, 0, 1, &fast, &fast, 0));
@@ -107,10 +107,71 @@ static void touch_is_of_the_last_step(void **state) {
     free_stack(&s);
 }
 
+/// Sleepers keep what held them when they fell asleep.
+static void touch_stays_in_sleep(void **state) {
+    (void)state;
+    stack s = make_stack(MSPRING_SOLVER_EXPLICIT);
+    mspring_settings settings = support_settings(s.network);
+    settings.sleep_speed = 0.05f;
+    check_ok(mspring_network_set_settings(s.network, &settings));
+    support_fall_asleep(s.network, DT);
+    const double asleep = touch_of(s.network, 0, s.b->count);
+    const double weight = 2 * (double)GRAVITY * DT;
+    check_near(asleep, weight * (s.upper + 3 * (s.b->count - s.upper)), 0.3 * asleep); // of one step
+    support_steps(s.network, 100, DT);
+    assert_true(touch_of(s.network, 0, s.b->count) == asleep);
+    free_stack(&s);
+}
+
+static double floor_of(const mspring_network *network, uint32_t count) {
+    double sum = 0;
+    for (mspring_id p = 0; p < count; p++) {
+        float y = 0;
+        check_ok(mspring_network_get(network, MSPRING_FLOOR_IMPULSE_Y, NULL, p, 1, &y, 1));
+        sum += (double)y;
+    }
+    return sum;
+}
+
+/// A body that is put back has not been touched, by the floor neither, nor is one in a snapshot: what it was given
+/// then is not in it.
+static void touch_begins_anew(void **state) {
+    (void)state;
+    stack s = make_stack(MSPRING_SOLVER_EXPLICIT);
+    mspring_floor_def floor = mspring_floor_def_default();
+    floor.heights = (const float[]){0.21f, 0.21f, -1, -1}; // above the box to the left
+    floor.height_count = 4;
+    check_ok(mspring_network_set_floor(s.network, &floor));
+    mspring_settings settings = support_settings(s.network);
+    settings.guard = MSPRING_GUARD_BOUNDS;
+    check_ok(mspring_network_set_settings(s.network, &settings));
+    const mspring_id count = s.b->count, firsts[] = {0, s.upper, count};
+    check_ok(mspring_network_set_groups(s.network, firsts, 2));
+    size_t size;
+    check_ok(mspring_network_get_snapshot_size(s.network, MSPRING_SNAPSHOT_FRAME, &size));
+    void *snapshot = malloc(size);
+    assert_non_null(snapshot);
+    check_ok(mspring_network_save(s.network, MSPRING_SNAPSHOT_FRAME, snapshot, size, NULL));
+    for (int twice = 0; twice < 2; twice++) {
+        support_steps(s.network, 200, DT);
+        assert_true(touch_of(s.network, 0, count) > 0 && floor_of(s.network, count) > 0);
+        if (twice)
+            check_ok(mspring_network_load(s.network, snapshot, size));
+        else
+            check_ok(mspring_network_reset_groups(s.network, MSPRING_RESET_START, &(mspring_id){0}, 0, 1));
+        assert_true(touch_of(s.network, 0, s.upper) == 0 && floor_of(s.network, s.upper) == 0);
+        assert_true((touch_of(s.network, s.upper, count - s.upper) > 0) == !twice);
+    }
+    free(snapshot);
+    free_stack(&s);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(touch_carries_weights),
         cmocka_unit_test(touch_is_of_the_last_step),
+        cmocka_unit_test(touch_stays_in_sleep),
+        cmocka_unit_test(touch_begins_anew),
     };
     return cmocka_run_group_tests_name("touch", tests, NULL, NULL);
 }

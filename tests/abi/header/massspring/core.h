@@ -997,11 +997,12 @@ typedef enum mspring_property {
     MSPRING_RESTITUTION = 0x007,      ///< the same, 0 to 1; of two that touch the larger one counts [allocates]
     /// N s that the floor gave in the last step; 0 without a floor. Over dt it is the mean force, but not in an
     /// explicit step after one of another dt: its first impulses last for half of the substep before and half of their
-    /// own. [read]
+    /// own. Sleepers keep theirs; after a load or a reset it is 0. [read]
     MSPRING_FLOOR_IMPULSE_X = 0x008,
     MSPRING_FLOOR_IMPULSE_Y = 0x009,  ///< [read]
-    /// N s across surfaces from bodies and colliders in the last step, sum of sizes; a spring's ends have their shares.
-    /// 0 without contact. With the explicit solver without what pushed an overlap apart, else with it. [read]
+    /// N s that bodies and colliders gave across their surfaces in the last step: the sum of sizes. The ends of a spring
+    /// that was touched have their shares. 0 without contact, and after a load or a reset; sleepers keep theirs. Steps
+    /// of the explicit solver leave out what pushed an overlap apart. [read]
     MSPRING_TOUCH = 0x00a,
     MSPRING_RELATIVE_X = 0x00b,       ///< m from the centre of mass of its group (batch.h), or world's origin [read]
     MSPRING_RELATIVE_Y = 0x00c,       ///< [read]
