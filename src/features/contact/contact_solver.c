@@ -83,13 +83,14 @@ static mspringi_interval_end solve_interval(const mspring_network *network, mspr
 }
 
 void mspringi_contact_add_touch(mspringi_contacts *contacts, const mspringi_contact_constraint *t, double impulse) {
-    const uint32_t nodes[3] = {t->p, t->a, t->b};
-    const double shares[3] = {1.0, t->bary_a, t->bary_b};
+    const mspringi_contact_nodes *k = &contacts->nodes;
     float *const touch = contacts->touch + (size_t)contacts->touch_now * contacts->particles;
-    for (int i = 0; i < 3; ++i) {
-        const mspring_id node = contacts->nodes.particles[nodes[i]];
-        if (!mspringi_is_collider_point(contacts, node))
-            touch[node] += (float)(shares[i] * impulse);
+    const float all = (float)impulse, of_b = (float)(t->bary_b * impulse);
+    if (t->p < k->particle_count)
+        touch[k->particles[t->p]] += all;
+    if (t->a < k->particle_count) {
+        touch[k->particles[t->a]] += all - of_b;
+        touch[k->particles[t->b]] += of_b;
     }
     contacts->has_touch[contacts->touch_now] = true;
 }
