@@ -24,13 +24,11 @@ static bool make_adjoint(mspring_gradient *g, const mspring_view *view) {
     adjoint->position = gradient_vectors(g, &is_made);
     adjoint->velocity = gradient_vectors(g, &is_made);
     adjoint->force = gradient_vectors(g, &is_made);
-    for (int end = 0; end < 2; ++end) {
-        adjoint->by_position[end] = gradient_vectors(g, &is_made);
-        if (g->octets.damping)
-            adjoint->by_velocity[end] = gradient_vectors(g, &is_made);
-        if (g->plane_count > 0)
-            g->spring_force[end] = gradient_vectors(g, &is_made);
-    }
+    adjoint->by_position = gradient_vectors(g, &is_made);
+    if (g->octets.damping)
+        adjoint->by_velocity = gradient_vectors(g, &is_made);
+    for (int end = 0; end < 2 && g->plane_count > 0; ++end)
+        g->spring_force[end] = gradient_vectors(g, &is_made);
     adjoint->inverse_mass = gradient_doubles(g, &is_made);
     adjoint->is_free = gradient_doubles(g, &is_made);
     for (uint32_t slot = 0; is_made && slot < g->slots; ++slot) {

@@ -75,11 +75,11 @@ typedef struct mspringi_frame {
 /// Derivatives of the loss, by slot. Springs have separate arrays for their ends a and b: a store to an array is
 /// not followed at once by loads that overlap it, which would wait for it.
 typedef struct mspringi_adjoint {
-    mspringi_doubles position, velocity; ///< X, V
-    mspringi_doubles force;              ///< U
-    mspringi_doubles by_position[2], by_velocity[2];
-    double *inverse_mass; ///< 1/kg, 0 for pins
-    double *is_free;      ///< 1, 0 for pins
+    mspringi_doubles position, velocity;       ///< X, V
+    mspringi_doubles force;                    ///< U
+    mspringi_doubles by_position, by_velocity; ///< what springs add to X and V at their ends b
+    double *inverse_mass;                      ///< 1/kg, 0 for pins
+    double *is_free;                           ///< 1, 0 for pins
 } mspringi_adjoint;
 
 struct mspring_gradient {

@@ -78,11 +78,10 @@ static void land_back(mspring_gradient *g, double h, uint32_t slot, const floor_
         px += added * n[0];
         py += added * n[1];
     }
-    a->velocity.x[slot] = vx;
-    a->velocity.y[slot] = vy;
-    a->position.x[slot] = a->position.y[slot] = 0.0;
-    a->by_position[0].x[slot] += px;
-    a->by_position[0].y[slot] += py;
+    a->velocity.x[slot] = vx - h * px;
+    a->velocity.y[slot] = vy - h * py;
+    a->position.x[slot] = px;
+    a->position.y[slot] = py;
 }
 
 static void host_force(const mspring_gradient *g, const float *forces, uint32_t slot, double force[2]) {

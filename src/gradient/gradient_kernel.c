@@ -1,16 +1,12 @@
 /// Particles and springs, a substep back: the loops in which a reverse spends its time.
 ///
-/// Springs are taken in batches of octets: first their lengths, in one loop over all lanes, then the law, octet by
-/// octet. Nothing is summed across lanes, so all instruction sets give the same bits.
+/// Springs are taken octet by octet. Nothing is summed across lanes, so all instruction sets give the same bits.
 #include "base/cpu.h"
 #include "gradient/gradient.h"
 
 /// Added to all squared lengths, m^2, so that springs of length 0 and lanes without a spring have a finite inverse.
 /// It is too small to change other lengths.
 #define MSPRINGI_GRADIENT_NO_LENGTH 1e-37
-
-/// Octets of a batch.
-#define MSPRINGI_OCTET_BATCH 16u
 
 /// Doubles computed together: an octet if the compiler has vector types, because it does not vectorise short loops.
 #if defined(__GNUC__)
@@ -24,28 +20,33 @@ typedef double octet_lanes;
 #define AT(address) (*(octet_lanes *)(void *)(address))
 #define READ(address) (*(const octet_lanes *)(const void *)(address))
 
-/// Extents of springs, by lane.
-typedef struct octet_batch {
-    double dx[MSPRINGI_OCTET_BATCH * MSPRINGI_OCTET], dy[MSPRINGI_OCTET_BATCH * MSPRINGI_OCTET]; ///< from a to b, m
-    double inverse[MSPRINGI_OCTET_BATCH * MSPRINGI_OCTET];                                       ///< 1 / L, 1/m
-} octet_batch;
+#if defined(__GNUC__)
+typedef float octet_floats __attribute__((vector_size(8 * sizeof(float)), aligned(4)));
+#define NARROW(lanes) __builtin_convertvector(lanes, octet_floats)
+#define WIDEN(floats) __builtin_convertvector(floats, octet_lanes)
+#else
+typedef float octet_floats;
+#define NARROW(lanes) (float)(lanes)
+#define WIDEN(floats) (double)(floats)
+#endif
 
 // Compute extents and inverse lengths. An inverse is computed in single precision and refined by one Newton step.
 // It is right to 1e-14, in a third of the time of square root and division in double precision.
-MSPRINGI_ALWAYS_INLINE void measure_octets(octet_batch *batch, const mspringi_octets *o, const mspringi_moment *at,
-                                           uint32_t first, uint32_t count) {
-    for (uint32_t octet = 0; octet < count; ++octet)
-        for (uint32_t i = 0; i < MSPRINGI_OCTET; i += LANES_AT_ONCE) {
-            const uint32_t a = o->a[first + octet] + i, b = o->b[first + octet] + i,
-                           lane = octet * MSPRINGI_OCTET + i;
-            AT(batch->dx + lane) = READ(at->x + b) - READ(at->x + a);
-            AT(batch->dy + lane) = READ(at->y + b) - READ(at->y + a);
-        }
-    for (uint32_t i = 0; i < count * MSPRINGI_OCTET; ++i) {
-        const double dx = batch->dx[i], dy = batch->dy[i], square = dx * dx + dy * dy + MSPRINGI_GRADIENT_NO_LENGTH;
-        const double guess = (double)(1.0f / sqrtf((float)square));
-        batch->inverse[i] = guess * (1.5 - 0.5 * square * (guess * guess));
-    }
+MSPRINGI_ALWAYS_INLINE void measure_octet(const mspringi_moment *at, uint32_t a, uint32_t b, octet_lanes *x,
+                                          octet_lanes *y, octet_lanes *inverse) {
+    const octet_lanes dx = READ(at->x + b) - READ(at->x + a), dy = READ(at->y + b) - READ(at->y + a);
+    const octet_lanes square = dx * dx + dy * dy + MSPRINGI_GRADIENT_NO_LENGTH;
+    octet_floats root = NARROW(square);
+#if defined(__GNUC__)
+    for (int i = 0; i < 8; ++i)
+        root[i] = sqrtf(root[i]);
+#else
+    root = sqrtf(root);
+#endif
+    const octet_lanes guess = WIDEN(1.0f / root);
+    *x = dx;
+    *y = dy;
+    *inverse = guess * (1.5 - 0.5 * square * (guess * guess));
 }
 
 // Add the derivatives by the state and the parameters of the springs in some lanes. With d from a to b,
@@ -56,13 +57,12 @@ MSPRINGI_ALWAYS_INLINE void measure_octets(octet_batch *batch, const mspringi_oc
 //     by c    (d . q) (dv . d) / L^2
 //     by r    -(d . q) k / L
 // Those by d and dv are added at b and subtracted at a.
-MSPRINGI_ALWAYS_INLINE void reverse_law(const octet_batch *batch, uint32_t lane, const mspringi_octets *o,
-                                        const mspringi_adjoint *to, const mspringi_moment *at, uint32_t octet,
-                                        uint32_t i, bool is_damped) {
+MSPRINGI_ALWAYS_INLINE void reverse_law(const mspringi_octets *o, const mspringi_adjoint *to,
+                                        const mspringi_moment *at, uint32_t octet, uint32_t i, bool is_damped) {
     const uint32_t a = o->a[octet] + i, b = o->b[octet] + i;
     const size_t spring = (size_t)octet * MSPRINGI_OCTET + i;
-    const octet_lanes dx = READ(batch->dx + lane), dy = READ(batch->dy + lane),
-                      inverse = READ(batch->inverse + lane);
+    octet_lanes dx, dy, inverse;
+    measure_octet(at, a, b, &dx, &dy, &inverse);
     const octet_lanes k = READ(o->stiffness + spring), r = READ(o->length + spring);
     const octet_lanes qx = READ(to->force.x + a) - READ(to->force.x + b);
     const octet_lanes qy = READ(to->force.y + a) - READ(to->force.y + b);
@@ -80,30 +80,29 @@ MSPRINGI_ALWAYS_INLINE void reverse_law(const octet_batch *batch, uint32_t lane,
         turn -= 2.0 * (drag * rate);
         const octet_lanes x = force * qx + turn * dx + drag * dvx, y = force * qy + turn * dy + drag * dvy;
         AT(o->by_damping + spring) += along * rate;
-        AT(to->by_velocity[0].x + a) -= vx;
-        AT(to->by_velocity[0].y + a) -= vy;
-        AT(to->by_velocity[1].x + b) += vx;
-        AT(to->by_velocity[1].y + b) += vy;
-        AT(to->by_position[0].x + a) -= x;
-        AT(to->by_position[0].y + a) -= y;
-        AT(to->by_position[1].x + b) += x;
-        AT(to->by_position[1].y + b) += y;
+        AT(to->velocity.x + a) -= vx;
+        AT(to->velocity.y + a) -= vy;
+        AT(to->by_velocity.x + b) += vx;
+        AT(to->by_velocity.y + b) += vy;
+        AT(to->position.x + a) -= x;
+        AT(to->position.y + a) -= y;
+        AT(to->by_position.x + b) += x;
+        AT(to->by_position.y + b) += y;
     } else {
         const octet_lanes x = force * qx + turn * dx, y = force * qy + turn * dy;
-        AT(to->by_position[0].x + a) -= x;
-        AT(to->by_position[0].y + a) -= y;
-        AT(to->by_position[1].x + b) += x;
-        AT(to->by_position[1].y + b) += y;
+        AT(to->position.x + a) -= x;
+        AT(to->position.y + a) -= y;
+        AT(to->by_position.x + b) += x;
+        AT(to->by_position.y + b) += y;
     }
 }
 
-MSPRINGI_ALWAYS_INLINE void law(const octet_batch *batch, uint32_t lane, const mspringi_octets *o,
-                                const mspringi_doubles *to, const mspringi_moment *at, uint32_t octet, uint32_t i,
-                                bool is_damped) {
+MSPRINGI_ALWAYS_INLINE void law(const mspringi_octets *o, const mspringi_doubles *to, const mspringi_moment *at,
+                                uint32_t octet, uint32_t i, bool is_damped) {
     const uint32_t a = o->a[octet] + i, b = o->b[octet] + i;
     const size_t spring = (size_t)octet * MSPRINGI_OCTET + i;
-    const octet_lanes dx = READ(batch->dx + lane), dy = READ(batch->dy + lane),
-                      inverse = READ(batch->inverse + lane);
+    octet_lanes dx, dy, inverse;
+    measure_octet(at, a, b, &dx, &dy, &inverse);
     octet_lanes force = READ(o->stiffness + spring) * (1.0 - READ(o->length + spring) * inverse);
     if (is_damped) {
         const octet_lanes dvx = READ(at->vx + b) - READ(at->vx + a), dvy = READ(at->vy + b) - READ(at->vy + a);
@@ -121,19 +120,13 @@ MSPRINGI_ALWAYS_INLINE void visit_springs(const mspring_gradient *g, const mspri
     const mspringi_adjoint adjoint = g->adjoint;
     const mspringi_moment moment = *at;
     const mspringi_doubles forces[2] = {g->spring_force[0], g->spring_force[1]};
-    octet_batch batch;
-    for (uint32_t first = 0; first < o->count; first += MSPRINGI_OCTET_BATCH) {
-        const uint32_t count = o->count - first < MSPRINGI_OCTET_BATCH ? o->count - first : MSPRINGI_OCTET_BATCH;
-        measure_octets(&batch, o, &moment, first, count);
-        for (uint32_t octet = 0; octet < count; ++octet)
-            for (uint32_t i = 0; i < MSPRINGI_OCTET; i += LANES_AT_ONCE) {
-                if (goes_back)
-                    reverse_law(&batch, octet * MSPRINGI_OCTET + i, o, &adjoint, &moment, first + octet, i,
-                                is_damped);
-                else
-                    law(&batch, octet * MSPRINGI_OCTET + i, o, forces, &moment, first + octet, i, is_damped);
-            }
-    }
+    for (uint32_t octet = 0; octet < o->count; ++octet)
+        for (uint32_t i = 0; i < MSPRINGI_OCTET; i += LANES_AT_ONCE) {
+            if (goes_back)
+                reverse_law(o, &adjoint, &moment, octet, i, is_damped);
+            else
+                law(o, forces, &moment, octet, i, is_damped);
+        }
 }
 
 // Compute W and U from the derivatives by the state after a substep, and those by the state before it without the
@@ -151,12 +144,11 @@ MSPRINGI_ALWAYS_INLINE void push_back(const mspring_gradient *g, const mspringi_
     }
 }
 
-MSPRINGI_ALWAYS_INLINE void gather_ends(double *sum, double *first, double *second, uint32_t count) {
+MSPRINGI_ALWAYS_INLINE void gather_ends(double *sum, double *other, uint32_t count) {
     const octet_lanes zero = {0.0};
     for (uint32_t i = 0; i < count; i += LANES_AT_ONCE) {
-        AT(sum + i) += READ(first + i) + READ(second + i);
-        AT(first + i) = zero;
-        AT(second + i) = zero;
+        AT(sum + i) += READ(other + i);
+        AT(other + i) = zero;
     }
 }
 
@@ -168,11 +160,11 @@ MSPRINGI_ALWAYS_INLINE void undo_substep(const mspring_gradient *g, const msprin
         visit_springs(g, at, true, true);
     else
         visit_springs(g, at, false, true);
-    gather_ends(a->position.x, a->by_position[0].x, a->by_position[1].x, g->lanes);
-    gather_ends(a->position.y, a->by_position[0].y, a->by_position[1].y, g->lanes);
+    gather_ends(a->position.x, a->by_position.x, g->lanes);
+    gather_ends(a->position.y, a->by_position.y, g->lanes);
     if (g->octets.damping) {
-        gather_ends(a->velocity.x, a->by_velocity[0].x, a->by_velocity[1].x, g->lanes);
-        gather_ends(a->velocity.y, a->by_velocity[0].y, a->by_velocity[1].y, g->lanes);
+        gather_ends(a->velocity.x, a->by_velocity.x, g->lanes);
+        gather_ends(a->velocity.y, a->by_velocity.y, g->lanes);
     }
 }
 
