@@ -83,6 +83,9 @@ n.position  # wrong
 ms.plotting.draw(n)
 batch = ms.Batch(b, 3, substeps=4, gravity=(0, 0), observations={"strain": [0, 1]})
 ms.Batch([(b, 3), (b, 2)], substeps=4)
+ms.Batch(b, 3, substeps=4, device="gpu").observe().sum()
+ms.Batch(b, 3, substeps=4, device=3)  # wrong
+ms.gpu.devices()[0].upper()
 ms.Batch([b, 3], substeps=4)  # wrong
 ms.Batch(b, 3, substeps=4, observations={"starin": [0, 1]})  # wrong
 ms.Batch(b, 3, substeps=4, graviti=(0, 0))  # wrong

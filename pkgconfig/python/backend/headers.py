@@ -28,9 +28,10 @@ class Header:
         self.version = ".".join(map(str, numbers))
         self.constants["MSPRING_VERSION"] = numbers[0] * 1000000 + numbers[1] * 1000 + numbers[2]
 
-    def declarations(self):
-        """The headers as cffi reads them: without comments, macros and the preprocessor's lines."""
-        text = re.sub(r"//[^\n]*|/\*.*?\*/", "", self.text, flags=re.S)
+    def declarations(self, text=None):
+        """The headers, or a text that includes them, as cffi reads them: without comments, macros and the preprocessor's
+        lines."""
+        text = re.sub(r"//[^\n]*|/\*.*?\*/", "", self.text if text is None else text, flags=re.S)
         text = re.sub(r"^[ \t]*#(?:\\\n|[^\n])*$", "", text, flags=re.M)
         text = re.sub(r"^MSPRING_DEFAULT\(.*\);$", "", text, flags=re.M)  # as with MSPRING_NO_INLINE
         text = re.sub(r"\bMSPRING_(API|CALL|NODISCARD)\b", "", text)
@@ -56,8 +57,8 @@ def in_order(texts):
 
 
 def without_preprocessor_branches(text):
-    """Leave out what is for C++ alone."""
-    return re.sub(r"^#ifdef __cplusplus\n.*?^#endif\n", "", text, flags=re.S | re.M)
+    """Leave out what is for C++ alone, and inline functions."""
+    return re.sub(r"^#(ifdef __cplusplus|if !defined\(MSPRING_NO_INLINE\))\n.*?^#endif\n", "", text, flags=re.S | re.M)
 
 
 def value_of(expression, known):

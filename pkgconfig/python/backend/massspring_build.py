@@ -28,6 +28,7 @@ LIBRARY_NAMES = {"win32": "massspring.dll", "darwin": "libmassspring.dylib"}
 LIBRARY = LIBRARY_NAMES.get(sys.platform, "libmassspring.so")
 CMAKE_OPTIONS = ["-DCMAKE_BUILD_TYPE=Release", "-DMASSSPRING_TESTS=OFF", "-DMASSSPRING_EXAMPLES=OFF",
                  "-DMASSSPRING_BENCH=OFF", "-DMASSSPRING_INSTALL=OFF"]
+GPU_HEADER = "src/gpu/include/massspring/massspring_gpu.h"
 SOURCES = ("CMakeLists.txt", "LICENSE", "include", "src", "pkgconfig/python")
 METADATA = """Metadata-Version: 2.1
 Name: massspring
@@ -135,7 +136,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         library = build_library(Path(scratch) / "build")
         shutil.copyfile(library, root / "massspring" / LIBRARY)
         subprocess.run(isolated(str(PACKAGE / "backend" / "modules.py"), str(SOURCE / "include/massspring"),
-                                str(root / "massspring")), check=True)
+                                str(root / "massspring"), str(SOURCE / GPU_HEADER)), check=True)
         platform = platform_tag(library)
         name = f"massspring-{version()}-py3-none-{platform}.whl"
         write_metadata(root, platform)

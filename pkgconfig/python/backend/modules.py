@@ -1,6 +1,7 @@
 """Writes the module of massspring that is made of the headers: constants, enums, errors, reports, keyword arguments.
 
-    python3 modules.py INCLUDE OUT    writes OUT/_bindings.py and OUT/_header.py, and stubs of modules in OUT
+    python3 modules.py INCLUDE OUT [GPU]    writes OUT/_bindings.py and OUT/_header.py, and stubs of modules in OUT; of
+                                            the header GPU, OUT/_gpu_bindings.py
 
 SPDX-License-Identifier: MIT
 """
@@ -12,7 +13,7 @@ import textwrap
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
-from headers import Header  # noqa: E402
+from headers import Header, without_preprocessor_branches  # noqa: E402
 
 BEGIN = '''"""Constants, enums, errors, reports and keyword arguments of the library's headers. Made by the build: do not edit.
 
@@ -312,7 +313,19 @@ def write_stubs(writer, package):
             module.with_suffix(".pyi").write_text(Stub(writer).text_of(module), encoding="utf-8")
 
 
-def main(include, out):
+def write_gpu_bindings(ffi, header, gpu, out):
+    """What cffi needs of a library that takes networks of this one."""
+    import cffi
+
+    text = without_preprocessor_branches(Path(gpu).read_text(encoding="utf-8"))
+    gpu_ffi = cffi.FFI()
+    gpu_ffi.include(ffi)
+    gpu_ffi.set_source("massspring._gpu_bindings", None)
+    gpu_ffi.cdef(header.declarations(text))
+    gpu_ffi.emit_python_code(str(Path(out) / "_gpu_bindings.py"))
+
+
+def main(include, out, gpu=None):
     import cffi
 
     header = Header(include)
@@ -320,6 +333,8 @@ def main(include, out):
     ffi.set_source("massspring._bindings", None)
     ffi.cdef(header.declarations())
     ffi.emit_python_code(str(Path(out) / "_bindings.py"))
+    if gpu:
+        write_gpu_bindings(ffi, header, gpu, out)
     writer = Writer(header)
     (Path(out) / "_header.py").write_text(writer.module(), encoding="utf-8")
     write_stubs(writer, out)

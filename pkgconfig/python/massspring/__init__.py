@@ -13,7 +13,7 @@ its subclasses, one for each mspring_result. massspring.lib and massspring.ffi (
 
 SPDX-License-Identifier: MIT
 """
-from . import _header, plotting
+from . import _header, gpu, plotting
 from ._core import enum_value, ffi, lib, text_of
 from ._header import *  # noqa: F401,F403
 from ._header import VERSION as __version__
@@ -43,6 +43,6 @@ def simd_available(level: "Simd | SimdName") -> bool:  # noqa: F405
 
 
 __all__ = ["Batch", "Builder", "ClosedError", "Error", "Network", "StaleViewError", "StateView", "SweepResult",
-           "TuneTable", "__version__", "features", "ffi", "lib", "material", "plotting", "simd_available", "sweep",
+           "TuneTable", "__version__", "features", "ffi", "gpu", "lib", "material", "plotting", "simd_available", "sweep",
            "version"]
 __all__ += _header.__all__

@@ -34,9 +34,12 @@ class Batch:
                   Where a group has no such thing, the number is 0.
     offsets       (count, 2), where each copy stands, m. None: in the same place, as groups do not touch each other
     substeps      must be given
+    device        "gpu", or "gpu:" and a number: on a device of OpenCL, with the same bits (massspring.gpu); it needs
+                  the library massspring_gpu
 
     A group that a step would throw out of bounds (max_speed) is held where it was, until reset(). The others have the
     same bits as if it were not there. network is the Network: give it floor and contact. Steps release the GIL.
+    Of DLPack, as torch.from_dlpack() takes it, a batch is its rows.
     """
 
     count: int
@@ -44,9 +47,17 @@ class Batch:
     first_particles: np.ndarray
     first_springs: np.ndarray
 
+    def __new__(cls, *_: Any, device: str = "cpu", **__: Any) -> Batch:
+        if device == "cpu":
+            return super().__new__(cls)
+        if str(device).partition(":")[0] != "gpu":
+            raise bad_argument(f"device is {device!r}: it must be 'cpu', 'gpu', or 'gpu:' and a number")
+        from .gpu import GpuBatch
+        return super().__new__(GpuBatch)
+
     def __init__(self, bodies: Union[Builder, Sequence[Tuple[Builder, int]]], count: Optional[int] = None, *,
                  actuators: Any = (), changes: int = 1, observations: Optional[Mapping[PropertyName, Any]] = None,
-                 offsets: Any = None, **settings: Unpack[NetworkKeywords]):
+                 offsets: Any = None, device: str = "cpu", **settings: Unpack[NetworkKeywords]):
         if "substeps" not in settings:
             raise TypeError("a batch needs substeps: automatic ones would follow the stiffest of its groups")
         if isinstance(bodies, Builder):
@@ -56,10 +67,19 @@ class Batch:
         if len(listed) != len(pairs):
             raise bad_argument(f"actuators has {len(listed)} lists: it must have one for each of {len(pairs)} bodies")
         self.count = sum(count_of("count", number) for _, number in pairs)
-        self.network = Network(self._builder(pairs, offsets), **{"guard": "bounds", **settings})
-        self.network._change(lib.mspring_network_set_groups, pointer("mspring_id", self.first_particles), self.count)
+        self.device = device
+        self._make(pairs, offsets, settings)
         self._set_actuators(pairs, [id_array("actuators", one) for one in listed], changes)
         self._observe(dict(observations or {}))
+        self._begin()
+
+    def _make(self, pairs: List[Tuple[Builder, int]], offsets: Any, settings: Any) -> None:
+        """A network with its groups."""
+        self.network = Network(self._builder(pairs, offsets), **{"guard": "bounds", **settings})
+        self.network._change(lib.mspring_network_set_groups, pointer("mspring_id", self.first_particles),
+                             len(self.first_particles) - 1)
+
+    def _begin(self) -> None:
         self.observe()
 
     def _builder(self, pairs: List[Tuple[Builder, int]], offsets: Any) -> Builder:
@@ -88,6 +108,9 @@ class Batch:
             springs.append((self.first_springs[group:group + number, None] + one).ravel())
             self._used[group:group + number, :len(one)] = True
             group += number
+        self._connect(springs, listed, changes)
+
+    def _connect(self, springs: List[np.ndarray], listed: List[np.ndarray], changes: int) -> None:
         self.network.set_actuators(np.concatenate(springs), changes)
 
     def _observe(self, wanted: Dict[Any, Any]) -> None:
@@ -135,16 +158,20 @@ class Batch:
         """
         wanted = self._signals
         if signals is not None:
-            array = np.asarray(signals)
+            is_dlpack = hasattr(signals, "__dlpack__") and not hasattr(signals, "__array__")
+            array = np.from_dlpack(signals) if is_dlpack else np.asarray(signals)
             if array.dtype.kind not in "biuf":
                 raise TypeError(f"signals has the dtype {array.dtype}: it must be real numbers")
             try:
                 wanted = np.broadcast_to(array, self._signals.shape)
             except ValueError:
                 raise bad_argument(f"signals has the shape {array.shape}: it must be {self._signals.shape}") from None
-        if self._signals.size:
-            self.network.set("signal", wanted.ravel() if self._used.all() else wanted[self._used])
-            self._signals[...] = wanted
+        self._advance(dt, wanted, count)
+        self._signals[...] = wanted
+
+    def _advance(self, dt: float, signals: np.ndarray, count: int) -> None:
+        if signals.size:
+            self.network.set("signal", signals.ravel() if self._used.all() else signals[self._used])
         self.network.step(dt, count)
 
     def _groups(self, groups: Ids) -> Tuple[Any, ...]:
@@ -201,6 +228,24 @@ class Batch:
 
     def positions(self, group: int) -> np.ndarray:
         """World positions of one group's particles, m: (particles, 2)."""
+        first, size = self._particles_of(group)
+        return self.network.get_positions(range(first, first + size))
+
+    def _particles_of(self, group: int) -> Tuple[int, int]:
         if not 0 <= group < self.count:
             raise _header.IdError(f"there is no group {group}, but only {self.count}", _header.ERROR_ID)
-        return self.network.get_positions(range(*self.first_particles[group:group + 2].tolist()))
+        first, end = self.first_particles[group:group + 2].tolist()
+        return first, end - first
+
+    @property
+    def state_hash(self) -> int:
+        """Hash of the state: equal on all devices."""
+        return self.network.state_hash
+
+    def __dlpack__(self, **how: Any) -> Any:
+        """The rows for another library, without a copy."""
+        return self.rows.__dlpack__(**how)
+
+    def __dlpack_device__(self) -> Tuple[int, int]:
+        """The processor: observations are read from the device."""
+        return self.rows.__dlpack_device__()

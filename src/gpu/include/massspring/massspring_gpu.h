@@ -14,7 +14,9 @@
 /// set floor and settings. mspring_gpu_create() reads it, repeats its bodies as often as you ask, and copies them to a
 /// device. After that the network is no longer needed. Each step gives the bits of a network with that many groups:
 /// mspring_gpu_get_state_hash() equals its mspring_network_get_state_hash(). Before it returns, mspring_gpu_create()
-/// checks this: it steps a clone of the network and the batch from the same random velocities, and compares them.
+/// checks this: it steps a clone of the network and the batch from the same random velocities, and compares them. One
+/// exception: bodies that are partly lattice, with many other springs, are swept in another order from 64 on. So for a
+/// larger batch of these give the network 64 groups.
 ///
 /// **What bodies may have.** Up to MSPRING_GPU_MAX_PARTICLES particles, pinned or not, each with a spring; springs with
 /// stiffness, damping and rest length, relative ones, welds; actuators; half-planes with friction and restitution;
