@@ -23,6 +23,8 @@ float mspringi_decay(float rate, float h) {
 }
 
 static double loss(double x) {
+    if (x == 0.0)
+        return 0.0; // the result below, without the work
     if (!(x < 0.125))
         return 1.0 - (double)mspringi_decay((float)x, 1.0f);
     double sum = 1.0; // x (1 - x/2 (1 - x/3 (...)))

@@ -65,22 +65,22 @@ static void end_actuators(mspring_gradient *g, uint32_t step) {
 /* -------------------------------------------------------------------------------------------------------- substeps
  */
 
-static mspring_result reverse_substep(mspring_gradient *g, uint32_t step, uint32_t substep) {
+static mspring_result reverse_substep(mspring_gradient *g, uint32_t step, uint32_t substep,
+                                      const mspringi_times *times) {
     const mspringi_past *past = &g->past[step];
-    const mspringi_times times = times_of(g, past, substep);
     const mspringi_moment before = mspringi_tape_moment(g, past->first_moment + substep);
     const double part = actuator_part(g, past, substep);
     set_actuators(g, step, part);
     if (g->plane_count > 0) {
         const mspringi_moment after = mspringi_tape_moment(g, past->first_moment + substep + 1);
         const float *forces = past->has_forces ? g->forces + (size_t)step * g->forced_count * 2 : NULL;
-        const uint32_t slot = mspringi_gradient_floor(g, &before, &after, &times, forces);
+        const uint32_t slot = mspringi_gradient_floor(g, &before, &after, times, forces);
         if (slot != MSPRING_NONE)
             return mspringi_fail(&g->message, MSPRING_ERROR_ARGUMENT,
                                  "step %u: particle %u was in a corner of the floor, which has no gradient",
                                  (unsigned)step, (unsigned)g->network->topology.particle_of_slot[slot]);
     }
-    mspringi_gradient_go_back(g, &before, &times);
+    mspringi_gradient_go_back(g, &before, times);
     double *by_forces = g->by_forces + (size_t)step * g->forced_count * 2;
     for (uint32_t i = 0; i < g->forced_count; ++i) {
         by_forces[2 * i] += g->adjoint.force.x[g->forced_slot[i]];
@@ -101,8 +101,12 @@ static bool has_finite_adjoint(const mspring_gradient *g) {
 static mspring_result reverse_step(mspring_gradient *g) {
     const uint32_t step = g->left - 1;
     mspring_result result = mspringi_tape_play(g, step);
-    for (uint32_t substep = g->past[step].substeps; substep > 0 && result == MSPRING_OK; --substep)
-        result = reverse_substep(g, step, substep - 1);
+    if (result != MSPRING_OK)
+        return result;
+    const mspringi_past *past = &g->past[step];
+    const mspringi_times first = times_of(g, past, 0), later = times_of(g, past, 1);
+    for (uint32_t substep = past->substeps; substep > 0 && result == MSPRING_OK; --substep)
+        result = reverse_substep(g, step, substep - 1, substep == 1 ? &first : &later);
     if (result != MSPRING_OK)
         return result;
     end_actuators(g, step);
