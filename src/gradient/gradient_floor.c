@@ -16,13 +16,13 @@ static double floor_distance(const mspring_gradient *g, uint32_t plane, const ms
     return p[0] * (at->origin_x + x) + p[1] * (at->origin_y + y) - p[2];
 }
 
-// Return the set of planes that a particle is on or below after a substep. It may have landed there.
-static uint32_t planes_below(const mspring_gradient *g, const mspringi_moment *after, uint32_t slot) {
-    const double x = after->x[slot], y = after->y[slot], slop = floor_slop(x, y);
-    uint32_t planes = 0;
+// True if a free particle is on a plane or below one.
+static bool is_on_floor(const mspring_gradient *g, const mspringi_moment *at, uint32_t slot) {
+    const double x = at->x[slot], y = at->y[slot], slop = floor_slop(x, y);
+    bool is_on = false;
     for (uint32_t i = 0; i < g->plane_count; ++i)
-        planes |= floor_distance(g, i, after, x, y) <= slop ? 1u << i : 0u;
-    return g->adjoint.inverse_mass[slot] > 0.0 ? planes : 0u;
+        is_on = is_on || floor_distance(g, i, at, x, y) <= slop;
+    return is_on && g->adjoint.inverse_mass[slot] > 0.0;
 }
 
 // Velocity after springs and forces, before the floor acts.
@@ -106,7 +106,9 @@ uint32_t mspringi_gradient_floor(mspring_gradient *g, const mspringi_moment *bef
                                  const mspringi_times *times, const float *forces) {
     bool has_forces = false;
     for (uint32_t slot = 0; slot < g->slots; ++slot) {
-        if (planes_below(g, after, slot) == 0)
+        // It lands where it is on the floor after the substep. If it was below, it is put onto the floor and may
+        // rise.
+        if (!is_on_floor(g, after, slot) && !is_on_floor(g, before, slot))
             continue;
         if (!has_forces) {
             for (int end = 0; end < 2; ++end) {

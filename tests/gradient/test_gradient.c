@@ -387,6 +387,16 @@ static void make_floor(scene *s, uint32_t flags) {
     set_plane(s, 0, -0.05, 0.01, 1);
 }
 
+// A truss whose lower row begins below the ground and rises: it is put onto the ground and goes on from there.
+static void make_sunk(scene *s, uint32_t flags) {
+    mspring_builder *b = lattice(5, 2, 2, &s->seed, false);
+    mspring_network_def def = support_def(-9.8f, s->substeps);
+    def.flags = flags;
+    s->network = support_network(b, &def);
+    push_all(s->network, &s->seed, 1);
+    set_plane(s, 0, 0.05, 0.05, 1);
+}
+
 static double error_of(void (*make)(scene *, uint32_t), const char *name, uint64_t seed, bool is_precise, bool follows) {
     scene s = {.dt = 1.0 / 64, .steps = 14, .substeps = 6, .changes = 4, .seed = seed};
     make(&s, is_precise ? MSPRING_NETWORK_PRECISE : 0);
@@ -400,7 +410,8 @@ static const struct {
               {"web", make_web},
               {"muscles", make_muscles},
               {"pushed", make_pushed},
-              {"floor", make_floor}};
+              {"floor", make_floor},
+              {"sunk", make_sunk}};
 
 static void is_right(void **state) {
     (void)state;
