@@ -166,6 +166,8 @@ class OnADevice(unittest.TestCase):
                 massspring.Batch(builder, 2, substeps=4, device=wrong)
         with self.assertRaises(massspring.ArgumentError):
             massspring.Batch([(builder, 2), (builder, 1)], substeps=4, device="gpu")
+        with self.assertRaises(TypeError):
+            type("Mine", (massspring.Batch,), {})(builder, 2, substeps=4, device="gpu")
         with self.assertRaisesRegex(gpu.DeviceError, "no device 999"):
             massspring.Batch(builder, 2, substeps=4, device="gpu:999").step(DT)
         with self.assertRaisesRegex(massspring.ArgumentError, "cannot observe"):

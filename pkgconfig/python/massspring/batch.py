@@ -53,7 +53,9 @@ class Batch:
         if str(device).partition(":")[0] != "gpu":
             raise bad_argument(f"device is {device!r}: it must be 'cpu', 'gpu', or 'gpu:' and a number")
         from .gpu import GpuBatch
-        return super().__new__(GpuBatch)
+        if cls is not Batch and not issubclass(cls, GpuBatch):
+            raise TypeError(f"{cls.__name__} is of the processor: derive it from massspring.gpu.GpuBatch")
+        return super().__new__(GpuBatch if cls is Batch else cls)
 
     def __init__(self, bodies: Union[Builder, Sequence[Tuple[Builder, int]]], count: Optional[int] = None, *,
                  actuators: Any = (), changes: int = 1, observations: Optional[Mapping[PropertyName, Any]] = None,

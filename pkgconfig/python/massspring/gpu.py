@@ -91,7 +91,8 @@ class GpuBatch(Batch):
     """A Batch whose bodies are on a device.
 
     network has the first bodies: 64 at most, or as many as offsets has. Give it a floor. The first step, observation or reset
-    puts the bodies on the device and closes network. Reading one body's positions waits for the device: observe() many.
+    puts the bodies on the device and closes network. rows are 0 until observe(), which reads all bodies at once;
+    positions() waits for the device for each.
     """
 
     _batch: Any = None
