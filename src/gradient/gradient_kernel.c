@@ -20,30 +20,17 @@ typedef double octet_lanes;
 #define AT(address) (*(octet_lanes *)(void *)(address))
 #define READ(address) (*(const octet_lanes *)(const void *)(address))
 
-#if defined(__GNUC__)
-typedef float octet_floats __attribute__((vector_size(8 * sizeof(float)), aligned(4)));
-#define NARROW(lanes) __builtin_convertvector(lanes, octet_floats)
-#define WIDEN(floats) __builtin_convertvector(floats, octet_lanes)
-#else
-typedef float octet_floats;
-#define NARROW(lanes) (float)(lanes)
-#define WIDEN(floats) (double)(floats)
-#endif
-
 // Compute extents and inverse lengths. An inverse is computed in single precision and refined by one Newton step.
 // It is right to 1e-14, in a third of the time of square root and division in double precision.
 MSPRINGI_ALWAYS_INLINE void measure_octet(const mspringi_moment *at, uint32_t a, uint32_t b, octet_lanes *x,
                                           octet_lanes *y, octet_lanes *inverse) {
     const octet_lanes dx = READ(at->x + b) - READ(at->x + a), dy = READ(at->y + b) - READ(at->y + a);
     const octet_lanes square = dx * dx + dy * dy + MSPRINGI_GRADIENT_NO_LENGTH;
-    octet_floats root = NARROW(square);
-#if defined(__GNUC__)
-    for (int i = 0; i < 8; ++i)
-        root[i] = sqrtf(root[i]);
-#else
-    root = sqrtf(root);
-#endif
-    const octet_lanes guess = WIDEN(1.0f / root);
+    double lanes[LANES_AT_ONCE];
+    AT(lanes) = square;
+    for (uint32_t i = 0; i < LANES_AT_ONCE; ++i)
+        lanes[i] = (double)(1.0f / sqrtf((float)lanes[i]));
+    const octet_lanes guess = READ(lanes);
     *x = dx;
     *y = dy;
     *inverse = guess * (1.5 - 0.5 * square * (guess * guess));
