@@ -109,7 +109,7 @@ function sizeOf(path) {
     const bytes = readFileSync(file);
     return `width="${bytes.readUInt32BE(16)}" height="${bytes.readUInt32BE(20)}"`;
   }
-  const [, width, height] = readFileSync(file, 'utf8').match(/<svg[^>]*?width="([\d.]+)[^"]*"[^>]*?height="([\d.]+)/) ?? [];
+  const [, width, height] = readFileSync(file, 'utf8').match(/<svg[^>]*?width=["']([\d.]+)[^>]*?height=["']([\d.]+)/) ?? [];
   return width ? `width="${width}" height="${height}"` : '';
 }
 

@@ -179,11 +179,20 @@ export class Pen {
     this.text(words, place.x + 10, place.y + 18, { colour: 'ink' });
   }
 
+  /** A line between this place and the one before. */
+  divide({ x, y, width, height }) {
+    this.context.restore();
+    this.context.beginPath();
+    this.context.moveTo(x, y);
+    this.context.lineTo(x ? x : width, x ? height : y);
+    this.stroke('dim', false, 1);
+  }
+
   /* -------------------------------------------------------------------------------------------------- plots */
 
   plot(place, { x, y, log = false, logX = false, xName, yName, curves }) {
     this.context.restore();
-    const frame = { x: place.x + 44, y: place.y + 26, width: place.width - 58, height: place.height - 54 };
+    const frame = { x: place.x + 44, y: place.y + 26, width: place.width - 58, height: place.height - 60 };
     const part = ([from, to], value, isLog) => (isLog ? Math.log(value / from) / Math.log(to / from) : (value - from) / (to - from));
     const atX = (value) => frame.x + frame.width * part(x, value, logX);
     const atY = (value) => frame.y + frame.height * (1 - part(y, value, log));
@@ -221,7 +230,7 @@ export class Pen {
       this.text(short(value), frame.x - 5, atY(value) + 4, { align: 'right' });
     }
     this.stroke('line', false, 1);
-    this.text(xName, frame.x + frame.width, frame.y + frame.height + 27, { align: 'right' });
+    this.text(xName, frame.x + frame.width, frame.y + frame.height + 29, { align: 'right' });
     this.text(yName, frame.x - 38, frame.y - 12);
   }
 }

@@ -165,8 +165,10 @@ class Demo {
     const { peers, lines } = this.session, compared = Math.min(...peers.map(({ count }) => count.compared));
     const differing = peers[0].count.differing + peers[1].count.differing;
     this.pen.begin();
-    this.pen.columns(2).forEach((place, i) => drawWorld(this.pen, place, peers[i].world,
+    const places = this.pen.columns(2);
+    places.forEach((place, i) => drawWorld(this.pen, place, peers[i].world,
       `${i ? 'orange' : 'green'}'s computer${this.ms[0] === this.ms[1] ? '' : i ? ' (no SIMD)' : ' (SIMD)'}`));
+    this.pen.divide(places[1]);
     const verdict = this.element.querySelector('[data-verdict]');
     verdict.textContent = `${compared.toLocaleString('en')} hashes compared, ${differing ? `${differing} differ` : 'all equal'}`;
     verdict.className = `verdict ${differing ? 'failed' : 'passed'}`;
