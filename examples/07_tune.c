@@ -126,13 +126,13 @@ static void find_front(cloud *of) {
 /* -------------------------------------------------------------------------------------------------------- error */
 
 static void print_row(const mspring_tune_row *row) {
-    char iterations[16] = "";
+    char residual[16] = "";
     const bool steps_back =
         row->settings.solver != MSPRING_SOLVER_EXPLICIT && row->settings.integrator == MSPRING_INTEGRATOR_BDF2;
     if (row->settings.solver == MSPRING_SOLVER_IMPLICIT)
-        snprintf(iterations, sizeof iterations, "%u", row->settings.iterations);
+        snprintf(residual, sizeof residual, "%g", (double)row->settings.residual);
     printf("%-9s %-5s %8u %10s", solver_names[row->settings.solver], steps_back ? "BDF2" : "",
-           row->settings.substeps, iterations);
+           row->settings.substeps, residual);
     if (row->flags & MSPRING_TUNE_REJECTED) {
         printf("   rejected as unstable\n");
         return;
@@ -159,7 +159,7 @@ static void print_rows(const subject *about, const mspring_tune_row *rows, uint3
     for (uint32_t i = 0; i < count; i++)
         duration = fmax(duration, rows[i].duration);
     printf("\n%s, steps of 1/64 s, compared for %.3g s\n\n", about->title, duration);
-    printf("%-15s %8s %10s %11s %11s %11s %11s %9s %9s %10s %10s\n", "solver", "substeps", "iterations",
+    printf("%-15s %8s %10s %11s %11s %11s %11s %9s %9s %10s %10s\n", "solver", "substeps", "residual",
            "least, us", "moving, us", "resting, us", "error, m", "error, %", "energy, %", "bending, m",
            "at rest, m");
     for (uint32_t i = 0; i < count; i++)
@@ -177,13 +177,13 @@ static void print_label(char *label, size_t size, const mspring_tune_row *row) {
     const bool ga0 =
         row->settings.solver != MSPRING_SOLVER_EXPLICIT && row->settings.integrator == MSPRING_INTEGRATOR_ALPHA;
     if (row->settings.solver == MSPRING_SOLVER_IMPLICIT)
-        snprintf(label, size, "%u x %u%s", row->settings.substeps, row->settings.iterations, ga0 ? " GA0" : "");
+        snprintf(label, size, "%u, %g%s", row->settings.substeps, (double)row->settings.residual, ga0 ? " GA0" : "");
     else
         snprintf(label, size, "%u%s", row->settings.substeps, ga0 ? " GA0" : "");
 }
 
 static void collect_errors(const mspring_tune_row *rows, uint32_t count, cloud *to) {
-    char label[16];
+    char label[32];
     for (uint32_t i = 0; i < count; i++) {
         const mspring_tune_row *row = &rows[i];
         if (!(row->flags & MSPRING_TUNE_HAS_TRAJECTORY))
@@ -293,7 +293,7 @@ static bool measure_bending(const subject *about, const options *how, mspring_ne
         if (!tune(network, how, &def, rows, &def.setting_count))
             return false;
         for (uint32_t r = 0; r < def.setting_count; r++) {
-            char label[16] = "";
+            char label[32] = "";
             if (!(rows[r].flags & MSPRING_TUNE_HAS_REST))
                 continue;
             printf("%12.0f %12.4g %-9s %8u %11.1f\n", pow(4, i), rows[r].bending,
@@ -337,16 +337,16 @@ static void print_quantities(const double *mean, const double *spread) {
 static void print_crash(const subject *about, const mspring_tune_scene *crash, const mspring_tune_row *rows,
                         uint32_t count) {
     printf("\n%s, steps of 1/64 s, %g s\n\n%-15s %8s %10s %11s %6s %16s %16s %16s %9s\n", about->title,
-           crash->duration, "solver", "substeps", "iterations", "mean, us", "starts", "broken", "energy, kJ",
+           crash->duration, "solver", "substeps", "residual", "mean, us", "starts", "broken", "energy, kJ",
            "extent, m", "distance");
     bool told = false;
     for (uint32_t i = 0; i < count; i++) {
-        char iterations[16] = "";
+        char residual[16] = "";
         const mspring_tune_row *row = &rows[i];
         if (!(row->flags & MSPRING_TUNE_HAS_SCENE))
             continue;
         if (row->settings.solver == MSPRING_SOLVER_IMPLICIT)
-            snprintf(iterations, sizeof iterations, "%u", row->settings.iterations);
+            snprintf(residual, sizeof residual, "%g", (double)row->settings.residual);
         if (!told) {
             told = true;
             printf("%-15s %8u %10s %11s %6u", "the fine run", row->fine_substeps, "", "", row->scene_starts);
@@ -358,7 +358,7 @@ static void print_crash(const subject *about, const mspring_tune_scene *crash, c
                        row->settings.integrator == MSPRING_INTEGRATOR_BDF2
                    ? "BDF2"
                    : "",
-               row->settings.substeps, iterations, 1e6 * row->scene_cost, row->scene_starts);
+               row->settings.substeps, residual, 1e6 * row->scene_cost, row->scene_starts);
         print_quantities(row->scene_mean, row->scene_spread);
         printf(" %9.2f  %s%s\n", row->scene_distance, row->flags & MSPRING_TUNE_PARETO ? "front" : "",
                row->flags & MSPRING_TUNE_RECOMMENDED ? ", recommended" : "");
@@ -366,7 +366,7 @@ static void print_crash(const subject *about, const mspring_tune_scene *crash, c
 }
 
 static bool measure_crash(const subject *about, const options *how, mspring_network *network, cloud *distances) {
-    char label[16];
+    char label[32];
     mspring_tune_scene crash = mspring_tune_scene_default();
     mspring_tune_def def = mspring_tune_def_default();
     mspring_tune_row rows[MOST_ROWS];

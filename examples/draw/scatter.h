@@ -11,7 +11,7 @@ typedef enum scatter_mark { SCATTER_DISC, SCATTER_SQUARE, SCATTER_DIAMOND, SCATT
 
 typedef struct scatter_point {
     double x, y;    ///< > 0; others are left out
-    char label[16]; ///< drawn beside it
+    char label[32]; ///< drawn beside it
     bool ringed;    ///< to stand out
 } scatter_point;
 

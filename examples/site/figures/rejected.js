@@ -92,8 +92,8 @@ export default {
       say() {
         const sag = (drop) => `${Math.max(0, drop).toFixed(2)} m`, last = dropOf(euler);
         const ends = burst || !(Math.abs(last) < 100) ? 'exploded' : sag(last);
-        return `sag: this library ${sag(TOP - heightOf(ours, probe(WIDTH)))} · PBD ${sag(dropOf(pbd))} · Euler ${ends}. ` +
-          `Right: ${rest.toFixed(2)} m`;
+        return `sag so far: this library ${sag(TOP - heightOf(ours, probe(WIDTH)))} · PBD ${sag(dropOf(pbd))} · Euler ${ends} · ` +
+          `all should end at ${rest.toFixed(2)} m`;
       },
       free: () => ours.free(),
     };
