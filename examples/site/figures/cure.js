@@ -54,6 +54,6 @@ export default {
   async check(ms, breathe) {
     const one = computed(ms), guess = 900 * one;
     const found = await bisected(ms, breathe, 0.97 * guess, 1.03 * guess, 30);
-    return [{ what: '30 substeps stand {} times the stiffness of one', found: found / one, wanted: 900, within: 9, digits: 0 }];
+    return [{ what: '30 substeps allow {} times the stiffness of one', found: found / one, wanted: 900, within: 9, digits: 0 }];
   },
 };
