@@ -98,7 +98,8 @@ function redirect(html, from) {
     .replace(/<img src="([^"]*)" alt="([^"]*)"/g, (_, link, alt) => {
       const goal = escape(target(from, plain(link)) ?? link);
       return `<img loading="lazy" ${sizeOf(posix.join(from, link))} src="${goal}" alt="${alt}"`;
-    });
+    })
+    .replace(/<img loading="lazy" [^>]*?src="([^"]*)"[^>]*>/g, '<a class="picture" href="$1">$&</a>'); // to see it larger
 }
 
 // Pictures have their room before they are there.
@@ -208,9 +209,18 @@ ${body}
 `;
 }
 
+// Tables of many columns of words: on a phone each row becomes a list, whose lines begin with the column's title.
+function stacked(table) {
+  const titles = [...table.matchAll(/<th(?: [^>]*)?>([^]*?)<\/th>/g)].map(([, title]) => title);
+  if (titles.length < 5 || table.includes('align="right"')) return table;
+  let cell = 0;
+  return table.replace('<table>', '<table class="stack">')
+    .replace(/<td/g, () => `<td data-title="${titles[cell++ % titles.length]}"`);
+}
+
 function write(path, title, html) {
-  const wide = html.replace(/<code>([^<]*)<\/code>(?!<\/pre>)/g, (_, words) => `<code>${words.replace(/_/g, '_<wbr>')}</code>`)
-    .replace(/<table>/g, '<div class="table" tabindex="0"><table>').replace(/<\/table>/g, '</table></div>');
+  const wide = html.replace(/<table>[^]*?<\/table>/g, stacked).replace(/<code>([^<]*)<\/code>(?!<\/pre>)/g, (_, words) => `<code>${words.replace(/_/g, '_<wbr>')}</code>`)
+    .replace(/<table( class="stack")?>/g, '<div class="table" tabindex="0"><table$1>').replace(/<\/table>/g, '</table></div>');
   mkdirSync(join(folder, posix.dirname(path)), { recursive: true });
   const body = wide.replace(/<!-- figure (\w+) -->/g, (_, name, at) =>
     figureOf(name, plain([...wide.slice(0, at).matchAll(/<h[1-3][^>]*>([^]*?)<\/h/g)].at(-1)?.[1] ?? title), posix.dirname(path)));
