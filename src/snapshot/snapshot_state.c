@@ -384,7 +384,7 @@ const mspringi_section mspringi_section_masses = {"mass",      "masses",     fal
                                                   masses_save, masses_check, masses_load, NULL};
 
 static uint32_t masses_runs(const mspring_network *network, mspringi_io head, mspringi_run *runs) {
-    uint32_t kind;
+    uint32_t kind = 0;
     MSPRINGI_HAND(&head, kind);
     runs[0] = (mspringi_run){MSPRINGI_BYTES, sizeof kind + network->topology.reserve.particle_end * sizeof(float)};
     runs[1] = (mspringi_run){MSPRINGI_FLOATS, kind & SCALED ? 0 : 1};

@@ -91,7 +91,7 @@ static void events_save(const mspring_network *network, mspringi_io *io) {
 }
 
 static mspring_result events_load(mspring_network *network, mspringi_io *io) {
-    uint32_t capacity;
+    uint32_t capacity = 0;
     MSPRINGI_HAND(io, capacity);
     return mspring_network_reserve_events(network, mspringi_chunk_room(network, capacity));
 }

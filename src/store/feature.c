@@ -15,8 +15,9 @@ static const struct {
 
 #define STATES (sizeof states / sizeof states[0])
 
+// The address is an integer, since gcc 12 takes the network for its first member, and warns of a write behind it.
 static void set_pointer(mspring_network *network, size_t offset, void *state) {
-    memcpy((char *)network + offset, &state, sizeof state);
+    memcpy((void *)((uintptr_t)network + offset), &state, sizeof state);
 }
 
 static void *get_pointer(const mspring_network *network, size_t offset) {

@@ -222,7 +222,7 @@ const mspringi_section mspringi_section_sleep = {"slee",     "sleep",     false,
                                                  sleep_save, sleep_check, sleep_load, NULL};
 
 static uint32_t sleep_runs(const mspring_network *network, mspringi_io io, mspringi_run *runs) {
-    sleep_head head;
+    sleep_head head = {0};
     const size_t size = io.left;
     hand_head(&io, &head);
     runs[0] = (mspringi_run){MSPRINGI_BYTES, size - io.left};
